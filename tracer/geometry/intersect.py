@@ -1,0 +1,146 @@
+"""Ray against box, triangle, sphere and cone: the leaf functions that everything else calls.
+
+A triangle is stored as corner and two edges (9 floats), a quadric as a canonical sphere or cone
+seen through the affine map that leads there (16 floats), so that any transform fits both.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tracer.geometry.rays import INFINITY, Ray
+from tracer.kernels import inlined, kernel
+from tracer.scene.model import SPHERE
+
+ZERO = np.float32(0)
+ONE = np.float32(1)
+TINY = np.float32(1e-20)
+
+# Columns of a quadric's row: the map to canonical space fills the first 12.
+KIND, R0, R1, INSIDE = 12, 13, 14, 15
+
+
+@inlined
+def inverse(x):
+    """1/x, with a huge number for 0: finite, so that 0 * inverse is 0 and never NaN."""
+    return ONE / (x if abs(x) > TINY else math.copysign(TINY, x))
+
+
+@inlined
+def hit_box(ray, box):
+    """Interval of t in which a ray is inside box (6,) = lower, upper; empty where first > second (slab test)."""
+    ix, iy, iz = inverse(ray.dx), inverse(ray.dy), inverse(ray.dz)
+    x0, x1 = (box[0] - ray.ox) * ix, (box[3] - ray.ox) * ix
+    y0, y1 = (box[1] - ray.oy) * iy, (box[4] - ray.oy) * iy
+    z0, z1 = (box[2] - ray.oz) * iz, (box[5] - ray.oz) * iz
+    enter = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), ray.t_min))
+    leave = min(min(max(x0, x1), max(y0, y1)), min(max(z0, z1), ray.t_max))
+    return enter, leave
+
+
+@inlined
+def hit_triangle(ray, triangles, i):
+    """(t, u, v) of a ray on row i of triangles (n, 9), t = inf for a miss (Moeller and Trumbore 1997), two-sided."""
+    e1x, e1y, e1z = triangles[i, 3], triangles[i, 4], triangles[i, 5]
+    e2x, e2y, e2z = triangles[i, 6], triangles[i, 7], triangles[i, 8]
+    px, py, pz = ray.dy * e2z - ray.dz * e2y, ray.dz * e2x - ray.dx * e2z, ray.dx * e2y - ray.dy * e2x
+    det = e1x * px + e1y * py + e1z * pz
+    if det == ZERO:
+        return INFINITY, ZERO, ZERO
+    f = ONE / det
+    sx, sy, sz = ray.ox - triangles[i, 0], ray.oy - triangles[i, 1], ray.oz - triangles[i, 2]
+    u = f * (sx * px + sy * py + sz * pz)
+    if not (u >= ZERO and u <= ONE):
+        return INFINITY, ZERO, ZERO
+    qx, qy, qz = sy * e1z - sz * e1y, sz * e1x - sx * e1z, sx * e1y - sy * e1x
+    v = f * (ray.dx * qx + ray.dy * qy + ray.dz * qz)
+    if not (v >= ZERO and u + v <= ONE):
+        return INFINITY, ZERO, ZERO
+    t = f * (e2x * qx + e2y * qy + e2z * qz)
+    if not (t > ray.t_min and t <= ray.t_max):
+        return INFINITY, ZERO, ZERO
+    return t, u, v
+
+
+@inlined
+def transform_ray(ray, m):
+    """A ray under the affine map m (12,), row by row; the direction is not normalised, so t means the same."""
+    return Ray(
+        m[0] * ray.ox + m[1] * ray.oy + m[2] * ray.oz + m[3],
+        m[4] * ray.ox + m[5] * ray.oy + m[6] * ray.oz + m[7],
+        m[8] * ray.ox + m[9] * ray.oy + m[10] * ray.oz + m[11],
+        m[0] * ray.dx + m[1] * ray.dy + m[2] * ray.dz,
+        m[4] * ray.dx + m[5] * ray.dy + m[6] * ray.dz,
+        m[8] * ray.dx + m[9] * ray.dy + m[10] * ray.dz,
+        ray.t_min,
+        ray.t_max,
+    )
+
+
+@inlined
+def _nearest_root(a, half_b, c, z, dz, is_cone, ray):
+    """Smallest valid root of a t^2 + 2 half_b t + c, on a cone only where 0 <= z + t dz <= 1."""
+    if a == 0.0:
+        if half_b == 0.0:
+            return np.float64(INFINITY)
+        first = second = -0.5 * c / half_b
+    else:
+        discriminant = half_b * half_b - a * c
+        if not discriminant >= 0.0:
+            return np.float64(INFINITY)
+        q = -(half_b + math.copysign(math.sqrt(discriminant), half_b))
+        first = q / a
+        second = c / q if q != 0.0 else first
+    for t in (min(first, second), max(first, second)):
+        height = z + t * dz
+        if ray.t_min < t <= ray.t_max and (not is_cone or (height >= 0.0 and height <= 1.0)):
+            return t
+    return np.float64(INFINITY)
+
+
+@kernel
+def hit_quadric(ray, quadrics, i):
+    """t of a ray on row i of quadrics (n, 16), inf for a miss.  In float64: quadrics are few, and roots cancel."""
+    q = quadrics[i]
+    r = transform_ray(ray, q)
+    ox, oy, oz = np.float64(r.ox), np.float64(r.oy), np.float64(r.oz)
+    dx, dy, dz = np.float64(r.dx), np.float64(r.dy), np.float64(r.dz)
+    if q[KIND] == SPHERE:
+        # Measured from the point nearest the centre, where b vanishes and nothing cancels.
+        a = dx * dx + dy * dy + dz * dz
+        closest = -(ox * dx + oy * dy + oz * dz) / a
+        ox, oy, oz = ox + closest * dx, oy + closest * dy, oz + closest * dz
+        room = 1.0 - (ox * ox + oy * oy + oz * oz)
+        if not room >= 0.0:
+            return INFINITY
+        half = math.sqrt(room / a)
+        for t in (closest - half, closest + half):
+            if ray.t_min < t <= ray.t_max:
+                return np.float32(t)
+        return INFINITY
+    slope = np.float64(q[R1]) - np.float64(q[R0])
+    radius, dr = np.float64(q[R0]) + slope * oz, slope * dz
+    a = dx * dx + dy * dy - dr * dr
+    half_b = ox * dx + oy * dy - radius * dr
+    c = ox * ox + oy * oy - radius * radius
+    return np.float32(_nearest_root(a, half_b, c, oz, dz, True, r))
+
+
+@inlined
+def quadric_normal(quadrics, i, x, y, z):
+    """Outward normal, in the space the quadric's map starts from and of any length, at (x, y, z)."""
+    q = quadrics[i]
+    cx = q[0] * x + q[1] * y + q[2] * z + q[3]
+    cy = q[4] * x + q[5] * y + q[6] * z + q[7]
+    cz = q[8] * x + q[9] * y + q[10] * z + q[11]
+    if q[KIND] != SPHERE:
+        slope = q[R1] - q[R0]
+        cz = -slope * (q[R0] + slope * cz)
+    sign = -ONE if q[INSIDE] != ZERO else ONE
+    return (
+        sign * (cx * q[0] + cy * q[4] + cz * q[8]),
+        sign * (cx * q[1] + cy * q[5] + cz * q[9]),
+        sign * (cx * q[2] + cy * q[6] + cz * q[10]),
+    )

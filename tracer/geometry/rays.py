@@ -1,0 +1,77 @@
+"""Rays and hits as numba sees them: one ray as a tuple of scalars, many as structure of arrays."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tracer.kernels import inlined
+
+MISS = -1
+INFINITY = np.float32(np.inf)
+
+
+class Ray(NamedTuple):
+    """One ray, float32: origin, direction (of any length: t is in its units) and the open interval of t."""
+
+    ox: float
+    oy: float
+    oz: float
+    dx: float
+    dy: float
+    dz: float
+    t_min: float
+    t_max: float
+
+
+class Rays(NamedTuple):
+    """n rays: origin and direction (3, n), t_min and t_max (n,), all float32."""
+
+    origin: NDArray[np.float32]
+    direction: NDArray[np.float32]
+    t_min: NDArray[np.float32]
+    t_max: NDArray[np.float32]
+
+
+class Hits(NamedTuple):
+    """Nearest hits of n rays: t (n,) float32, inf for a miss; primitive (n,) int32, MISS for none;
+    u and v (n,) float32, barycentric weights of a triangle's second and third corner."""
+
+    t: NDArray[np.float32]
+    primitive: NDArray[np.int32]
+    u: NDArray[np.float32]
+    v: NDArray[np.float32]
+
+
+def ray_batch(origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0, t_max: ArrayLike = np.inf) -> Rays:
+    """Turn origins and directions (n, 3) into a batch; t_min and t_max may be one number or (n,).
+
+    Directions keep their length.  Raises ValueError where shapes do not fit.
+    """
+    o, d = np.asarray(origins, np.float32), np.asarray(directions, np.float32)
+    if o.ndim != 2 or o.shape[1] != 3 or o.shape != d.shape:
+        raise ValueError(f"origins and directions are (n, 3) each, not {o.shape} and {d.shape}")
+    n = len(o)
+    lo, hi = (np.ascontiguousarray(np.broadcast_to(np.asarray(t, np.float32), (n,))) for t in (t_min, t_max))
+    return Rays(np.ascontiguousarray(o.T), np.ascontiguousarray(d.T), lo, hi)
+
+
+@inlined
+def empty_rays(n):
+    return Rays(
+        np.empty((3, n), np.float32), np.empty((3, n), np.float32), np.empty(n, np.float32), np.empty(n, np.float32)
+    )
+
+
+@inlined
+def empty_hits(n):
+    return Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
+
+
+@inlined
+def ray_at(rays, i):
+    """The i-th ray of a batch."""
+    o, d = rays.origin, rays.direction
+    return Ray(o[0, i], o[1, i], o[2, i], d[0, i], d[1, i], d[2, i], rays.t_min[i], rays.t_max[i])

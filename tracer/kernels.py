@@ -1,0 +1,57 @@
+"""How this package compiles: one decorator for every kernel, and where the compiled code is kept.
+
+numba keys its cache by the file a kernel stands in, and so misses a change in a helper that the
+kernel calls.  The folder here is therefore named by a hash over *all* kernel sources: a changed
+source never meets stale machine code.  `SHADOWCULL_CACHE_DIR` overrides the user's cache folder;
+where neither can be written, a temporary folder serves for the life of the process.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from functools import cache
+from pathlib import Path
+
+import numba
+import platformdirs
+from numba import config, njit
+
+_KERNEL_FOLDERS = ("geometry", "culling", "shading")
+
+
+def _source_hash() -> str:
+    digest = hashlib.sha256(f"{numba.__version__} {numba.core.cpu.get_host_cpu_features()}".encode())
+    root = Path(__file__).parent
+    for path in [Path(__file__), *sorted(p for f in _KERNEL_FOLDERS for p in (root / f).rglob("*.py"))]:
+        digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@cache
+def cache_folder() -> Path:
+    """The folder of this version's compiled kernels; made, and known to be writable."""
+    base = os.environ.get("SHADOWCULL_CACHE_DIR")
+    root = Path(base).expanduser() if base else Path(platformdirs.user_cache_dir("shadowcull")) / "kernels"
+    folder = root / _source_hash()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="shadowcull-kernels-"))
+
+
+def kernel(function):
+    """Compile `function` with numba: cached, free of the GIL, division by zero as in IEEE 754."""
+    saved, config.CACHE_DIR = config.CACHE_DIR, str(cache_folder())
+    try:
+        return njit(cache=True, nogil=True, error_model="numpy")(function)
+    finally:
+        config.CACHE_DIR = saved
+
+
+def inlined(function):
+    """A small kernel that disappears into its callers; it is compiled with them."""
+    return njit(nogil=True, error_model="numpy")(function)
