@@ -1,0 +1,328 @@
+"""Reading AFF, the Animated File Format of BART, and its subset NFF.
+
+An AFF file is a program: statements change a current material and a stack of transforms, include
+other files, and emit geometry.  `_Reader` runs it, one method per statement.  The current
+material is global: neither a closing brace nor the end of an included file restores it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+from tracer.scene import aff_blocks
+from tracer.scene.aff_blocks import Mesh, Place, Quadric, TextureName
+from tracer.scene.aff_geometry import Geometry, Piece, resolve
+from tracer.scene.aff_tokens import AffFile, Cursor, quoted, reason
+from tracer.scene.animation import Animation, Chain, TrackSet
+from tracer.scene.framing import bounds, framing_camera
+from tracer.scene.model import Camera, Float64, Light, Material, Progress, Scene, SceneError, Texture
+from tracer.scene.textures import find_texture, load_texture
+
+LEAST_HITHER = 1e-4
+SECONDS_BETWEEN_REPORTS = 0.02
+
+
+def load_aff(path: str | Path, progress: Progress | None = None, detail: int | None = None) -> Scene:
+    """An AFF or NFF scene with everything it includes.
+
+    `detail` overrides what the file says with `d`.  Raises SceneError, in one line that names file
+    and line, and lets what `progress` raises (Cancelled) through.
+    """
+    reader = _Reader(Path(path), progress, detail)
+    reader.run()
+    return reader.scene()
+
+
+class _Reader:
+    """The state of a scene while its files are run."""
+
+    def __init__(self, path: Path, progress: Progress | None, detail: int | None) -> None:
+        self.path = path
+        self.progress = progress
+        self.reported = 0.0
+        self.detail_is_fixed = detail is not None
+        self.detail = detail or 0
+        self.files: dict[Path, AffFile] = {}
+        self.including: list[Path] = []
+        self.chain: Chain = ()
+        self.geometry = Geometry()
+        self.materials: list[Material] = []
+        self.material_numbers: dict[tuple[AffFile, int], int] = {}
+        self.material = -1
+        self.textures: list[Texture] = []
+        self.texture_files: dict[Path, int] = {}
+        self.texture_numbers: dict[tuple[str, Path], int] = {}
+        self.tracks: dict[str, TrackSet] = {}
+        self.lights: list[tuple[Light, Chain, Place]] = []
+        self.camera: Camera | None = None
+        self.background = (0.0, 0.0, 0.0)
+        self.ambient = (1.0, 1.0, 1.0)
+        self.time_range = (0.0, 0.0)
+        self.frames = 1
+        self.warnings: list[str] = []
+        self.statements: dict[bytes, Callable[[Cursor], None]] = {
+            b"b": self.read_background,
+            b"v": self.read_viewpoint,
+            b"l": self.read_light,
+            b"la": self.read_moving_light,
+            b"am": self.read_ambient,
+            b"a": self.read_animation,
+            b"f": self.read_fill,
+            b"fm": self.read_extended_fill,
+            b"c": lambda at: self.add_quadric(aff_blocks.read_cone(at)),
+            b"s": lambda at: self.add_quadric(aff_blocks.read_sphere(at)),
+            b"p": lambda at: self.add_mesh(aff_blocks.read_polygon(at, False)),
+            b"pp": lambda at: self.add_mesh(aff_blocks.read_polygon(at, True)),
+            b"tt": lambda at: self.add_mesh(aff_blocks.read_textured_triangle(at, False)),
+            b"ttp": lambda at: self.add_mesh(aff_blocks.read_textured_triangle(at, True)),
+            b"tpa": self.read_morph,
+            b"m": lambda at: self.add_mesh(aff_blocks.read_mesh(at)),
+            b"d": self.read_detail,
+            b"k": self.read_tracks,
+        }
+
+    # Running files
+
+    def run(self) -> None:
+        try:
+            file = AffFile(self.path)
+        except (OSError, ValueError) as error:
+            raise SceneError(f"{self.path}: cannot be read: {reason(error)}; check the path") from None
+        if not file.words:
+            raise SceneError(f"{self.path}:1: the file is empty; give a scene with at least one statement")
+        self.run_file(file, 0.0, 1.0)
+
+    def run_file(self, file: AffFile, low: float, high: float) -> None:
+        """Run a file whose share of the progress is low to high; includes take equal parts of it."""
+        self.including.append(file.path.resolve())
+        share = (high - low) / max(1, file.words.count(b"i"))
+        has_includes = b"i" in file.words
+        done = low
+        opened: list[tuple[Chain, int]] = []  # what to return to at each '}', and where its '{' stands
+        at = Cursor(file)
+        while not at.at_end:
+            self.report(file, done if has_includes else low + (high - low) * at.position / len(file.words))
+            word = at.word("a statement")
+            if word == b"}":
+                if not opened:
+                    raise at.error("'}' that closes nothing; remove it or open a brace before it")
+                self.chain = opened.pop()[0]
+            elif word in (b"x", b"xs"):
+                before = self.chain
+                self.chain = self.read_transform(at) if word == b"xs" else (*before, at.name("the name of a transform"))
+                at.expect(b"{", "of a transform")
+                opened.append((before, at.position - 1))
+            elif word == b"i":
+                self.include(at, done, done + share)
+                done += share
+            elif word in self.statements:
+                self.statements[word](at)
+            else:
+                raise at.error(f"unknown statement {quoted(word)}; correct it, or check that this is an AFF file")
+        if opened:
+            raise at.error("'{' that is never closed; add '}'", opened[-1][1])
+        self.including.pop()
+
+    def report(self, file: AffFile, fraction: float) -> None:
+        if self.progress is not None and (now := perf_counter()) - self.reported > SECONDS_BETWEEN_REPORTS:
+            self.reported = now
+            self.progress(f"Reading {file.path.name}", min(fraction, 1.0))
+
+    def include(self, at: Cursor, low: float, high: float) -> None:
+        level = at.count("detail levels", least=-(10**9))
+        name = at.name("the name of a file")
+        if level > self.detail:
+            return
+        path = at.file.path.parent / name
+        try:
+            resolved = path.resolve()
+            if resolved in self.including:
+                raise at.error(f"{quoted(name.encode('utf-8', 'surrogateescape'))} includes itself; break the circle")
+            if resolved not in self.files:
+                self.files[resolved] = AffFile(path)
+        except (OSError, ValueError) as error:
+            shown = quoted(name.encode("utf-8", "surrogateescape"), 80)
+            raise at.error(f"cannot read the included file {shown}: {reason(error)}; add it or correct the name") from None
+        self.run_file(self.files[resolved], low, high)
+
+    # Statements
+
+    def read_background(self, at: Cursor) -> None:
+        self.background = at.triple("the background")
+
+    def read_ambient(self, at: Cursor) -> None:
+        self.ambient = at.triple("the ambient light")
+
+    def read_detail(self, at: Cursor) -> None:
+        level = at.count("detail levels", least=-(10**9))
+        if not self.detail_is_fixed:
+            self.detail = level
+
+    def read_animation(self, at: Cursor) -> None:
+        start, end = at.numbers(2, "the time range").tolist()
+        self.frames = at.count("frames", least=1)
+        self.time_range = (start, end)
+
+    def read_viewpoint(self, at: Cursor) -> None:
+        """`hither` and `resolution` are read and ignored: a ray tracer starts at the eye, and has its own size."""
+        counts = {b"from": 3, b"at": 3, b"up": 3, b"angle": 1, b"hither": 1, b"resolution": 2}
+        given: dict[bytes, list[float]] = {}
+        start = at.position - 1
+        while at.peek() in counts:
+            key = at.word("a viewpoint")
+            given[key] = at.numbers(counts[key], f"{key.decode()} of the viewpoint").tolist()
+        for key in (b"from", b"at"):
+            if key not in given:
+                raise at.error(f"the viewpoint has no '{key.decode()}'; add it", start)
+        direction = np.subtract(given[b"at"], given[b"from"])
+        if not direction.any():
+            raise at.error("the viewpoint looks at itself; make 'from' and 'at' differ", start)
+        angle = given.get(b"angle", [45.0])[0]
+        if not 0.0 < angle < 180.0:
+            raise at.error(f"an angle of {angle:g} degrees; give one between 0 and 180", start)
+        x, y, z = given[b"from"]
+        up = given.get(b"up", [0.0, 1.0, 0.0])
+        self.camera = Camera((x, y, z), tuple(direction.tolist()), (up[0], up[1], up[2]), angle)
+
+    def read_light(self, at: Cursor, name: str | None = None) -> None:
+        place = Place(at.file, at.position - 1)
+        position = np.append(at.numbers(3, "the position of a light"), 1.0)
+        color = at.triple("the colour of a light") if at.at_number() else (1.0, 1.0, 1.0)
+        x, y, z = (resolve(self.chain, ())[1] @ position)[:3].tolist()
+        light = Light(name or f"light {len(self.lights)}", (x, y, z), color, name)
+        self.lights.append((light, self.chain, place))
+
+    def read_moving_light(self, at: Cursor) -> None:
+        self.read_light(at, at.name("the name of a light"))
+
+    def read_fill(self, at: Cursor) -> None:
+        """NFF knows a colour, Kd, Ks and no ambient: diffuse is Kd times the colour, highlights and
+        mirror images are white times Ks, and a tenth of the diffuse colour serves as ambient.
+        Shine is the Phong exponent itself."""
+        start = at.position - 1
+        r, g, b, kd, ks, shine, transmission, ior = at.numbers(8, "a material").tolist()
+        diffuse = (kd * r, kd * g, kd * b)
+        ambient = (0.1 * diffuse[0], 0.1 * diffuse[1], 0.1 * diffuse[2])
+        self.use_material(at.file, start, Material("", ambient, diffuse, (ks, ks, ks), shine, transmission, ior))
+
+    def read_extended_fill(self, at: Cursor) -> None:
+        start = at.position - 1
+        ambient, diffuse, specular = (at.triple(f"the {part} colour") for part in ("ambient", "diffuse", "specular"))
+        shine, transmission, ior = at.numbers(3, "a material").tolist()
+        self.use_material(at.file, start, Material("", ambient, diffuse, specular, 4 * shine, transmission, ior))
+
+    def use_material(self, file: AffFile, index: int, material: Material) -> None:
+        name = f"{file.path.stem}:{file.line(index)}"
+        self.materials.append(replace(material, name=name, ior=material.ior if material.ior > 0 else 1.0))
+        self.material = len(self.materials) - 1
+
+    def read_transform(self, at: Cursor) -> Chain:
+        """The chain within `xs`: T R S, merged with a matrix before it."""
+        numbers = at.numbers(10, "a transform")
+        matrix = np.eye(4)
+        matrix[:3, :3] = rotation(numbers[3:6], float(numbers[6])) * numbers[:3]
+        matrix[:3, 3] = numbers[7:]
+        if self.chain and not isinstance(self.chain[-1], str):
+            return (*self.chain[:-1], self.chain[-1] @ matrix)
+        return (*self.chain, matrix)
+
+    def read_tracks(self, at: Cursor) -> None:
+        name = at.name("the name of tracks")
+        self.tracks[name] = aff_blocks.read_tracks(at)
+
+    # Geometry
+
+    def current_material(self) -> int:
+        """The number of the current material; a white one where none was given yet."""
+        if self.material < 0:
+            self.materials.append(Material("default"))
+            self.material = 0
+        return self.material
+
+    def add_mesh(self, mesh: Mesh) -> None:
+        texture = -1 if mesh.texture is None else self.texture(mesh.texture)
+        self.geometry.meshes.append(Piece(mesh, self.chain, self.current_material(), texture))
+
+    def add_quadric(self, quadric: Quadric) -> None:
+        self.geometry.quadrics.append(Piece(quadric, self.chain, self.current_material()))
+
+    def read_morph(self, at: Cursor) -> None:
+        self.geometry.morphs.append(Piece(aff_blocks.read_morph(at), self.chain, self.current_material()))
+
+    def texture(self, named: TextureName) -> int:
+        """The number of a texture, -1 with a warning (once per folder) where it cannot be had."""
+        beside = named.place.file.path
+        asked = named.name, beside.parent
+        if asked not in self.texture_numbers:
+            path = find_texture(named.name, beside, self.path)
+            self.texture_numbers[asked] = -1 if path is None else self.texture_at(path, named)
+            if path is None:
+                self.warn(named.place, f"texture {ascii(named.name)} is not to be found")
+        return self.texture_numbers[asked]
+
+    def texture_at(self, path: Path, named: TextureName) -> int:
+        """The number of the texture in a file, which is loaded once whatever names lead to it."""
+        resolved = path.resolve()
+        if resolved not in self.texture_files:
+            try:
+                self.textures.append(load_texture(path))
+                self.texture_files[resolved] = len(self.textures) - 1
+            except SceneError as error:
+                self.texture_files[resolved] = -1
+                self.warn(named.place, str(error))
+        return self.texture_files[resolved]
+
+    def warn(self, place: Place, what: str) -> None:
+        self.warnings.append(f"{place()}: {what}; the surface keeps its material colour")
+
+    # The end
+
+    def scene(self) -> Scene:
+        objects, dropped = self.geometry.objects(self.tracks)
+        animation = Animation(self.tracks)
+        camera = self.camera
+        if camera is None:
+            camera = framing_camera(bounds(objects, animation, self.time_range[0]))
+            dropped.append(f"{self.path}: no viewpoint (v); a camera that sees everything is used")
+        if not self.lights:
+            dropped.append(f"{self.path}: no light (l); only ambient light is seen")
+        if not any(len(o.triangles) or len(o.quadrics) for o in objects):
+            dropped.append(f"{self.path}: no triangle, sphere or cone; only the background is seen")
+        return Scene(
+            path=self.path,
+            objects=objects,
+            materials=tuple(self.materials),
+            textures=tuple(self.textures),
+            lights=tuple(self.lights_at_rest()),
+            camera=camera,
+            animation=animation,
+            background=self.background,
+            ambient=self.ambient,
+            time_range=self.time_range,
+            frames=self.frames,
+            warnings=(*self.warnings, *dropped),
+        )
+
+    def lights_at_rest(self) -> Iterable[Light]:
+        """The lights; only those that a translation moves keep the name of their track."""
+        for light, chain, place in self.lights:
+            if any(isinstance(e, str) and e in self.tracks for e in chain):
+                self.warnings.append(f"{place()}: a light does not move with the transform around it; use 'la'")
+            tracks = self.tracks.get(light.track or "")
+            yield light if tracks is not None and tracks.translation is not None else replace(light, track=None)
+
+
+def rotation(axis: Float64, degrees: float) -> Float64:
+    """(3, 3) float64 of a turn about an axis of any length; the identity where it has none."""
+    length = np.linalg.norm(axis)
+    if length == 0:
+        return np.eye(3)
+    x, y, z = axis / length
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    angle = np.radians(degrees)
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)

@@ -1,0 +1,309 @@
+"""How things move: Kochanek-Bartels tracks, evaluated all together.
+
+A frame needs every track of a scene at one time, and a scene may have hundreds, so the tracks
+are laid side by side: one array holds segment i of every track, and a handful of array
+operations yields all translations, scales and rotations of the moment.  The result is kept for
+the time asked last.  (A loop over tracks took longer than placing the objects.)
+
+Of n keys only 1 to n - 2 are passed through; the first and the last shape the tangents, and time
+is clamped between.  Files hold duplicate and even backward key times, so a segment is found by
+linear scan: the first whose end is later than the time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from tracer.scene.model import Camera, Deformation, Float32, Float64, Scene
+from tracer.scene.normals import unit_normals
+
+Chain = tuple[Float64 | str, ...]
+
+
+@dataclass(frozen=True)
+class Keys:
+    """One Kochanek-Bartels track of n >= 4 keys.
+
+    times (n,) seconds; values (n, 3) for translation and scale, or (n, 4) for rotation: axis of
+    any length, then degrees; shape (n, 3) tension, continuity and bias.  All float64.
+    """
+
+    times: Float64
+    values: Float64
+    shape: Float64
+
+
+@dataclass(frozen=True)
+class TrackSet:
+    """What one `k` statement says of a name: any of translation, rotation, scale and visibility.
+
+    visibility is (n, 2) float64: time and 0 or 1.
+    """
+
+    translation: Keys | None = None
+    rotation: Keys | None = None
+    scale: Keys | None = None
+    visibility: Float64 | None = None
+
+    def visible(self, time: float) -> bool:
+        """Visible until the first key; then as the newest key says."""
+        if self.visibility is None:
+            return True
+        (past,) = np.nonzero(self.visibility[:, 0] <= time)
+        return len(past) == 0 or bool(self.visibility[past[-1], 1])
+
+
+@dataclass(frozen=True)
+class _Segments:
+    """The segments of m tracks side by side: all arrays (m, s, ...), padded with the last segment.
+
+    A time t lies in the first segment with end > t, else in the last.  first and last (m,) clamp it.
+    """
+
+    first: Float64
+    last: Float64
+    start: Float64
+    end: Float64
+    knots: Float64  # (m, s, 4, d): what the interpolation between start and end is made of
+
+    @staticmethod
+    def of(tracks: Sequence[Keys], knots: Sequence[Float64]) -> _Segments:
+        """`knots` holds one (segments, 4, d) array per track."""
+        count = max(len(k) for k in knots)
+
+        def stack(rows: list[Float64]) -> Float64:
+            return np.stack([np.concatenate([r, np.repeat(r[-1:], count - len(r), axis=0)]) for r in rows])
+
+        return _Segments(
+            np.array([t.times[1] for t in tracks]),
+            np.array([t.times[-2] for t in tracks]),
+            stack([t.times[1:-2] for t in tracks]),
+            stack([t.times[2:-1] for t in tracks]),
+            stack(list(knots)),
+        )
+
+    def find(self, time: float) -> tuple[Float64, Float64]:
+        """u (m, 1) in 0..1 and the knots (m, 4, d) of the segment that holds the time, per track."""
+        clamped = np.minimum(np.maximum(time, self.first), self.last)
+        later = self.end > clamped[:, None]
+        index = np.where(later.any(axis=1), later.argmax(axis=1), later.shape[1] - 1)
+        rows = np.arange(len(index))
+        start, end = self.start[rows, index], self.end[rows, index]
+        length = end - start
+        u = np.where(length > 0, (clamped - start) / np.where(length > 0, length, 1.0), 1.0)
+        return np.clip(u, 0.0, 1.0)[:, None], self.knots[rows, index]
+
+
+def _tangents(times: Float64, shape: Float64, steps: Float64) -> tuple[Float64, Float64]:
+    """Tangents that leave the start and enter the end of each segment 1 .. n - 3.
+
+    steps (n - 1, d) are the differences of neighbouring keys; both results are (n - 3, d).
+    """
+    before, here, after = steps[:-2], steps[1:-1], steps[2:]
+
+    def speed(numerator: Float64, denominator: Float64) -> Float64:
+        # Keys that share a time have no speed to match: take uniform steps.
+        return np.where(denominator != 0, numerator / np.where(denominator != 0, denominator, 1.0), 0.5)[:, None]
+
+    length = times[2:-1] - times[1:-2]
+    t, c, b = (shape[1:-2, i, None] for i in range(3))
+    leave = speed(length, times[2:-1] - times[:-3]) * (1 - t)
+    leave = leave * ((1 + c) * (1 + b) * before + (1 - c) * (1 - b) * here)
+    t, c, b = (shape[2:-1, i, None] for i in range(3))
+    enter = speed(length, times[3:] - times[1:-2]) * (1 - t)
+    enter = enter * ((1 + c) * (1 - b) * after + (1 - c) * (1 + b) * here)
+    return leave, enter
+
+
+def _curve_knots(keys: Keys) -> Float64:
+    """(segments, 4, 3): end points and tangents of the cubic Hermite polynomials."""
+    leave, enter = _tangents(keys.times, keys.shape, np.diff(keys.values, axis=0))
+    return np.stack([keys.values[1:-2], keys.values[2:-1], leave, enter], axis=1)
+
+
+def _hermite(u: Float64, knots: Float64) -> Float64:
+    """(m, 3) points at u (m, 1) of the polynomials with knots (m, 4, 3)."""
+    start, end, leave, enter = (knots[:, i] for i in range(4))
+    v = 1 - u
+    return (1 + 2 * u) * v * v * start + u * u * (3 - 2 * u) * end + u * v * (v * leave - u * enter)
+
+
+def _multiply(p: Float64, q: Float64) -> Float64:
+    """Quaternion products; quaternions are (..., 4), real part first."""
+    pw, pv, qw, qv = p[..., :1], p[..., 1:], q[..., :1], q[..., 1:]
+    px, py, pz = (pv[..., i] for i in range(3))
+    qx, qy, qz = (qv[..., i] for i in range(3))
+    cross = np.stack([py * qz - pz * qy, pz * qx - px * qz, px * qy - py * qx], axis=-1)
+    return np.concatenate([pw * qw - np.sum(pv * qv, axis=-1, keepdims=True), pw * qv + qw * pv + cross], axis=-1)
+
+
+def _conjugate(q: Float64) -> Float64:
+    return q * np.array([1.0, -1.0, -1.0, -1.0])
+
+
+def _log(q: Float64) -> Float64:
+    """(..., 3) logarithm of unit quaternions: axis times half the angle of rotation."""
+    sine = np.linalg.norm(q[..., 1:], axis=-1, keepdims=True)
+    angle = np.arctan2(sine, q[..., :1])
+    return q[..., 1:] * np.where(sine > 1e-12, angle / np.where(sine > 1e-12, sine, 1.0), 1.0)
+
+
+def _exp(v: Float64) -> Float64:
+    """(..., 4) the inverse of `_log`."""
+    angle = np.linalg.norm(v, axis=-1, keepdims=True)
+    return np.concatenate([np.cos(angle), v * np.sinc(angle / np.pi)], axis=-1)
+
+
+def _slerp(p: Float64, q: Float64, u: Float64) -> Float64:
+    """From p to q, not by the shortest path: the sign of q is meant."""
+    return _multiply(p, _exp(u * _log(_multiply(_conjugate(p), q))))
+
+
+def _squad(u: Float64, knots: Float64) -> Float64:
+    start, end, leave, enter = (knots[:, i] for i in range(4))
+    return _slerp(_slerp(start, end, u), _slerp(leave, enter, u), 2 * u * (1 - u))
+
+
+def _rotation_knots(keys: Keys) -> Float64:
+    """(segments, 4, 4): end points and the two inner quaternions of each squad."""
+    axis, half = keys.values[:, :3], np.radians(keys.values[:, 3:]) / 2
+    length = np.linalg.norm(axis, axis=1, keepdims=True)
+    q = np.concatenate([np.cos(half), np.sin(half) * axis / np.where(length > 0, length, 1.0)], axis=1)
+    q[length[:, 0] == 0] = (1.0, 0.0, 0.0, 0.0)
+    # Opposite quaternions are one rotation: choose signs, key after key, for the shorter way.
+    same = np.sum(q[1:] * q[:-1], axis=1) >= 0
+    q[1:] *= np.cumprod(np.where(same, 1.0, -1.0))[:, None]
+    steps = _log(_multiply(_conjugate(q[:-1]), q[1:]))
+    leave, enter = _tangents(keys.times, keys.shape, steps)
+    inner_start = _multiply(q[1:-2], _exp((leave - steps[1:-1]) / 2))
+    inner_end = _multiply(q[2:-1], _exp((steps[1:-1] - enter) / 2))
+    return np.stack([q[1:-2], q[2:-1], inner_start, inner_end], axis=1)
+
+
+def _rotation_matrices(q: Float64) -> Float64:
+    """(m, 3, 3) of unit quaternions (m, 4)."""
+    w, x, y, z = (q / np.linalg.norm(q, axis=1, keepdims=True)).T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), 2, 0)
+
+
+@dataclass(frozen=True)
+class Animation:
+    """All tracks of a scene by name.  Names that no track bears mean the identity."""
+
+    tracks: Mapping[str, TrackSet] = field(default_factory=dict)
+    _latest: dict[str, tuple[float, dict[str, Float64]]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+
+    @staticmethod
+    def empty() -> Animation:
+        return Animation({})
+
+    @cached_property
+    def _translations(self) -> tuple[list[int], _Segments | None]:
+        return self._pack([t.translation for t in self.tracks.values()], _curve_knots)
+
+    @cached_property
+    def _rotations(self) -> tuple[list[int], _Segments | None]:
+        return self._pack([t.rotation for t in self.tracks.values()], _rotation_knots)
+
+    @cached_property
+    def _scales(self) -> tuple[list[int], _Segments | None]:
+        return self._pack([t.scale for t in self.tracks.values()], _curve_knots)
+
+    @staticmethod
+    def _pack(tracks: list[Keys | None], knots) -> tuple[list[int], _Segments | None]:
+        which = [i for i, keys in enumerate(tracks) if keys is not None]
+        present = [keys for keys in tracks if keys is not None]
+        return which, _Segments.of(present, [knots(keys) for keys in present]) if present else None
+
+    def _matrices(self, time: float) -> dict[str, Float64]:
+        """T R S of every name at a time, (4, 4) each."""
+        known = self._latest.get("matrices")
+        if known is not None and known[0] == time:
+            return known[1]
+        placed = np.tile(np.eye(4), (len(self.tracks), 1, 1))
+        which, segments = self._rotations
+        if segments is not None:
+            placed[which, :3, :3] = _rotation_matrices(_squad(*segments.find(time)))
+        which, segments = self._scales
+        if segments is not None:
+            placed[which, :3, :3] *= _hermite(*segments.find(time))[:, None, :]
+        which, segments = self._translations
+        if segments is not None:
+            placed[which, :3, 3] = _hermite(*segments.find(time))
+        matrices = dict(zip(self.tracks, placed, strict=True))
+        self._latest["matrices"] = (time, matrices)  # one assignment: safe from any thread
+        return matrices
+
+    def matrix(self, chain: Chain, time: float) -> Float64:
+        """(4, 4) float64 from the space of the chain's last element to the world."""
+        matrices = self._matrices(time)
+        product: Float64 | None = None
+        for element in chain:
+            step = matrices.get(element) if isinstance(element, str) else element
+            if step is not None:
+                product = step if product is None else product @ step
+        return np.eye(4) if product is None else product.copy()
+
+    def visible(self, chain: Chain, time: float) -> bool:
+        """True where every named track of the chain is visible."""
+        names = (e for e in chain if isinstance(e, str) and e in self.tracks)
+        return all(self.tracks[name].visible(time) for name in names)
+
+    def translation(self, name: str, time: float) -> Float64:
+        """(3,) float64; zero where no track of that name translates."""
+        matrix = self._matrices(time).get(name)
+        return np.zeros(3) if matrix is None else matrix[:3, 3].copy()
+
+    def camera(self, base: Camera, time: float) -> Camera:
+        """`base` moved by the tracks named `camera`: they replace what they tell, and leave the rest."""
+        tracks = self.tracks.get("camera")
+        if tracks is None:
+            return base
+        position, direction, up = base.position, base.direction, base.up
+        if tracks.translation is not None:
+            x, y, z = self.translation("camera", time)
+            position = (float(x), float(y), float(z))
+        if tracks.rotation is not None:
+            segments = _Segments.of([tracks.rotation], [_rotation_knots(tracks.rotation)])
+            rotation = _rotation_matrices(_squad(*segments.find(time)))[0]
+            direction = tuple((-rotation[:, 2]).tolist())
+            up = tuple(rotation[:, 1].tolist())
+        return Camera(position, direction, up, base.angle)
+
+
+def light_positions(scene: Scene, time: float) -> Float64:
+    """(L, 3) float64: where the lights are; a moving one is displaced by its translation track."""
+    positions = np.array([light.position for light in scene.lights], np.float64).reshape(-1, 3)
+    for i, light in enumerate(scene.lights):
+        if light.track is not None:
+            positions[i] += scene.animation.translation(light.track, time)
+    return positions
+
+
+def deformed(deformation: Deformation, time: float) -> tuple[Float32, Float32]:
+    """Corners and unit normals, (n, 3, 3) float32 each, of keyframed triangles at a time.
+
+    Linear between keys and clamped at the ends; a normal that comes out as zero becomes the
+    triangle's own.
+    """
+    times = deformation.times
+    rows = np.arange(len(times))
+    index = np.clip(np.sum(times <= time, axis=1) - 1, 0, max(times.shape[1] - 2, 0))
+    after = np.minimum(index + 1, times.shape[1] - 1)
+    length = times[rows, after] - times[rows, index]
+    u = np.clip((time - times[rows, index]) / np.where(length > 0, length, 1.0), 0.0, 1.0)
+    u = np.where(length > 0, u, (time >= times[rows, after]).astype(np.float64)).astype(np.float32)[:, None, None]
+    corners = (1 - u) * deformation.corners[rows, index] + u * deformation.corners[rows, after]
+    normals = (1 - u) * deformation.normals[rows, index] + u * deformation.normals[rows, after]
+    return corners, unit_normals(normals, corners)

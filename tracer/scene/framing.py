@@ -1,0 +1,64 @@
+"""A camera and lights for scenes that bring none: the whole model in view, lit from over both shoulders."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tracer.scene.animation import Animation, deformed
+from tracer.scene.model import CONE, Camera, Float64, Light, SceneObject
+
+
+def bounds(objects: Sequence[SceneObject], animation: Animation, time: float) -> Float64 | None:
+    """(2, 3) float64, least and greatest corner of everything at a time, or None where there is nothing."""
+    boxes = []
+    for o in objects:
+        matrix = animation.matrix(o.chain, time)
+        corners = o.triangles.corners if o.deformation is None else deformed(o.deformation, time)[0]
+        if len(corners):
+            points = corners.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+            boxes.append((points.min(axis=0), points.max(axis=0)))
+        for kind, placed, radii in zip(o.quadrics.kind, o.quadrics.to_object, o.quadrics.radii, strict=True):
+            boxes.append(_quadric_box(int(kind), matrix @ np.vstack([placed, (0, 0, 0, 1)]), radii))
+    if not boxes:
+        return None
+    return np.stack([np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)])
+
+
+def _quadric_box(kind: int, placed: Float64, radii: Float64) -> tuple[Float64, Float64]:
+    linear, centre = placed[:3, :3], placed[:3, 3]
+    if kind != CONE:
+        reach = np.linalg.norm(linear, axis=1)
+        return centre - reach, centre + reach
+    across = np.linalg.norm(linear[:, :2], axis=1)  # how far a unit circle reaches along each axis
+    ends = [(centre, across * radii[0]), (centre + linear[:, 2], across * radii[1])]
+    return np.min([c - r for c, r in ends], axis=0), np.max([c + r for c, r in ends], axis=0)
+
+
+def framing_camera(box: Float64 | None, angle: float = 45.0) -> Camera:
+    """A camera that sees the whole of a box (2, 3), from the front, the right and above; y is up."""
+    low, high = (np.full(3, -1.0), np.full(3, 1.0)) if box is None else box
+    centre, radius = (low + high) / 2, _radius(low, high)
+    away = np.array([0.45, 0.35, 1.0])
+    away /= np.linalg.norm(away)
+    position = centre + away * (1.05 * radius / np.sin(np.radians(angle) / 2))
+    return Camera(tuple(position.tolist()), tuple((-away).tolist()), (0.0, 1.0, 0.0), angle)
+
+
+def framing_lights(box: Float64 | None, camera: Camera) -> tuple[Light, Light]:
+    """A key light over the camera's left shoulder and a weaker one over its right, both well outside the box."""
+    low, high = (np.full(3, -1.0), np.full(3, 1.0)) if box is None else box
+    centre, reach = (low + high) / 2, 3.0 * _radius(low, high)
+    right, up, forward = camera.basis()
+    key = centre + reach * (up * 0.9 - right * 0.7 - forward * 0.8)
+    fill = centre + reach * (up * 0.5 + right * 1.0 - forward * 0.6)
+    return (
+        Light("key", tuple(key.tolist()), (0.8, 0.8, 0.8)),
+        Light("fill", tuple(fill.tolist()), (0.35, 0.35, 0.35)),
+    )
+
+
+def _radius(low: Float64, high: Float64) -> float:
+    """Half the diagonal of a box, and 1 for a single point."""
+    return float(np.linalg.norm(high - low)) / 2 or 1.0

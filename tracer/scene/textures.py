@@ -1,0 +1,85 @@
+"""Images for surfaces: finding them, and reading them without trusting them.
+
+Scenes name textures loosely (beside the file, beside the scene, in some folder of textures), and
+an image file may be broken or claim a billion pixels.  Size is judged by the header before
+anything is decoded; an image that is only too large to be useful is scaled down.
+"""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, UnidentifiedImageError
+
+from tracer.scene.model import SceneError, Texture
+
+MOST_PIXELS = 1 << 28
+"""An image of more pixels is refused: decoding it would take a gigabyte and more."""
+
+KEPT_PIXELS = 1 << 24
+"""An image of more pixels is scaled down to this many."""
+
+FOLDERS = ("texturefiles", "textures", "texture")
+
+
+def find_texture(name: str, beside: Path, scene: Path) -> Path | None:
+    """The file that a texture's name means, or None.
+
+    Looked for beside the file that names it, beside the scene, then in folders named like
+    `TextureFiles` or `textures` (any case) next to either file or one level up.
+    """
+    folders = list(dict.fromkeys([beside.parent, scene.parent]))
+    for folder in [f for f in folders for f in (f, f.parent)]:
+        try:
+            folders += sorted(f for f in folder.iterdir() if f.name.lower() in FOLDERS and f.is_dir())
+        except OSError:
+            continue
+    wanted = [name, name.replace("\\", "/")] if "\\" in name else [name]
+    for candidate in (folder / n for n in wanted for folder in folders):
+        try:
+            if candidate.is_file():
+                return candidate
+        except (OSError, ValueError):  # a name too long, or with a zero byte
+            continue
+    return None
+
+
+def load_texture(path: Path) -> Texture:
+    """An image file as a texture; raises SceneError in one line where it cannot be one."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            with Image.open(path) as image:
+                return texture_of(image, path.name)
+    except SceneError as error:
+        raise SceneError(f"{path}: {error}") from None
+    except UnidentifiedImageError:
+        raise SceneError(f"{path}: not an image that can be read; use PPM, PNG or JPEG") from None
+    except Image.DecompressionBombError:
+        raise SceneError(f"{path}: {_too_large()}") from None
+    except MemoryError:
+        raise SceneError(f"{path}: the image does not fit into memory; scale it down") from None
+    except Exception as error:  # Pillow's decoders raise whatever they like on broken files
+        what = " ".join(str(error).split()) or type(error).__name__
+        raise SceneError(f"{path}: the image cannot be read ({what}); replace it") from None
+
+
+def texture_of(image: Image.Image, name: str) -> Texture:
+    """A Pillow image as a texture; raises SceneError where it is empty or too large."""
+    width, height = image.size
+    if width * height > MOST_PIXELS:
+        raise SceneError(f"{width} x {height}: {_too_large()}")
+    if width * height == 0:
+        raise SceneError("the image has no pixels; replace it")
+    if width * height > KEPT_PIXELS:
+        shrink = (KEPT_PIXELS / (width * height)) ** 0.5
+        size = max(1, int(width * shrink)), max(1, int(height * shrink))
+        image.draft("RGB", size)  # lets a JPEG be decoded at a fraction of its size
+        image = image.convert("RGB").resize(size, Image.Resampling.BOX)
+    return Texture(name, np.ascontiguousarray(np.asarray(image.convert("RGB"), np.uint8)))
+
+
+def _too_large() -> str:
+    return f"the image is too large; scale it down to {MOST_PIXELS >> 20} million pixels or fewer"
