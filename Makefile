@@ -1,0 +1,58 @@
+# Everything here sets up what it needs: .venv in this folder, from the locks in tools/.  Nothing is
+# installed outside this folder except, for tests on a machine without a screen, Debian's packages.
+#
+#   PYTHON=/path/to/python3.12   which Python makes the environment (default: the first of 3.11 to 3.13 found)
+#   ARGS="..."                   handed to the program, to pytest or to the benchmark
+
+SHELL := /bin/bash
+.DEFAULT_GOAL := help
+PYTHON ?=
+ARGS ?=
+RUN := .venv/bin/python
+
+# Compiled kernels, and Mesa's compiled shaders, stay in the project's folder.
+export PYTHON
+export SHADOWCULL_CACHE_DIR := $(CURDIR)/.cache/kernels
+export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
+unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
+
+.PHONY: run test bench lint format lock clean distclean help
+
+run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
+	@tools/environment.sh run
+	@$(RUN) -m viewer --or-picture $(ARGS)
+
+test:  ## run the tests; without a display, on a virtual one (ARGS="-k culling")
+	@tools/environment.sh dev
+	@$(RUN) tools/with_screen.py $(RUN) -m pytest $(ARGS)
+
+bench:  ## time frames with and without culling (ARGS="--frames 10 SCENE ...")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.frame_times $(ARGS)
+
+lint:  ## check style, types and the direction of imports
+	@tools/environment.sh dev
+	$(RUN) -m ruff check .
+	$(RUN) -m ruff format --check .
+	$(RUN) -m mypy
+	$(RUN) -c 'from importlinter.cli import lint_imports_command; lint_imports_command()'
+
+format:  ## put the sources in the form that lint asks for
+	@tools/environment.sh dev
+	$(RUN) -m ruff check --fix .
+	$(RUN) -m ruff format .
+
+lock:  ## choose the newest versions within pyproject.toml's ranges (ARGS="numba numpy": only these)
+	@tools/environment.sh dev
+	@tools/lock.sh $(ARGS)
+
+clean:  ## remove what was compiled, cached or built; the environment and pictures stay
+	rm -rf .cache .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis dist build
+	find tracer viewer tests tools assets -name __pycache__ -prune -exec rm -rf {} +
+
+distclean: clean  ## remove the environment as well
+	rm -rf .venv
+
+help:  ## show this
+	@echo "make run and make test are all that is needed; the first run sets everything up."
+	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## ?/  make \1|/' | column -t -s '|'
