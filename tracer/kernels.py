@@ -22,7 +22,7 @@ _KERNEL_FOLDERS = ("geometry", "culling", "shading")
 
 
 def _source_hash() -> str:
-    digest = hashlib.sha256(f"{numba.__version__} {numba.core.cpu.get_host_cpu_features()}".encode())
+    digest = hashlib.sha256(numba.__version__.encode())
     root = Path(__file__).parent
     for path in [Path(__file__), *sorted(p for f in _KERNEL_FOLDERS for p in (root / f).rglob("*.py"))]:
         digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())

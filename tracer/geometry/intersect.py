@@ -80,24 +80,21 @@ def transform_ray(ray, m):
 
 
 @inlined
-def _nearest_root(a, half_b, c, z, dz, is_cone, ray):
-    """Smallest valid root of a t^2 + 2 half_b t + c, on a cone only where 0 <= z + t dz <= 1."""
+def _cone_root(a, half_b, c, z, dz, ray):
+    """Smallest valid root of a t^2 + 2 half_b t + c with 0 <= z + t dz <= 1; inf where there is none."""
     if a == 0.0:
-        if half_b == 0.0:
-            return np.float64(INFINITY)
-        first = second = -0.5 * c / half_b
+        first = second = -0.5 * c / half_b if half_b != 0.0 else np.inf
     else:
         discriminant = half_b * half_b - a * c
         if not discriminant >= 0.0:
-            return np.float64(INFINITY)
+            return np.inf
         q = -(half_b + math.copysign(math.sqrt(discriminant), half_b))
         first = q / a
         second = c / q if q != 0.0 else first
     for t in (min(first, second), max(first, second)):
-        height = z + t * dz
-        if ray.t_min < t <= ray.t_max and (not is_cone or (height >= 0.0 and height <= 1.0)):
+        if ray.t_min < t <= ray.t_max and z + t * dz >= 0.0 and z + t * dz <= 1.0:
             return t
-    return np.float64(INFINITY)
+    return np.inf
 
 
 @kernel
@@ -125,7 +122,7 @@ def hit_quadric(ray, quadrics, i):
     a = dx * dx + dy * dy - dr * dr
     half_b = ox * dx + oy * dy - radius * dr
     c = ox * ox + oy * oy - radius * radius
-    return np.float32(_nearest_root(a, half_b, c, oz, dz, True, r))
+    return np.float32(_cone_root(a, half_b, c, oz, dz, r))
 
 
 @inlined

@@ -1,0 +1,95 @@
+"""Occlusion mode and shadow modes of a primitive, packed into one word (§2.2 of the paper).
+
+Bits 0 and 1 hold the occlusion mode, bits 2 + 2 l and 3 + 2 l the shadow mode of light l.  Up to 15
+lights a word has 32 bits, up to 31 it has 64; lights past that are traced without culling.
+
+A shadow mode is set by OR: a blocked shadow ray adds 01, an unblocked one 10, and so a primitive
+that has seen both is PARTIAL_SHADOW.  It speaks of static occluders alone.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import numpy as np
+
+from tracer.kernels import inlined, kernel
+
+MAX_CULLED_LIGHTS = 31
+
+
+class OcclusionMode(IntEnum):
+    """What is known of a primitive's visibility."""
+
+    INIT = 0
+    PARTIALLY_OCCLUDED = 1
+    FULLY_RENDERED = 2
+    DYNAMIC = 3
+
+
+class ShadowMode(IntEnum):
+    """What shadow rays from a primitive to one light have met."""
+
+    INIT = 0
+    FULL_SHADOW = 1
+    NON_SHADOW = 2
+    PARTIAL_SHADOW = 3
+
+
+# numba takes plain numbers as constants
+INIT, PARTIALLY_OCCLUDED, FULLY_RENDERED, DYNAMIC = (int(m) for m in OcclusionMode)
+FULL_SHADOW, NON_SHADOW = int(ShadowMode.FULL_SHADOW), int(ShadowMode.NON_SHADOW)
+
+
+def word_type(lights: int) -> type[np.unsignedinteger]:
+    """Type of the packed word for so many lights."""
+    return np.uint32 if lights <= 15 else np.uint64
+
+
+def occlusion_mode(word):
+    """Occlusion mode of a word or of an array of them, as uint8."""
+    return (np.asarray(word) & np.asarray(word).dtype.type(3)).astype(np.uint8)
+
+
+def shadow_mode(word, light: int):
+    """Shadow mode of a light, of a word or of an array of them, as uint8; INIT for lights that have none."""
+    word = np.asarray(word)
+    if light >= MAX_CULLED_LIGHTS:
+        return np.zeros(word.shape, np.uint8)
+    return ((word >> word.dtype.type(2 + 2 * light)) & word.dtype.type(3)).astype(np.uint8)
+
+
+@inlined
+def occlusion_bits(word):
+    return np.int64(word) & 3
+
+
+@inlined
+def shadow_bits(word, light):
+    return (np.uint64(word) >> np.uint64(2 + 2 * light)) & np.uint64(3)
+
+
+@inlined
+def add_shadow(words, unit, light, mode):
+    """OR a shadow mode into a unit's word."""
+    words[unit] = np.uint64(words[unit]) | (np.uint64(mode) << np.uint64(2 + 2 * light))
+
+
+@kernel
+def merge_words(words, gained):
+    """OR what each worker has gained, (workers, units), into the words, and clear it."""
+    for worker in range(len(gained)):
+        for unit in range(len(words)):
+            if gained[worker, unit] != 0:
+                words[unit] |= gained[worker, unit]
+                gained[worker, unit] = 0
+
+
+def forget_lights(words: np.ndarray, lights: list[int]) -> None:
+    """Drop the shadow modes of lights that moved; FULLY_RENDERED goes back to INIT, to be seen whole anew."""
+    keep = words.dtype.type(np.iinfo(words.dtype).max)
+    for light in lights:
+        if light < MAX_CULLED_LIGHTS:
+            keep &= ~words.dtype.type(3 << (2 + 2 * light))
+    words &= keep
+    words[occlusion_mode(words) == FULLY_RENDERED] &= ~words.dtype.type(3)

@@ -1,0 +1,111 @@
+"""What is asked of a renderer, and what it gives back."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling import modes
+from tracer.scene.model import Camera
+from tracer.statistics import FrameStatistics
+
+METHODS = ("none", "paper")
+MAX_SIDE = 16384
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to render.  Sizes in pixels; depth is the most bounces; threads 0 means all cores.
+
+    `method` is "none" or "paper"; `symmetric` and `zoom_factor` belong to the latter (§2.3, §2.6).
+    `verify` traces each culled answer too and counts the wrong ones.  `samples` rays a pixel are
+    averaged; all modes and statistics are those of the first, through the pixel's centre.
+    `record_lights` fills Frame.due and Frame.lit.
+    """
+
+    width: int = 512
+    height: int = 512
+    depth: int = 10
+    method: str = "paper"
+    symmetric: bool = False
+    zoom_factor: float = 4.0
+    verify: bool = False
+    samples: int = 1
+    threads: int = 0
+    accelerator: str = "kdtree"
+    record_lights: bool = False
+
+    def validated(self) -> Settings:
+        """Itself; raises ValueError, in one line, where a value is out of range."""
+        checks = (
+            (1 <= self.width <= MAX_SIDE and 1 <= self.height <= MAX_SIDE, f"width and height lie in 1 to {MAX_SIDE}"),
+            (0 <= self.depth <= 100, "depth lies in 0 to 100"),
+            (self.method in METHODS, f"method is one of {', '.join(METHODS)}, not {self.method!r}"),
+            (math.isfinite(self.zoom_factor) and self.zoom_factor >= 1.0, "zoom_factor is a finite number from 1 up"),
+            (1 <= self.samples <= 4096, "samples lie in 1 to 4096"),
+            (0 <= self.threads <= 1024, "threads lie in 0 to 1024"),
+        )
+        for holds, message in checks:
+            if not holds:
+                raise ValueError(message)
+        return self
+
+
+@dataclass
+class Frame:
+    """One picture and what was learnt from it; arrays are C-contiguous, row 0 at the top.
+
+    color (h, w, 3) float32, linear and not clamped; depth (h, w) float32, distance along the unit
+    ray, inf for a miss; primitive and cell (h, w) int32, -1 for a miss; normal (h, w, 3) float32,
+    the shading normal towards the viewer.  modes (p,) uint32 or uint64 are the packed words as this
+    frame leaves them; pixel_count and highest_count (p,) int32.  due and lit (h, w, lights) bool
+    where they were asked for: whether each shadow ray of the primary hit is due, and its answer.
+    """
+
+    time: float
+    camera: Camera
+    settings: Settings
+    color: NDArray[np.float32]
+    depth: NDArray[np.float32]
+    primitive: NDArray[np.int32]
+    normal: NDArray[np.float32]
+    modes: NDArray[np.unsignedinteger]
+    pixel_count: NDArray[np.int32]
+    highest_count: NDArray[np.int32]
+    lights: int
+    due: NDArray[np.bool_] | None = None
+    lit: NDArray[np.bool_] | None = None
+    statistics: FrameStatistics = field(default_factory=FrameStatistics)
+
+    @property
+    def width(self) -> int:
+        return self.primitive.shape[1]
+
+    @property
+    def height(self) -> int:
+        return self.primitive.shape[0]
+
+    @property
+    def cell(self) -> NDArray[np.int32]:
+        """The unit that carries modes at each pixel: the primitive itself."""
+        return self.primitive
+
+    @property
+    def occlusion_mode(self) -> NDArray[np.uint8]:
+        """(h, w) OcclusionMode of each pixel's primitive, 255 for a miss."""
+        return self._per_pixel(modes.occlusion_mode(self.modes))
+
+    @property
+    def shadow_mode(self) -> NDArray[np.uint8]:
+        """(h, w, lights) ShadowMode of each pixel's primitive, 255 for a miss."""
+        planes = [self._per_pixel(modes.shadow_mode(self.modes, light)) for light in range(self.lights)]
+        return np.stack(planes, axis=-1) if planes else np.empty((*self.primitive.shape, 0), np.uint8)
+
+    def _per_pixel(self, values: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        hit = self.primitive >= 0
+        result = np.full(self.primitive.shape, 255, np.uint8)
+        result[hit] = values[self.primitive[hit]]
+        return result

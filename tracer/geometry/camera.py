@@ -1,0 +1,52 @@
+"""Primary rays: through pixel centres, row 0 at the top, vertical field of view."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.geometry.rays import INFINITY, Ray
+from tracer.kernels import inlined
+from tracer.scene.model import Camera
+
+
+class Pinhole(NamedTuple):
+    """A camera for a picture of a given size, all (3,) float32: its place, the direction through the
+    picture's upper left corner, and the steps from there to the next column and the next row."""
+
+    origin: NDArray[np.float32]
+    corner: NDArray[np.float32]
+    column: NDArray[np.float32]
+    row: NDArray[np.float32]
+
+
+def pinhole(camera: Camera, width: int, height: int, shift: tuple[float, float] = (0.5, 0.5)) -> Pinhole:
+    """The rays of a picture; `shift` is where in a pixel they pass, in pixels from its upper left corner."""
+    right, up, forward = camera.basis()
+    step = 2.0 * math.tan(math.radians(camera.angle) / 2.0) / height
+    corner = forward + step * ((shift[0] - 0.5 * width) * right - (shift[1] - 0.5 * height) * up)
+    vectors = (np.asarray(camera.position, np.float64), corner, step * right, -step * up)
+    return Pinhole(*(v.astype(np.float32) for v in vectors))
+
+
+@inlined
+def primary_ray(camera, x, y):
+    """The ray of pixel (x, y), of unit direction."""
+    fx, fy = np.float32(x), np.float32(y)
+    dx = camera.corner[0] + fx * camera.column[0] + fy * camera.row[0]
+    dy = camera.corner[1] + fx * camera.column[1] + fy * camera.row[1]
+    dz = camera.corner[2] + fx * camera.column[2] + fy * camera.row[2]
+    scale = np.float32(1) / np.sqrt(dx * dx + dy * dy + dz * dz)
+    return Ray(
+        camera.origin[0],
+        camera.origin[1],
+        camera.origin[2],
+        dx * scale,
+        dy * scale,
+        dz * scale,
+        np.float32(0),
+        INFINITY,
+    )

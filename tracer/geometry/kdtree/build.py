@@ -1,0 +1,277 @@
+"""Building a kd-tree by the surface area heuristic.
+
+A node's references lie on top of a pool that works as a stack: to split, they are popped, the
+upper child's are pushed and then the lower child's, whose whole subtree is built before the upper
+child is on top again.  Large nodes choose among 32 planes an axis by counting (Popov et al. 2006),
+small ones sweep over every face of their boxes (MacDonald and Booth 1990).  A triangle that
+straddles the plane is clipped to each side, so that its box there is exact (Wald and Havran 2006).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tracer.geometry.kdtree.tree import LEAF, MAX_DEPTH, Trees
+from tracer.kernels import kernel
+
+TRAVERSAL_COST = 1.0
+INTERSECTION_COST = 1.4
+EMPTY_BONUS = 0.8  # a split that cuts off empty space costs this much of its estimate
+BINS = 32
+SWEEP_BELOW = 48  # references; below it every plane is tried
+CANCELLED, DONE = 0, 1  # entries of `control`: set to stop the build; references placed in leaves so far
+
+
+@kernel
+def _half_area(size):
+    return size[0] * size[1] + size[1] * size[2] + size[2] * size[0]
+
+
+@kernel
+def _split_cost(box, axis, plane, lower, upper):
+    """Expected cost of a ray in `box` (6,) when split, with so many references on either side."""
+    size = box[3:] - box[:3]
+    area = _half_area(size)
+    rest = size[(axis + 1) % 3] + size[(axis + 2) % 3]
+    side = size[(axis + 1) % 3] * size[(axis + 2) % 3]
+    lower_area = side + (plane - box[axis]) * rest
+    upper_area = side + (box[axis + 3] - plane) * rest
+    cost = TRAVERSAL_COST + INTERSECTION_COST * (lower_area * lower + upper_area * upper) / area
+    return cost * EMPTY_BONUS if lower == 0 or upper == 0 else cost
+
+
+@kernel
+def _best_binned_split(boxes, first, last, box):
+    """(cost, axis, plane) over evenly spaced planes; counts are exact, from where boxes start and end."""
+    best_cost, best_axis, best_plane = np.inf, -1, 0.0
+    starts, ends = np.empty(BINS, np.int64), np.empty(BINS, np.int64)
+    for axis in range(3):
+        low, extent = box[axis], box[axis + 3] - box[axis]
+        if not extent > 0.0:
+            continue
+        starts[:], ends[:] = 0, 0
+        scale = BINS / extent
+        for i in range(first, last):
+            starts[min(max(int((boxes[i, axis] - low) * scale), 0), BINS - 1)] += 1
+            ends[min(max(int((boxes[i, axis + 3] - low) * scale), 0), BINS - 1)] += 1
+        lower, upper = 0, last - first
+        for b in range(1, BINS):
+            lower += starts[b - 1]
+            upper -= ends[b - 1]
+            plane = np.float64(np.float32(low + b * extent / BINS))
+            if low < plane < box[axis + 3]:
+                cost = _split_cost(box, axis, plane, lower, upper)
+                if cost < best_cost:
+                    best_cost, best_axis, best_plane = cost, axis, plane
+    return best_cost, best_axis, best_plane
+
+
+@kernel
+def _insertion_sort(values, n):
+    for i in range(1, n):
+        x, j = values[i], i - 1
+        while j >= 0 and values[j] > x:
+            values[j + 1] = values[j]
+            j -= 1
+        values[j + 1] = x
+
+
+@kernel
+def _best_swept_split(boxes, first, last, box):
+    """(cost, axis, plane) over every face of the references' boxes; flat ones in a plane count below it."""
+    best_cost, best_axis, best_plane = np.inf, -1, 0.0
+    n = last - first
+    faces = np.empty((3, SWEEP_BELOW), np.float32)
+    starts, ends, flats = faces[0], faces[1], faces[2]
+    for axis in range(3):
+        flat_count = 0
+        for i in range(n):
+            starts[i], ends[i] = boxes[first + i, axis], boxes[first + i, axis + 3]
+            if starts[i] == ends[i]:
+                flats[flat_count] = starts[i]
+                flat_count += 1
+        _insertion_sort(starts, n)
+        _insertion_sort(ends, n)
+        _insertion_sort(flats, flat_count)
+        begun, ended, flat = 0, 0, 0
+        while ended < n:
+            plane = starts[begun] if begun < n and starts[begun] < ends[ended] else ends[ended]
+            lower = begun
+            while begun < n and starts[begun] == plane:
+                begun += 1
+            while ended < n and ends[ended] == plane:
+                ended += 1
+            while flat < flat_count and flats[flat] <= plane:
+                lower += flats[flat] == plane
+                flat += 1
+            if box[axis] < plane < box[axis + 3]:
+                cost = _split_cost(box, axis, np.float64(plane), lower, n - ended)
+                if cost < best_cost:
+                    best_cost, best_axis, best_plane = cost, axis, np.float64(plane)
+    return best_cost, best_axis, best_plane
+
+
+@kernel
+def _clip_below(polygon, n, axis, plane, sign, out):
+    """Part of a convex polygon (n corners) where sign * (x[axis] - plane) <= 0 (Sutherland and Hodgman 1974)."""
+    kept = 0
+    for i in range(n):
+        j = i + 1 if i + 1 < n else 0
+        a, b = sign * (polygon[i, axis] - plane), sign * (polygon[j, axis] - plane)
+        if a <= 0.0:
+            out[kept] = polygon[i]
+            kept += 1
+        if (a < 0.0 and b > 0.0) or (a > 0.0 and b < 0.0):
+            t = a / (a - b)
+            for k in range(3):
+                out[kept, k] = polygon[i, k] + t * (polygon[j, k] - polygon[i, k])
+            out[kept, axis] = plane
+            kept += 1
+    return kept
+
+
+@kernel
+def _clip_triangle(triangles, i, box, polygon, other, result):
+    """Bounds (6,) float32 of a triangle's part inside box; False where none is left.
+
+    Bounds are rounded outwards by more than the clipping errs, and never leave the box.
+    """
+    for k in range(3):
+        polygon[0, k] = triangles[i, k]
+        polygon[1, k] = np.float64(triangles[i, k]) + triangles[i, k + 3]
+        polygon[2, k] = np.float64(triangles[i, k]) + triangles[i, k + 6]
+    n = 3
+    for axis in range(3):
+        n = _clip_below(polygon, n, axis, box[axis], -1.0, other)
+        n = _clip_below(other, n, axis, box[axis + 3], 1.0, polygon)
+    if n == 0:
+        return False
+    for k in range(3):
+        low, high = np.inf, -np.inf
+        for j in range(n):
+            low, high = min(low, polygon[j, k]), max(high, polygon[j, k])
+        if low < high:
+            slack = 1e-6 * max(abs(low), abs(high))
+            low, high = low - slack, high + slack
+        result[k] = max(np.float32(low), np.float32(box[k]))
+        result[k + 3] = min(np.float32(high), np.float32(box[k + 3]))
+    return True
+
+
+@kernel
+def _grown(array, used):
+    larger = np.empty((2 * len(array), *array.shape[1:]), array.dtype)
+    larger[:used] = array[:used]
+    return larger
+
+
+@kernel
+def _partition(prims, boxes, first, last, box, axis, plane, triangles, side_prims, side_boxes, upper):
+    """Copy what lies on one side of a plane, clipped to it, and return how many that are."""
+    count = 0
+    side = box.copy()
+    side[axis if upper else axis + 3] = plane
+    polygon, other = np.empty((12, 3)), np.empty((12, 3))
+    for i in range(first, last):
+        low, high = boxes[i, axis], boxes[i, axis + 3]
+        inside = high > plane if upper else (low < plane or (low == plane and high == plane))
+        if not inside:
+            continue
+        side_prims[count] = prims[i]
+        side_boxes[count] = boxes[i]
+        if low < plane and high > plane:
+            side_boxes[count, axis if upper else axis + 3] = plane
+            if prims[i] < len(triangles) and not _clip_triangle(
+                triangles, prims[i], side, polygon, other, side_boxes[count]
+            ):
+                continue
+        count += 1
+    return count
+
+
+@kernel
+def _build(boxes, bounds, triangles, control):
+    """Nodes (n, 2) int32 and items of a tree over boxes (m, 6); reference i is triangle i where there is one."""
+    n = len(boxes)
+    max_depth = min(int(8 + 1.5 * math.log2(max(n, 1))), MAX_DEPTH)
+    words = np.empty((2 * n + 16, 2), np.int32)
+    planes = words.view(np.float32)
+    items = np.empty(2 * n + 16, np.int32)
+    prims, pool = np.empty(2 * n + 16, np.int32), np.empty((2 * n + 16, 6), np.float32)
+    prims[:n], pool[:n] = np.arange(n), boxes
+    # Subtrees still to build: references, depth and the parent whose upper child it is.
+    todo, todo_box = np.empty((MAX_DEPTH + 4, 3), np.int64), np.empty((MAX_DEPTH + 4, 6))
+    todo[0] = (n, 0, -1)
+    todo_box[0] = bounds
+    pending, top, node_count, item_count = 1, n, 0, 0
+    lower_prims, upper_prims = np.empty(n, np.int32), np.empty(n, np.int32)
+    lower_boxes, upper_boxes = np.empty((n, 6), np.float32), np.empty((n, 6), np.float32)
+    while pending > 0 and control[CANCELLED] == 0:
+        pending -= 1
+        count, depth, parent = todo[pending]
+        box = todo_box[pending].copy()
+        first = top - count
+        if node_count == len(words):
+            words = _grown(words, node_count)
+            planes = words.view(np.float32)
+        if parent >= 0:
+            words[parent, 1] |= node_count << 2
+        node, node_count = node_count, node_count + 1
+        cost, axis, plane = np.inf, -1, 0.0
+        if count > 1 and depth < max_depth:
+            if count > SWEEP_BELOW:
+                cost, axis, plane = _best_binned_split(pool, first, top, box)
+            else:
+                cost, axis, plane = _best_swept_split(pool, first, top, box)
+        lower, upper = 0, 0
+        if cost < INTERSECTION_COST * count:
+            lower = _partition(prims, pool, first, top, box, axis, plane, triangles, lower_prims, lower_boxes, False)
+            upper = _partition(prims, pool, first, top, box, axis, plane, triangles, upper_prims, upper_boxes, True)
+        top = first
+        if lower + upper == 0 or (lower == count and upper == count):
+            while item_count + count > len(items):
+                items = _grown(items, item_count)
+            words[node, 0], words[node, 1] = item_count, count << 2 | LEAF
+            items[item_count : item_count + count] = prims[first : first + count]
+            item_count += count
+            control[DONE] += count
+            continue
+        while top + lower + upper > len(prims):
+            prims, pool = _grown(prims, top), _grown(pool, top)
+        prims[top : top + upper], pool[top : top + upper] = upper_prims[:upper], upper_boxes[:upper]
+        todo[pending] = (upper, depth + 1, node)
+        todo_box[pending] = box
+        todo_box[pending, axis] = plane
+        top, pending = top + upper, pending + 1
+        prims[top : top + lower], pool[top : top + lower] = lower_prims[:lower], lower_boxes[:lower]
+        todo[pending] = (lower, depth + 1, -1)
+        todo_box[pending] = box
+        todo_box[pending, axis + 3] = plane
+        top, pending = top + lower, pending + 1
+        planes[node, 0], words[node, 1] = plane, axis
+    return words[:node_count].copy(), items[:item_count].copy()
+
+
+def bounds_of(boxes: np.ndarray) -> np.ndarray:
+    """Box (6,) float32 around boxes (n, 6), a little larger; an inverted one where there are none."""
+    if not len(boxes):
+        return np.array([1, 1, 1, -1, -1, -1], np.float32)
+    lower, upper = boxes[:, :3].min(0), boxes[:, 3:].max(0)
+    slack = 1e-5 * np.maximum(np.abs(lower), np.abs(upper)).max() + 1e-30
+    return np.concatenate([lower - slack, upper + slack]).astype(np.float32)
+
+
+def build_tree(boxes: np.ndarray, triangles: np.ndarray, control: np.ndarray | None = None) -> tuple[Trees, np.ndarray]:
+    """A tree over boxes (n, 6) float32, and the box (6,) around it; items are numbers 0 to n - 1.
+
+    The first len(triangles) boxes are those of triangles (rows of corner and two edges), which are
+    clipped where a plane cuts them.  `control` (2,) int64: the build stops early, with a tree that
+    is of no use, once control[CANCELLED] is set, and counts finished references in control[DONE].
+    """
+    control = np.zeros(2, np.int64) if control is None else control
+    bounds = bounds_of(boxes)
+    words, items = _build(boxes, bounds.astype(np.float64), triangles, control)
+    flat = np.ascontiguousarray(words).reshape(-1)
+    return Trees(flat, flat.view(np.float32), items), bounds

@@ -1,0 +1,229 @@
+"""Figure 1 of the paper as a list of phases: `Renderer.render`.
+
+The phases see whole frames, the kernels below them tiles or rows.  Culling decisions read the modes
+as the last frame left them, and whatever threads learn is merged by OR and by sums of integers, so
+that pictures, modes and counters are the same for any number of threads and on every run.
+"""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+
+import numpy as np
+
+from tracer.culling.memory import Memory
+from tracer.culling.modes import merge_words
+from tracer.culling.occlusion import count_pixels, occlusion_testing, set_occlusion_modes
+from tracer.culling.shadow import Knowledge
+from tracer.frame import Frame, Settings
+from tracer.geometry.camera import Pinhole, pinhole
+from tracer.geometry.world import World
+from tracer.parallel import for_each_chunk, thread_count
+from tracer.scene.animation import light_positions
+from tracer.scene.model import Camera, Progress, Scene
+from tracer.shading.look import make_look
+from tracer.shading.whitted import COUNTERS, Buffers, shade_tile, trace_primary
+from tracer.statistics import gather
+
+TILE = 32
+Cancel = Callable[[], bool] | None
+
+
+class Renderer:
+    """Renders a scene frame by frame and remembers the modes between frames.
+
+    `settings` may be replaced at any time between frames.  Raises Cancelled if `progress` does
+    while trees are built, ValueError for settings out of range.
+    """
+
+    def __init__(self, scene: Scene, settings: Settings | None = None, progress: Progress | None = None) -> None:
+        self.scene = scene
+        self.settings = (settings or Settings()).validated()
+        self.world = World(scene, scene.time_range[0], self.settings.accelerator, progress)
+        self._look = make_look(scene, self.world.normals)
+        self._memories: dict[tuple[int, int], Memory] = {}
+
+    def reset_modes(self) -> None:
+        """Forget all modes, at every resolution."""
+        self._memories.clear()
+
+    def render(self, time: float = 0.0, camera: Camera | None = None, cancel: Cancel = None) -> Frame:
+        """The frame at `time` seconds; the scene's own camera where none is given.
+
+        Raises Cancelled, with the modes as they were, once `cancel()` turns true.
+        """
+        settings = self.settings.validated()
+        camera = camera or self.scene.camera_at(time)
+        frame = _Unfinished(self, settings, camera, time, cancel)
+        try:
+            with frame.phase("place"):
+                self._place(time, frame)
+            with frame.phase("primary"):
+                frame.trace_primary_rays()
+            with frame.phase("occlusion testing"):
+                frame.test_occlusion()
+            with frame.phase("shading"):
+                frame.shade()  # with shadow testing and shadow-mode setting
+            with frame.phase("mode setting"):
+                frame.set_modes()
+        except BaseException:
+            frame.memory.discard_frame()
+            raise
+        return frame.finished()
+
+    def _place(self, time: float, frame: _Unfinished) -> None:
+        """Move dynamic objects and lights to where they are now."""
+        self.world.place(time)
+        self._look.lights[:] = light_positions(self.scene, time)
+        frame.memory.follow_lights(self._look.lights)
+
+    def _memory(self, settings: Settings, workers: int) -> Memory:
+        """The modes at this resolution; made, or given room for more workers, where need be."""
+        key = (settings.width, settings.height)
+        memory = self._memories.get(key)
+        if memory is None:
+            memory = Memory(self.world.object_of != 0, len(self.scene.lights), workers)
+            self._memories[key] = memory
+        if len(memory.gained) < workers:
+            memory.gained = np.zeros((workers, len(memory.words)), memory.words.dtype)
+        return memory
+
+
+class _Unfinished:
+    """A frame under way: the phases of `Renderer.render` over its buffers."""
+
+    def __init__(self, renderer: Renderer, settings: Settings, camera: Camera, time: float, cancel: Cancel) -> None:
+        self._renderer, self._settings, self._camera, self._time, self._cancel = renderer, settings, camera, time, cancel
+        self._workers = thread_count(settings.threads)
+        self.memory = renderer._memory(settings, self._workers)
+        self._counts = np.zeros((self._workers, COUNTERS), np.int64)
+        self._occlusion_tests = np.zeros(self._workers, np.int64)
+        self._phases: dict[str, float] = {}
+        self._started = clock.perf_counter()
+        self._rays = pinhole(camera, settings.width, settings.height)
+        self._buffers = self._empty_buffers()
+        across, down = -(-settings.width // TILE), -(-settings.height // TILE)
+        self._tiles = [(x * TILE, y * TILE) for y in range(down) for x in range(across)]
+
+    @contextmanager
+    def phase(self, name: str) -> Iterator[None]:
+        """Time one phase."""
+        start = clock.perf_counter()
+        yield
+        self._phases[name] = clock.perf_counter() - start
+
+    def _empty_buffers(self) -> Buffers:
+        width, height = self._settings.width, self._settings.height
+        lights = len(self._renderer.scene.lights)
+        rows = width * height if self._settings.record_lights else 0
+        return Buffers(
+            color=np.zeros((width * height, 3), np.float32),
+            normal=np.zeros((width * height, 3), np.float32),
+            depth=np.empty((height, width), np.float32),
+            primitive=np.empty((height, width), np.int32),
+            u=np.empty((height, width), np.float32),
+            v=np.empty((height, width), np.float32),
+            due=np.zeros((rows, lights), np.bool_),
+            lit=np.zeros((rows, lights), np.bool_),
+        )
+
+    def _for_each_tile(self, work: Callable[[tuple[int, int, int, int], int], None]) -> None:
+        width, height = self._settings.width, self._settings.height
+
+        def tile_work(chunk: int, worker: int) -> None:
+            left, top = self._tiles[chunk]
+            work((left, top, min(left + TILE, width), min(top + TILE, height)), worker)
+
+        for_each_chunk(tile_work, len(self._tiles), self._workers, self._cancel)
+
+    def trace_primary_rays(self) -> None:
+        kd, rays, buffers, counts = self._renderer.world.kd, self._rays, self._buffers, self._counts
+        self._for_each_tile(lambda tile, worker: trace_primary(kd, rays, tile, buffers, counts[worker]))
+
+    def test_occlusion(self) -> None:
+        """§2.3: which primitives does a neighbouring pixel show to be hidden?"""
+        if self._settings.method == "none":
+            return
+        kd, height = self._renderer.world.kd, self._settings.height
+
+        def work(chunk: int, worker: int) -> None:
+            rows = chunk * TILE, min(height, (chunk + 1) * TILE)
+            self._occlusion_tests[worker] += occlusion_testing(
+                kd, self._rays, self._buffers.primitive, self._settings.symmetric, *rows, self.memory.hidden
+            )
+
+        for_each_chunk(work, -(-height // TILE), self._workers, self._cancel)
+
+    def shade(self) -> None:
+        """§2.4, §2.5: Whitted shading, with shadow testing and shadow-mode setting."""
+        self._shade(self._rays, self._buffers, self._counts, self._settings.verify)
+        if self._settings.samples > 1:
+            self._average_samples()
+
+    def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray, verify: bool) -> None:
+        kd, look, memory = self._renderer.world.kd, self._renderer._look, self.memory
+        depth, cull = self._settings.depth, self._settings.method != "none"
+
+        def work(tile: tuple[int, int, int, int], worker: int) -> None:
+            knowledge = Knowledge(memory.words, memory.gained[worker], cull, verify)
+            shade_tile(kd, look, rays, tile, depth, knowledge, buffers, counts[worker])
+
+        self._for_each_tile(work)
+
+    def _average_samples(self) -> None:
+        """Mix in further samples a pixel, placed by the R2 sequence; they use modes but count nothing."""
+        samples, kd = self._settings.samples, self._renderer.world.kd
+        golden = 1.32471795724474602596  # its powers step through the plane evenly (Roberts 2018)
+        gained = self.memory.gained.copy()
+        for k in range(1, samples):
+            shift = ((0.5 + k / golden) % 1.0, (0.5 + k / golden**2) % 1.0)
+            rays = pinhole(self._camera, self._settings.width, self._settings.height, shift)
+            buffers, counts = self._empty_buffers(), np.zeros_like(self._counts)
+
+            def primary(tile: tuple[int, int, int, int], worker: int, buffers=buffers, rays=rays, counts=counts) -> None:
+                trace_primary(kd, rays, tile, buffers, counts[worker])
+
+            self._for_each_tile(primary)
+            self._shade(rays, buffers, counts, False)
+            self._buffers.color[:] += buffers.color
+        self._buffers.color[:] /= np.float32(samples)
+        self.memory.gained[:] = gained
+
+    def set_modes(self) -> None:
+        """§2.5, §2.6: keep what was learnt, and say which primitives have been seen whole."""
+        memory = self.memory
+        count_pixels(self._buffers.primitive, memory.pixel_count)
+        if self._settings.method != "none":
+            merge_words(memory.words, memory.gained)
+            zoom = np.float64(self._settings.zoom_factor)
+            set_occlusion_modes(memory.words, memory.hidden, memory.pixel_count, memory.highest_count, zoom)
+        else:
+            memory.discard_frame()
+
+    def finished(self) -> Frame:
+        buffers, memory = self._buffers, self.memory
+        shape = buffers.primitive.shape
+        statistics = gather(self._counts, int(self._occlusion_tests.sum()))
+        statistics.phases = self._phases
+        statistics.seconds = clock.perf_counter() - self._started
+        lights = len(self._renderer.scene.lights)
+        recorded = self._settings.record_lights
+        return Frame(
+            time=self._time,
+            camera=self._camera,
+            settings=replace(self._settings),
+            color=buffers.color.reshape(*shape, 3),
+            depth=buffers.depth,
+            primitive=buffers.primitive,
+            normal=buffers.normal.reshape(*shape, 3),
+            modes=memory.words.copy(),
+            pixel_count=memory.pixel_count.copy(),
+            highest_count=memory.highest_count.copy(),
+            lights=lights,
+            due=buffers.due.reshape(*shape, lights) if recorded else None,
+            lit=buffers.lit.reshape(*shape, lights) if recorded else None,
+            statistics=statistics,
+        )

@@ -1,0 +1,69 @@
+"""What a frame cost: counters that kernels add up, as named figures."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling import shadow
+from tracer.shading.whitted import PRIMARY, SECONDARY, SHADOW
+
+
+@dataclass
+class RayCounts:
+    """Rays of one kind; traversal steps are kd-tree nodes entered, tests are rays against primitives."""
+
+    rays: int = 0
+    traversal_steps: int = 0
+    intersection_tests: int = 0
+
+
+@dataclass
+class ShadowCounts(RayCounts):
+    """Shadow rays: those due, those culled, those that asked dynamic objects alone, and, where culled
+    answers were verified, the wrong ones.  `rays` are those that asked any tree at all."""
+
+    due: int = 0
+    culled: int = 0
+    dynamic_only: int = 0
+    candidates_only: int = 0
+    wrong: int = 0
+
+
+@dataclass
+class FrameStatistics:
+    """Counters and times of one frame; `phases` are seconds by the names of Figure 1's steps."""
+
+    primary: RayCounts = field(default_factory=RayCounts)
+    secondary: RayCounts = field(default_factory=RayCounts)
+    shadow: ShadowCounts = field(default_factory=ShadowCounts)
+    occlusion_tests: int = 0
+    certificate_steps: int = 0
+    certificate_tests: int = 0
+    seconds: float = 0.0
+    phases: dict[str, float] = field(default_factory=dict)
+
+    def to_dict(self) -> dict:
+        """Plain dictionaries and numbers, for JSON."""
+        return asdict(self)
+
+
+def gather(counts: NDArray[np.int64], occlusion_tests: int) -> FrameStatistics:
+    """Sum the counters (workers, COUNTERS) of all workers."""
+    total = [int(x) for x in counts.sum(0)]
+
+    def rays_from(start: int) -> RayCounts:
+        return RayCounts(total[start + shadow.RAYS], total[start + shadow.STEPS], total[start + shadow.TESTS])
+
+    shadow_rays = ShadowCounts(
+        rays=total[SHADOW + shadow.RAYS],
+        traversal_steps=total[SHADOW + shadow.STEPS],
+        intersection_tests=total[SHADOW + shadow.TESTS],
+        due=total[SHADOW + shadow.DUE],
+        culled=total[SHADOW + shadow.CULLED],
+        dynamic_only=total[SHADOW + shadow.DYNAMIC_ONLY],
+        wrong=total[SHADOW + shadow.WRONG],
+    )
+    return FrameStatistics(rays_from(PRIMARY), rays_from(SECONDARY), shadow_rays, occlusion_tests)
