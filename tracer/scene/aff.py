@@ -7,21 +7,22 @@ material is global: neither a closing brace nor the end of an included file rest
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 
 import numpy as np
 
-from tracer.scene import aff_blocks
-from tracer.scene.aff_blocks import Mesh, Place, Quadric, TextureName
-from tracer.scene.aff_geometry import Geometry, Piece, resolve
+from tracer.scene import aff_blocks, rotations
+from tracer.scene.aff_blocks import WordPlace
 from tracer.scene.aff_tokens import AffFile, Cursor, quoted, reason
 from tracer.scene.animation import Animation, Chain, TrackSet
+from tracer.scene.assembly import Geometry, resolve
 from tracer.scene.framing import bounds, framing_camera
-from tracer.scene.model import Camera, Float64, Light, Material, Progress, Scene, SceneError, Texture
-from tracer.scene.textures import find_texture, load_texture
+from tracer.scene.model import Camera, Light, Material, Progress, Scene, SceneError
+from tracer.scene.pieces import Mesh, Piece, Place, Quadric
+from tracer.scene.textures import TextureTable
 
 LEAST_HITHER = 1e-4
 SECONDS_BETWEEN_REPORTS = 0.02
@@ -48,15 +49,12 @@ class _Reader:
         self.detail_is_fixed = detail is not None
         self.detail = detail or 0
         self.files: dict[Path, AffFile] = {}
-        self.including: list[Path] = []
+        self.including: list[AffFile] = []  # the file that is being run comes last
         self.chain: Chain = ()
         self.geometry = Geometry()
         self.materials: list[Material] = []
-        self.material_numbers: dict[tuple[AffFile, int], int] = {}
         self.material = -1
-        self.textures: list[Texture] = []
-        self.texture_files: dict[Path, int] = {}
-        self.texture_numbers: dict[tuple[str, Path], int] = {}
+        self.textures = TextureTable(path)
         self.tracks: dict[str, TrackSet] = {}
         self.lights: list[tuple[Light, Chain, Place]] = []
         self.camera: Camera | None = None
@@ -90,16 +88,23 @@ class _Reader:
 
     def run(self) -> None:
         try:
-            file = AffFile(self.path)
+            file = self.open(self.path)
         except (OSError, ValueError) as error:
             raise SceneError(f"{self.path}: cannot be read: {reason(error)}; check the path") from None
         if not file.words:
             raise SceneError(f"{self.path}:1: the file is empty; give a scene with at least one statement")
         self.run_file(file, 0.0, 1.0)
 
+    def open(self, path: Path) -> AffFile:
+        """The words of a file, split once however often it is included; raises OSError or ValueError."""
+        resolved = path.resolve()
+        if resolved not in self.files:
+            self.files[resolved] = AffFile(path)
+        return self.files[resolved]
+
     def run_file(self, file: AffFile, low: float, high: float) -> None:
         """Run a file whose share of the progress is low to high; includes take equal parts of it."""
-        self.including.append(file.path.resolve())
+        self.including.append(file)
         share = (high - low) / max(1, file.words.count(b"i"))
         has_includes = b"i" in file.words
         done = low
@@ -140,15 +145,13 @@ class _Reader:
             return
         path = at.file.path.parent / name
         try:
-            resolved = path.resolve()
-            if resolved in self.including:
-                raise at.error(f"{quoted(name.encode('utf-8', 'surrogateescape'))} includes itself; break the circle")
-            if resolved not in self.files:
-                self.files[resolved] = AffFile(path)
+            file = self.open(path)
         except (OSError, ValueError) as error:
-            shown = quoted(name.encode("utf-8", "surrogateescape"), 80)
-            raise at.error(f"cannot read the included file {shown}: {reason(error)}; add it or correct the name") from None
-        self.run_file(self.files[resolved], low, high)
+            what = f"the included file {name!a} cannot be read: {reason(error)}"
+            raise at.error(f"{what}; add it or correct the name") from None
+        if file in self.including:
+            raise at.error(f"{name!a} includes itself; break the circle")
+        self.run_file(file, low, high)
 
     # Statements
 
@@ -190,7 +193,7 @@ class _Reader:
         self.camera = Camera((x, y, z), tuple(direction.tolist()), (up[0], up[1], up[2]), angle)
 
     def read_light(self, at: Cursor, name: str | None = None) -> None:
-        place = Place(at.file, at.position - 1)
+        place = WordPlace(at.file, at.position - 1)
         position = np.append(at.numbers(3, "the position of a light"), 1.0)
         color = at.triple("the colour of a light") if at.at_number() else (1.0, 1.0, 1.0)
         x, y, z = (resolve(self.chain, ())[1] @ position)[:3].tolist()
@@ -225,7 +228,7 @@ class _Reader:
         """The chain within `xs`: T R S, merged with a matrix before it."""
         numbers = at.numbers(10, "a transform")
         matrix = np.eye(4)
-        matrix[:3, :3] = rotation(numbers[3:6], float(numbers[6])) * numbers[:3]
+        matrix[:3, :3] = rotations.matrices(rotations.from_axes(numbers[None, 3:6], numbers[6:7]))[0] * numbers[:3]
         matrix[:3, 3] = numbers[7:]
         if self.chain and not isinstance(self.chain[-1], str):
             return (*self.chain[:-1], self.chain[-1] @ matrix)
@@ -245,7 +248,7 @@ class _Reader:
         return self.material
 
     def add_mesh(self, mesh: Mesh) -> None:
-        texture = -1 if mesh.texture is None else self.texture(mesh.texture)
+        texture = -1 if mesh.texture is None else self.textures.number(mesh.texture, self.including[-1].path)
         self.geometry.meshes.append(Piece(mesh, self.chain, self.current_material(), texture))
 
     def add_quadric(self, quadric: Quadric) -> None:
@@ -254,75 +257,42 @@ class _Reader:
     def read_morph(self, at: Cursor) -> None:
         self.geometry.morphs.append(Piece(aff_blocks.read_morph(at), self.chain, self.current_material()))
 
-    def texture(self, named: TextureName) -> int:
-        """The number of a texture, -1 with a warning (once per folder) where it cannot be had."""
-        beside = named.place.file.path
-        asked = named.name, beside.parent
-        if asked not in self.texture_numbers:
-            path = find_texture(named.name, beside, self.path)
-            self.texture_numbers[asked] = -1 if path is None else self.texture_at(path, named)
-            if path is None:
-                self.warn(named.place, f"texture {ascii(named.name)} is not to be found")
-        return self.texture_numbers[asked]
-
-    def texture_at(self, path: Path, named: TextureName) -> int:
-        """The number of the texture in a file, which is loaded once whatever names lead to it."""
-        resolved = path.resolve()
-        if resolved not in self.texture_files:
-            try:
-                self.textures.append(load_texture(path))
-                self.texture_files[resolved] = len(self.textures) - 1
-            except SceneError as error:
-                self.texture_files[resolved] = -1
-                self.warn(named.place, str(error))
-        return self.texture_files[resolved]
-
-    def warn(self, place: Place, what: str) -> None:
-        self.warnings.append(f"{place()}: {what}; the surface keeps its material colour")
-
     # The end
 
     def scene(self) -> Scene:
-        objects, dropped = self.geometry.objects(self.tracks)
+        lights = self.settled_lights()
+        objects, remarks = self.geometry.objects(self.tracks)
         animation = Animation(self.tracks)
         camera = self.camera
         if camera is None:
             camera = framing_camera(bounds(objects, animation, self.time_range[0]))
-            dropped.append(f"{self.path}: no viewpoint (v); a camera that sees everything is used")
-        if not self.lights:
-            dropped.append(f"{self.path}: no light (l); only ambient light is seen")
+            remarks.append(f"{self.path}: no viewpoint (v); a camera that sees everything is used")
+        if not lights:
+            remarks.append(f"{self.path}: no light (l); only ambient light is seen")
         if not any(len(o.triangles) or len(o.quadrics) for o in objects):
-            dropped.append(f"{self.path}: no triangle, sphere or cone; only the background is seen")
+            remarks.append(f"{self.path}: no triangle, sphere or cone; only the background is seen")
         return Scene(
             path=self.path,
             objects=objects,
             materials=tuple(self.materials),
-            textures=tuple(self.textures),
-            lights=tuple(self.lights_at_rest()),
+            textures=tuple(self.textures.textures),
+            lights=lights,
             camera=camera,
             animation=animation,
             background=self.background,
             ambient=self.ambient,
             time_range=self.time_range,
             frames=self.frames,
-            warnings=(*self.warnings, *dropped),
+            warnings=(*self.warnings, *self.textures.warnings, *remarks),
         )
 
-    def lights_at_rest(self) -> Iterable[Light]:
+    def settled_lights(self) -> tuple[Light, ...]:
         """The lights; only those that a translation moves keep the name of their track."""
+        settled = []
         for light, chain, place in self.lights:
             if any(isinstance(e, str) and e in self.tracks for e in chain):
                 self.warnings.append(f"{place()}: a light does not move with the transform around it; use 'la'")
             tracks = self.tracks.get(light.track or "")
-            yield light if tracks is not None and tracks.translation is not None else replace(light, track=None)
-
-
-def rotation(axis: Float64, degrees: float) -> Float64:
-    """(3, 3) float64 of a turn about an axis of any length; the identity where it has none."""
-    length = np.linalg.norm(axis)
-    if length == 0:
-        return np.eye(3)
-    x, y, z = axis / length
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    angle = np.radians(degrees)
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
+            moves = tracks is not None and tracks.translation is not None
+            settled.append(light if moves else replace(light, track=None))
+        return tuple(settled)

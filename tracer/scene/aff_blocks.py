@@ -13,70 +13,29 @@ import numpy as np
 from tracer.scene.aff_tokens import AffFile, Cursor, quoted
 from tracer.scene.animation import Keys, TrackSet
 from tracer.scene.model import CONE, SPHERE, Float64
+from tracer.scene.pieces import Mesh, Morph, Quadric, TextureName
 
 
 @dataclass(frozen=True)
-class Place:
-    """Where in a file something was written: the word at `index`, and `stride` words for each further item."""
+class WordPlace:
+    """The word at `index` of a file, and `stride` words on for each further item."""
 
-    file: AffFile
+    source: AffFile
     index: int
     stride: int = 0
 
     def __call__(self, item: int = 0) -> str:
         """`file:line` of an item."""
-        return self.file.place(self.index + item * self.stride)
-
-
-@dataclass(frozen=True)
-class TextureName:
-    """A texture as a file names it."""
-
-    name: str
-    place: Place
-
-
-@dataclass(frozen=True)
-class Mesh:
-    """n triangles: corners (n, 3, 3), and where the file has them normals (n, 3, 3) and uvs (n, 3, 2), all float64.
-
-    In uvs v = 0 is the bottom row of an image.  AFF means the top row, so v is turned over when a file is read.
-    """
-
-    corners: Float64
-    place: Place
-    normals: Float64 | None = None
-    uvs: Float64 | None = None
-    texture: TextureName | None = None
-
-
-@dataclass(frozen=True)
-class Morph:
-    """One keyframed triangle: times (k,) ascending, corners and normals (k, 3, 3), all float64."""
-
-    times: Float64
-    corners: Float64
-    normals: Float64
-    place: Place
-
-
-@dataclass(frozen=True)
-class Quadric:
-    """One sphere or cone: `kind`, radii and `inside` as in `Quadrics`; placed (4, 4) canonical to file space."""
-
-    kind: int
-    placed: Float64
-    radii: tuple[float, float]
-    inside: bool
-    place: Place
+        return self.source.place(self.index + item * self.stride)
 
 
 def _turned(uvs: Float64) -> Float64:
+    """AFF counts v from the top row of an image, our arrays from the bottom row."""
     return uvs * (1.0, -1.0) + (0.0, 1.0)
 
 
 def _texture_name(at: Cursor) -> TextureName:
-    return TextureName(at.name("the name of a texture"), Place(at.file, at.position - 1))
+    return TextureName(at.name("the name of a texture"), WordPlace(at.file, at.position - 1))
 
 
 def read_mesh(at: Cursor) -> Mesh:
@@ -113,13 +72,13 @@ def _read_mesh(at: Cursor) -> Mesh:
             what = f"index {index[row, corner]} into {name} is out of range; there are {len(pool)}, counted from 0"
             raise at.error(what, start + int(row) * stride + 3 * column + int(corner))
         arrays[name] = pool[index]
-    place = Place(at.file, start, stride)
+    place = WordPlace(at.file, start, stride)
     return Mesh(arrays["vertices"], place, arrays.get("normals"), arrays.get("texturecoords"), texture)
 
 
 def read_polygon(at: Cursor, with_normals: bool) -> Mesh:
     """`p` and `pp`: a convex polygon as the fan from its first corner."""
-    place = Place(at.file, at.position - 1)
+    place = WordPlace(at.file, at.position - 1)
     count = at.count("corners of a polygon", least=3)
     rows = at.numbers(count * (6 if with_normals else 3), "a polygon", finite=False).reshape(count, -1)
     fan = np.stack([np.zeros(count - 2, np.int64), np.arange(1, count - 1), np.arange(2, count)], axis=1)
@@ -129,7 +88,7 @@ def read_polygon(at: Cursor, with_normals: bool) -> Mesh:
 
 def read_textured_triangle(at: Cursor, with_normals: bool) -> Mesh:
     """`tt` and `ttp`."""
-    place = Place(at.file, at.position - 1)
+    place = WordPlace(at.file, at.position - 1)
     texture = _texture_name(at)
     rows = at.numbers(24 if with_normals else 15, "a textured triangle", finite=False).reshape(1, 3, -1)
     normals = rows[..., 3:6] if with_normals else None
@@ -138,7 +97,7 @@ def read_textured_triangle(at: Cursor, with_normals: bool) -> Mesh:
 
 def read_morph(at: Cursor) -> Morph:
     """`tpa`; keys that are out of order are sorted by time."""
-    place = Place(at.file, at.position - 1)
+    place = WordPlace(at.file, at.position - 1)
     count = at.count("keys of an animated triangle", least=1)
     rows = at.numbers(19 * count, "an animated triangle", finite=False).reshape(count, 19)
     rows = rows[np.argsort(rows[:, 0], kind="stable")]
@@ -148,7 +107,7 @@ def read_morph(at: Cursor) -> Morph:
 
 def read_sphere(at: Cursor) -> Quadric:
     """`s`; a negative radius means that it is seen from inside."""
-    place = Place(at.file, at.position - 1)
+    place = WordPlace(at.file, at.position - 1)
     x, y, z, radius = at.numbers(4, "a sphere", finite=False).tolist()
     placed = np.diag([abs(radius)] * 3 + [1.0])
     placed[:3, 3] = x, y, z
@@ -157,7 +116,7 @@ def read_sphere(at: Cursor) -> Quadric:
 
 def read_cone(at: Cursor) -> Quadric:
     """`c`; negative radii mean that it is seen from inside."""
-    place = Place(at.file, at.position - 1)
+    place = WordPlace(at.file, at.position - 1)
     numbers = at.numbers(8, "a cone", finite=False)
     base, apex = numbers[:3], numbers[4:7]
     radii = (abs(float(numbers[3])), abs(float(numbers[7])))

@@ -12,12 +12,13 @@ linear scan: the first whose end is later than the time.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
+from tracer.scene import rotations
 from tracer.scene.model import Camera, Deformation, Float32, Float64, Scene
 from tracer.scene.normals import unit_normals
 
@@ -132,67 +133,23 @@ def _hermite(u: Float64, knots: Float64) -> Float64:
     return (1 + 2 * u) * v * v * start + u * u * (3 - 2 * u) * end + u * v * (v * leave - u * enter)
 
 
-def _multiply(p: Float64, q: Float64) -> Float64:
-    """Quaternion products; quaternions are (..., 4), real part first."""
-    pw, pv, qw, qv = p[..., :1], p[..., 1:], q[..., :1], q[..., 1:]
-    px, py, pz = (pv[..., i] for i in range(3))
-    qx, qy, qz = (qv[..., i] for i in range(3))
-    cross = np.stack([py * qz - pz * qy, pz * qx - px * qz, px * qy - py * qx], axis=-1)
-    return np.concatenate([pw * qw - np.sum(pv * qv, axis=-1, keepdims=True), pw * qv + qw * pv + cross], axis=-1)
-
-
-def _conjugate(q: Float64) -> Float64:
-    return q * np.array([1.0, -1.0, -1.0, -1.0])
-
-
-def _log(q: Float64) -> Float64:
-    """(..., 3) logarithm of unit quaternions: axis times half the angle of rotation."""
-    sine = np.linalg.norm(q[..., 1:], axis=-1, keepdims=True)
-    angle = np.arctan2(sine, q[..., :1])
-    return q[..., 1:] * np.where(sine > 1e-12, angle / np.where(sine > 1e-12, sine, 1.0), 1.0)
-
-
-def _exp(v: Float64) -> Float64:
-    """(..., 4) the inverse of `_log`."""
-    angle = np.linalg.norm(v, axis=-1, keepdims=True)
-    return np.concatenate([np.cos(angle), v * np.sinc(angle / np.pi)], axis=-1)
-
-
-def _slerp(p: Float64, q: Float64, u: Float64) -> Float64:
-    """From p to q, not by the shortest path: the sign of q is meant."""
-    return _multiply(p, _exp(u * _log(_multiply(_conjugate(p), q))))
-
-
-def _squad(u: Float64, knots: Float64) -> Float64:
-    start, end, leave, enter = (knots[:, i] for i in range(4))
-    return _slerp(_slerp(start, end, u), _slerp(leave, enter, u), 2 * u * (1 - u))
-
-
 def _rotation_knots(keys: Keys) -> Float64:
     """(segments, 4, 4): end points and the two inner quaternions of each squad."""
-    axis, half = keys.values[:, :3], np.radians(keys.values[:, 3:]) / 2
-    length = np.linalg.norm(axis, axis=1, keepdims=True)
-    q = np.concatenate([np.cos(half), np.sin(half) * axis / np.where(length > 0, length, 1.0)], axis=1)
-    q[length[:, 0] == 0] = (1.0, 0.0, 0.0, 0.0)
+    q = rotations.from_axes(keys.values[:, :3], keys.values[:, 3])
     # Opposite quaternions are one rotation: choose signs, key after key, for the shorter way.
     same = np.sum(q[1:] * q[:-1], axis=1) >= 0
     q[1:] *= np.cumprod(np.where(same, 1.0, -1.0))[:, None]
-    steps = _log(_multiply(_conjugate(q[:-1]), q[1:]))
+    steps = rotations.log(rotations.multiply(rotations.conjugate(q[:-1]), q[1:]))
     leave, enter = _tangents(keys.times, keys.shape, steps)
-    inner_start = _multiply(q[1:-2], _exp((leave - steps[1:-1]) / 2))
-    inner_end = _multiply(q[2:-1], _exp((steps[1:-1] - enter) / 2))
+    inner_start = rotations.multiply(q[1:-2], rotations.exp((leave - steps[1:-1]) / 2))
+    inner_end = rotations.multiply(q[2:-1], rotations.exp((steps[1:-1] - enter) / 2))
     return np.stack([q[1:-2], q[2:-1], inner_start, inner_end], axis=1)
 
 
-def _rotation_matrices(q: Float64) -> Float64:
-    """(m, 3, 3) of unit quaternions (m, 4)."""
-    w, x, y, z = (q / np.linalg.norm(q, axis=1, keepdims=True)).T
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), 2, 0)
+def _squad(u: Float64, knots: Float64) -> Float64:
+    """(m, 3, 3) rotations at u (m, 1) of the squads with knots (m, 4, 4)."""
+    start, end, leave, enter = (knots[:, i] for i in range(4))
+    return rotations.matrices(rotations.squad(start, end, leave, enter, u))
 
 
 @dataclass(frozen=True)
@@ -221,7 +178,7 @@ class Animation:
         return self._pack([t.scale for t in self.tracks.values()], _curve_knots)
 
     @staticmethod
-    def _pack(tracks: list[Keys | None], knots) -> tuple[list[int], _Segments | None]:
+    def _pack(tracks: list[Keys | None], knots: Callable[[Keys], Float64]) -> tuple[list[int], _Segments | None]:
         which = [i for i, keys in enumerate(tracks) if keys is not None]
         present = [keys for keys in tracks if keys is not None]
         return which, _Segments.of(present, [knots(keys) for keys in present]) if present else None
@@ -234,7 +191,7 @@ class Animation:
         placed = np.tile(np.eye(4), (len(self.tracks), 1, 1))
         which, segments = self._rotations
         if segments is not None:
-            placed[which, :3, :3] = _rotation_matrices(_squad(*segments.find(time)))
+            placed[which, :3, :3] = _squad(*segments.find(time))
         which, segments = self._scales
         if segments is not None:
             placed[which, :3, :3] *= _hermite(*segments.find(time))[:, None, :]
@@ -276,7 +233,7 @@ class Animation:
             position = (float(x), float(y), float(z))
         if tracks.rotation is not None:
             segments = _Segments.of([tracks.rotation], [_rotation_knots(tracks.rotation)])
-            rotation = _rotation_matrices(_squad(*segments.find(time)))[0]
+            rotation = _squad(*segments.find(time))[0]
             direction = tuple((-rotation[:, 2]).tolist())
             up = tuple(rotation[:, 1].tolist())
         return Camera(position, direction, up, base.angle)

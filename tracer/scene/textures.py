@@ -14,12 +14,15 @@ import numpy as np
 from PIL import Image, UnidentifiedImageError
 
 from tracer.scene.model import SceneError, Texture
+from tracer.scene.pieces import TextureName
 
 MOST_PIXELS = 1 << 28
 """An image of more pixels is refused: decoding it would take a gigabyte and more."""
 
 KEPT_PIXELS = 1 << 24
 """An image of more pixels is scaled down to this many."""
+
+_TOO_LARGE = f"the image is too large; scale it down to {MOST_PIXELS >> 20} million pixels or fewer"
 
 FOLDERS = ("texturefiles", "textures", "texture")
 
@@ -46,6 +49,41 @@ def find_texture(name: str, beside: Path, scene: Path) -> Path | None:
     return None
 
 
+class TextureTable:
+    """The textures of a scene, each file once.  One that cannot be had is a warning and number -1."""
+
+    def __init__(self, scene: Path) -> None:
+        self.textures: list[Texture] = []
+        self.warnings: list[str] = []
+        self._scene = scene
+        self._of_name: dict[tuple[str, Path], int] = {}
+        self._of_file: dict[Path, int] = {}
+
+    def number(self, named: TextureName, beside: Path) -> int:
+        """Index into `textures` of what a name in the file `beside` means."""
+        key = named.name, beside.parent
+        if key not in self._of_name:
+            path = find_texture(named.name, beside, self._scene)
+            self._of_name[key] = -1 if path is None else self._load(path, named)
+            if path is None:
+                self._warn(named, f"texture {named.name!a} is not to be found")
+        return self._of_name[key]
+
+    def _load(self, path: Path, named: TextureName) -> int:
+        resolved = path.resolve()
+        if resolved not in self._of_file:
+            try:
+                self.textures.append(load_texture(path))
+                self._of_file[resolved] = len(self.textures) - 1
+            except SceneError as error:
+                self._of_file[resolved] = -1
+                self._warn(named, f"texture {error}")
+        return self._of_file[resolved]
+
+    def _warn(self, named: TextureName, what: str) -> None:
+        self.warnings.append(f"{named.place()}: {what}; the surface keeps its material colour")
+
+
 def load_texture(path: Path) -> Texture:
     """An image file as a texture; raises SceneError in one line where it cannot be one."""
     try:
@@ -58,28 +96,26 @@ def load_texture(path: Path) -> Texture:
     except UnidentifiedImageError:
         raise SceneError(f"{path}: not an image that can be read; use PPM, PNG or JPEG") from None
     except Image.DecompressionBombError:
-        raise SceneError(f"{path}: {_too_large()}") from None
-    except MemoryError:
-        raise SceneError(f"{path}: the image does not fit into memory; scale it down") from None
+        raise SceneError(f"{path}: {_TOO_LARGE}") from None
     except Exception as error:  # Pillow's decoders raise whatever they like on broken files
-        what = " ".join(str(error).split()) or type(error).__name__
-        raise SceneError(f"{path}: the image cannot be read ({what}); replace it") from None
+        raise SceneError(f"{path}: the image cannot be read ({_words(error)}); replace it") from None
 
 
 def texture_of(image: Image.Image, name: str) -> Texture:
-    """A Pillow image as a texture; raises SceneError where it is empty or too large."""
+    """A Pillow image as a texture; raises SceneError where it is empty, too large, or cannot be decoded."""
     width, height = image.size
     if width * height > MOST_PIXELS:
-        raise SceneError(f"{width} x {height}: {_too_large()}")
-    if width * height == 0:
-        raise SceneError("the image has no pixels; replace it")
-    if width * height > KEPT_PIXELS:
-        shrink = (KEPT_PIXELS / (width * height)) ** 0.5
-        size = max(1, int(width * shrink)), max(1, int(height * shrink))
-        image.draft("RGB", size)  # lets a JPEG be decoded at a fraction of its size
-        image = image.convert("RGB").resize(size, Image.Resampling.BOX)
-    return Texture(name, np.ascontiguousarray(np.asarray(image.convert("RGB"), np.uint8)))
+        raise SceneError(f"{width} x {height}: {_TOO_LARGE}")
+    try:
+        if width * height > KEPT_PIXELS:
+            shrink = (KEPT_PIXELS / (width * height)) ** 0.5
+            size = max(1, int(width * shrink)), max(1, int(height * shrink))
+            image.draft("RGB", size)  # lets a JPEG be decoded at a fraction of its size
+            image = image.convert("RGB").resize(size, Image.Resampling.BOX)
+        return Texture(name, np.ascontiguousarray(np.asarray(image.convert("RGB"), np.uint8)))
+    except Exception as error:  # as above; also where memory does not suffice
+        raise SceneError(f"the image cannot be read ({_words(error)}); replace it") from None
 
 
-def _too_large() -> str:
-    return f"the image is too large; scale it down to {MOST_PIXELS >> 20} million pixels or fewer"
+def _words(error: Exception) -> str:
+    return " ".join(str(error).split())[:120] or type(error).__name__

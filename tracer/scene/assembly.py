@@ -9,15 +9,12 @@ is object 0, the static world.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable
+from collections.abc import Container, Hashable, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.scene.aff_blocks import Mesh, Morph, Place, Quadric
-from tracer.scene.aff_tokens import AffFile
 from tracer.scene.animation import Chain
 from tracer.scene.model import (
     CONE,
@@ -30,18 +27,7 @@ from tracer.scene.model import (
     empty_triangles,
 )
 from tracer.scene.normals import unit_normals
-
-T = TypeVar("T")
-
-
-@dataclass(frozen=True)
-class Piece(Generic[T]):
-    """A shape with the chain it stands under, its material, and its texture (-1 for none)."""
-
-    shape: T
-    chain: Chain
-    material: int
-    texture: int = -1
+from tracer.scene.pieces import Mesh, Morph, Piece, Place, Quadric
 
 
 @dataclass
@@ -55,20 +41,19 @@ class Group:
     morphs: dict[int, list[tuple[Piece[Morph], Float64]]] = field(default_factory=dict)  # by number of keys
 
 
-class Losses:
-    """What had to be dropped, counted per file and cause; each file is named with the first line concerned."""
+class Remarks:
+    """What is wrong with pieces, counted per source and kind; each source is named with the first place concerned."""
 
     def __init__(self) -> None:
-        self._found: dict[tuple[AffFile, str], tuple[str, int]] = {}
+        self._found: dict[tuple[Hashable, str], tuple[str, int]] = {}
 
     def add(self, place: Place, item: int, what: str) -> None:
-        first, count = self._found.get((place.file, what), (place(item), 0))
-        self._found[place.file, what] = first, count + 1
+        first, count = self._found.get((place.source, what), ("", 0))
+        self._found[place.source, what] = first or place(item), count + 1
 
     def warnings(self) -> Iterable[str]:
         for (_, what), (first, count) in self._found.items():
-            more = f"; dropped {count} of this kind, here and after it" if count > 1 else "; dropped"
-            yield f"{first}: {what}{more}"
+            yield f"{first}: {what}" + (f" (the first of {count} in this file)" if count > 1 else "")
 
 
 def resolve(chain: Chain, moving: Container[str]) -> tuple[Chain, Float64]:
@@ -97,20 +82,20 @@ class Geometry:
 
     def objects(self, moving: Container[str]) -> tuple[tuple[SceneObject, ...], list[str]]:
         """The objects, of which the first is static, and what is to be warned of; `moving` holds the tracks' names."""
-        losses = Losses()
+        remarks = Remarks()
         rigid: list[SceneObject] = []
         deforming: list[SceneObject] = []
         with np.errstate(all="ignore"):  # numbers that overflow are found, and named, afterwards
             for group in self._groups(moving):
-                triangles, quadrics = _triangles(group.meshes, losses), _quadrics(group.quadrics, losses)
+                triangles, quadrics = _triangles(group.meshes, remarks), _quadrics(group.quadrics, remarks)
                 if not group.chain or len(triangles) or len(quadrics):
                     rigid.append(SceneObject(group.name, triangles, quadrics, group.chain))
                 name = f"{group.name} (deforming)" if group.chain else "deforming"
                 for pieces in group.morphs.values():
-                    triangles, deformation = _deforming(pieces, losses)
+                    triangles, deformation = _deforming(pieces, remarks)
                     if len(triangles):
                         deforming.append(SceneObject(name, triangles, empty_quadrics(), group.chain, deformation))
-        return tuple(rigid + deforming), list(losses.warnings())
+        return tuple(rigid + deforming), list(remarks.warnings())
 
     def _groups(self, moving: Container[str]) -> Iterable[Group]:
         resolved: dict[int, tuple[Group, Float64]] = {}  # by the chain's identity: many pieces share one
@@ -156,32 +141,48 @@ def _placed(corners: Float64, normals: Float64 | None, matrix: Float64) -> tuple
     return corners, normals
 
 
-def _kept(corners: Float64, places: list[Place], lengths: NDArray[np.intp], losses: Losses) -> NDArray[np.bool_]:
-    """(n,) which of n triangles (n, ..., 3, 3) are good; the others are lost."""
-    good = np.isfinite(corners.astype(np.float32)).reshape(len(corners), -1).all(axis=1)
-    starts = np.concatenate([[0], np.cumsum(lengths)])
-    for bad in np.flatnonzero(~good):
-        piece = int(np.searchsorted(starts, bad, side="right")) - 1
-        what = "a triangle with a corner that is not a finite number"
-        losses.add(places[piece], int(bad - starts[piece]), what)
+class _Origin:
+    """Which piece, and which of its triangles, each of n triangles in a row came from."""
+
+    def __init__(self, places: Sequence[Place], lengths: Sequence[int]) -> None:
+        self._places = places
+        self._starts = np.concatenate([[0], np.cumsum(lengths)])
+
+    def remark(self, which: NDArray[np.bool_], what: str, remarks: Remarks) -> None:
+        for triangle in np.flatnonzero(which):
+            piece = int(np.searchsorted(self._starts, triangle, side="right")) - 1
+            remarks.add(self._places[piece], int(triangle - self._starts[piece]), what)
+
+
+def _finite(corners: Float64, origin: _Origin, remarks: Remarks) -> NDArray[np.bool_]:
+    """(n,) which of n triangles (n, ...) single precision can hold; the others are remarked on."""
+    good: NDArray[np.bool_] = np.all(np.isfinite(corners.astype(np.float32)).reshape(len(corners), -1), axis=1)
+    if not good.all():
+        origin.remark(~good, "a triangle with a corner that is not a finite number is dropped; correct it", remarks)
     return good
 
 
-def _triangles(pieces: list[tuple[Piece[Mesh], Float64]], losses: Losses) -> Triangles:
+def _triangles(pieces: list[tuple[Piece[Mesh], Float64]], remarks: Remarks) -> Triangles:
+    """All triangles of an object.  Those without area stay, although no ray meets them: BART counts them."""
     if not pieces:
         return empty_triangles()
     placed = [_placed(piece.shape.corners, piece.shape.normals, baked) for piece, baked in pieces]
-    lengths = np.array([len(corners) for corners, _ in placed])
+    lengths = [len(corners) for corners, _ in placed]
     corners = np.concatenate([c for c, _ in placed])
     normals = np.concatenate([n for _, n in placed])
     uvs = np.concatenate([_uvs(piece.shape, baked) for piece, baked in pieces])
     material = np.repeat(np.array([piece.material for piece, _ in pieces], np.int32), lengths)
     texture = np.repeat(np.array([piece.texture for piece, _ in pieces], np.int32), lengths)
-    good = _kept(corners, [piece.shape.place for piece, _ in pieces], lengths, losses)
+    origin = _Origin([piece.shape.place for piece, _ in pieces], lengths)
+    good = _finite(corners, origin, remarks)
+    single = corners.astype(np.float32)
+    flat = good & ~np.cross(single[:, 1] - single[:, 0], single[:, 2] - single[:, 0]).any(axis=1)
+    if flat.any():
+        origin.remark(flat, "a triangle without area is kept, but no ray can meet it", remarks)
     if not good.all():
-        corners, normals, uvs = corners[good], normals[good], uvs[good]
+        single, corners, normals, uvs = single[good], corners[good], normals[good], uvs[good]
         material, texture = material[good], texture[good]
-    return Triangles(corners.astype(np.float32), unit_normals(normals, corners), uvs, material, texture)
+    return Triangles(single, unit_normals(normals, corners), uvs, material, texture)
 
 
 def _uvs(mesh: Mesh, matrix: Float64) -> NDArray[np.float32]:
@@ -191,15 +192,15 @@ def _uvs(mesh: Mesh, matrix: Float64) -> NDArray[np.float32]:
     return np.nan_to_num(uvs.astype(np.float32), nan=0.0, posinf=0.0, neginf=0.0)
 
 
-def _quadrics(pieces: list[tuple[Piece[Quadric], Float64]], losses: Losses) -> Quadrics:
+def _quadrics(pieces: list[tuple[Piece[Quadric], Float64]], remarks: Remarks) -> Quadrics:
     good: list[tuple[Piece[Quadric], Float64]] = []
     for piece, baked in pieces:
         placed, radii = baked @ piece.shape.placed, piece.shape.radii
-        what = "cone" if piece.shape.kind == CONE else "sphere"
-        if not np.isfinite(placed.astype(np.float32)).all() or not np.isfinite(np.array(radii, np.float32)).all():
-            losses.add(piece.shape.place, 0, f"a {what} with a number that is not finite")
-        elif max(radii) == 0 or abs(np.linalg.det(placed[:3, :3])) == 0:
-            losses.add(piece.shape.place, 0, f"a {what} without extent")
+        what = "a cone" if piece.shape.kind == CONE else "a sphere"
+        if not np.isfinite(np.append(placed, radii).astype(np.float32)).all():
+            remarks.add(piece.shape.place, 0, f"{what} with a number that is not finite is dropped; correct it")
+        elif max(radii) == 0 or np.linalg.det(placed[:3, :3]) == 0:
+            remarks.add(piece.shape.place, 0, f"{what} without extent is dropped; give it a radius and a length")
         else:
             good.append((piece, placed))
     if not good:
@@ -213,19 +214,19 @@ def _quadrics(pieces: list[tuple[Piece[Quadric], Float64]], losses: Losses) -> Q
     )
 
 
-def _deforming(pieces: list[tuple[Piece[Morph], Float64]], losses: Losses) -> tuple[Triangles, Deformation]:
+def _deforming(pieces: list[tuple[Piece[Morph], Float64]], remarks: Remarks) -> tuple[Triangles, Deformation]:
     placed = [_placed(piece.shape.corners, piece.shape.normals, baked) for piece, baked in pieces]
     corners, normals = np.stack([c for c, _ in placed]), np.stack([n for _, n in placed])
     times = np.stack([piece.shape.times for piece, _ in pieces])
-    everything = np.concatenate([corners.reshape(len(corners), -1), times], axis=1)
-    good = _kept(everything, [piece.shape.place for piece, _ in pieces], np.ones(len(pieces), np.intp), losses)
-    corners, normals, times = corners[good], np.nan_to_num(normals[good], posinf=0.0, neginf=0.0), times[good]
-    material = np.array([piece.material for piece, _ in pieces], np.int32)[good]
+    origin = _Origin([piece.shape.place for piece, _ in pieces], [1] * len(pieces))
+    good = _finite(np.concatenate([corners.reshape(len(corners), -1), times], axis=1), origin, remarks)
+    corners, times = corners[good], times[good]
+    normals = np.nan_to_num(normals[good], nan=0.0, posinf=0.0, neginf=0.0)
     first = Triangles(
         corners[:, 0].astype(np.float32),
         unit_normals(normals[:, 0], corners[:, 0]),
         np.zeros((len(corners), 3, 2), np.float32),
-        material,
+        np.array([piece.material for piece, _ in pieces], np.int32)[good],
         np.full(len(corners), -1, np.int32),
     )
     return first, Deformation(times, corners.astype(np.float32), normals.astype(np.float32))

@@ -1,0 +1,72 @@
+"""One way in: any scene file by its extension, and what there is to tell of a scene in a few numbers."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tracer.scene.aff import load_aff
+from tracer.scene.framing import bounds
+from tracer.scene.meshes import MESH_EXTENSIONS, load_mesh
+from tracer.scene.model import CONE, SPHERE, Progress, Scene, SceneError
+
+AFF_EXTENSIONS = (".aff", ".nff")
+SCENE_EXTENSIONS = (*AFF_EXTENSIONS, *MESH_EXTENSIONS)
+
+
+def load_scene(path: str | Path, progress: Progress | None = None) -> Scene:
+    """The scene in a file: AFF or NFF, OBJ, PLY, STL, glTF or GLB.
+
+    Raises SceneError, in one line that names the file, its line where it has lines, and what to
+    do.  `progress` is called with what is being done and the fraction done; what it raises
+    (Cancelled) comes through, and nothing else is changed.
+    """
+    path = Path(path)
+    try:
+        if path.is_dir():
+            raise SceneError(f"{path}: it is a folder; give a file in it")
+        if not path.exists():
+            raise SceneError(f"{path}: no such file; check the path")
+        if not os.access(path, os.R_OK):
+            raise SceneError(f"{path}: reading it is not permitted; change its permissions")
+    except (OSError, ValueError):
+        raise SceneError(f"{str(path)!a}: no file can bear this name; check the path") from None
+    extension = path.suffix.lower()
+    if extension not in SCENE_EXTENSIONS:
+        known = ", ".join(e[1:] for e in SCENE_EXTENSIONS)
+        raise SceneError(f"{path}: unknown kind of scene; give a file of one of these kinds: {known}")
+    if progress is not None:
+        progress(f"Reading {path.name}", 0.0)
+    scene = load_aff(path, progress) if extension in AFF_EXTENSIONS else load_mesh(path, progress)
+    if progress is not None:
+        progress(f"Read {path.name}", 1.0)
+    return scene
+
+
+def scene_info(scene: Scene) -> dict[str, Any]:
+    """What `shadowcull info --json` prints, in plain lists and numbers.
+
+    `dynamic_triangles` are those of objects that move or deform; `materials` counts every material
+    statement that was run, included files each time; `textures` counts distinct images; `bounds`
+    is [least corner, greatest corner] of everything at the start time, or None of nothing.
+    """
+    kinds = np.concatenate([o.quadrics.kind for o in scene.objects])
+    static = len(scene.objects[0].triangles)
+    box = bounds(scene.objects, scene.animation, scene.time_range[0])
+    return {
+        "triangles": scene.triangle_count,
+        "static_triangles": static,
+        "dynamic_triangles": scene.triangle_count - static,
+        "spheres": int(np.sum(kinds == SPHERE)),
+        "cones": int(np.sum(kinds == CONE)),
+        "lights": len(scene.lights),
+        "materials": len(scene.materials),
+        "textures": len(scene.textures),
+        "frames": scene.frames,
+        "time": list(scene.time_range),
+        "bounds": None if box is None else box.tolist(),
+        "warnings": list(scene.warnings),
+    }

@@ -1,0 +1,149 @@
+"""Scenes from mesh files (OBJ, PLY, STL, glTF, GLB), read by trimesh.
+
+Such files say little of how a surface shines in a Whitted world, and most have neither camera
+nor lights.  Colours and textures are kept as they would be displayed; roughness and metalness
+become a diffuse and a mirror part; a camera that frames the model and two lights are added.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tracer.scene.animation import Animation
+from tracer.scene.assembly import Geometry
+from tracer.scene.framing import bounds, framing_camera, framing_lights
+from tracer.scene.mesh_materials import MaterialTable
+from tracer.scene.model import Camera, Float64, Progress, Scene, SceneError
+from tracer.scene.pieces import Mesh, Piece
+
+MESH_EXTENSIONS = (".obj", ".ply", ".stl", ".gltf", ".glb")
+
+
+@dataclass(frozen=True)
+class _MeshPlace:
+    """A triangle of a named mesh; these formats do not say in which line."""
+
+    path: Path
+    mesh: str
+
+    @property
+    def source(self) -> Hashable:
+        return self.path
+
+    def __call__(self, item: int = 0) -> str:
+        return f"{self.path}: {self.mesh!a}, triangle {item}"
+
+
+def load_mesh(path: str | Path, progress: Progress | None = None) -> Scene:
+    """A mesh file as a static scene; raises SceneError in one line that names the file."""
+    path = Path(path)
+    report = progress or (lambda what, fraction: None)
+    report(f"Reading {path.name}", 0.0)
+    model, missing = _read(path)
+    table = MaterialTable(path)
+    geometry = Geometry()
+    nodes = list(model.graph.nodes_geometry)
+    skipped = []
+    for i, node in enumerate(nodes):
+        report(f"Reading {path.name}", 0.5 + 0.5 * i / len(nodes))
+        matrix, name = model.graph[node]
+        mesh = model.geometry[name]
+        if not hasattr(mesh, "faces"):
+            skipped.append(f"{path}: {name!a} has no triangles; it is left out")
+            continue
+        for shape, material, texture in _shapes(mesh, _MeshPlace(path, name), table):
+            geometry.meshes.append(Piece(shape, (np.asarray(matrix, np.float64),), material, texture))
+    objects, remarks = geometry.objects(())
+    if not len(objects[0].triangles):
+        remarks.append(f"{path}: no triangle; only the background is seen")
+    box = bounds(objects, Animation.empty(), 0.0)
+    camera = _own_camera(model) or framing_camera(box)
+    return Scene(
+        path=path,
+        objects=objects,
+        materials=tuple(table.materials),
+        textures=tuple(table.textures),
+        lights=framing_lights(box, camera),
+        camera=camera,
+        animation=Animation.empty(),
+        background=(0.6, 0.7, 0.8),
+        warnings=(*missing, *table.warnings, *skipped, *remarks),
+    )
+
+
+def _read(path: Path) -> tuple[Any, list[str]]:
+    """The trimesh scene in a file, and warnings of files beside it that are missing."""
+    import trimesh  # here, because it takes a while that other scenes need not wait for
+
+    class Beside(trimesh.resolvers.FilePathResolver):
+        """Reads what a mesh file refers to, and remembers what it could not."""
+
+        def get(self, name: str) -> bytes:
+            try:
+                return super().get(name)
+            except Exception:
+                missing.append(f"{path}: {name!a}, which it refers to, cannot be read; put it beside the file")
+                raise
+
+    missing: list[str] = []
+    try:
+        model = trimesh.load_scene(str(path), resolver=Beside(str(path)), process=False)
+        for mesh in model.geometry.values():
+            faces = getattr(mesh, "faces", None)
+            if faces is not None and len(faces) and (faces.min() < 0 or faces.max() >= len(mesh.vertices)):
+                raise SceneError(f"{path}: a triangle refers to a vertex that is not there; repair the file")
+    except SceneError:
+        raise
+    except Exception as error:  # trimesh lets whatever its parsers raise on broken files through
+        what = " ".join(str(error).split()) or type(error).__name__
+        kind = path.suffix[1:].upper()
+        raise SceneError(f"{path}: cannot be read as {kind} ({what[:120]}); repair or convert the file") from None
+    return model, list(dict.fromkeys(missing))
+
+
+def _shapes(mesh: Any, place: _MeshPlace, table: MaterialTable) -> Iterator[tuple[Mesh, int, int]]:
+    """Parts of one material each, with its number and that of the texture."""
+    faces = np.asarray(mesh.faces, np.int64)
+    corners = np.asarray(mesh.vertices, np.float64)[faces]
+    normals, uvs = _vertex_normals(mesh), getattr(mesh.visual, "uv", None)
+    normals = None if normals is None else normals[faces]
+    uvs = None if uvs is None or len(uvs) != len(mesh.vertices) else np.asarray(uvs, np.float64)[faces]
+    for which, material, texture in table.parts(mesh, place()):
+        yield (
+            Mesh(
+                corners[which],
+                place,
+                None if normals is None else normals[which],
+                None if uvs is None else uvs[which],
+            ),
+            material,
+            texture if uvs is not None else -1,
+        )
+
+
+def _vertex_normals(mesh: Any) -> Float64 | None:
+    """(vertices, 3) where the file itself has normals: made-up ones would round every edge."""
+    if "vertex_normals" in mesh._cache:
+        return np.asarray(mesh.vertex_normals, np.float64)
+    try:  # PLY keeps its own columns
+        data = mesh.metadata["_ply_raw"]["vertex"]["data"]
+        normals = np.stack([np.asarray(data[axis], np.float64).reshape(-1) for axis in ("nx", "ny", "nz")], axis=1)
+    except (KeyError, TypeError, ValueError, IndexError):
+        return None
+    return normals if len(normals) == len(mesh.vertices) else None
+
+
+def _own_camera(model: Any) -> Camera | None:
+    """The file's camera, which looks along its own -z, where it has a usable one."""
+    if not model.has_camera:
+        return None
+    placed = np.asarray(model.camera_transform, np.float64)
+    direction, up, angle = -placed[:3, 2], placed[:3, 1], float(model.camera.fov[1])
+    if not (np.isfinite(placed).all() and direction.any() and 0.0 < angle < 180.0):
+        return None
+    return Camera(tuple(placed[:3, 3].tolist()), tuple(direction.tolist()), tuple(up.tolist()), angle)

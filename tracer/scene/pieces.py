@@ -1,0 +1,76 @@
+"""Shapes as a file gives them: in the file's own space, in double precision, knowing where they came from."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
+
+from tracer.scene.animation import Chain
+from tracer.scene.model import Float64
+
+T = TypeVar("T")
+
+
+class Place(Protocol):
+    """Where something was written, for messages."""
+
+    @property
+    def source(self) -> Hashable:
+        """What messages are counted by, such as the file."""
+
+    def __call__(self, item: int = 0) -> str:
+        """The words for it; of a mesh, `item` is a triangle's number."""
+
+
+@dataclass(frozen=True)
+class TextureName:
+    """A texture as a file names it."""
+
+    name: str
+    place: Place
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """n triangles: corners (n, 3, 3), and where the file has them normals (n, 3, 3) and uvs (n, 3, 2), all float64.
+
+    In uvs v = 0 is the bottom row of an image.
+    """
+
+    corners: Float64
+    place: Place
+    normals: Float64 | None = None
+    uvs: Float64 | None = None
+    texture: TextureName | None = None
+
+
+@dataclass(frozen=True)
+class Morph:
+    """One keyframed triangle: times (k,) ascending, corners and normals (k, 3, 3), all float64."""
+
+    times: Float64
+    corners: Float64
+    normals: Float64
+    place: Place
+
+
+@dataclass(frozen=True)
+class Quadric:
+    """One sphere or cone: `kind`, radii and `inside` as in `Quadrics`; placed (4, 4) canonical to file space."""
+
+    kind: int
+    placed: Float64
+    radii: tuple[float, float]
+    inside: bool
+    place: Place
+
+
+@dataclass(frozen=True)
+class Piece(Generic[T]):
+    """A shape with the transforms it stands under, its material, and its texture (-1 for none)."""
+
+    shape: T
+    chain: Chain
+    material: int
+    texture: int = -1
