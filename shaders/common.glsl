@@ -1,0 +1,60 @@
+// What every view knows of a frame. Row 0 of the buffers is the top of the picture, and so is row 0 of the
+// target: pixel (x, y) here is pixel (x, y) of the frame.
+
+uniform sampler2D color_buffer;       // rgb, display-referred, unclamped
+uniform isampler2D primitive_buffer;  // number of the primitive, -1 for a miss
+uniform usampler2D mode_table;        // per primitive: low and high half of its packed word of modes
+uniform isampler2D count_table;       // per primitive: pixels now, highest count
+uniform int table_width;              // primitives per row of the two tables
+uniform vec3 background;
+uniform float shading;                // how much of the picture's light and shade shows under flat colours, 0 to 1
+uniform bool outlines;                // draw the borders between primitives
+uniform int selected;                 // primitive drawn with a bright border, -1 for none
+
+out vec4 result;
+
+ivec2 pixel() { return ivec2(gl_FragCoord.xy); }
+
+int primitive_at(ivec2 p) {
+    return texelFetch(primitive_buffer, clamp(p, ivec2(0), textureSize(primitive_buffer, 0) - 1), 0).r;
+}
+
+ivec2 table_entry(int primitive) { return ivec2(primitive % table_width, primitive / table_width); }
+
+// Two bits of a primitive's packed word, at an even position from 0 to 62.
+int mode_bits(int primitive, int position) {
+    uvec2 word = texelFetch(mode_table, table_entry(primitive), 0).rg;
+    uint half_word = position < 32 ? word.x : word.y;
+    return int((half_word >> uint(position & 31)) & 3u);
+}
+
+ivec2 counts_of(int primitive) { return texelFetch(count_table, table_entry(primitive), 0).rg; }
+
+// A flat colour with some of the traced picture's light and shade, so that shapes stay readable.
+vec3 shaded(vec3 flat_color) {
+    vec3 traced = clamp(texelFetch(color_buffer, pixel(), 0).rgb, 0.0, 1.0);
+    float light = 0.25 + 0.95 * sqrt(dot(traced, vec3(0.2126, 0.7152, 0.0722)));
+    return clamp(flat_color * mix(1.0, light, shading), 0.0, 1.0);
+}
+
+bool on_border(int primitive) {
+    ivec2 p = pixel();
+    return primitive_at(p + ivec2(1, 0)) != primitive || primitive_at(p + ivec2(0, 1)) != primitive;
+}
+
+bool on_selected_border() {
+    if (selected < 0) return false;
+    ivec2 p = pixel();
+    int around = 0;
+    for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x)
+            around += primitive_at(p + ivec2(x, y)) == selected ? 1 : 0;
+    return around > 0 && around < 9;
+}
+
+// Every view ends here: borders on top, opaque.
+void finish(vec3 color) {
+    if (outlines && on_border(primitive_at(pixel()))) color *= 0.35;
+    if (on_selected_border()) color = vec3(1.0);
+    result = vec4(color, 1.0);
+}

@@ -1,0 +1,15 @@
+// How many pixels a primitive covers now, against the most it covered while fully rendered: at zoom_factor times
+// that, its modes are no longer trusted. Logarithmic, from 1 / zoom_factor to zoom_factor; grey has no highest count.
+uniform sampler2D color_map;
+uniform float zoom_factor;
+uniform vec3 unknown;
+
+void main() {
+    int primitive = primitive_at(pixel());
+    if (primitive < 0) { finish(background); return; }
+    ivec2 counts = counts_of(primitive);
+    if (counts.y <= 0) { finish(shaded(unknown)); return; }
+    float ratio = float(max(counts.x, 1)) / float(counts.y);
+    float t = 0.5 + 0.5 * log(ratio) / log(max(zoom_factor, 1.01));
+    finish(shaded(texture(color_map, vec2(clamp(t, 0.0, 1.0), 0.5)).rgb));
+}

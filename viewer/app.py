@@ -1,0 +1,265 @@
+"""The window, and one frame of it.
+
+Hello ImGui owns the window, its GL context, the docking and the screen's density; this module
+says what happens in which order.  A frame is two lists of calls: `before_widgets`, where all GL
+work is done, and the panels, which never touch GL.
+
+    files that were dropped -> keys -> camera -> controller (time, threads, requests)
+    -> newest frame to the GPU -> view drawn -> panels -> pictures of the window saved
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from imgui_bundle import glfw_utils, hello_imgui, imgui, immapp
+
+import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
+
+from tracer.renderer import Frame
+from viewer import commands, style
+from viewer.controller import Controller
+from viewer.display import Display, Look
+from viewer.panels import camera, culling, dialogs, inspector, picture, plots, scene, statistics, status, view
+from viewer.preferences import config_folder, load_preferences
+from viewer.resources import default_scene
+from viewer.ui import CaptureKind, Ui
+
+TITLE = "Shadowcull"
+WINDOW_SIZE = (1280, 800)
+PANELS: dict[str, tuple[str, Callable[[Ui], None]]] = {
+    "Picture": ("MainDockSpace", picture.show),
+    "Scene": ("Left", scene.show),
+    "Camera": ("Left", camera.show),
+    "Statistics": ("LeftBottom", statistics.show),
+    "View": ("Right", view.show),
+    "Culling": ("RightMiddle", culling.show),
+    "Inspector": ("RightBottom", inspector.show),
+    "Plots": ("Bottom", plots.show),
+}
+
+
+class App:
+    """The window's life: made, run once, closed."""
+
+    def __init__(self, scene_path: Path | None) -> None:
+        preferences, problem = load_preferences()
+        self.controller = Controller(preferences)
+        self.ui = Ui(self.controller)
+        self.ui.commands = commands.build(self.ui)
+        self.scene_path = scene_path
+        self.layout_file = _LayoutFile(config_folder())
+        self.params = self._params()
+        self.ui.request_exit = self._exit
+        self.ui.reset_layout = self._reset_layout
+        self._frame_began = time.perf_counter()
+        if problem:
+            self.controller.say(problem, error=True)
+
+    def run(self, runner: Callable[[hello_imgui.RunnerParams, immapp.AddOnsParams], None] = immapp.run) -> int:
+        """Open the window and stay until it is closed; returns the exit code."""
+        try:
+            runner(self.params, immapp.AddOnsParams(with_implot=True))
+        finally:
+            self.controller.wake = lambda: None
+            self.controller.close()
+            self.layout_file.keep()
+        return 0
+
+    # --- one frame -------------------------------------------------------------------------------
+
+    def before_widgets(self) -> None:
+        """Everything but the widgets: input of the last frame, threads, GL."""
+        self._frame_began = time.perf_counter()
+        self._open_dropped()
+        frame = self.controller.tick(self._room_for_picture())
+        self._draw(frame)
+        self._capture_picture()
+        self._stay_awake()
+
+    def widgets(self) -> None:
+        """What is not a docked panel: keys, and what lies over the panels."""
+        commands.handle_keys(self.ui.commands)
+        picture.fly(self.ui)
+        dialogs.show(self.ui)
+
+    def after_widgets(self) -> None:
+        """The window is drawn but not yet shown."""
+        self._capture_window()
+        self.controller.drawn_seconds = time.perf_counter() - self._frame_began
+
+    # --- the steps -------------------------------------------------------------------------------
+
+    def _open_dropped(self) -> None:
+        dropped, self.ui.dropped = self.ui.dropped, []
+        if len(dropped) > 1:
+            self.controller.say(f"{len(dropped)} files were dropped; only {dropped[0].name} is opened")
+        if dropped:
+            self.controller.open(dropped[0])
+
+    def _room_for_picture(self) -> tuple[int, int]:
+        window = glfw_utils.glfw_window_hello_imgui()
+        if glfw.get_window_attrib(window, glfw.ICONIFIED) or 0 in glfw.get_framebuffer_size(window):
+            return 0, 0
+        return self.ui.picture_area
+
+    def _draw(self, frame: Frame | None) -> None:
+        """Bring a new frame to the GPU, and draw the view if anything about it has changed."""
+        display, c = self.ui.display, self.controller
+        if display is None:
+            return
+        if frame is not None:
+            display.upload(frame)
+        p = c.preferences
+        display.draw(
+            Look(
+                view=c.session.view,
+                light=c.session.light,
+                shading=p.shading,
+                outlines=p.outlines,
+                selected=c.selected.primitive if c.selected is not None else -1,
+                smooth=p.smooth_upscaling,
+            )
+        )
+
+    def _capture_picture(self) -> None:
+        if self.ui.capture_wanted is CaptureKind.PICTURE and self.ui.display is not None:
+            self.ui.capture_wanted = None
+            self.controller.capture(self.ui.display.read() if self.controller.frame is not None else None)
+
+    def _capture_window(self) -> None:
+        if self.ui.capture_wanted is CaptureKind.WINDOW and self.ui.display is not None:
+            self.ui.capture_wanted = None
+            size = glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui())
+            self.controller.capture(self.ui.display.read_window(*size))
+
+    def _stay_awake(self) -> None:
+        """Doze only when nothing is traced, moves or is loaded."""
+        self.params.fps_idling.enable_idling = not self.controller.active
+
+    # --- the window ------------------------------------------------------------------------------
+
+    def _params(self) -> hello_imgui.RunnerParams:
+        params = hello_imgui.RunnerParams()
+        params.app_window_params.window_title = TITLE
+        params.app_window_params.window_geometry.size = WINDOW_SIZE
+        params.app_window_params.restore_previous_geometry = True
+        window = params.imgui_window_params
+        window.default_imgui_window_type = hello_imgui.DefaultImGuiWindowType.provide_full_screen_dock_space
+        window.show_menu_bar = window.show_status_bar = True
+        window.show_menu_app = window.show_menu_view = window.show_status_fps = False
+        window.remember_theme = window.remember_status_bar_settings = False
+        params.renderer_backend_options.open_gl_options = hello_imgui.OpenGlOptions(
+            glsl_version="330", major_version=3, minor_version=3, use_core_profile=True, use_forward_compat=True,
+            anti_aliasing_samples=0,  # text and widgets are smooth by themselves
+        )  # fmt: skip
+        params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
+        params.ini_filename = str(self.layout_file.working_copy)
+        params.docking_params = self._docking()
+        params.fps_idling.fps_idle = 8.0
+        params.fps_idling.time_active_after_last_event = 1.0
+        call = params.callbacks
+        call.setup_imgui_config = _configure_imgui
+        call.setup_imgui_style = style.apply
+        call.load_additional_fonts = style.load_fonts
+        call.post_init = self._ready
+        call.show_menus = lambda: self._menus()
+        call.show_status = lambda: status.show(self.ui)
+        call.pre_new_frame = self.before_widgets
+        call.show_gui = self.widgets
+        call.before_swap = self.after_widgets
+        call.before_exit = self._release
+        return params
+
+    def _docking(self) -> hello_imgui.DockingParams:
+        docking = hello_imgui.DockingParams()
+        split, down = hello_imgui.DockingSplit, imgui.Dir.down
+        docking.docking_splits = [
+            split("MainDockSpace", "Left", imgui.Dir.left, 0.225),
+            split("MainDockSpace", "Right", imgui.Dir.right, 0.295),
+            split("MainDockSpace", "Bottom", down, 0.25),
+            split("Left", "LeftBottom", down, 0.52),
+            split("Right", "RightBottom", down, 0.36),
+            split("Right", "RightMiddle", down, 0.36),
+        ]
+        docking.dockable_windows = [self._window(label, space, show) for label, (space, show) in PANELS.items()]
+        return docking
+
+    def _window(self, label: str, space: str, show: Callable[[Ui], None]) -> hello_imgui.DockableWindow:
+        window = hello_imgui.DockableWindow(label, space, lambda: show(self.ui))
+        if label == "Picture":
+            window.can_be_closed = False
+            flags = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
+            window.imgui_window_flags = int(flags | imgui.WindowFlags_.no_collapse)
+        return window
+
+    def _menus(self) -> None:
+        commands.menus(self.ui.commands)
+        if imgui.begin_menu("Panels"):
+            for window in self.params.docking_params.dockable_windows:
+                if window.can_be_closed:
+                    _, window.is_visible = imgui.menu_item(window.label, "", window.is_visible, True)
+            imgui.end_menu()
+
+    def _ready(self) -> None:
+        """The window and its GL context exist."""
+        style.apply_to_plots()
+        self.ui.display = Display()
+        self.ui.renderer_name = self.ui.display.context.info["GL_RENDERER"]
+        self.controller.wake = hello_imgui.request_refresh
+        glfw.set_drop_callback(glfw_utils.glfw_window_hello_imgui(), self._dropped)
+        self.controller.start(self.scene_path)
+
+    def _dropped(self, _window: Any, paths: list[str]) -> None:
+        self.ui.dropped = [Path(p) for p in paths]
+        hello_imgui.request_refresh()
+
+    def _release(self) -> None:
+        if self.ui.display is not None:
+            self.ui.display.release()
+            self.ui.display = None
+
+    def _exit(self) -> None:
+        self.params.app_shall_exit = True
+
+    def _reset_layout(self) -> None:
+        self.params.docking_params.layout_reset = True
+
+
+class _LayoutFile:
+    """Where the panels are: ImGui writes a copy of its own, which takes the file's name when the window is closed."""
+
+    def __init__(self, folder: Path) -> None:
+        self.path = folder / "layout.ini"
+        self.working_copy = folder / f".layout.{os.getpid()}.ini"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            if self.path.exists():
+                shutil.copyfile(self.path, self.working_copy)
+        except OSError:
+            pass  # then the layout is not remembered; saving the settings says why
+
+    def keep(self) -> None:
+        try:
+            if self.working_copy.exists():
+                os.replace(self.working_copy, self.path)
+        except OSError:
+            pass
+
+
+def _configure_imgui() -> None:
+    hello_imgui.imgui_default_settings.setup_default_imgui_config()
+    io = imgui.get_io()
+    # Arrows, space and escape are commands here; they must not move a focus from button to button.
+    io.config_flags &= ~int(imgui.ConfigFlags_.nav_enable_keyboard)
+    io.config_windows_move_from_title_bar_only = True
+
+
+def run(scene_path: Path | None = None) -> int:
+    """Open the viewer on a scene (the embedded room if none is named); returns the exit code."""
+    return App(scene_path if scene_path is not None else default_scene()).run()

@@ -1,0 +1,255 @@
+"""Every action, once: its name, its key, and what it does.
+
+The menus, the list of shortcuts and the handling of keys are all made from this one list, so
+that they cannot disagree.  Keys that are held down to fly are not commands; they are listed in
+`HELD_KEYS` for the help window, and `viewer.panels.picture` reads them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from imgui_bundle import imgui
+
+from viewer import navigation
+from viewer.picking import extent_at, point_at
+from viewer.ui import CaptureKind, Ui
+from viewer.views import View
+
+MENUS = ("File", "View", "Camera", "Time", "Culling", "Help")
+
+HELD_KEYS = (
+    ("W  A  S  D", "fly forward, left, back, right"),
+    ("E  Q", "fly up, down"),
+    ("Shift", "fly faster"),
+    ("Left or right drag", "look around (fly); orbit around what was clicked, or pan (orbit)"),
+    ("Middle drag", "pan"),
+    ("Wheel", "flying speed (fly); nearer and farther (orbit)"),
+    ("Click", "inspect a pixel"),
+)
+
+
+def _always() -> bool:
+    return True
+
+
+@dataclass(frozen=True)
+class Command:
+    """An action.  `key` is written as it is shown, e.g. "Ctrl+O"; `checked` makes it a tick in its menu."""
+
+    name: str
+    menu: str
+    run: Callable[[], None]
+    key: str = ""
+    checked: Callable[[], bool] | None = None
+    enabled: Callable[[], bool] = _always
+    separated: bool = False
+    repeats: bool = False
+
+
+def build(ui: Ui) -> list[Command]:
+    """All commands, in the order of the menus."""
+    return [*_file(ui), *_view(ui), *_camera(ui), *_time(ui), *_culling(ui), *_help(ui)]
+
+
+def _file(ui: Ui) -> list[Command]:
+    c = ui.controller
+
+    def browse() -> None:
+        ui.browser.open = True
+
+    def want(kind: CaptureKind) -> Callable[[], None]:
+        def ask() -> None:
+            ui.capture_wanted = kind
+
+        return ask
+
+    return [
+        Command("Open...", "File", browse, "Ctrl+O"),
+        Command("Reload", "File", c.reload, "F5", enabled=lambda: c.session.scene is not None),
+        Command("Stop loading", "File", c.cancel_load, "Escape", enabled=lambda: c.load_job is not None),
+        Command("Save picture", "File", want(CaptureKind.PICTURE), "F12", separated=True),
+        Command("Save picture with panels", "File", want(CaptureKind.WINDOW), "Shift+F12"),
+        Command("Quit", "File", lambda: ui.request_exit(), "Ctrl+Q", separated=True),
+    ]
+
+
+def _view(ui: Ui) -> list[Command]:
+    c = ui.controller
+    p = c.preferences
+
+    def show(view: View) -> Command:
+        number = list(View).index(view) + 1
+        return Command(
+            view.title, "View", lambda: c.set_view(view), str(number), checked=lambda: c.session.view is view
+        )
+
+    def toggle(name: str) -> Callable[[], None]:
+        return lambda: setattr(p, name, not getattr(p, name))
+
+    lit = lambda: c.session.scene is not None and len(c.session.scene.lights) > 1  # noqa: E731
+    return [
+        *[show(view) for view in View],
+        Command("Next light", "View", lambda: c.set_light(c.session.light + 1), "L", enabled=lit, separated=True),
+        Command("Previous light", "View", lambda: c.set_light(c.session.light - 1), "Shift+L", enabled=lit),
+        Command("Outlines", "View", toggle("outlines"), "B", checked=lambda: p.outlines, separated=True),
+        Command("Smooth upscaling", "View", toggle("smooth_upscaling"), checked=lambda: p.smooth_upscaling),
+        Command("Default layout", "View", lambda: ui.reset_layout(), separated=True),
+    ]
+
+
+def _camera(ui: Ui) -> list[Command]:
+    c = ui.controller
+    p = c.preferences
+
+    def mode(name: str) -> Callable[[], None]:
+        return lambda: setattr(p, "navigation", name)
+
+    here = lambda: c.session.scene is not None  # noqa: E731
+    return [
+        Command("Fly", "Camera", mode("fly"), "G", checked=lambda: p.navigation == "fly"),
+        Command("Orbit", "Camera", mode("orbit"), "O", checked=lambda: p.navigation == "orbit"),
+        Command("Focus", "Camera", lambda: focus(ui), "F", enabled=here, separated=True),
+        Command("Reset camera", "Camera", c.reset_camera, "R", enabled=here),
+        Command(
+            "Follow the scene's path",
+            "Camera",
+            lambda: c.follow_path(not c.session.follow),
+            "P",
+            checked=lambda: c.session.follow,
+            enabled=here,
+        ),
+        Command("Add bookmark", "Camera", c.add_bookmark, "Ctrl+B", enabled=here, separated=True),
+    ]
+
+
+def _time(ui: Ui) -> list[Command]:
+    c = ui.controller
+    p = c.preferences
+    moves = lambda: c.session.animated  # noqa: E731
+
+    def toggle(name: str) -> Callable[[], None]:
+        return lambda: setattr(p, name, not getattr(p, name))
+
+    def to_end() -> None:
+        if c.session.scene is not None:
+            c.step(c.session.scene.frames)
+
+    return [
+        Command("Play", "Time", c.toggle_play, "Space", checked=lambda: c.session.playing, enabled=moves),
+        Command("Step forward", "Time", lambda: c.step(1), "RightArrow", enabled=moves, repeats=True),
+        Command("Step back", "Time", lambda: c.step(-1), "LeftArrow", enabled=moves, repeats=True),
+        Command("First frame", "Time", lambda: c.step(-c.session.frame), "Home", enabled=moves),
+        Command("Last frame", "Time", to_end, "End", enabled=moves),
+        Command("Loop", "Time", toggle("loop"), checked=lambda: p.loop, separated=True),
+        Command("Trace every frame", "Time", toggle("every_frame"), checked=lambda: p.every_frame),
+    ]
+
+
+def _culling(ui: Ui) -> list[Command]:
+    c = ui.controller
+    p = c.preferences
+
+    def toggle_tracing() -> None:
+        p.keep_tracing = not p.keep_tracing
+        c.trace_again()
+
+    s = lambda: c.session.settings  # noqa: E731
+    return [
+        Command("Shadow culling", "Culling", c.toggle_culling, "C", checked=lambda: s().method != "none"),
+        Command("Symmetric occlusion test", "Culling", lambda: c.change(symmetric=not s().symmetric), "Y",
+                checked=lambda: s().symmetric),
+        Command("Verify", "Culling", lambda: c.change(verify=not s().verify), "V", checked=lambda: s().verify),
+        Command("Reset modes", "Culling", c.reset_modes, "Backspace", separated=True),
+        Command("Trace again", "Culling", c.trace_again, "T"),
+        Command("Keep tracing at rest", "Culling", toggle_tracing, "K", checked=lambda: p.keep_tracing),
+    ]  # fmt: skip
+
+
+def _help(ui: Ui) -> list[Command]:
+    def shortcuts() -> None:
+        ui.shortcuts_open = not ui.shortcuts_open
+
+    def about() -> None:
+        ui.about_open = not ui.about_open
+
+    return [
+        Command("Keyboard and mouse", "Help", shortcuts, "F1", checked=lambda: ui.shortcuts_open),
+        Command("About Shadowcull", "Help", about, checked=lambda: ui.about_open),
+    ]
+
+
+def focus(ui: Ui) -> None:
+    """Turn to what is under the pointer, else to what is selected, and go near it; orbits turn around it then."""
+    c = ui.controller
+    at = c.hovered
+    if at is None and c.selected is not None and c.frame is not None:
+        at = ((c.selected.x + 0.5) / c.frame.width, (c.selected.y + 0.5) / c.frame.height)
+    if at is None or c.frame is None:
+        c.say("point at something, or click it, to focus on it")
+        return
+    point, extent = point_at(c.frame, *at), extent_at(c.frame, *at)
+    if point is None or extent is None:
+        c.say("there is nothing to focus on")
+        return
+    ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
+    c.glide(navigation.focus(c.session.camera, ui.pivot, extent, c.world_up))
+
+
+def handle_keys(commands: list[Command]) -> None:
+    """Run the commands whose keys were just pressed, unless the user is typing or a dialog is up."""
+    if imgui.get_io().want_text_input or imgui.is_popup_open("", _ANY_POPUP):
+        return
+    for command in commands:
+        if command.key and _pressed(command) and command.enabled():
+            command.run()
+
+
+def menus(commands: list[Command]) -> None:
+    """All menus of the menu bar."""
+    for name in MENUS:
+        if imgui.begin_menu(name):
+            for command in commands:
+                if command.menu == name:
+                    _menu_item(command)
+            imgui.end_menu()
+
+
+def chord(key: str) -> int:
+    """ImGui's number of a key as it is shown, e.g. "Shift+F12"; raises ValueError for an unknown one."""
+    *modifiers, name = key.split("+")
+    number = int(_MODIFIERS_NONE)
+    for modifier in modifiers:
+        number |= int(getattr(imgui.Key, f"mod_{modifier.lower()}"))
+    spelled = {"RightArrow": "right_arrow", "LeftArrow": "left_arrow"}.get(name, name.lower())
+    found = getattr(imgui.Key, f"_{name}" if name.isdigit() else spelled, None)
+    if found is None:
+        raise ValueError(f"no key is called {key!r}")
+    return number | int(found)
+
+
+def key_label(key: str) -> str:
+    """A key as the user reads it."""
+    return key.replace("RightArrow", "Right").replace("LeftArrow", "Left")
+
+
+def _pressed(command: Command) -> bool:
+    number = chord(command.key)
+    modifiers = number & int(imgui.Key.mod_mask_)
+    if int(imgui.get_io().key_mods) != modifiers:
+        return False
+    return imgui.is_key_pressed(imgui.Key(number & ~int(imgui.Key.mod_mask_)), repeat=command.repeats)
+
+
+def _menu_item(command: Command) -> None:
+    if command.separated:
+        imgui.separator()
+    checked = command.checked() if command.checked is not None else False
+    clicked, _ = imgui.menu_item(command.name, key_label(command.key), checked, command.enabled())
+    if clicked:
+        command.run()
+
+
+_MODIFIERS_NONE = 0
+_ANY_POPUP = int(imgui.PopupFlags_.any_popup_id) | int(imgui.PopupFlags_.any_popup_level)

@@ -1,0 +1,206 @@
+"""From a frame's buffers to a picture on the screen, on the GPU.
+
+A frame's buffers become textures once, when it arrives; a view is one pass of a small shader over
+them into an RGBA target, which ImGui then shows as an image.  Modes and counts travel as one entry
+per primitive, laid out in rows of a 2D texture, and the shader looks them up by the primitive's
+number.  So changing the view, the light or the selection never traces and never uploads anything.
+
+All of it runs before the widgets of a frame, and leaves the window's framebuffer bound as it was.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.modes import MAX_CULLED_LIGHTS, OcclusionMode
+from viewer.resources import shader_source
+from viewer.views import (
+    BACKGROUND,
+    GREY,
+    OCCLUSION_COLORS,
+    SHADOW_COLORS,
+    View,
+    color_map,
+    depth_range,
+)
+
+if TYPE_CHECKING:
+    from tracer.renderer import Frame
+
+TABLE_WIDTH = 2048
+_UNITS = (
+    "color_buffer", "primitive_buffer", "mode_table", "count_table", "depth_buffer", "normal_buffer", "color_map",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Look:
+    """How to draw a frame: everything that changes the picture without tracing."""
+
+    view: View = View.COLOR
+    light: int = 0
+    shading: float = 0.35
+    outlines: bool = False
+    selected: int = -1
+    smooth: bool = True
+
+
+class Display:
+    """Textures of the newest frame and the target its view is drawn into; needs a current GL context."""
+
+    def __init__(self) -> None:
+        self.context = moderngl.create_context()
+        self.depth_range = (0.0, 1.0)
+        self._frame: Frame | None = None
+        self._drawn: tuple[int, Look] | None = None
+        self._serial = 0
+        self._textures: dict[str, Any] = {}
+        self._passes: dict[View, tuple[Any, Any]] = {}
+        self._target: Any = None
+        colors = np.round(color_map() * 255.0).astype(np.uint8)
+        self._textures["color_map"] = self.context.texture((len(colors), 1), 3, colors.tobytes(), alignment=1)
+        self._textures["color_map"].repeat_x = False
+
+    @property
+    def texture_id(self) -> int | None:
+        """Name of the GL texture to show, or None while there is none; row 0 is the top."""
+        return self._target.color_attachments[0].glo if self._target is not None else None
+
+    @property
+    def size(self) -> tuple[int, int]:
+        return (self._frame.width, self._frame.height) if self._frame is not None else (0, 0)
+
+    def upload(self, frame: Frame) -> None:
+        """Bring a frame's buffers to the GPU."""
+        size = (frame.width, frame.height)
+        self._write("color_buffer", size, 3, "f4", frame.color)
+        self._write("depth_buffer", size, 1, "f4", frame.depth)
+        self._write("normal_buffer", size, 3, "f4", frame.normal)
+        self._write("primitive_buffer", size, 1, "i4", frame.primitive)
+        self._write_table("mode_table", "u4", _halves(frame.modes))
+        counts = np.stack([frame.pixel_count, frame.highest_count], axis=1).astype(np.int32, copy=False)
+        self._write_table("count_table", "i4", counts)
+        self.depth_range = depth_range(frame)
+        self._frame = frame
+        self._serial += 1
+
+    def draw(self, look: Look) -> None:
+        """Draw the view of the frame into the target, unless it is there already."""
+        if self._frame is None or self._drawn == (self._serial, look):
+            return
+        window = self.context.detect_framebuffer()
+        self._ensure_target()
+        program, triangle = self._pass(look.view)
+        self._set_uniforms(program, look)
+        for unit, name in enumerate(_UNITS):
+            if name in program:
+                self._textures[name].use(unit)
+        self._target.use()
+        self.context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        triangle.render(moderngl.TRIANGLES, vertices=3)
+        filtering = moderngl.LINEAR if look.smooth and look.view is View.COLOR else moderngl.NEAREST
+        self._target.color_attachments[0].filter = (filtering, filtering)
+        window.use()
+        self._drawn = (self._serial, look)
+
+    def read(self) -> NDArray[np.uint8]:
+        """The drawn view, (height, width, 3) uint8, row 0 at the top."""
+        width, height = self.size
+        data = self._target.read(components=3, alignment=1)
+        return np.frombuffer(data, np.uint8).reshape(height, width, 3)
+
+    def read_window(self, width: int, height: int) -> NDArray[np.uint8]:
+        """All of the window as it was just drawn, (height, width, 3) uint8, row 0 at the top."""
+        data = self.context.screen.read(viewport=(0, 0, width, height), components=3, alignment=1)
+        return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 3)[::-1])
+
+    def release(self) -> None:
+        """Free everything on the GPU."""
+        for program, triangle in self._passes.values():
+            triangle.release()
+            program.release()
+        for texture in self._textures.values():
+            texture.release()
+        self._release_target()
+        self._passes.clear()
+        self._textures.clear()
+        self._frame = None
+
+    def _write(self, name: str, size: tuple[int, int], components: int, dtype: str, data: NDArray) -> None:
+        texture = self._textures.get(name)
+        if texture is None or texture.size != size:
+            if texture is not None:
+                texture.release()
+            texture = self.context.texture(size, components, dtype=dtype, alignment=1)
+            texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+            self._textures[name] = texture
+        texture.write(np.ascontiguousarray(data), alignment=1)
+
+    def _write_table(self, name: str, dtype: str, entries: NDArray) -> None:
+        """Upload (n, 2) entries, one per primitive, as rows of TABLE_WIDTH."""
+        rows = max(1, -(-len(entries) // TABLE_WIDTH))
+        table = np.zeros((rows * TABLE_WIDTH, 2), entries.dtype)
+        table[: len(entries)] = entries
+        self._write(name, (TABLE_WIDTH, rows), 2, dtype, table)
+
+    def _pass(self, view: View) -> tuple[Any, Any]:
+        """The compiled shader of a view, and the triangle it draws."""
+        if view not in self._passes:
+            version = "#version 330 core\n"
+            program = self.context.program(
+                vertex_shader=version + shader_source("fullscreen.vert"),
+                fragment_shader=version + shader_source("common.glsl") + shader_source(f"{view.value}.frag"),
+            )
+            for unit, name in enumerate(_UNITS):
+                if name in program:
+                    program[name].value = unit
+            self._passes[view] = (program, self.context.vertex_array(program, []))
+        return self._passes[view]
+
+    def _set_uniforms(self, program: Any, look: Look) -> None:
+        assert self._frame is not None
+        dynamic = OCCLUSION_COLORS[OcclusionMode.DYNAMIC]
+        covered = look.light < min(MAX_CULLED_LIGHTS, (8 * self._frame.modes.itemsize - 2) // 2)
+        values: dict[str, Any] = {
+            "table_width": TABLE_WIDTH,
+            "background": BACKGROUND,
+            "shading": look.shading,
+            "outlines": look.outlines,
+            "selected": look.selected,
+            "light": look.light if covered else -1,
+            "range": self.depth_range,
+            "zoom_factor": self._frame.settings.zoom_factor,
+            "unknown": GREY,
+            "palette": list(OCCLUSION_COLORS.values())
+            if look.view is View.OCCLUSION
+            else [*SHADOW_COLORS.values(), dynamic],
+        }
+        for name, value in values.items():
+            if name in program:
+                program[name].value = value
+
+    def _ensure_target(self) -> None:
+        if self._target is not None and self._target.size == self.size:
+            return
+        self._release_target()
+        texture = self.context.texture(self.size, 4)
+        texture.repeat_x = texture.repeat_y = False
+        self._target = self.context.framebuffer([texture])
+
+    def _release_target(self) -> None:
+        if self._target is not None:
+            self._target.color_attachments[0].release()
+            self._target.release()
+            self._target = None
+
+
+def _halves(words: NDArray) -> NDArray[np.uint32]:
+    """Packed words of 32 or 64 bits as (n, 2) uint32: low half, high half."""
+    low = (words & words.dtype.type(0xFFFFFFFF)).astype(np.uint32)
+    high = (words >> np.uint64(32)).astype(np.uint32) if words.itemsize == 8 else np.zeros_like(low)
+    return np.stack([low, high], axis=1)

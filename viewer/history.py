@@ -1,0 +1,75 @@
+"""The last frames' numbers, ready to plot.
+
+Each series is kept twice in one buffer, half its length apart, so that the newest values are
+always one contiguous slice, which is what ImPlot reads without a copy.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.renderer import Frame
+
+CAPACITY = 600
+
+SERIES = (
+    "due",
+    "culled",
+    "dynamic_only",
+    "steps",
+    "tests",
+    "shadow_steps",
+    "shadow_tests",
+    "pixels",
+    "traced_ms",
+    "drawn_ms",
+)
+
+
+class History:
+    """Ring buffers of float64, one per name of `SERIES`; `frames` counts all that were ever added."""
+
+    def __init__(self, capacity: int = CAPACITY) -> None:
+        self.capacity = capacity
+        self.frames = 0
+        self._values = {name: np.zeros(2 * capacity) for name in SERIES}
+
+    def add(self, frame: Frame, drawn_seconds: float) -> None:
+        """Append one traced frame's numbers; `drawn_seconds` is what the window needed for its last own frame."""
+        s = frame.statistics
+        parts = (s.primary, s.secondary, s.shadow)
+        self._put(
+            due=s.shadow.due,
+            culled=s.shadow.culled,
+            dynamic_only=s.shadow.dynamic_only,
+            steps=sum(p.traversal_steps for p in parts),
+            tests=sum(p.intersection_tests for p in parts),
+            shadow_steps=s.shadow.traversal_steps,
+            shadow_tests=s.shadow.intersection_tests,
+            pixels=frame.width * frame.height,
+            traced_ms=1e3 * s.seconds,
+            drawn_ms=1e3 * drawn_seconds,
+        )
+
+    def clear(self) -> None:
+        self.frames = 0
+
+    def __len__(self) -> int:
+        return min(self.frames, self.capacity)
+
+    @property
+    def first(self) -> int:
+        """Number of the oldest frame that is kept."""
+        return self.frames - len(self)
+
+    def values(self, name: str) -> NDArray[np.float64]:
+        """The kept values of a series, oldest first, contiguous."""
+        end = self.capacity + self.frames % self.capacity if self.frames > self.capacity else self.frames
+        return self._values[name][end - len(self) : end]
+
+    def _put(self, **numbers: float) -> None:
+        at = self.frames % self.capacity
+        for name, value in numbers.items():
+            self._values[name][at] = self._values[name][at + self.capacity] = value
+        self.frames += 1

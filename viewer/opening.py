@@ -1,0 +1,69 @@
+"""What becomes of a path that is opened or dropped: a scene, a capture to restore, or one clear line."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from tracer.renderer import Renderer, Settings
+from tracer.scene.load import load_scene
+from tracer.scene.model import Progress, Scene, SceneError
+from viewer import resources
+
+SCENE_SUFFIXES = (".aff", ".nff", ".obj", ".ply", ".stl", ".gltf", ".glb")
+CAPTURE_SUFFIXES = (".png",)
+
+
+@dataclass(frozen=True)
+class Opened:
+    """A scene and the renderer that holds its trees."""
+
+    scene: Scene
+    renderer: Renderer
+    seconds: float
+
+
+def is_scene(path: Path) -> bool:
+    return path.suffix.lower() in SCENE_SUFFIXES
+
+
+def is_capture(path: Path) -> bool:
+    return path.suffix.lower() in CAPTURE_SUFFIXES
+
+
+def refusal(path: Path) -> str | None:
+    """Why a path cannot be opened, in one line; None if it is worth trying."""
+    if path.is_dir():
+        return f"{path}: a folder; open a scene ({' '.join(SCENE_SUFFIXES)}) or a captured picture (.png)"
+    if not (is_scene(path) or is_capture(path)):
+        return f"{path.name}: not a scene ({' '.join(SCENE_SUFFIXES)}) nor a captured picture (.png)"
+    if not path.exists():
+        return f"{path}: no such file"
+    return None
+
+
+def open_scene(path: Path, settings: Settings, ready: Callable[[], bool], progress: Progress) -> Opened:
+    """Read a scene and build its trees; waits for the kernels to be `ready` in between.
+
+    Raises SceneError or Cancelled; runs on a thread of its own."""
+    started = time.perf_counter()
+    scene = load_scene(path, progress)
+    if scene.primitive_count == 0:
+        raise SceneError(f"{path}: nothing to see in it: no triangles, spheres or cones")
+    while not ready():
+        progress(f"{path.name}: waiting for the kernels", 1.0)
+        time.sleep(0.02)
+    renderer = Renderer(scene, settings, progress)
+    return Opened(scene, renderer, time.perf_counter() - started)
+
+
+def find_scene(stored: str, picture: Path) -> Path | None:
+    """Where a captured picture's scene is now: at its old path, beside the picture, or among our own scenes."""
+    path = Path(stored)
+    candidates = [path, picture.parent / path.name]
+    embedded = resources.embedded_scenes().get(path.stem)
+    if embedded is not None and path.parent.name == embedded.parent.name:
+        candidates.append(embedded)
+    return next((c for c in candidates if c.is_file()), None)

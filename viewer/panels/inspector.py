@@ -1,0 +1,99 @@
+"""One pixel, and the primitive it shows: why it is culled, or not."""
+
+from __future__ import annotations
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from tracer.culling.modes import MAX_CULLED_LIGHTS, OcclusionMode, ShadowMode
+from viewer.panels.widgets import QUIET, count, em, heading, paragraph, properties, tooltip, value
+from viewer.picking import Pick
+from viewer.ui import Ui
+from viewer.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
+
+
+def show(ui: Ui) -> None:
+    """The panel: what was clicked, else what the pointer is on."""
+    c = ui.controller
+    if c.selected is not None:
+        imgui.text_colored(QUIET, "selected")
+        imgui.same_line()
+        if imgui.small_button(f"{icons.ICON_FA_XMARK}##release"):
+            c.selected = None
+            return
+        tooltip("let it go, and follow the pointer again")
+        _details(ui, c.selected)
+        return
+    found = c.pick(c.hovered)
+    if found is None:
+        paragraph("Point at the picture to inspect a pixel; click to keep it here.", QUIET)
+    elif found.primitive < 0:
+        paragraph(f"Pixel {found.x}, {found.y}: nothing but background.", QUIET)
+    else:
+        imgui.text_colored(QUIET, "under the pointer")
+        _details(ui, found)
+
+
+def _details(ui: Ui, pick: Pick) -> None:
+    with properties("pick", 5.6) as shown:
+        if shown:
+            value("Pixel", f"{pick.x}, {pick.y}")
+            value("Primitive", f"{pick.primitive}  ({pick.kind})")
+            value("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""))
+            if pick.material is not None:
+                value("Material", pick.material.name, _describe(pick))
+            value("Depth", f"{pick.depth:.5g}")
+            if pick.point is not None:
+                value("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
+            if pick.normal is not None:
+                value("Normal", "{:.2f}, {:.2f}, {:.2f}".format(*pick.normal))
+            value("Pixels", f"{count(pick.pixels)} now, {count(pick.highest)} at most", "that this primitive covers")
+    heading("Modes")
+    if pick.occlusion is not None:
+        _mode("occlusion", pick.occlusion.name, OCCLUSION_COLORS[pick.occlusion], OCCLUSION_MEANING[pick.occlusion])
+    covered = pick.shadows[:MAX_CULLED_LIGHTS]
+    for light, mode in enumerate(covered):
+        name = f"light {light}"
+        if pick.occlusion is OcclusionMode.DYNAMIC or mode is None:
+            imgui.text_colored(QUIET, f"{name}: traced always")
+        else:
+            _mode(name, mode.name, SHADOW_COLORS[mode], SHADOW_MEANING[mode])
+            tooltip(ui.light_name(light) + ": " + SHADOW_MEANING[mode])
+    if len(pick.shadows) > len(covered):
+        imgui.text_colored(QUIET, f"{len(pick.shadows) - len(covered)} more lights: not culled")
+    imgui.dummy(ImVec2(0.0, em(0.2)))
+    paragraph(_verdict(pick), QUIET)
+
+
+def _mode(name: str, mode: str, color: tuple[float, float, float], meaning: str) -> None:
+    side = imgui.get_text_line_height()
+    at = imgui.get_cursor_screen_pos()
+    start, end = ImVec2(at.x, at.y + 0.1 * side), ImVec2(at.x + 0.8 * side, at.y + 0.9 * side)
+    imgui.get_window_draw_list().add_rect_filled(start, end, imgui.get_color_u32(ImVec4(*color, 1.0)), em(0.15))
+    imgui.dummy(ImVec2(0.8 * side, side))
+    imgui.same_line(0.0, em(0.4))
+    imgui.text_colored(QUIET, name)
+    imgui.same_line(em(5.6))
+    imgui.text_unformatted(mode.replace("_", " ").lower())
+    tooltip(meaning)
+
+
+def _describe(pick: Pick) -> str:
+    m = pick.material
+    assert m is not None
+    text = "diffuse ({:.3g}, {:.3g}, {:.3g}), specular ({:.3g}, {:.3g}, {:.3g})".format(*m.diffuse, *m.specular)
+    text += f", exponent {m.exponent:.4g}"
+    return text + (f", transmission {m.transmission:.3g}, index {m.ior:.3g}" if m.transmission else "")
+
+
+def _verdict(pick: Pick) -> str:
+    """In words: which shadow rays of this primitive the next frame will spare."""
+    if pick.occlusion is OcclusionMode.DYNAMIC:
+        return "It moves: none of its shadow rays are culled."
+    if pick.occlusion is not OcclusionMode.FULLY_RENDERED:
+        return "Not seen as a whole yet: all of its shadow rays are traced."
+    full = sum(mode is ShadowMode.FULL_SHADOW for mode in pick.shadows)
+    free = sum(mode is ShadowMode.NON_SHADOW for mode in pick.shadows)
+    if not full and not free:
+        return "Seen as a whole, but no light is all seen or all hidden: nothing to cull."
+    return f"Culled for {full} light{'s' * (full != 1)}; only moving objects are asked for {free}."

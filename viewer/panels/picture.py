@@ -1,0 +1,171 @@
+"""The traced picture in its window, and the pointer on it.
+
+The picture keeps its aspect inside whatever room its window has; that room, in framebuffer
+pixels, is the resolution at which the next frame is traced.  The pointer moves the camera only
+when it was pressed on the picture itself.
+"""
+
+from __future__ import annotations
+
+import math
+
+from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui
+
+from viewer import navigation
+from viewer.panels import timeline
+from viewer.panels.widgets import QUIET, em, paragraph
+from viewer.picking import point_at
+from viewer.ui import Ui
+
+CLICK_SLACK = 4.0
+BUTTONS = (imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle)
+_ALL_BUTTONS = int(
+    imgui.ButtonFlags_.mouse_button_left
+    | imgui.ButtonFlags_.mouse_button_right
+    | imgui.ButtonFlags_.mouse_button_middle
+)
+FASTER = 4.0
+
+
+def show(ui: Ui) -> None:
+    """The window's content: the picture, and the timeline under it."""
+    room = imgui.get_content_region_avail()
+    bar = timeline.height() if ui.controller.session.animated else 0.0
+    room = ImVec2(room.x, room.y - bar)
+    scale = imgui.get_io().display_framebuffer_scale
+    ui.picture_area = (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y)))
+    ui.picture_focused = imgui.is_window_focused()
+    top = imgui.get_cursor_pos()
+    if room.x >= 1.0 and room.y >= 1.0:
+        _picture(ui, room)
+    if bar > 0.0:
+        imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y))
+        timeline.show(ui)
+
+
+def _picture(ui: Ui, room: ImVec2) -> None:
+    c = ui.controller
+    c.hovered = None
+    frame = c.frame
+    texture = ui.display.texture_id if ui.display is not None else None
+    if frame is None or texture is None:
+        _placeholder(ui, room)
+        return
+    width, height = c.traced_full_size
+    factor = min(room.x / width, room.y / height)
+    size = ImVec2(max(1.0, width * factor), max(1.0, height * factor))
+    at = imgui.get_cursor_pos()
+    imgui.set_cursor_pos(ImVec2(at.x + (room.x - size.x) / 2.0, at.y + (room.y - size.y) / 2.0))
+    corner = imgui.get_cursor_screen_pos()
+    imgui.invisible_button("picture", size, _ALL_BUTTONS)
+    end = ImVec2(corner.x + size.x, corner.y + size.y)
+    imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), corner, end)
+    _pointer(ui, corner, size)
+    _overlay(ui, corner, end)
+
+
+def _placeholder(ui: Ui, room: ImVec2) -> None:
+    """What stands there before the first picture."""
+    c = ui.controller
+    if c.load_job is not None or c.warm_up_job is not None or c.render.busy:
+        return  # the progress window speaks
+    text = "Open a scene (Ctrl+O), or drop one on this window"
+    width = imgui.calc_text_size(text).x
+    at = imgui.get_cursor_pos()
+    imgui.set_cursor_pos(ImVec2(at.x + max(0.0, (room.x - width) / 2.0), at.y + room.y / 2.0))
+    paragraph(text, QUIET)
+
+
+def _pointer(ui: Ui, corner: ImVec2, size: ImVec2) -> None:
+    """Hovering, clicking and dragging on the picture, which is ImGui's last item."""
+    c, io = ui.controller, imgui.get_io()
+    u, v = (io.mouse_pos.x - corner.x) / size.x, (io.mouse_pos.y - corner.y) / size.y
+    if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
+        c.hovered = (u, v)
+        _wheel(ui, io.mouse_wheel)
+    if imgui.is_item_activated():
+        ui.dragged = False
+        point = point_at(c.frame, u, v) if c.frame is not None else None
+        if point is not None:
+            ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
+    if imgui.is_item_active():
+        for button in BUTTONS:
+            if imgui.is_mouse_dragging(button, 0.0 if ui.dragged else CLICK_SLACK):
+                ui.dragged = True
+                _drag(ui, button, io.mouse_delta.x / size.y, io.mouse_delta.y / size.y)
+    if imgui.is_item_deactivated() and not ui.dragged:
+        c.select((u, v))
+
+
+def _drag(ui: Ui, button: int, dx: float, dy: float) -> None:
+    """Move the camera by a drag of so many picture heights."""
+    if dx == 0.0 and dy == 0.0:
+        return
+    c = ui.controller
+    camera, world = c.session.camera, c.world_up
+    pivot = ui.pivot
+    orbiting = c.preferences.navigation == "orbit" and pivot is not None
+    if button == imgui.MouseButton_.middle or (orbiting and button == imgui.MouseButton_.right):
+        distance = math.dist(pivot, camera.position) if pivot is not None else 4.0 * c.pace
+        c.move(navigation.pan(camera, dx, -dy, distance))
+    elif orbiting and pivot is not None:
+        turn = 2.0 * navigation.RADIANS_PER_HEIGHT
+        c.move(navigation.orbit(camera, pivot, dx * turn, -dy * turn, world))
+    else:
+        turn = navigation.RADIANS_PER_HEIGHT
+        c.move(navigation.look(camera, dx * turn, -dy * turn, world))
+
+
+def _wheel(ui: Ui, notches: float) -> None:
+    if notches == 0.0:
+        return
+    c = ui.controller
+    if c.preferences.navigation == "orbit":
+        point = point_at(c.frame, *c.hovered) if c.frame is not None and c.hovered is not None else None
+        pivot = ui.pivot if point is None else point
+        if pivot is not None:
+            c.move(navigation.dolly(c.session.camera, pivot, notches))
+    else:
+        c.preferences.speed = min(max(c.preferences.speed * 1.2**notches, 0.001), 1000.0)
+        c.say(f"flying speed {c.preferences.speed:.3g}")
+
+
+def fly(ui: Ui) -> None:
+    """Move by the keys that are held down; called once per frame, for every window but those being typed in."""
+    c, io = ui.controller, imgui.get_io()
+    if io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or c.session.scene is None:
+        return
+    if imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup_id | imgui.PopupFlags_.any_popup_level)):
+        return
+
+    def axis(plus: imgui.Key, minus: imgui.Key) -> float:
+        return float(imgui.is_key_down(plus)) - float(imgui.is_key_down(minus))
+
+    right, up, forward = axis(imgui.Key.d, imgui.Key.a), axis(imgui.Key.e, imgui.Key.q), axis(imgui.Key.w, imgui.Key.s)
+    if right == up == forward == 0.0:
+        return
+    way = c.pace * c.preferences.speed * min(io.delta_time, 0.1) * (FASTER if io.key_shift else 1.0)
+    c.move(navigation.fly(c.session.camera, right * way, up * way, forward * way, c.world_up))
+
+
+def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
+    """What view it is and how coarse, in the picture's corner."""
+    c = ui.controller
+    frame, request = c.frame, c.traced.request if c.traced is not None else None
+    if frame is None or request is None:
+        return
+    text = f"{c.view_title}   {frame.width} x {frame.height}"
+    if request.divisor > 1:
+        text += f"   1/{request.divisor}"
+    size = imgui.calc_text_size(text)
+    if end.x - corner.x < size.x + em(2.0):
+        return
+    pad = em(0.35)
+    lower = ImVec2(corner.x + size.x + 3.0 * pad, corner.y + size.y + 2.0 * pad)
+    draw = imgui.get_window_draw_list()
+    draw.add_rect_filled(corner, lower, imgui.get_color_u32(ImVec4(0.05, 0.06, 0.08, 0.72)), em(0.3))
+    draw.add_text(
+        ImVec2(corner.x + 1.5 * pad, corner.y + pad), imgui.get_color_u32(ImVec4(0.93, 0.94, 0.96, 1.0)), text
+    )
+    if c.session.playing:
+        hello_imgui.request_refresh()

@@ -1,0 +1,75 @@
+"""The last frames' numbers as curves: shadow rays, work, milliseconds."""
+
+from __future__ import annotations
+
+import numpy as np
+from imgui_bundle import ImVec2, ImVec4, imgui, implot
+from numpy.typing import NDArray
+
+from viewer.panels.widgets import QUIET, checkbox, em, paragraph
+from viewer.ui import Ui
+
+_BLUE, _GREEN, _ORANGE, _SKY = (
+    ImVec4(0.25, 0.56, 0.86, 1.0),
+    ImVec4(0.0, 0.72, 0.53, 1.0),
+    ImVec4(0.93, 0.64, 0.10, 1.0),
+    ImVec4(0.55, 0.78, 0.95, 1.0),
+)
+
+_PLOTS = (
+    ("Shadow rays", (("due", "due", _SKY), ("culled", "culled", _GREEN), ("dynamic only", "dynamic_only", _ORANGE))),
+    ("Steps and tests", (("traversal steps", "steps", _BLUE), ("of shadow rays", "shadow_steps", _SKY),
+                         ("intersection tests", "tests", _ORANGE))),
+    ("Milliseconds", (("traced", "traced_ms", _BLUE), ("drawn", "drawn_ms", _ORANGE))),
+)  # fmt: skip
+_FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
+_AXIS = int(implot.AxisFlags_.auto_fit | implot.AxisFlags_.no_highlight)
+
+
+def show(ui: Ui) -> None:
+    """The panel: three plots side by side, over the number of the frame."""
+    history = ui.controller.history
+    if len(history) == 0:
+        paragraph("Curves appear with the first frames.", QUIET)
+        return
+    checkbox(
+        "per pixel",
+        ui.per_pixel,
+        lambda on: setattr(ui, "per_pixel", on),
+        "counts divided by the frame's pixels, so that coarse frames compare with fine ones",
+    )
+    imgui.same_line()
+    if imgui.small_button("clear"):
+        history.clear()
+        return
+    imgui.same_line()
+    imgui.text_colored(QUIET, f"the last {len(history)} frames")
+    room = imgui.get_content_region_avail()
+    spacing = imgui.get_style().item_spacing.x
+    size = ImVec2((room.x - 2.0 * spacing) / 3.0, max(room.y, em(5.0)))
+    for number, (title, series) in enumerate(_PLOTS):
+        if number:
+            imgui.same_line()
+        _plot(ui, title, series, size)
+
+
+def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size: ImVec2) -> None:
+    history = ui.controller.history
+    per_pixel = ui.per_pixel and title != "Milliseconds"
+    if not implot.begin_plot(f"{title}{' per pixel' if per_pixel else ''}##{title}", size, _FLAGS):
+        return
+    implot.setup_axes("", "", _AXIS, _AXIS)
+    implot.setup_axis_format(implot.ImAxis_.y1, "%.3g")
+    implot.setup_axis_limits_constraints(implot.ImAxis_.y1, 0.0, float("inf"))
+    implot.setup_legend(implot.Location_.north_west, int(implot.LegendFlags_.no_menus))
+    for label, name, color in series:
+        values = history.values(name)
+        if per_pixel:
+            values = _contiguous(values / np.maximum(history.values("pixels"), 1.0))
+        spec = implot.Spec(line_color=color, line_weight=1.6)
+        implot.plot_line(label, values, 1.0, float(history.first), spec)
+    implot.end_plot()
+
+
+def _contiguous(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.ascontiguousarray(values, np.float64)

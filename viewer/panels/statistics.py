@@ -1,0 +1,84 @@
+"""The numbers of the newest frame, and the resolution they are for."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from viewer.panels.widgets import QUIET, clipped, count, heading, paragraph, percent, properties, short, tooltip, value
+from viewer.ui import Ui
+
+_PHASE_ORDER = ("place", "primary", "occlusion testing", "shading", "mode setting")
+
+
+def show(ui: Ui) -> None:
+    """The panel."""
+    c = ui.controller
+    frame = c.frame
+    if frame is None or c.traced is None:
+        paragraph("No frame has been traced yet.", QUIET)
+        return
+    s = frame.statistics
+    pixels = max(frame.width * frame.height, 1)
+    divisor = c.traced.request.divisor
+    coarse = f" (1/{divisor} of the window)" if divisor > 1 else ""
+    clipped(f"for {frame.width} x {frame.height} pixels{coarse}, {'culling' if _culls(frame) else 'no culling'}")
+    shadow = s.shadow
+    heading("Shadow rays")
+    with properties("shadow") as shown:
+        if shown:
+            value("Due", f"{count(shadow.due)}  ({shadow.due / pixels:.2f} per pixel)", "light on the viewer's side")
+            value("Culled", _share(shadow.culled, shadow.due), "known to be in shadow: not traced at all")
+            value("Dynamic only", _share(shadow.dynamic_only, shadow.due), "asked only the objects that move")
+            if shadow.candidates_only:
+                value("Candidates", _share(shadow.candidates_only, shadow.due), "asked only a list of primitives")
+            if frame.settings.verify:
+                value("Wrong", _share(shadow.wrong, shadow.due), "culled, but a trace answers otherwise")
+            tests = f"{count(s.occlusion_tests)}  ({s.occlusion_tests / pixels:.3f} per pixel)"
+            value("Occlusion tests", tests, "against the neighbouring pixels' primitives")
+    heading("Work")
+    _work(ui)
+    heading("Time")
+    with properties("time") as shown:
+        if shown:
+            value("Traced in", f"{1e3 * s.seconds:.1f} ms")
+            for name in [*_PHASE_ORDER, *(n for n in s.phases if n not in _PHASE_ORDER)]:
+                if name in s.phases:
+                    value(f"  {name}", f"{1e3 * s.phases[name]:.1f} ms")
+            value("Drawn in", f"{1e3 * c.drawn_seconds:.1f} ms", "what the window itself takes for one of its frames")
+
+
+def _culls(frame: object) -> bool:
+    return frame.settings.method != "none"  # type: ignore[attr-defined]
+
+
+def _share(part: int, whole: int) -> str:
+    return f"{count(part)}  ({percent(part, whole)})"
+
+
+def _work(ui: Ui) -> None:
+    """Rays, steps and tests of each kind of ray."""
+    frame = ui.controller.frame
+    assert frame is not None
+    s = frame.statistics
+    if not imgui.begin_table("work", 4, int(imgui.TableFlags_.sizing_stretch_same | imgui.TableFlags_.row_bg)):
+        return
+    for title in ("", "rays", "steps", "tests"):
+        imgui.table_next_column()
+        imgui.text_colored(QUIET, title)
+    tooltip("traversal steps: nodes of the tree entered; tests: rays against primitives")
+    total = [0, 0, 0]
+    for name, part in (("primary", s.primary), ("secondary", s.secondary), ("shadow", s.shadow)):
+        numbers = (part.rays, part.traversal_steps, part.intersection_tests)
+        total = [t + n for t, n in zip(total, numbers)]
+        _cells(name, numbers)
+    _cells("all", total)
+    imgui.end_table()
+
+
+def _cells(name: str, numbers: tuple[int, ...] | list[int]) -> None:
+    imgui.table_next_column()
+    imgui.text_colored(QUIET, name)
+    for number in numbers:
+        imgui.table_next_column()
+        imgui.text_unformatted(short(number))
+        tooltip(count(number))

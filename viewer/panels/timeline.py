@@ -1,0 +1,55 @@
+"""Play, pause, step and scrub along the scene's own time, under the picture."""
+
+from __future__ import annotations
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from viewer.panels.widgets import em, tooltip
+from viewer.ui import Ui
+
+
+def height() -> float:
+    """What the bar takes of the window, in ImGui's units."""
+    return imgui.get_frame_height_with_spacing() + em(0.3)
+
+
+def show(ui: Ui) -> None:
+    """One line of buttons and the scrubber."""
+    c = ui.controller
+    session = c.session
+    if session.scene is None:
+        return
+    imgui.dummy(ImVec2(0.0, em(0.05)))
+    if _button(icons.ICON_FA_BACKWARD_STEP + "##back", "one frame back (Left)"):
+        c.step(-1)
+    if _button((icons.ICON_FA_PAUSE if session.playing else icons.ICON_FA_PLAY) + "##play", "play or pause (Space)"):
+        c.toggle_play()
+    if _button(icons.ICON_FA_FORWARD_STEP + "##forward", "one frame on (Right)"):
+        c.step(1)
+    following = session.follow
+    if following:
+        imgui.push_style_color(imgui.Col_.button, imgui.get_style_color_vec4(imgui.Col_.button_active))
+    if _button(icons.ICON_FA_ROUTE + "##follow", "the camera follows the scene's own path (P)"):
+        c.follow_path(not following)
+    if following:
+        imgui.pop_style_color()
+    end = f"{session.time:.2f} s"
+    imgui.set_next_item_width(max(em(4.0), imgui.get_content_region_avail().x - imgui.calc_text_size("0000.00 s").x))
+    last = session.scene.frames - 1
+    changed, frame = imgui.slider_int("##frame", session.frame, 0, last, f"frame %d of {last}")
+    if changed:
+        session.playing = False
+        session.go_to_frame(frame)
+        c.moved()
+    tooltip("drag to scrub; Ctrl+click to type a frame")
+    imgui.same_line()
+    imgui.align_text_to_frame_padding()
+    imgui.text_unformatted(end)
+
+
+def _button(label: str, tip: str) -> bool:
+    clicked = imgui.button(label, ImVec2(em(2.0), 0.0))
+    tooltip(tip)
+    imgui.same_line(0.0, em(0.25))
+    return clicked

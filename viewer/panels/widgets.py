@@ -1,0 +1,134 @@
+"""Small pieces that the panels share, all sized in ems so that they fit any screen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui
+
+WARNING = ImVec4(0.96, 0.74, 0.31, 1.0)
+ERROR = ImVec4(1.0, 0.47, 0.42, 1.0)
+QUIET = ImVec4(0.62, 0.65, 0.70, 1.0)
+GOOD = ImVec4(0.36, 0.80, 0.64, 1.0)
+
+
+def em(size: float) -> float:
+    return hello_imgui.em_size(size)
+
+
+@contextmanager
+def properties(name: str, label_width: float = 7.0) -> Iterator[bool]:
+    """A table of two columns, names on the left; yields whether it is visible."""
+    shown = imgui.begin_table(name, 2, int(imgui.TableFlags_.sizing_stretch_prop))
+    if shown:
+        imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_fixed), em(label_width))
+        imgui.table_setup_column("value", int(imgui.TableColumnFlags_.width_stretch))
+    try:
+        yield shown
+    finally:
+        if shown:
+            imgui.end_table()
+
+
+def row(name: str, tip: str = "") -> None:
+    """Begin a row of `properties`: write its name and stand ready, full width, for its value."""
+    imgui.table_next_row()
+    imgui.table_next_column()
+    imgui.align_text_to_frame_padding()
+    imgui.text_colored(QUIET, name)
+    if tip:
+        tooltip(tip)
+    imgui.table_next_column()
+    imgui.set_next_item_width(-1.0)
+
+
+def value(name: str, text: str, tip: str = "") -> None:
+    """A row that only tells something; long text is cut with an ellipsis and told in full on hovering."""
+    imgui.table_next_row()
+    imgui.table_next_column()
+    imgui.text_colored(QUIET, name)
+    if tip:
+        tooltip(tip)
+    imgui.table_next_column()
+    clipped(text)
+
+
+def clipped(text: str, color: ImVec4 | None = None) -> None:
+    """One line of text that ends in an ellipsis where there is no room, with all of it as a tooltip."""
+    room = imgui.get_content_region_avail().x
+    shown = text
+    if imgui.calc_text_size(text).x > room:
+        low, high = 0, len(text)
+        while low < high:
+            middle = (low + high + 1) // 2
+            fits = imgui.calc_text_size(text[:middle] + "...").x <= room
+            low, high = (middle, high) if fits else (low, middle - 1)
+        shown = text[:low] + "..."
+    if color is None:
+        imgui.text_unformatted(shown)
+    else:
+        imgui.text_colored(color, shown.replace("%", "%%"))
+    if shown != text:
+        tooltip(text)
+
+
+def tooltip(text: str) -> None:
+    """Explain the last item when the pointer rests on it."""
+    if imgui.is_item_hovered(int(imgui.HoveredFlags_.for_tooltip)) and imgui.begin_tooltip():
+        imgui.push_text_wrap_pos(em(24.0))
+        imgui.text_unformatted(text)
+        imgui.pop_text_wrap_pos()
+        imgui.end_tooltip()
+
+
+def checkbox(label: str, state: bool, change: Callable[[bool], None], tip: str = "") -> None:
+    """A tick that calls `change` with its new state."""
+    changed, now = imgui.checkbox(label, state)
+    if tip:
+        tooltip(tip)
+    if changed:
+        change(now)
+
+
+def wide_button(label: str, tip: str = "", columns: int = 1) -> bool:
+    """A button that fills its share of the width."""
+    spacing = imgui.get_style().item_spacing.x
+    width = (imgui.get_content_region_avail().x - spacing * (columns - 1)) / columns
+    clicked = imgui.button(label, ImVec2(max(width, em(2.0)), 0.0))
+    if tip:
+        tooltip(tip)
+    return clicked
+
+
+def heading(text: str) -> None:
+    imgui.dummy(ImVec2(0.0, em(0.15)))
+    imgui.separator_text(text)
+
+
+def paragraph(text: str, color: ImVec4 | None = None) -> None:
+    """Text that wraps at the panel's edge."""
+    imgui.push_text_wrap_pos(0.0)
+    if color is not None:
+        imgui.push_style_color(imgui.Col_.text, color)
+    imgui.text_unformatted(text)
+    if color is not None:
+        imgui.pop_style_color()
+    imgui.pop_text_wrap_pos()
+
+
+def count(number: float) -> str:
+    """A number that may be large, with thin groups: 12 345 678."""
+    return f"{int(number):,}".replace(",", " ")
+
+
+def short(number: float) -> str:
+    """A large number in few characters: 1.23 M."""
+    for limit, unit in ((1e9, " G"), (1e6, " M"), (1e4, " k")):
+        if abs(number) >= limit:
+            return f"{number / (limit if limit != 1e4 else 1e3):.4g}{unit}"
+    return f"{number:.0f}"
+
+
+def percent(part: float, whole: float) -> str:
+    return f"{100.0 * part / whole:.1f} %" if whole else "-"

@@ -1,0 +1,118 @@
+"""What a pixel shows: read from the frame's buffers, no ray needed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tracer.culling.modes import MAX_CULLED_LIGHTS, OcclusionMode, ShadowMode
+from tracer.renderer import Frame
+from tracer.scene.model import CONE, Material, Scene
+from viewer.navigation import Vector, ray
+
+
+@dataclass(frozen=True)
+class Pick:
+    """One pixel of a frame.  `primitive` is -1 where the ray left the scene; then only x and y mean anything."""
+
+    x: int
+    y: int
+    primitive: int
+    kind: str = ""
+    object_name: str = ""
+    dynamic: bool = False
+    material: Material | None = None
+    occlusion: OcclusionMode | None = None
+    shadows: tuple[ShadowMode | None, ...] = ()
+    pixels: int = 0
+    highest: int = 0
+    depth: float = math.inf
+    point: tuple[float, float, float] | None = None
+    normal: tuple[float, float, float] | None = None
+
+
+def pixel_at(frame: Frame, u: float, v: float) -> tuple[int, int]:
+    """The pixel under a point of the picture (0 to 1 from the left and the top)."""
+    return min(max(int(u * frame.width), 0), frame.width - 1), min(max(int(v * frame.height), 0), frame.height - 1)
+
+
+def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
+    """Everything known about the pixel under a point of the picture."""
+    x, y = pixel_at(frame, u, v)
+    primitive = int(frame.primitive[y, x])
+    if not 0 <= primitive < scene.primitive_count:
+        return Pick(x, y, -1)
+    index = scene.object_of(primitive)
+    return Pick(
+        x,
+        y,
+        primitive,
+        kind=kind_of(scene, primitive),
+        object_name=scene.objects[index].name,
+        dynamic=index > 0,
+        material=scene.material_of(primitive),
+        occlusion=OcclusionMode(int(frame.modes[primitive]) & 3),
+        shadows=tuple(shadow_mode_of(frame, primitive, light) for light in range(len(scene.lights))),
+        pixels=int(frame.pixel_count[primitive]),
+        highest=int(frame.highest_count[primitive]),
+        depth=float(frame.depth[y, x]),
+        point=_triple(point_at(frame, u, v)),
+        normal=_triple(frame.normal[y, x]),
+    )
+
+
+def kind_of(scene: Scene, primitive: int) -> str:
+    """Triangle, sphere or cone."""
+    if primitive < scene.triangle_count:
+        return "triangle"
+    index = scene.object_of(primitive)
+    kind = scene.objects[index].quadrics.kind[primitive - scene.quadric_offsets[index]]
+    return "cone" if kind == CONE else "sphere"
+
+
+def shadow_mode_of(frame: Frame, primitive: int, light: int) -> ShadowMode | None:
+    """A primitive's shadow mode for a light; None where culling does not cover the light."""
+    if light >= MAX_CULLED_LIGHTS or 2 + 2 * light >= 8 * frame.modes.itemsize:
+        return None
+    return ShadowMode((int(frame.modes[primitive]) >> (2 + 2 * light)) & 3)
+
+
+def point_at(frame: Frame, u: float, v: float) -> Vector | None:
+    """The world point under a point of the picture, or None where the ray left the scene."""
+    x, y = pixel_at(frame, u, v)
+    depth = float(frame.depth[y, x])
+    if not math.isfinite(depth):
+        return None
+    # Through the pixel's centre, as the ray was that found this depth.
+    origin, direction = ray(frame.camera, (x + 0.5) / frame.width, (y + 0.5) / frame.height, frame.width / frame.height)
+    return origin + depth * direction
+
+
+def extent_at(frame: Frame, u: float, v: float) -> float | None:
+    """A radius, in world units, of what the primitive under a point of the picture shows of itself."""
+    x, y = pixel_at(frame, u, v)
+    depth = float(frame.depth[y, x])
+    if not math.isfinite(depth):
+        return None
+    rows, columns = np.nonzero(frame.primitive == frame.primitive[y, x])
+    pixels = max(np.ptp(rows), np.ptp(columns)) + 1
+    return depth * math.tan(math.radians(frame.camera.angle) / 2.0) * float(pixels) / frame.height
+
+
+def _triple(v: Vector | None) -> tuple[float, float, float] | None:
+    return None if v is None else (float(v[0]), float(v[1]), float(v[2]))
+
+
+def refreshed(old: Pick, frame: Frame) -> Pick:
+    """The same primitive's modes and counts as a newer frame knows them; where it was clicked stays."""
+    if old.primitive < 0 or old.primitive >= len(frame.modes):
+        return old
+    return replace(
+        old,
+        occlusion=OcclusionMode(int(frame.modes[old.primitive]) & 3),
+        shadows=tuple(shadow_mode_of(frame, old.primitive, light) for light in range(len(old.shadows))),
+        pixels=int(frame.pixel_count[old.primitive]),
+        highest=int(frame.highest_count[old.primitive]),
+    )

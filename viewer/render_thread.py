@@ -1,0 +1,173 @@
+"""Tracing beside the window: one thread, and the newest request wins.
+
+The window submits what it wants to see and looks, frame after frame, whether a picture has come.
+Requests are not queued: one waits at most, and a newer one takes its place.  A trace that is
+under way is cut short when it has become worthless (another scene, other settings, the full
+resolution of a view that was left), but a quick, coarse one is let finish: while the camera
+moves, the next request comes before the last picture is ready, and cancelling each would show
+none at all.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+from tracer.renderer import Frame, Settings
+from tracer.scene.model import Camera, Cancelled
+from viewer.jobs import one_line
+
+
+class Traces(Protocol):
+    """The part of `tracer.Renderer` that is used here."""
+
+    settings: Settings
+
+    def render(self, time: float, camera: Camera | None = None, cancel: Callable[[], bool] | None = None) -> Frame: ...
+
+    def reset_modes(self) -> None: ...
+
+
+@dataclass(frozen=True)
+class RenderRequest:
+    """What to trace.  `interactive` marks a coarse frame of a camera in motion; `divisor` is how much
+    coarser than the window it is; `serial` tells requests apart that are otherwise alike."""
+
+    time: float
+    camera: Camera
+    settings: Settings
+    interactive: bool = False
+    divisor: int = 1
+    serial: int = 0
+
+    def supersedes(self, running: RenderRequest) -> bool:
+        """Whether a trace of `running` is no longer worth finishing now that this is wanted."""
+        if running == self:
+            return False
+        same_kind = replace(running.settings, width=1, height=1) == replace(self.settings, width=1, height=1)
+        return not running.interactive or not same_kind
+
+
+@dataclass(frozen=True)
+class Traced:
+    """A finished frame and the request it answers."""
+
+    request: RenderRequest
+    frame: Frame
+
+
+class RenderThread:
+    """Owns the renderer: nobody else calls it while this lives."""
+
+    def __init__(self, wake: Callable[[], None] = lambda: None) -> None:
+        self._wake = wake
+        self._changed = threading.Condition()
+        self._renderer: Traces | None = None
+        self._waiting: RenderRequest | None = None
+        self._running: RenderRequest | None = None
+        self._cancel = False
+        self._reset = False
+        self._closing = False
+        self._finished: Traced | None = None
+        self._error: str | None = None
+        self._thread = threading.Thread(target=self._run, name="shadowcull render", daemon=True)
+        self._thread.start()
+
+    def use(self, renderer: Traces | None) -> None:
+        """Trace this renderer's scene from now on; whatever was asked of the old one is dropped."""
+        with self._changed:
+            self._renderer = renderer
+            self._waiting = self._finished = self._error = None
+            self._cancel = True
+            self._changed.notify_all()
+
+    def submit(self, request: RenderRequest) -> None:
+        """Ask for a frame; an older request that still waits is forgotten."""
+        with self._changed:
+            if self._closing:
+                return
+            self._waiting = request
+            if self._running is not None and request.supersedes(self._running):
+                self._cancel = True
+            self._changed.notify_all()
+
+    def cancel(self) -> None:
+        """Stop tracing and forget what waits."""
+        with self._changed:
+            self._waiting = None
+            self._cancel = True
+
+    def reset_modes(self) -> None:
+        """Forget all modes before the next frame."""
+        with self._changed:
+            self._reset = True
+            self._cancel = True
+
+    def take(self) -> Traced | None:
+        """The newest finished frame, once."""
+        with self._changed:
+            traced, self._finished = self._finished, None
+            return traced
+
+    def take_error(self) -> str | None:
+        """One line about a frame that failed, once."""
+        with self._changed:
+            error, self._error = self._error, None
+            return error
+
+    @property
+    def busy(self) -> bool:
+        with self._changed:
+            return self._running is not None or (self._waiting is not None and self._renderer is not None)
+
+    @property
+    def running(self) -> RenderRequest | None:
+        return self._running
+
+    def close(self, timeout: float = 10.0) -> bool:
+        """Cancel and end the thread; false if it did not end in time (it is a daemon and dies with the program)."""
+        with self._changed:
+            self._closing = True
+            self._cancel = True
+            self._waiting = None
+            self._changed.notify_all()
+        self._thread.join(timeout)
+        return not self._thread.is_alive()
+
+    def _run(self) -> None:
+        while (work := self._next()) is not None:
+            renderer, request, reset = work
+            frame, error = None, None
+            try:
+                if reset:
+                    renderer.reset_modes()
+                renderer.settings = request.settings
+                frame = renderer.render(request.time, request.camera, lambda: self._cancel)
+            except Cancelled:
+                pass
+            except Exception as problem:
+                error = f"frame not traced: {one_line(problem)}"
+            self._deliver(renderer, request, frame, error)
+
+    def _next(self) -> tuple[Traces, RenderRequest, bool] | None:
+        with self._changed:
+            while not self._closing and (self._waiting is None or self._renderer is None):
+                self._changed.wait()
+            if self._closing:
+                return None
+            renderer, request, reset = self._renderer, self._waiting, self._reset
+            assert renderer is not None and request is not None
+            self._running, self._waiting = request, None
+            self._cancel = self._reset = False
+            return renderer, request, reset
+
+    def _deliver(self, renderer: Traces, request: RenderRequest, frame: Frame | None, error: str | None) -> None:
+        with self._changed:
+            self._running = None
+            if renderer is self._renderer:  # else it is a picture of a scene that was left meanwhile
+                if frame is not None:
+                    self._finished = Traced(request, frame)
+                self._error = error or self._error
+        self._wake()

@@ -1,0 +1,81 @@
+"""The state of the interface itself: what is open, what was asked for, and what the pointer holds.
+
+Panels and commands share it; what they do to the scene goes through the controller.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tracer.renderer import Frame
+from viewer.capture import FIELDS
+from viewer.controller import Controller
+from viewer.preferences import default_screenshot_folder
+
+if TYPE_CHECKING:
+    from viewer.commands import Command
+    from viewer.display import Display
+
+
+class CaptureKind(Enum):
+    """What a screenshot shows."""
+
+    PICTURE = "the picture alone"
+    WINDOW = "the window with its panels"
+
+
+@dataclass
+class FileBrowser:
+    """The dialog that opens a file: its folder, what was typed, and whether it is up."""
+
+    open: bool = False
+    folder: Path = field(default_factory=Path.cwd)
+    typed: str = ""
+    problem: str = ""
+
+
+@dataclass
+class Ui:
+    """See the module.  `picture_area` is the size, in framebuffer pixels, that the picture may fill."""
+
+    controller: Controller
+    display: Display | None = None
+    commands: list[Command] = field(default_factory=list)
+    browser: FileBrowser = field(default_factory=FileBrowser)
+    capture_wanted: CaptureKind | None = None
+    shortcuts_open: bool = False
+    about_open: bool = False
+    per_pixel: bool = True
+    picture_area: tuple[int, int] = (0, 0)
+    picture_focused: bool = False
+    pivot: tuple[float, float, float] | None = None
+    dragged: bool = False
+    new_bookmark: str = ""
+    dropped: list[Path] = field(default_factory=list)
+    renderer_name: str = ""
+    request_exit: Callable[[], None] = lambda: None
+    reset_layout: Callable[[], None] = lambda: None
+    _cache: dict[str, tuple[Frame, int, Any]] = field(default_factory=dict)
+
+    def cached(self, name: str, frame: Frame, light: int, compute: Callable[[], Any]) -> Any:
+        """What was computed for this frame and light, computed now if it is new."""
+        known = self._cache.get(name)
+        if known is None or known[0] is not frame or known[1] != light:
+            known = self._cache[name] = (frame, light, compute())
+        return known[2]
+
+    def light_name(self, light: int) -> str:
+        scene = self.controller.session.scene
+        return scene.lights[light].name if scene is not None and light < len(scene.lights) else f"light {light}"
+
+    @property
+    def default_folder(self) -> Path:
+        return default_screenshot_folder()
+
+    @property
+    def template_help(self) -> str:
+        return "Fields:\n" + "\n".join(f"{{{name}}}  {meaning}" for name, meaning in FIELDS.items())
