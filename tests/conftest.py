@@ -1,0 +1,36 @@
+"""What all tests share: where the BART scenes are, what a screen is for, and settings that are nobody's own."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from viewer.screen import has_display, no_display_reason
+
+BART = Path(__file__).resolve().parents[1].parent / "shared" / "bart"
+
+# Before anything reads them: tests neither see nor change what the user of this machine has set.
+_HOME = tempfile.TemporaryDirectory(prefix="shadowcull-tests-")
+os.environ["SHADOWCULL_CONFIG_DIR"] = str(Path(_HOME.name) / "shadowcull")
+os.environ["XDG_CONFIG_HOME"] = _HOME.name
+
+
+@pytest.fixture(scope="session")
+def bart() -> Path:
+    """The folder of BART's scenes beside the repository; tests that need it are skipped where it is absent."""
+    if not BART.is_dir():
+        pytest.skip(f"the BART scenes are not at {BART}")
+    return BART
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Tests marked `gui` open a window; the direction of imports is looked at before anything else."""
+    items.sort(key=lambda item: item.path.name != "test_house.py")
+    if not has_display():
+        reason = pytest.mark.skip(reason=f"{no_display_reason()}; 'make test' brings one along")
+        for item in items:
+            if item.get_closest_marker("gui"):
+                item.add_marker(reason)

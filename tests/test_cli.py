@@ -1,0 +1,342 @@
+"""The command line: what it prints and writes, and that every mistake ends in one line."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from viewer import capture, cli
+
+ROOT = Path(__file__).resolve().parent.parent
+ROOM = """\
+b 0.2 0.3 0.4
+v from 0 1 4 at 0 0 0 up 0 1 0 angle 50 hither 1 resolution 32 32
+a 0 9 10
+l 2 4 3 1 1 1
+l -3 4 2 0.5 0.5 0.5
+f 0.8 0.6 0.4 0.9 0.1 10 0 1
+p 4 -2 -1 -2 -2 -1 2 2 -1 2 2 -1 -2
+f 0.3 0.5 0.8 0.9 0.1 10 0 1
+s 0 0 0 0.5
+x flyer { p 3 -0.2 0.8 0 0.2 0.8 0 0 1.1 0 }
+k flyer { visibility 1 0 1
+          transl 4 -1 0 0 0 0 0 0  0 0 0 0 0 0 0  9 1 0 0 0 0 0  10 1 0 0 0 0 0 }
+"""
+CAMERA = {"position": [0, 2, 3], "direction": [0, -0.5, -1], "up": [0, 1, 0], "angle": 40}
+
+
+@pytest.fixture
+def room(tmp_path: Path) -> Path:
+    path = tmp_path / "room.aff"
+    path.write_text(ROOM)
+    return path
+
+
+def run(capfd: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:
+    """Exit code, standard output and standard error of a command line."""
+    try:
+        code = cli.main([str(a) for a in arguments])
+    except SystemExit as end:
+        code = int(end.code or 0)
+    out, err = capfd.readouterr()
+    return code, out, err
+
+
+def render(capfd: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:
+    return run(capfd, "render", *arguments, "--size", "48x32", "--threads", 1)
+
+
+def complaint(result: tuple[int, str, str]) -> str:
+    """The one line that a failed command says."""
+    code, out, err = result
+    assert code != 0
+    assert out == ""
+    assert err.startswith("shadowcull: error: ") and err.count("\n") == 1 and err.endswith("\n"), err
+    return err
+
+
+# --- info ------------------------------------------------------------------------------------------
+
+
+def test_info_json_holds_the_promised_keys(capfd: pytest.CaptureFixture[str], room: Path) -> None:
+    code, out, _ = run(capfd, "info", room, "--json")
+    facts = json.loads(out)
+    assert code == 0
+    assert list(facts) == [
+        "triangles", "static_triangles", "dynamic_triangles", "spheres", "cones", "lights", "materials",
+        "textures", "frames", "time", "bounds", "warnings",
+    ]  # fmt: skip
+    assert (facts["triangles"], facts["dynamic_triangles"], facts["spheres"]) == (3, 1, 1)
+    assert (facts["lights"], facts["frames"], facts["time"]) == (2, 10, [0.0, 9.0])
+
+
+def test_info_as_a_table(capfd: pytest.CaptureFixture[str], room: Path) -> None:
+    code, out, _ = run(capfd, "info", room)
+    assert code == 0
+    assert "dynamic triangles" in out and "0 to 9 s" in out
+
+
+@pytest.mark.parametrize(
+    ("scene", "triangles", "dynamic", "lights", "frames"),
+    [
+        ("kitchen/kitchen.aff", 110_561, 7_218, 6, 800),
+        ("robot/Robot.aff", 71_708, 62_490, 1, 800),
+        ("museum/museum5.aff", 11_308, 1_024, 2, 300),
+    ],
+)
+def test_info_of_bart(
+    capfd: pytest.CaptureFixture[str], bart: Path, scene: str, triangles: int, dynamic: int, lights: int, frames: int
+) -> None:
+    code, out, _ = run(capfd, "info", bart / scene, "--json")
+    facts = json.loads(out)
+    assert code == 0
+    assert (facts["triangles"], facts["dynamic_triangles"]) == (triangles, dynamic)
+    assert (facts["lights"], facts["frames"]) == (lights, frames)
+
+
+# --- render ----------------------------------------------------------------------------------------
+
+
+def test_render_writes_a_picture_that_remembers(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
+    output = tmp_path / "room.png"
+    code, out, _ = render(capfd, room, "-o", output, "--frame", 3, "--warmup", 2, "--camera", json.dumps(CAMERA))
+    assert code == 0
+    assert out.rstrip().endswith(str(output))
+    assert "traversal steps" in out and "shadow rays due" in out
+    with Image.open(output) as image:
+        assert (image.size, image.mode) == ((48, 32), "RGB")
+    kept = capture.read(output)
+    assert Path(kept.scene) == room
+    assert kept.time == 3.0
+    assert kept.camera.to_json() == CAMERA
+    assert not kept.follow
+    assert not [p for p in tmp_path.iterdir() if p.name.startswith(".")]
+
+
+def test_buffers_have_the_promised_names_shapes_and_types(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path
+) -> None:
+    output = tmp_path / "room.npz"
+    assert render(capfd, room, "--buffers", output, "--warmup", 0)[0] == 0
+    with np.load(output) as npz:
+        arrays = dict(npz)
+    assert {name: (a.shape, a.dtype.name) for name, a in arrays.items()} == {
+        "color": ((32, 48, 3), "float32"),
+        "depth": ((32, 48), "float32"),
+        "primitive": ((32, 48), "int32"),
+        "cell": ((32, 48), "int32"),
+        "occlusion_mode": ((32, 48), "uint8"),
+        "shadow_mode": ((32, 48, 2), "uint8"),
+        "lit": ((32, 48, 2), "bool"),
+        "due": ((32, 48, 2), "bool"),
+    }
+    hit = arrays["primitive"] >= 0
+    assert hit.any() and not hit.all()
+    np.testing.assert_array_equal(np.isfinite(arrays["depth"]), hit)
+    np.testing.assert_array_equal(arrays["occlusion_mode"] == 255, ~hit)
+    assert not (arrays["lit"] & ~arrays["due"]).any()
+
+
+def test_warm_up_makes_culling_act(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
+    """The first frame has no history; the third culls."""
+    culled = []
+    for warm_up in (0, 2):
+        output = tmp_path / f"{warm_up}.png"
+        assert render(capfd, room, "-o", output, "--frame", 4, "--warmup", warm_up)[0] == 0
+        with Image.open(output) as image:
+            image.load()
+            culled.append(json.loads(image.text[capture.CHUNK])["statistics"]["shadow"])
+    assert culled[0]["culled"] + culled[0]["dynamic_only"] == 0
+    assert culled[1]["culled"] + culled[1]["dynamic_only"] > 0
+
+
+def test_warm_up_is_shorter_where_the_animation_starts(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path
+) -> None:
+    code, _, err = render(capfd, room, "-o", tmp_path / "x.png", "--frame", 1, "--warmup", 5)
+    assert code == 0
+    assert "only 1 frames come before" in err
+
+
+@pytest.mark.parametrize(
+    "view",
+    ["color", "colour", "occlusion", "shadow:1", "primitives", "primitive", "depth", "normals", "count", "pixel-count"],
+)
+def test_every_view_makes_a_picture(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path, view: str) -> None:
+    output = tmp_path / "view.png"
+    assert render(capfd, room, "-o", output, "--frame", 2, "--warmup", 2, "--view", view)[0] == 0
+    with Image.open(output) as image:
+        assert len(image.getcolors(48 * 32) or []) > 3
+
+
+def test_time_and_frame_are_the_same_moment(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
+    pixels = []
+    for name, moment in (("f", ("--frame", 4)), ("t", ("--time", 4.0))):
+        output = tmp_path / f"{name}.png"
+        assert render(capfd, room, "-o", output, *moment, "--warmup", 3)[0] == 0
+        with Image.open(output) as image:
+            pixels.append(np.asarray(image))
+    np.testing.assert_array_equal(*pixels)
+
+
+def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = run(capfd, "info", "default", "--json")
+    facts = json.loads(out)
+    assert code == 0
+    assert facts["triangles"] >= 20_000 and facts["lights"] >= 4 and facts["frames"] == 200
+    assert run(capfd, "info", "--json") == (0, out, "")
+
+
+# --- mistakes --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["-o", "OUT/x.gif"], "unknown kind of picture"),
+        (["-o", "OUT/none/x.png"], "there is no folder"),
+        (["-o", "OUT"], "unknown kind of picture"),
+        (["--buffers", "OUT/x.zip"], "--buffers writes a .npz"),
+        ([], "nothing to write"),
+        (["-o", "OUT/x.png", "--frame", "10"], "frame numbers are 0 to 9"),
+        (["-o", "OUT/x.png", "--frame", "-1"], "frame numbers are 0 to 9"),
+        (["-o", "OUT/x.png", "--frame", "two"], "invalid int value: 'two'"),
+        (["-o", "OUT/x.png", "--time", "nan"], "time runs from 0 to 9"),
+        (["-o", "OUT/x.png", "--time", "9.5"], "time runs from 0 to 9"),
+        (["-o", "OUT/x.png", "--frame", "1", "--time", "1"], "not allowed with"),
+        (["-o", "OUT/x.png", "--size", "big"], "is no size"),
+        (["-o", "OUT/x.png", "--size", "0x10"], "is no size"),
+        (["-o", "OUT/x.png", "--size", "999999x999999"], "more than"),
+        (["-o", "OUT/x.png", "--samples", "0"], "0 is not in 1 to 4096"),
+        (["-o", "OUT/x.png", "--method", "magic"], "invalid choice: 'magic'"),
+        (["-o", "OUT/x.png", "--view", "heat"], "'heat' is no view"),
+        (["-o", "OUT/x.png", "--view", "shadow:7"], "lights are 0 to 1"),
+        (["-o", "OUT/x.png", "--view", "depth:1"], "is no view"),
+        (["-o", "OUT/x.png", "--camera", "{"], "--camera: not JSON"),
+        (["-o", "OUT/x.png", "--camera", "{}"], "--camera: a camera's position"),
+        (["-o", "OUT/x.png", "--camera", "nowhere.json"], "neither JSON nor a file"),
+        (["-o", "OUT/x.png", "--camera", "[1, 2]"], "neither JSON nor a file"),
+        (["-o", "OUT/x.png", "--zoom-factor", "0.5"], "zoom_factor"),
+        (["-o", "OUT/x.png", "--warmup", "-3"], "-3 is not in"),
+        (["-o", "OUT/x.png", "--wurmup", "3"], "unrecognized arguments"),
+    ],
+)
+def test_mistakes_end_in_one_line(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path, arguments: list[str], said: str
+) -> None:
+    result = run(capfd, "render", room, *(a.replace("OUT", str(tmp_path)) for a in arguments))
+    assert said in complaint(result)
+    assert [p.name for p in tmp_path.iterdir()] == ["room.aff"]
+
+
+def test_errors_in_a_scene_name_file_and_line(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "bad.aff"
+    path.write_text("b 0 0 0\ns 0 0 zero 1\n")
+    for command in (["info"], ["render", "-o", tmp_path / "x.png"]):
+        assert f"{path}:2" in complaint(run(capfd, *command, path))
+
+
+@pytest.mark.parametrize("command", ["info", "render"])
+def test_a_missing_file(capfd: pytest.CaptureFixture[str], tmp_path: Path, command: str) -> None:
+    more = ["-o", tmp_path / "x.png"] if command == "render" else []
+    assert "no such file" in complaint(run(capfd, command, tmp_path / "no.aff", *more))
+
+
+def test_a_scene_with_nothing_in_it(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "empty.aff"
+    path.write_text("v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 hither 1 resolution 8 8\nl 0 1 0\n")
+    assert "nothing to see" in complaint(run(capfd, "render", path, "-o", tmp_path / "x.png"))
+    assert run(capfd, "info", path, "--json")[0] == 0
+
+
+def test_an_output_that_cannot_be_written_is_known_before_tracing(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    def trace(*_: object) -> None:
+        raise AssertionError("nothing may be traced")
+
+    monkeypatch.setattr(Path, "touch", refuse)
+    monkeypatch.setattr("viewer.headless.Renderer", trace)
+    assert "cannot be written to: Permission denied" in complaint(render(capfd, room, "-o", tmp_path / "x.png"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["rendr", "x.aff"], "did you mean 'render'?"),
+        (["inof"], "did you mean 'info'?"),
+        (["frobnicate"], "the commands are render, info"),
+        (["--frame", "3"], "unrecognized arguments"),
+    ],
+)
+def test_a_mistyped_command(capfd: pytest.CaptureFixture[str], arguments: list[str], said: str) -> None:
+    assert said in complaint(run(capfd, *arguments))
+
+
+def test_help_shows_examples(capfd: pytest.CaptureFixture[str]) -> None:
+    for arguments in (["--help"], ["render", "--help"], ["info", "-h"]):
+        code, out, err = run(capfd, *arguments)
+        assert (code, err) == (0, "")
+        assert "examples:\n  shadowcull" in out
+
+
+# --- without a display, and stopping ---------------------------------------------------------------
+
+
+def without_display() -> dict[str, str]:
+    return {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+
+
+def shadowcull(*arguments: object) -> list[str]:
+    return [sys.executable, "-m", "viewer", *map(str, arguments)]
+
+
+@pytest.mark.parametrize("stale", [False, True])
+def test_the_window_without_a_display(room: Path, stale: bool) -> None:
+    environment = without_display() | ({"DISPLAY": ":4711"} if stale else {})
+    done = subprocess.run(shadowcull(room), cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "no display" in done.stderr and f"shadowcull render {room}" in done.stderr
+
+
+def test_a_picture_instead_of_the_window(room: Path, tmp_path: Path) -> None:
+    """What `make run` does where there is no display."""
+    environment = without_display() | {"PYTHONPATH": str(ROOT)}
+    command = shadowcull("--or-picture", room)
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.splitlines()[0] == "shadowcull: no display; rendering to a file instead"
+    assert "traversal steps" in done.stdout
+    with Image.open(done.stdout.splitlines()[-1]) as image:
+        assert image.size == (640, 480)
+
+
+def test_ctrl_c_ends_a_rendering(room: Path, tmp_path: Path) -> None:
+    output = tmp_path / "never.png"
+    command = shadowcull("render", room, "-o", output, "--size", "4000x4000", "--frame", 9, "--warmup", 9)
+    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True) as process:
+        time.sleep(4.0)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=120)
+    assert (process.returncode, err.splitlines()[-1]) == (130, "shadowcull: cancelled")
+    assert not output.exists()
+
+
+def test_output_that_nobody_reads(room: Path) -> None:
+    """`shadowcull info ... | true` is no fault to complain of."""
+    command = f"{sys.executable} -m viewer info {room} | true"
+    done = subprocess.run(["bash", "-c", command], cwd=ROOT, capture_output=True, text=True)
+    assert done.stderr == ""

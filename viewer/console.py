@@ -1,0 +1,108 @@
+"""What a command says while it works, and how it stops.
+
+Results go to standard output; everything else goes to standard error, as a progress bar where
+that is a terminal and as next to nothing where it is not.  Ctrl-C is a wish: it is noted, and the
+work ends by `Cancelled` at the next report of progress; a second one ends it at once.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from tracer.scene.model import Cancelled
+from tracer.statistics import FrameStatistics
+
+
+def one_line(text: object) -> str:
+    return " ".join(str(text).split())
+
+
+def say(line: str) -> None:
+    """One line on standard error."""
+    print(f"shadowcull: {one_line(line)}", file=sys.stderr, flush=True)
+
+
+class Work:
+    """A long piece of work: `progress` is handed to the tracer, `cancelled` to its renderer."""
+
+    def __init__(self) -> None:
+        self.stopped = False
+        self._bar: Progress | None = None
+        self._task = None
+
+    def progress(self, label: str, fraction: float) -> None:
+        """A `Progress` of the tracer; raises Cancelled once Ctrl-C was pressed."""
+        if self.stopped:
+            raise Cancelled("cancelled")
+        if self._bar is not None:
+            if self._task is None:
+                self._task = self._bar.add_task(label, total=1.0)
+            self._bar.update(self._task, description=one_line(label), completed=min(max(fraction, 0.0), 1.0))
+
+    def cancelled(self) -> bool:
+        return self.stopped
+
+    def note(self, line: str) -> None:
+        """One line above the bar."""
+        if self._bar is None:
+            say(line)
+        else:
+            self._bar.console.print(f"shadowcull: {one_line(line)}", markup=False, highlight=False)
+
+    def _interrupt(self, number: int, frame: FrameType | None) -> None:
+        if self.stopped:
+            raise KeyboardInterrupt
+        self.stopped = True
+
+
+@contextmanager
+def working() -> Iterator[Work]:
+    """Work under way, with a bar on a terminal, and with Ctrl-C turned into `Cancelled`."""
+    work = Work()
+    before = signal.signal(signal.SIGINT, work._interrupt)
+    console = Console(stderr=True)
+    try:
+        if not console.is_terminal:
+            yield work
+            return
+        columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+        with Progress(*columns, console=console, transient=True) as work._bar:
+            yield work
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def print_table(table: Table) -> None:
+    """A table on standard output; in plain 100 columns where that is no terminal."""
+    console = Console()
+    Console(width=console.width if console.is_terminal else 100).print(table)
+
+
+def statistics_table(statistics: FrameStatistics, title: str) -> Table:
+    """The counters of a frame, primary, secondary and shadow rays apart."""
+    table = Table(title=title, title_justify="left", title_style="bold")
+    table.add_column("")
+    for name in ("primary", "secondary", "shadow"):
+        table.add_column(name, justify="right")
+    kinds = (statistics.primary, statistics.secondary, statistics.shadow)
+    table.add_row("rays traced", *(f"{kind.rays:,}" for kind in kinds))
+    table.add_row("traversal steps", *(f"{kind.traversal_steps:,}" for kind in kinds))
+    table.add_row("intersection tests", *(f"{kind.intersection_tests:,}" for kind in kinds), end_section=True)
+    shadow = statistics.shadow
+    due = max(shadow.due, 1)
+    table.add_row("shadow rays due", "", "", f"{shadow.due:,}")
+    table.add_row("  culled", f"{shadow.culled / due:.1%}", "", f"{shadow.culled:,}")
+    table.add_row("  dynamic objects alone", f"{shadow.dynamic_only / due:.1%}", "", f"{shadow.dynamic_only:,}")
+    table.add_row("occlusion tests", f"{statistics.occlusion_tests:,}", "", "", end_section=True)
+    for name, seconds in statistics.phases.items():
+        table.add_row(name, f"{1000.0 * seconds:,.1f} ms", "", "")
+    table.add_row("frame", f"{1000.0 * statistics.seconds:,.1f} ms", "", "")
+    return table

@@ -1,0 +1,228 @@
+"""The commands that need no window: `render` and `info`, a few lines each over the tracer.
+
+Nothing here, nor in what it imports, touches GL.  Whatever can be known to fail is found out before
+the tracing: the size, the frame, the camera, and whether the files can be written.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from argparse import Namespace
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+from PIL import Image, PngImagePlugin
+from rich.table import Table
+
+from tracer.compilation import warm_up
+from tracer.frame import Frame, Settings
+from tracer.kernels import cache_folder
+from tracer.renderer import Renderer
+from tracer.scene.load import load_scene, scene_info
+from tracer.scene.model import Camera, Scene, SceneError
+from viewer import capture
+from viewer.console import Work, print_table, say, statistics_table, working
+from viewer.outputs import check_writable, write_whole
+from viewer.pictures import lights_in_words, picture
+from viewer.session import Session
+from viewer.views import View
+
+PICTURES = {
+    ".png": "PNG",
+    ".jpg": "JPEG",
+    ".jpeg": "JPEG",
+    ".tif": "TIFF",
+    ".tiff": "TIFF",
+    ".bmp": "BMP",
+    ".ppm": "PPM",
+}
+MOST_PIXELS = 1 << 26  # 8192 x 8192; a frame's buffers then take some 4 GB
+MOST_WARM_UP = 100_000
+
+
+def info(path: Path, as_json: bool) -> None:
+    """Print what a scene holds; raises SceneError."""
+    with working() as work:
+        scene = load_scene(path, work.progress)
+    facts = scene_info(scene)
+    print(json.dumps(facts, indent=2)) if as_json else print_table(_facts_table(path, facts))
+
+
+def render(path: Path, options: Namespace) -> None:
+    """Trace one frame and write it; raises SceneError, ValueError and OSError in one line, or Cancelled."""
+    view, light = options.view
+    settings = _settings(options)
+    _check_outputs(options.output, options.buffers)
+    with working() as work:
+        scene = load_scene(path, work.progress)
+        for warning in scene.warnings:
+            work.note(f"warning: {warning}")
+        if scene.primitive_count == 0:
+            raise SceneError(f"{path}: nothing to see in it: no triangles, spheres or cones")
+        if view is View.SHADOW and light >= len(scene.lights):
+            raise ValueError(f"--view shadow:{light}: {lights_in_words(len(scene.lights))}")
+        time = _time(scene, options.frame, options.time)
+        prepare_kernels(work)
+        renderer = Renderer(scene, settings, work.progress)
+        _render_before(renderer, time, options, work)
+        work.progress(f"tracing {settings.width} x {settings.height}", 0.0)
+        renderer.settings = replace(settings, samples=options.samples, record_lights=options.buffers is not None)
+        frame = renderer.render(time, options.camera, work.cancelled)
+        work.progress("writing", 1.0)
+        if options.output is not None:
+            _write_picture(options.output, scene, frame, options)
+        if options.buffers is not None:
+            write_whole(options.buffers, lambda file: np.savez(file, **buffers(frame)))
+    title = f"{path.name}, {time:.3f} s, {frame.width} x {frame.height}, method {settings.method}"
+    print_table(statistics_table(frame.statistics, title))
+    for written in (options.output, options.buffers):
+        if written is not None:
+            print(written)
+
+
+def buffers(frame: Frame) -> dict[str, np.ndarray]:
+    """The arrays of `--buffers`, by name; the frame must have been rendered with `record_lights`."""
+    assert frame.lit is not None and frame.due is not None
+    return {
+        "color": frame.color,
+        "depth": frame.depth,
+        "primitive": frame.primitive,
+        "cell": frame.cell,
+        "occlusion_mode": frame.occlusion_mode,
+        "shadow_mode": frame.shadow_mode,
+        "lit": frame.lit,
+        "due": frame.due,
+    }
+
+
+def prepare_kernels(work: Work) -> None:
+    """Compile or load every kernel; the first time takes a while and says so, terminal or not."""
+    if next(cache_folder().rglob("*.nbi"), None) is None:
+        work.note("compiling the kernels, once for this version; this takes a minute or less")
+    warm_up(work.progress)
+
+
+def _settings(options: Namespace) -> Settings:
+    width, height = options.size
+    if width * height > MOST_PIXELS:
+        raise ValueError(f"--size {width}x{height}: more than {MOST_PIXELS:,} pixels")
+    settings = Settings(
+        width=width,
+        height=height,
+        depth=options.depth,
+        method=options.method,
+        symmetric=options.symmetric,
+        zoom_factor=options.zoom_factor,
+        verify=options.verify,
+        samples=options.samples,
+        threads=options.threads,
+        accelerator=options.accelerator,
+    ).validated()
+    return replace(settings, samples=1)  # frames that only teach modes need one ray a pixel
+
+
+def _check_outputs(output: Path | None, npz: Path | None) -> None:
+    if output is None and npz is None:
+        raise ValueError("render: nothing to write; give -o out.png, --buffers out.npz, or both")
+    if output is not None and output.suffix.lower() not in PICTURES:
+        raise ValueError(f"{output}: unknown kind of picture; give one of {' '.join(PICTURES)}")
+    if npz is not None and npz.suffix.lower() != ".npz":
+        raise ValueError(f"{npz}: --buffers writes a .npz")
+    for path in (output, npz):
+        if path is not None:
+            check_writable(path)
+
+
+def _time(scene: Scene, frame: int | None, time: float | None) -> float:
+    start, end = scene.time_range
+    if time is not None:
+        if not (math.isfinite(time) and start <= time <= end):
+            raise ValueError(f"--time {time:g}: the scene's time runs from {start:g} to {end:g} seconds")
+        return time
+    number = 0 if frame is None else frame
+    if not 0 <= number < scene.frames:
+        only = "is 0" if scene.frames == 1 else f"are 0 to {scene.frames - 1}"
+        raise ValueError(f"--frame {number}: the scene's frame numbers {only}")
+    return scene.frame_time(number)
+
+
+def _times_before(scene: Scene, time: float, count: int) -> list[float]:
+    """Times of the frames that lead up to `time`, one frame's duration apart, none before the animation starts.
+
+    A scene of one frame stands still: its frame is repeated.
+    """
+    start, end = scene.time_range
+    if scene.frames < 2 or end <= start:
+        return [time] * count
+    step = (end - start) / (scene.frames - 1)
+    whole = (time - start) / step
+    # A time that is a frame's own reaches back to the very first frame, whatever rounding did to the quotient.
+    available = math.floor(whole + 1e-6)
+    first = max(available - count, 0)
+    if abs(whole - available) < 1e-6:
+        return [scene.frame_time(i) for i in range(first, available)]
+    return [time - step * (available - i) for i in range(first, available)]
+
+
+def _render_before(renderer: Renderer, time: float, options: Namespace, work: Work) -> None:
+    times = _times_before(renderer.scene, time, options.warmup)
+    if len(times) < options.warmup:
+        work.note(f"--warmup {options.warmup}: only {len(times)} frames come before this one")
+    for done, earlier in enumerate(times):
+        work.progress(f"warming up, frame {done + 1} of {len(times)}", done / len(times))
+        renderer.render(earlier, options.camera, work.cancelled)
+
+
+def _write_picture(path: Path, scene: Scene, frame: Frame, options: Namespace) -> None:
+    """The frame in the view asked for; a PNG remembers, as the window's captures do, how it was made."""
+    view, light = options.view
+    image = Image.fromarray(picture(frame, view, light))
+    session = Session(scene, frame.time, options.camera, settings=frame.settings, view=view, light=light)
+    notes = PngImagePlugin.PngInfo()
+    size = (frame.width, frame.height)
+    text = capture.metadata(session.snapshot(), session.frame, size, frame.statistics.to_dict())
+    notes.add_itxt(capture.CHUNK, text)
+    notes.add_text("Software", "Shadowcull")
+    kind = PICTURES[path.suffix.lower()]
+    extra: dict[str, Any] = {"PNG": {"pnginfo": notes}, "JPEG": {"quality": 95}}.get(kind, {})
+
+    def write(file: BinaryIO) -> None:
+        image.save(file, kind, **extra)
+
+    write_whole(path, write)
+
+
+def _facts_table(path: Path, facts: dict[str, Any]) -> Table:
+    table = Table(title=str(path), title_justify="left", title_style="bold", show_header=False)
+    table.add_column()
+    table.add_column(justify="right")
+    for name, value in facts.items():
+        if name in ("bounds", "time", "warnings"):
+            continue
+        table.add_row(name.replace("_", " "), f"{value:,}")
+    table.add_row("time", "{:g} to {:g} s".format(*facts["time"]))
+    if facts["bounds"] is not None:
+        for name, corner in zip(("least corner", "greatest corner"), facts["bounds"]):
+            table.add_row(name, "  ".join(f"{x:.4g}" for x in corner))
+    for warning in facts["warnings"]:
+        say(f"warning: {warning}")
+    return table
+
+
+def camera_option(text: str) -> Camera:
+    """`--camera`: JSON, or a file that holds it; raises ValueError in one line."""
+    try:
+        if not text.lstrip().startswith("{"):
+            text = Path(text).read_text(encoding="utf-8")
+        data = json.loads(text)
+    except OSError as error:
+        raise ValueError(f"--camera: neither JSON nor a file that can be read: {text[:60]}: {error.strerror}") from None
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"--camera: not JSON: {error}") from None
+    try:
+        return Camera.from_json(data)
+    except ValueError as error:
+        raise ValueError(f"--camera: {error}") from None

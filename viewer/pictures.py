@@ -1,0 +1,116 @@
+"""The views as pictures without a GPU: what the shaders do, in numpy.
+
+For `shadowcull render`, which must run where there is no GL.  Each function here is the twin of the
+shader of the same name under `shaders/` and takes its colours from the same table
+(`viewer.views`), so that a picture made by a command and one captured from the window agree.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.modes import MAX_CULLED_LIGHTS, OcclusionMode
+from tracer.frame import Frame
+from viewer.views import BACKGROUND, GREY, OCCLUSION_COLORS, SHADOW_COLORS, View, color_map, depth_range
+
+SHADING = 0.35
+"""How much of the picture's light and shade shows under flat colours, as in the window."""
+
+_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
+
+
+def picture(frame: Frame, view: View = View.COLOR, light: int = 0, shading: float = SHADING) -> NDArray[np.uint8]:
+    """(height, width, 3) uint8, row 0 at the top: a frame in one of its views.
+
+    `light` is the light that the shadow view speaks of; raises ValueError where there is none of that number.
+    """
+    if view is View.SHADOW and not 0 <= light < frame.lights:
+        raise ValueError(f"no light {light}: {lights_in_words(frame.lights)}")
+    if view is View.COLOR:
+        colors = np.clip(frame.color, 0.0, 1.0)
+    elif view is View.DEPTH:
+        colors = _on_background(frame, _depth(frame))
+    elif view is View.NORMAL:
+        colors = _on_background(frame, frame.normal * 0.5 + 0.5)
+    else:
+        table = {View.OCCLUSION: _occlusion, View.PRIMITIVE: _primitive, View.PIXEL_COUNT: _pixel_count}
+        per_primitive = _shadow(frame, light) if view is View.SHADOW else table[view](frame)
+        colors = _on_background(frame, _shaded(frame, _per_pixel(frame, per_primitive), shading))
+    return np.round(np.clip(colors, 0.0, 1.0) * 255.0).astype(np.uint8)
+
+
+def lights_in_words(count: int) -> str:
+    """What numbers the lights of a scene have."""
+    if count == 0:
+        return "the scene has no lights"
+    return "the scene has one light, number 0" if count == 1 else f"the scene's lights are 0 to {count - 1}"
+
+
+def _on_background(frame: Frame, colors: NDArray) -> NDArray:
+    return np.where((frame.primitive >= 0)[..., None], colors, np.asarray(BACKGROUND, np.float32))
+
+
+def _shaded(frame: Frame, flat: NDArray, shading: float) -> NDArray:
+    """Flat colours with some of the traced picture's light and shade, so that shapes stay readable."""
+    light = 0.25 + 0.95 * np.sqrt(np.clip(frame.color, 0.0, 1.0) @ _LUMINANCE)
+    return np.clip(flat * (1.0 + shading * (light[..., None] - 1.0)), 0.0, 1.0)
+
+
+def _per_pixel(frame: Frame, table: NDArray) -> NDArray:
+    """Look a colour per primitive up at each pixel; misses get some colour, to be overwritten."""
+    if len(table) == 0:
+        return np.zeros((*frame.primitive.shape, 3), np.float32)
+    return table[np.maximum(frame.primitive, 0)]
+
+
+def _occlusion(frame: Frame) -> NDArray:
+    palette = np.asarray([OCCLUSION_COLORS[mode] for mode in OcclusionMode], np.float32)
+    return palette[(frame.modes & 3).astype(np.int64)]
+
+
+def _shadow(frame: Frame, light: int) -> NDArray:
+    """By shadow mode; what moves has none and is shown as moving, a light that culling does not cover as unknown."""
+    palette = np.asarray([*SHADOW_COLORS.values(), OCCLUSION_COLORS[OcclusionMode.DYNAMIC]], np.float32)
+    position = 2 + 2 * light
+    if light < MAX_CULLED_LIGHTS and position < 8 * frame.modes.itemsize:
+        mode = ((frame.modes >> frame.modes.dtype.type(position)) & 3).astype(np.int64)
+    else:
+        mode = np.zeros(len(frame.modes), np.int64)
+    mode[(frame.modes & 3) == OcclusionMode.DYNAMIC] = len(palette) - 1
+    return palette[mode]
+
+
+def _primitive(frame: Frame) -> NDArray:
+    """A colour of its own for every primitive: its number, well mixed, picks hue, strength and brightness."""
+    n = np.arange(1, len(frame.modes) + 1, dtype=np.uint32)
+    n = (n ^ (n >> np.uint32(16))) * np.uint32(0x7FEB352D)  # lowbias32, as in the shader
+    n = (n ^ (n >> np.uint32(15))) * np.uint32(0x846CA68B)
+    n ^= n >> np.uint32(16)
+    third = np.array([0.0, 2.0, 1.0], np.float32) / 3.0
+    turn = ((n & 65535) / 65536.0)[:, None] + third
+    hue = np.clip(np.abs((turn % 1.0) * 6.0 - 3.0) - 1.0, 0.0, 1.0)
+    strength = (0.35 + 0.5 * ((n >> 16) & 255) / 255.0)[:, None]
+    brightness = (0.6 + 0.4 * ((n >> 24) & 255) / 255.0)[:, None]
+    return ((1.0 + strength * (hue - 1.0)) * brightness).astype(np.float32)
+
+
+def _pixel_count(frame: Frame) -> NDArray:
+    """Pixels now against the highest count, logarithmic from 1 / zoom_factor to zoom_factor."""
+    ratio = np.maximum(frame.pixel_count, 1) / np.maximum(frame.highest_count, 1)
+    t = 0.5 + 0.5 * np.log(ratio) / np.log(max(frame.settings.zoom_factor, 1.01))
+    return np.where((frame.highest_count > 0)[:, None], _mapped(t), np.asarray(GREY, np.float32))
+
+
+def _depth(frame: Frame) -> NDArray:
+    """Near is bright; the range is that of the frame."""
+    near, far = depth_range(frame)
+    depth = np.where(np.isfinite(frame.depth), frame.depth, far)
+    return _mapped(1.0 - np.clip((depth - near) / (far - near), 0.0, 1.0))
+
+
+def _mapped(t: NDArray) -> NDArray:
+    """Values from 0 to 1 on the colour map, between its entries as a GPU's linear filter."""
+    entries = color_map()
+    place = np.clip(np.clip(t, 0.0, 1.0) * len(entries) - 0.5, 0.0, len(entries) - 1.0)
+    return np.stack([np.interp(place, np.arange(len(entries)), entries[:, c]) for c in range(3)], axis=-1)
