@@ -54,4 +54,4 @@ def kernel(function):
 
 def inlined(function):
     """A small kernel that disappears into its callers; it is compiled with them."""
-    return njit(nogil=True, error_model="numpy")(function)
+    return njit(nogil=True, error_model="numpy", forceinline=True)(function)

@@ -1,7 +1,8 @@
 """Ray against box, triangle, sphere and cone: the leaf functions that everything else calls.
 
 A triangle is stored as corner and two edges (9 floats), a quadric as a canonical sphere or cone
-seen through the affine map that leads there (16 floats), so that any transform fits both.
+seen through the affine map that leads there (16 floats), so that any transform fits both.  Memory is
+read through flat pointers (`tracer.geometry.memory`).
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ ZERO = np.float32(0)
 ONE = np.float32(1)
 TINY = np.float32(1e-20)
 
-# Columns of a quadric's row: the map to canonical space fills the first 12.
+# Where a quadric's row has these; the map to canonical space fills the first 12 places.
 KIND, R0, R1, INSIDE = 12, 13, 14, 15
 
 
@@ -29,12 +30,13 @@ def inverse(x):
 
 
 @inlined
-def hit_box(ray, box):
-    """Interval of t in which a ray is inside box (6,) = lower, upper; empty where first > second (slab test)."""
+def hit_box(ray, boxes, i):
+    """Interval of t in which a ray is inside the i-th of boxes (lower, upper); empty where first > second (slab test)."""
+    b = 6 * i
     ix, iy, iz = inverse(ray.dx), inverse(ray.dy), inverse(ray.dz)
-    x0, x1 = (box[0] - ray.ox) * ix, (box[3] - ray.ox) * ix
-    y0, y1 = (box[1] - ray.oy) * iy, (box[4] - ray.oy) * iy
-    z0, z1 = (box[2] - ray.oz) * iz, (box[5] - ray.oz) * iz
+    x0, x1 = (boxes[b] - ray.ox) * ix, (boxes[b + 3] - ray.ox) * ix
+    y0, y1 = (boxes[b + 1] - ray.oy) * iy, (boxes[b + 4] - ray.oy) * iy
+    z0, z1 = (boxes[b + 2] - ray.oz) * iz, (boxes[b + 5] - ray.oz) * iz
     enter = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), ray.t_min))
     leave = min(min(max(x0, x1), max(y0, y1)), min(max(z0, z1), ray.t_max))
     return enter, leave
@@ -42,15 +44,16 @@ def hit_box(ray, box):
 
 @inlined
 def hit_triangle(ray, triangles, i):
-    """(t, u, v) of a ray on row i of triangles (n, 9), t = inf for a miss (Moeller and Trumbore 1997), two-sided."""
-    e1x, e1y, e1z = triangles[i, 3], triangles[i, 4], triangles[i, 5]
-    e2x, e2y, e2z = triangles[i, 6], triangles[i, 7], triangles[i, 8]
+    """(t, u, v) of a ray on the i-th triangle, t = inf for a miss (Moeller and Trumbore 1997), two-sided."""
+    r = 9 * i
+    e1x, e1y, e1z = triangles[r + 3], triangles[r + 4], triangles[r + 5]
+    e2x, e2y, e2z = triangles[r + 6], triangles[r + 7], triangles[r + 8]
     px, py, pz = ray.dy * e2z - ray.dz * e2y, ray.dz * e2x - ray.dx * e2z, ray.dx * e2y - ray.dy * e2x
     det = e1x * px + e1y * py + e1z * pz
     if det == ZERO:
         return INFINITY, ZERO, ZERO
     f = ONE / det
-    sx, sy, sz = ray.ox - triangles[i, 0], ray.oy - triangles[i, 1], ray.oz - triangles[i, 2]
+    sx, sy, sz = ray.ox - triangles[r], ray.oy - triangles[r + 1], ray.oz - triangles[r + 2]
     u = f * (sx * px + sy * py + sz * pz)
     if not (u >= ZERO and u <= ONE):
         return INFINITY, ZERO, ZERO
@@ -65,15 +68,16 @@ def hit_triangle(ray, triangles, i):
 
 
 @inlined
-def transform_ray(ray, m):
-    """A ray under the affine map m (12,), row by row; the direction is not normalised, so t means the same."""
+def transform_ray(ray, maps, i, stride):
+    """A ray under the i-th affine map, 12 numbers row by row; the direction is not normalised, so t means the same."""
+    m = stride * i
     return Ray(
-        m[0] * ray.ox + m[1] * ray.oy + m[2] * ray.oz + m[3],
-        m[4] * ray.ox + m[5] * ray.oy + m[6] * ray.oz + m[7],
-        m[8] * ray.ox + m[9] * ray.oy + m[10] * ray.oz + m[11],
-        m[0] * ray.dx + m[1] * ray.dy + m[2] * ray.dz,
-        m[4] * ray.dx + m[5] * ray.dy + m[6] * ray.dz,
-        m[8] * ray.dx + m[9] * ray.dy + m[10] * ray.dz,
+        maps[m] * ray.ox + maps[m + 1] * ray.oy + maps[m + 2] * ray.oz + maps[m + 3],
+        maps[m + 4] * ray.ox + maps[m + 5] * ray.oy + maps[m + 6] * ray.oz + maps[m + 7],
+        maps[m + 8] * ray.ox + maps[m + 9] * ray.oy + maps[m + 10] * ray.oz + maps[m + 11],
+        maps[m] * ray.dx + maps[m + 1] * ray.dy + maps[m + 2] * ray.dz,
+        maps[m + 4] * ray.dx + maps[m + 5] * ray.dy + maps[m + 6] * ray.dz,
+        maps[m + 8] * ray.dx + maps[m + 9] * ray.dy + maps[m + 10] * ray.dz,
         ray.t_min,
         ray.t_max,
     )
@@ -99,12 +103,12 @@ def _cone_root(a, half_b, c, z, dz, ray):
 
 @kernel
 def hit_quadric(ray, quadrics, i):
-    """t of a ray on row i of quadrics (n, 16), inf for a miss.  In float64: quadrics are few, and roots cancel."""
-    q = quadrics[i]
-    r = transform_ray(ray, q)
+    """t of a ray on the i-th quadric, inf for a miss.  In float64: quadrics are few, and roots cancel."""
+    q = 16 * i
+    r = transform_ray(ray, quadrics, i, 16)
     ox, oy, oz = np.float64(r.ox), np.float64(r.oy), np.float64(r.oz)
     dx, dy, dz = np.float64(r.dx), np.float64(r.dy), np.float64(r.dz)
-    if q[KIND] == SPHERE:
+    if quadrics[q + KIND] == SPHERE:
         # Measured from the point nearest the centre, where b vanishes and nothing cancels.
         a = dx * dx + dy * dy + dz * dz
         closest = -(ox * dx + oy * dy + oz * dz) / a
@@ -117,8 +121,8 @@ def hit_quadric(ray, quadrics, i):
             if ray.t_min < t <= ray.t_max:
                 return np.float32(t)
         return INFINITY
-    slope = np.float64(q[R1]) - np.float64(q[R0])
-    radius, dr = np.float64(q[R0]) + slope * oz, slope * dz
+    slope = np.float64(quadrics[q + R1]) - np.float64(quadrics[q + R0])
+    radius, dr = np.float64(quadrics[q + R0]) + slope * oz, slope * dz
     a = dx * dx + dy * dy - dr * dr
     half_b = ox * dx + oy * dy - radius * dr
     c = ox * ox + oy * oy - radius * radius
@@ -127,7 +131,7 @@ def hit_quadric(ray, quadrics, i):
 
 @inlined
 def quadric_normal(quadrics, i, x, y, z):
-    """Outward normal, in the space the quadric's map starts from and of any length, at (x, y, z)."""
+    """Outward normal, in the space where row i of quadrics (n, 16) starts and of any length, at (x, y, z)."""
     q = quadrics[i]
     cx = q[0] * x + q[1] * y + q[2] * z + q[3]
     cy = q[4] * x + q[5] * y + q[6] * z + q[7]

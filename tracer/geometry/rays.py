@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tracer.geometry.memory import pointer
 from tracer.kernels import inlined
 
 MISS = -1
@@ -70,8 +71,24 @@ def empty_hits(n):
     return Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
 
 
+class RayPointers(NamedTuple):
+    """A batch of `count` rays as pointers, to be read one ray at a time."""
+
+    origin: Any
+    direction: Any
+    t_min: Any
+    t_max: Any
+    count: int
+
+
+@inlined
+def ray_pointers(rays):
+    count = len(rays.t_min)
+    return RayPointers(pointer(rays.origin), pointer(rays.direction), pointer(rays.t_min), pointer(rays.t_max), count)
+
+
 @inlined
 def ray_at(rays, i):
-    """The i-th ray of a batch."""
-    o, d = rays.origin, rays.direction
-    return Ray(o[0, i], o[1, i], o[2, i], d[0, i], d[1, i], d[2, i], rays.t_min[i], rays.t_max[i])
+    """The i-th of a batch given as pointers."""
+    o, d, y, z = rays.origin, rays.direction, rays.count + i, 2 * rays.count + i
+    return Ray(o[i], o[y], o[z], d[i], d[y], d[z], rays.t_min[i], rays.t_max[i])

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.shadow import LIT, NOT_DUE, RAYS, SHADOW_COUNTERS, lifted, shadow_testing
 from tracer.geometry.camera import primary_ray
+from tracer.geometry.memory import borrowed
 from tracer.geometry.queries import closest_hits
 from tracer.geometry.rays import MISS, Hits, Rays, empty_hits, empty_rays
 from tracer.kernels import inlined, kernel
@@ -218,6 +219,7 @@ def _shade(world, look, wave, points, knowledge, first, buffers, counts):
 @kernel
 def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts):
     """Shade a tile whose primary hits the buffers hold, with at most `depth` bounces."""
+    world, look, knowledge, buffers = borrowed(world), borrowed(look), borrowed(knowledge), borrowed(buffers)
     wave = _without_misses(_first_wave(camera, tile, buffers), look, buffers.color)
     for bounce in range(depth + 1):
         points = points_at(world, look, wave.rays, wave.hits)

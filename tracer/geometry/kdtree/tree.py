@@ -8,22 +8,25 @@ position of its first item, and the rest of the second word their count.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.intersect import ZERO, inverse
+from tracer.geometry.memory import pointer
 from tracer.kernels import inlined
 
 LEAF = 3
 MAX_DEPTH = 60
+STACK_SIZE = MAX_DEPTH + 4
 
 
 class Trees(NamedTuple):
     """Any number of kd-trees, back to back: a root is a node's number.
 
     words (2 n,) int32 and planes, the same memory as float32; items (m,) int32, what leaves hold.
+    Kernels that walk them are given pointers instead of arrays.
     """
 
     words: NDArray[np.int32]
@@ -32,11 +35,11 @@ class Trees(NamedTuple):
 
 
 class Stack(NamedTuple):
-    """Nodes still to be entered by one ray, each with its interval of t."""
+    """Nodes still to be entered by one ray, each with its interval of t: pointers to STACK_SIZE entries."""
 
-    node: NDArray[np.int32]
-    enter: NDArray[np.float32]
-    leave: NDArray[np.float32]
+    node: Any
+    enter: Any
+    leave: Any
 
 
 class Leaf(NamedTuple):
@@ -48,13 +51,6 @@ class Leaf(NamedTuple):
     leave: float
     steps: int
     pending: int
-
-
-@inlined
-def empty_stack():
-    return Stack(
-        np.empty(MAX_DEPTH + 4, np.int32), np.empty(MAX_DEPTH + 4, np.float32), np.empty(MAX_DEPTH + 4, np.float32)
-    )
 
 
 @inlined
@@ -70,6 +66,7 @@ def next_leaf(trees, ray, stack, pending):
     """Enter the newest of the `pending` nodes and walk down to a leaf, nearer child first."""
     pending -= 1
     node, enter, leave = stack.node[pending], stack.enter[pending], stack.leave[pending]
+    inverse_x, inverse_y, inverse_z = inverse(ray.dx), inverse(ray.dy), inverse(ray.dz)
     steps = 1
     while True:
         word = trees.words[2 * node + 1]
@@ -78,8 +75,9 @@ def next_leaf(trees, ray, stack, pending):
             return Leaf(trees.words[2 * node], word >> 2, enter, leave, steps, pending)
         origin = ray.ox if axis == 0 else (ray.oy if axis == 1 else ray.oz)
         direction = ray.dx if axis == 0 else (ray.dy if axis == 1 else ray.dz)
+        inverted = inverse_x if axis == 0 else (inverse_y if axis == 1 else inverse_z)
         plane = trees.planes[2 * node]
-        t = (plane - origin) * inverse(direction)
+        t = (plane - origin) * inverted
         lower_first = origin < plane or (origin == plane and direction <= ZERO)
         near = node + 1 if lower_first else word >> 2
         far = word >> 2 if lower_first else node + 1
@@ -91,3 +89,9 @@ def next_leaf(trees, ray, stack, pending):
             pending = push(stack, pending, far, t, leave)
             node, leave = near, t
         steps += 1
+
+
+@inlined
+def pointers_to(trees):
+    """The same trees as pointers."""
+    return Trees(pointer(trees.words), pointer(trees.planes), pointer(trees.items))

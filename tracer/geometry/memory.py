@@ -1,0 +1,68 @@
+"""Memory without reference counts, for kernels.
+
+numba counts references to arrays, atomically, wherever one is passed along or taken out of a tuple;
+in an inner loop that costs more than a step through a tree, and threads fight over shared counts.
+`borrowed` gives the same arrays uncounted, `pointer` their bare memory.  Either is valid only as
+long as somebody else keeps the arrays alive: a kernel borrows what it was called with.
+"""
+
+from __future__ import annotations
+
+from llvmlite import ir
+from numba.core import cgutils, types
+from numba.extending import intrinsic
+
+
+@intrinsic
+def pointer(typingctx, array):
+    """Pointer to the first element of a contiguous array, read and written like a flat array."""
+    if not isinstance(array, types.Array) or array.layout != "C":
+        return None
+
+    def codegen(context, builder, signature, args):
+        return context.make_array(signature.args[0])(context, builder, args[0]).data
+
+    return types.CPointer(array.dtype)(array), codegen
+
+
+def _without_counts(context, builder, kind, value):
+    if isinstance(kind, types.Array):
+        array = context.make_array(kind)(context, builder, value)
+        array.meminfo = cgutils.get_null_value(array.meminfo.type)
+        array.parent = cgutils.get_null_value(array.parent.type)
+        return array._getvalue()
+    if isinstance(kind, types.BaseTuple):
+        for i, member in enumerate(kind):
+            item = _without_counts(context, builder, member, builder.extract_value(value, i))
+            value = builder.insert_value(value, item, i)
+    return value
+
+
+@intrinsic
+def borrowed(typingctx, data):
+    """The same array, or tuple of arrays, tuples and numbers, with no reference counted."""
+
+    def codegen(context, builder, signature, args):
+        return _without_counts(context, builder, signature.args[0], args[0])
+
+    return data(data), codegen
+
+
+def _local(dtype):
+    @intrinsic
+    def local(typingctx, count):
+        """Memory for `count` (a literal number) elements that lasts until the calling kernel returns."""
+        if not isinstance(count, types.IntegerLiteral):
+            return None
+
+        def codegen(context, builder, signature, args):
+            size = ir.Constant(ir.IntType(64), signature.args[0].literal_value)
+            return cgutils.alloca_once(builder, context.get_data_type(dtype), size=size)
+
+        return types.CPointer(dtype)(count), codegen
+
+    return local
+
+
+local_float32 = _local(types.float32)
+local_int32 = _local(types.int32)
