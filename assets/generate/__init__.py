@@ -1,0 +1,1 @@
+"""How the embedded scenes are made: geometry, textures and paths, all computed, all seeded."""
