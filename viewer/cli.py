@@ -164,7 +164,7 @@ def _picture_instead(scene: str | None) -> int:
     """Without a display, `make run` still does the main job: a frame after enough others for culling to act."""
     print(f"shadowcull: {no_display_reason()}; rendering to a file instead", file=sys.stderr, flush=True)
     PICTURE.parent.mkdir(exist_ok=True)
-    where = ["--frame", "20", "--warmup", "20"] if scene is None else ["--warmup", "8"]
+    where = ["--frame", "12", "--warmup", "12"] if scene is None else ["--warmup", "8"]
     return _render([scene or resources.DEFAULT_SCENE, "-o", str(PICTURE.absolute()), "--size", "640x480", *where])
 
 
