@@ -66,3 +66,14 @@ def _local(dtype):
 
 local_float32 = _local(types.float32)
 local_int32 = _local(types.int32)
+
+
+@intrinsic
+def float_bits(typingctx, number):
+    """The bits of a number, rounded to float32, as int32."""
+
+    def codegen(context, builder, signature, args):
+        rounded = context.cast(builder, args[0], signature.args[0], types.float32)
+        return builder.bitcast(rounded, ir.IntType(32))
+
+    return types.int32(number), codegen

@@ -107,10 +107,10 @@ def points_at(world, look, rays, hits):
     """The surface points of a batch in which every ray hits something."""
     n = len(hits.t)
     points = _empty_points(n)
-    points.texture[:] = np.float32(1)
     for i in range(n):
         reach = hits.t[i]
         for axis in range(3):
+            points.texture[axis, i] = np.float32(1)
             points.position[axis, i] = rays.origin[axis, i] + hits.t[i] * rays.direction[axis, i]
             reach = max(reach, abs(points.position[axis, i]))
         points.offset[i] = OFFSET * reach

@@ -96,7 +96,6 @@ def _first_wave(camera, tile, buffers):
     """The tile's primary rays once more, with the hits that the buffers hold."""
     n, width = (tile[2] - tile[0]) * (tile[3] - tile[1]), buffers.primitive.shape[1]
     wave = _empty_wave(n)
-    wave.weight[:] = ONE
     for k in range(n):
         x, y = _pixel_of(tile, k)
         ray = primary_ray(camera, x, y)
@@ -104,9 +103,34 @@ def _first_wave(camera, tile, buffers):
         wave.hits.t[k], wave.hits.primitive[k] = buffers.depth[y, x], buffers.primitive[y, x]
         wave.hits.u[k], wave.hits.v[k] = buffers.u[y, x], buffers.v[y, x]
         wave.pixel[k] = y * width + x
-        buffers.color[wave.pixel[k]] = np.float32(0)
-        buffers.normal[wave.pixel[k]] = np.float32(0)
+        for axis in range(3):
+            wave.weight[axis, k] = ONE
+            buffers.color[wave.pixel[k], axis], buffers.normal[wave.pixel[k], axis] = np.float32(0), np.float32(0)
     return wave
+
+
+@inlined
+def _copy_ray(source, i, target, k):
+    """Ray i of one wave, with its hit, becomes ray k of another."""
+    for axis in range(3):
+        target.rays.origin[axis, k] = source.rays.origin[axis, i]
+        target.rays.direction[axis, k] = source.rays.direction[axis, i]
+        target.weight[axis, k] = source.weight[axis, i]
+    target.rays.t_min[k], target.rays.t_max[k] = source.rays.t_min[i], source.rays.t_max[i]
+    target.hits.t[k], target.hits.primitive[k] = source.hits.t[i], source.hits.primitive[i]
+    target.hits.u[k], target.hits.v[k] = source.hits.u[i], source.hits.v[i]
+    target.pixel[k] = source.pixel[i]
+
+
+@kernel
+def _shortened(wave, n):
+    """The first n rays of a wave, in rows of that length."""
+    if n == len(wave.pixel):
+        return wave
+    out = _empty_wave(n)
+    for i in range(n):
+        _copy_ray(wave, i, out, i)
+    return out
 
 
 @kernel
@@ -119,27 +143,9 @@ def _without_misses(wave, look, color):
                 color[wave.pixel[i], c] += wave.weight[c, i] * look.background[c]
             continue
         if n < i:
-            for axis in range(3):
-                wave.rays.origin[axis, n] = wave.rays.origin[axis, i]
-                wave.rays.direction[axis, n] = wave.rays.direction[axis, i]
-                wave.weight[axis, n] = wave.weight[axis, i]
-            wave.hits.t[n], wave.hits.primitive[n] = wave.hits.t[i], wave.hits.primitive[i]
-            wave.hits.u[n], wave.hits.v[n] = wave.hits.u[i], wave.hits.v[i]
-            wave.pixel[n] = wave.pixel[i]
+            _copy_ray(wave, i, wave, n)
         n += 1
     return _shortened(wave, n)
-
-
-@inlined
-def _shortened(wave, n):
-    """The first n rays of a wave; rows are copied, so that they stay contiguous."""
-    rays, hits = wave.rays, wave.hits
-    return Wave(
-        Rays(rays.origin[:, :n].copy(), rays.direction[:, :n].copy(), rays.t_min[:n], rays.t_max[:n]),
-        Hits(hits.t[:n], hits.primitive[:n], hits.u[:n], hits.v[:n]),
-        wave.pixel[:n],
-        wave.weight[:, :n].copy(),
-    )
 
 
 @inlined

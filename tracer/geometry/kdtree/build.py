@@ -14,6 +14,7 @@ import math
 import numpy as np
 
 from tracer.geometry.kdtree.tree import LEAF, MAX_DEPTH, Trees
+from tracer.geometry.memory import float_bits
 from tracer.kernels import kernel
 
 TRAVERSAL_COST = 1.0
@@ -25,17 +26,12 @@ CANCELLED, DONE = 0, 1  # entries of `control`: set to stop the build; reference
 
 
 @kernel
-def _half_area(size):
-    return size[0] * size[1] + size[1] * size[2] + size[2] * size[0]
-
-
-@kernel
 def _split_cost(box, axis, plane, lower, upper):
     """Expected cost of a ray in `box` (6,) when split, with so many references on either side."""
-    size = box[3:] - box[:3]
-    area = _half_area(size)
-    rest = size[(axis + 1) % 3] + size[(axis + 2) % 3]
-    side = size[(axis + 1) % 3] * size[(axis + 2) % 3]
+    b, c = (axis + 1) % 3, (axis + 2) % 3
+    across, along = box[b + 3] - box[b], box[c + 3] - box[c]
+    side, rest = across * along, across + along
+    area = side + (box[axis + 3] - box[axis]) * rest
     lower_area = side + (plane - box[axis]) * rest
     upper_area = side + (box[axis + 3] - plane) * rest
     cost = TRAVERSAL_COST + INTERSECTION_COST * (lower_area * lower + upper_area * upper) / area
@@ -51,7 +47,8 @@ def _best_binned_split(boxes, first, last, box):
         low, extent = box[axis], box[axis + 3] - box[axis]
         if not extent > 0.0:
             continue
-        starts[:], ends[:] = 0, 0
+        for b in range(BINS):
+            starts[b], ends[b] = 0, 0
         scale = BINS / extent
         for i in range(first, last):
             starts[min(max(int((boxes[i, axis] - low) * scale), 0), BINS - 1)] += 1
@@ -83,8 +80,11 @@ def _best_swept_split(boxes, first, last, box):
     """(cost, axis, plane) over every face of the references' boxes; flat ones in a plane count below it."""
     best_cost, best_axis, best_plane = np.inf, -1, 0.0
     n = last - first
-    faces = np.empty((3, SWEEP_BELOW), np.float32)
-    starts, ends, flats = faces[0], faces[1], faces[2]
+    starts, ends, flats = (
+        np.empty(SWEEP_BELOW, np.float32),
+        np.empty(SWEEP_BELOW, np.float32),
+        np.empty(SWEEP_BELOW, np.float32),
+    )
     for axis in range(3):
         flat_count = 0
         for i in range(n):
@@ -121,7 +121,8 @@ def _clip_below(polygon, n, axis, plane, sign, out):
         j = i + 1 if i + 1 < n else 0
         a, b = sign * (polygon[i, axis] - plane), sign * (polygon[j, axis] - plane)
         if a <= 0.0:
-            out[kept] = polygon[i]
+            for k in range(3):
+                out[kept, k] = polygon[i, k]
             kept += 1
         if (a < 0.0 and b > 0.0) or (a > 0.0 and b < 0.0):
             t = a / (a - b)
@@ -133,8 +134,8 @@ def _clip_below(polygon, n, axis, plane, sign, out):
 
 
 @kernel
-def _clip_triangle(triangles, i, box, polygon, other, result):
-    """Bounds (6,) float32 of a triangle's part inside box; False where none is left.
+def _clip_triangle(triangles, i, box, polygon, other, result, row):
+    """Bounds of a triangle's part inside box, into a row of result (n, 6) float32; False where none is left.
 
     Bounds are rounded outwards by more than the clipping errs, and never leave the box.
     """
@@ -155,15 +156,26 @@ def _clip_triangle(triangles, i, box, polygon, other, result):
         if low < high:
             slack = 1e-6 * max(abs(low), abs(high))
             low, high = low - slack, high + slack
-        result[k] = max(np.float32(low), np.float32(box[k]))
-        result[k + 3] = min(np.float32(high), np.float32(box[k + 3]))
+        result[row, k] = max(np.float32(low), np.float32(box[k]))
+        result[row, k + 3] = min(np.float32(high), np.float32(box[k + 3]))
     return True
 
 
 @kernel
+def _copy(prims, boxes, first, count, to_prims, to_boxes, to_first):
+    """Copy `count` references."""
+    for i in range(count):
+        to_prims[to_first + i] = prims[first + i]
+        for k in range(6):
+            to_boxes[to_first + i, k] = boxes[first + i, k]
+
+
+@kernel
 def _grown(array, used):
-    larger = np.empty((2 * len(array), *array.shape[1:]), array.dtype)
-    larger[:used] = array[:used]
+    """The same numbers (n,) int32 in twice the room."""
+    larger = np.empty(2 * len(array), np.int32)
+    for i in range(used):
+        larger[i] = array[i]
     return larger
 
 
@@ -171,20 +183,20 @@ def _grown(array, used):
 def _partition(prims, boxes, first, last, box, axis, plane, triangles, side_prims, side_boxes, upper):
     """Copy what lies on one side of a plane, clipped to it, and return how many that are."""
     count = 0
-    side = box.copy()
+    side, polygon, other = np.empty(6), np.empty((12, 3)), np.empty((12, 3))
+    for k in range(6):
+        side[k] = box[k]
     side[axis if upper else axis + 3] = plane
-    polygon, other = np.empty((12, 3)), np.empty((12, 3))
     for i in range(first, last):
         low, high = boxes[i, axis], boxes[i, axis + 3]
         inside = high > plane if upper else (low < plane or (low == plane and high == plane))
         if not inside:
             continue
-        side_prims[count] = prims[i]
-        side_boxes[count] = boxes[i]
+        _copy(prims, boxes, i, 1, side_prims, side_boxes, count)
         if low < plane and high > plane:
             side_boxes[count, axis if upper else axis + 3] = plane
             if prims[i] < len(triangles) and not _clip_triangle(
-                triangles, prims[i], side, polygon, other, side_boxes[count]
+                triangles, prims[i], side, polygon, other, side_boxes, count
             ):
                 continue
         count += 1
@@ -192,66 +204,73 @@ def _partition(prims, boxes, first, last, box, axis, plane, triangles, side_prim
 
 
 @kernel
+def _best_split(boxes, first, last, box):
+    if last - first > SWEEP_BELOW:
+        return _best_binned_split(boxes, first, last, box)
+    return _best_swept_split(boxes, first, last, box)
+
+
+@kernel
 def _build(boxes, bounds, triangles, control):
-    """Nodes (n, 2) int32 and items of a tree over boxes (m, 6); reference i is triangle i where there is one."""
+    """Words (2 nodes,) int32 and items of a tree over boxes (n, 6); reference i is triangle i where there is one."""
     n = len(boxes)
     max_depth = min(int(8 + 1.5 * math.log2(max(n, 1))), MAX_DEPTH)
-    words = np.empty((2 * n + 16, 2), np.int32)
-    planes = words.view(np.float32)
-    items = np.empty(2 * n + 16, np.int32)
+    words, items = np.empty(4 * n + 32, np.int32), np.empty(2 * n + 16, np.int32)
     prims, pool = np.empty(2 * n + 16, np.int32), np.empty((2 * n + 16, 6), np.float32)
-    prims[:n], pool[:n] = np.arange(n), boxes
-    # Subtrees still to build: references, depth and the parent whose upper child it is.
-    todo, todo_box = np.empty((MAX_DEPTH + 4, 3), np.int64), np.empty((MAX_DEPTH + 4, 6))
-    todo[0] = (n, 0, -1)
-    todo_box[0] = bounds
-    pending, top, node_count, item_count = 1, n, 0, 0
-    lower_prims, upper_prims = np.empty(n, np.int32), np.empty(n, np.int32)
+    _copy(np.arange(n, dtype=np.int32), boxes, 0, n, prims, pool, 0)
+    sides = np.empty(2 * n, np.int32)
+    lower_prims, upper_prims = sides[:n], sides[n:]
     lower_boxes, upper_boxes = np.empty((n, 6), np.float32), np.empty((n, 6), np.float32)
+    # Subtrees still to build, as on the pool: references, depth, the parent whose upper child it is, and box.
+    todo, todo_box, box = np.empty((MAX_DEPTH + 4, 3), np.int64), np.empty((MAX_DEPTH + 4, 6)), np.empty(6)
+    todo[0, 0], todo[0, 1], todo[0, 2] = n, 0, -1
+    for k in range(6):
+        todo_box[0, k] = bounds[k]
+    pending, top, node_count, item_count = 1, n, 0, 0
     while pending > 0 and control[CANCELLED] == 0:
         pending -= 1
-        count, depth, parent = todo[pending]
-        box = todo_box[pending].copy()
+        count, depth, parent = todo[pending, 0], todo[pending, 1], todo[pending, 2]
+        for k in range(6):
+            box[k] = todo_box[pending, k]
         first = top - count
-        if node_count == len(words):
-            words = _grown(words, node_count)
-            planes = words.view(np.float32)
+        if 2 * node_count == len(words):
+            words = _grown(words, 2 * node_count)
         if parent >= 0:
-            words[parent, 1] |= node_count << 2
+            words[2 * parent + 1] |= node_count << 2
         node, node_count = node_count, node_count + 1
         cost, axis, plane = np.inf, -1, 0.0
         if count > 1 and depth < max_depth:
-            if count > SWEEP_BELOW:
-                cost, axis, plane = _best_binned_split(pool, first, top, box)
-            else:
-                cost, axis, plane = _best_swept_split(pool, first, top, box)
+            cost, axis, plane = _best_split(pool, first, top, box)
         lower, upper = 0, 0
         if cost < INTERSECTION_COST * count:
             lower = _partition(prims, pool, first, top, box, axis, plane, triangles, lower_prims, lower_boxes, False)
             upper = _partition(prims, pool, first, top, box, axis, plane, triangles, upper_prims, upper_boxes, True)
-        top = first
         if lower + upper == 0 or (lower == count and upper == count):
             while item_count + count > len(items):
                 items = _grown(items, item_count)
-            words[node, 0], words[node, 1] = item_count, count << 2 | LEAF
-            items[item_count : item_count + count] = prims[first : first + count]
+            words[2 * node], words[2 * node + 1] = item_count, count << 2 | LEAF
+            for i in range(count):
+                items[item_count + i] = prims[first + i]
             item_count += count
             control[DONE] += count
+            top = first
             continue
-        while top + lower + upper > len(prims):
-            prims, pool = _grown(prims, top), _grown(pool, top)
-        prims[top : top + upper], pool[top : top + upper] = upper_prims[:upper], upper_boxes[:upper]
-        todo[pending] = (upper, depth + 1, node)
-        todo_box[pending] = box
+        while first + lower + upper > len(prims):
+            prims, old = _grown(prims, first), pool
+            pool = np.empty((len(prims), 6), np.float32)
+            _copy(prims, old, 0, first, prims, pool, 0)
+        _copy(upper_prims, upper_boxes, 0, upper, prims, pool, first)
+        _copy(lower_prims, lower_boxes, 0, lower, prims, pool, first + upper)
+        top = first + upper + lower
+        for k in range(6):
+            todo_box[pending, k], todo_box[pending + 1, k] = box[k], box[k]
+        todo[pending, 0], todo[pending, 1], todo[pending, 2] = upper, depth + 1, node
         todo_box[pending, axis] = plane
-        top, pending = top + upper, pending + 1
-        prims[top : top + lower], pool[top : top + lower] = lower_prims[:lower], lower_boxes[:lower]
-        todo[pending] = (lower, depth + 1, -1)
-        todo_box[pending] = box
-        todo_box[pending, axis + 3] = plane
-        top, pending = top + lower, pending + 1
-        planes[node, 0], words[node, 1] = plane, axis
-    return words[:node_count].copy(), items[:item_count].copy()
+        todo[pending + 1, 0], todo[pending + 1, 1], todo[pending + 1, 2] = lower, depth + 1, -1
+        todo_box[pending + 1, axis + 3] = plane
+        pending += 2
+        words[2 * node], words[2 * node + 1] = float_bits(plane), axis
+    return words[: 2 * node_count], items[:item_count]
 
 
 def bounds_of(boxes: np.ndarray) -> np.ndarray:
@@ -272,6 +291,5 @@ def build_tree(boxes: np.ndarray, triangles: np.ndarray, control: np.ndarray | N
     """
     control = np.zeros(2, np.int64) if control is None else control
     bounds = bounds_of(boxes)
-    words, items = _build(boxes, bounds.astype(np.float64), triangles, control)
-    flat = np.ascontiguousarray(words).reshape(-1)
-    return Trees(flat, flat.view(np.float32), items), bounds
+    words, items = (a.copy() for a in _build(boxes, bounds.astype(np.float64), triangles, control))
+    return Trees(words, words.view(np.float32), items), bounds
