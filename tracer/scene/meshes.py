@@ -7,8 +7,10 @@ become a diffuse and a mirror part; a camera that frames the model and two light
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Hashable, Iterator
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +22,7 @@ from tracer.scene.framing import bounds, framing_camera, framing_lights
 from tracer.scene.mesh_materials import MaterialTable
 from tracer.scene.model import Camera, Float64, Progress, Scene, SceneError
 from tracer.scene.pieces import Mesh, Piece
+from tracer.scene.textures import open_image
 
 MESH_EXTENSIONS = (".obj", ".ply", ".stl", ".gltf", ".glb")
 
@@ -44,7 +47,7 @@ def load_mesh(path: str | Path, progress: Progress | None = None) -> Scene:
     path = Path(path)
     report = progress or (lambda what, fraction: None)
     report(f"Reading {path.name}", 0.0)
-    model, missing = _read(path)
+    model, troubles = _read(path)
     table = MaterialTable(path)
     geometry = Geometry()
     nodes = list(model.graph.nodes_geometry)
@@ -72,27 +75,35 @@ def load_mesh(path: str | Path, progress: Progress | None = None) -> Scene:
         camera=camera,
         animation=Animation.empty(),
         background=(0.6, 0.7, 0.8),
-        warnings=(*missing, *table.warnings, *skipped, *remarks),
+        warnings=(*troubles, *table.warnings, *skipped, *remarks),
     )
 
 
 def _read(path: Path) -> tuple[Any, list[str]]:
-    """The trimesh scene in a file, and warnings of files beside it that are missing."""
+    """The trimesh scene in a file, and warnings of what it refers to and could not be read."""
     import trimesh  # here, because it takes a while that other scenes need not wait for
 
     class Beside(trimesh.resolvers.FilePathResolver):
-        """Reads what a mesh file refers to, and remembers what it could not."""
+        """Reads what a mesh file refers to.  Failures, over which trimesh passes in silence, become warnings."""
 
         def get(self, name: str) -> bytes:
             try:
-                return super().get(name)
-            except Exception:
-                missing.append(f"{path}: {name!a}, which it refers to, cannot be read; put it beside the file")
+                data = super().get(name)
+                if Path(name).suffix.lower() not in (".mtl", ".bin"):
+                    open_image(BytesIO(data)).close()
+            except SceneError as error:
+                troubles.append(f"{path}: texture {name!a}: {error}; the surface keeps its material colour")
                 raise
+            except Exception:
+                troubles.append(f"{path}: {name!a}, which it refers to, cannot be read; put it beside the file")
+                raise
+            return data
 
-    missing: list[str] = []
+    troubles: list[str] = []
     try:
-        model = trimesh.load_scene(str(path), resolver=Beside(str(path)), process=False)
+        with warnings.catch_warnings():  # large images: the size is judged by us
+            warnings.simplefilter("ignore")
+            model = trimesh.load_scene(str(path), resolver=Beside(str(path)), process=False)
         for mesh in model.geometry.values():
             faces = getattr(mesh, "faces", None)
             if faces is not None and len(faces) and (faces.min() < 0 or faces.max() >= len(mesh.vertices)):
@@ -103,7 +114,7 @@ def _read(path: Path) -> tuple[Any, list[str]]:
         what = " ".join(str(error).split()) or type(error).__name__
         kind = path.suffix[1:].upper()
         raise SceneError(f"{path}: cannot be read as {kind} ({what[:120]}); repair or convert the file") from None
-    return model, list(dict.fromkeys(missing))
+    return model, list(dict.fromkeys(troubles))
 
 
 def _shapes(mesh: Any, place: _MeshPlace, table: MaterialTable) -> Iterator[tuple[Mesh, int, int]]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 from PIL import Image, UnidentifiedImageError
@@ -16,8 +17,9 @@ from PIL import Image, UnidentifiedImageError
 from tracer.scene.model import SceneError, Texture
 from tracer.scene.pieces import TextureName
 
-MOST_PIXELS = 1 << 28
-"""An image of more pixels is refused: decoding it would take a gigabyte and more."""
+MOST_PIXELS = 1 << 27
+"""An image of more pixels is refused: decoding it would take half a gigabyte and more.  (Pillow's own
+limit, at which it warns of a decompression bomb and at twice which it fails, is near.)"""
 
 KEPT_PIXELS = 1 << 24
 """An image of more pixels is scaled down to this many."""
@@ -87,18 +89,24 @@ class TextureTable:
 def load_texture(path: Path) -> Texture:
     """An image file as a texture; raises SceneError in one line where it cannot be one."""
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
-            with Image.open(path) as image:
-                return texture_of(image, path.name)
+        with open_image(path) as image:
+            return texture_of(image, path.name)
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from None
+
+
+def open_image(source: Path | BinaryIO) -> Image.Image:
+    """An image of which only the header was read; raises SceneError where that promises nothing good."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            return Image.open(source)
     except UnidentifiedImageError:
-        raise SceneError(f"{path}: not an image that can be read; use PPM, PNG or JPEG") from None
+        raise SceneError("not an image that can be read; use PPM, PNG or JPEG") from None
     except Image.DecompressionBombError:
-        raise SceneError(f"{path}: {_TOO_LARGE}") from None
-    except Exception as error:  # Pillow's decoders raise whatever they like on broken files
-        raise SceneError(f"{path}: the image cannot be read ({_words(error)}); replace it") from None
+        raise SceneError(_TOO_LARGE) from None
+    except Exception as error:  # Pillow's readers raise whatever they like on broken files
+        raise SceneError(f"the image cannot be read ({_words(error)}); replace it") from None
 
 
 def texture_of(image: Image.Image, name: str) -> Texture:
