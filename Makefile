@@ -35,7 +35,7 @@ lint:  ## check style, types and the direction of imports
 	$(RUN) -m ruff check .
 	$(RUN) -m ruff format --check .
 	$(RUN) -m mypy
-	$(RUN) -c 'from importlinter.cli import lint_imports_command; lint_imports_command()'
+	$(RUN) -c 'from importlinter.cli import lint_imports_command; lint_imports_command(["--no-cache"])'
 
 format:  ## put the sources in the form that lint asks for
 	@tools/environment.sh dev

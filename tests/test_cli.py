@@ -261,7 +261,7 @@ def test_a_scene_with_nothing_in_it(capfd: pytest.CaptureFixture[str], tmp_path:
 def test_an_output_that_cannot_be_written_is_known_before_tracing(
     capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def refuse(*_: object) -> None:
+    def refuse(*_: object, **__: object) -> None:
         raise PermissionError(13, "Permission denied")
 
     def trace(*_: object) -> None:

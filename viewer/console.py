@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from types import FrameType
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from tracer.scene.model import Cancelled
@@ -36,7 +36,7 @@ class Work:
     def __init__(self) -> None:
         self.stopped = False
         self._bar: Progress | None = None
-        self._task = None
+        self._task: TaskID | None = None
 
     def progress(self, label: str, fraction: float) -> None:
         """A `Progress` of the tracer; raises Cancelled once Ctrl-C was pressed."""

@@ -58,10 +58,10 @@ def render(path: Path, options: Namespace) -> None:
     _check_outputs(options.output, options.buffers)
     with working() as work:
         scene = load_scene(path, work.progress)
-        for warning in scene.warnings:
-            work.note(f"warning: {warning}")
         if scene.primitive_count == 0:
             raise SceneError(f"{path}: nothing to see in it: no triangles, spheres or cones")
+        for warning in scene.warnings:
+            work.note(f"warning: {warning}")
         if view is View.SHADOW and light >= len(scene.lights):
             raise ValueError(f"--view shadow:{light}: {lights_in_words(len(scene.lights))}")
         time = _time(scene, options.frame, options.time)
@@ -75,7 +75,8 @@ def render(path: Path, options: Namespace) -> None:
         if options.output is not None:
             _write_picture(options.output, scene, frame, options)
         if options.buffers is not None:
-            write_whole(options.buffers, lambda file: np.savez(file, **buffers(frame)))
+            arrays: dict[str, Any] = buffers(frame)
+            write_whole(options.buffers, lambda file: np.savez(file, **arrays))
     title = f"{path.name}, {time:.3f} s, {frame.width} x {frame.height}, method {settings.method}"
     print_table(statistics_table(frame.statistics, title))
     for written in (options.output, options.buffers):
@@ -187,10 +188,10 @@ def _write_picture(path: Path, scene: Scene, frame: Frame, options: Namespace) -
     notes.add_itxt(capture.CHUNK, text)
     notes.add_text("Software", "Shadowcull")
     kind = PICTURES[path.suffix.lower()]
-    extra: dict[str, Any] = {"PNG": {"pnginfo": notes}, "JPEG": {"quality": 95}}.get(kind, {})
+    extras: dict[str, dict[str, Any]] = {"PNG": {"pnginfo": notes}, "JPEG": {"quality": 95}}
 
     def write(file: BinaryIO) -> None:
-        image.save(file, kind, **extra)
+        image.save(file, kind, **extras.get(kind, {}))
 
     write_whole(path, write)
 
