@@ -25,19 +25,34 @@ from tracer.renderer import Frame
 from viewer import commands, style
 from viewer.controller import Controller
 from viewer.display import Display, Look
-from viewer.panels import camera, culling, dialogs, inspector, picture, plots, scene, statistics, status, view
+from viewer.panels import (
+    camera,
+    culling,
+    dialogs,
+    inspector,
+    picture,
+    plots,
+    rendering,
+    saving,
+    scene,
+    statistics,
+    status,
+    view,
+)
 from viewer.preferences import config_folder, load_preferences
 from viewer.resources import default_scene
 from viewer.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
-WINDOW_SIZE = (1280, 800)
+WINDOW_SIZE = (1440, 900)
 PANELS: dict[str, tuple[str, Callable[[Ui], None]]] = {
     "Picture": ("MainDockSpace", picture.show),
     "Scene": ("Left", scene.show),
     "Camera": ("Left", camera.show),
     "Statistics": ("LeftBottom", statistics.show),
     "View": ("Right", view.show),
+    "Rendering": ("Right", rendering.show),
+    "Saving": ("Right", saving.show),
     "Culling": ("RightMiddle", culling.show),
     "Inspector": ("RightBottom", inspector.show),
     "Plots": ("Bottom", plots.show),
@@ -58,6 +73,7 @@ class App:
         self.ui.request_exit = self._exit
         self.ui.reset_layout = self._reset_layout
         self._frame_began = time.perf_counter()
+        self._capture_this_frame = False
         if problem:
             self.controller.say(problem, error=True)
 
@@ -76,6 +92,7 @@ class App:
     def before_widgets(self) -> None:
         """Everything but the widgets: input of the last frame, threads, GL."""
         self._frame_began = time.perf_counter()
+        style.follow_density()
         self._open_dropped()
         frame = self.controller.tick(self._room_for_picture())
         self._draw(frame)
@@ -100,7 +117,7 @@ class App:
         if len(dropped) > 1:
             self.controller.say(f"{len(dropped)} files were dropped; only {dropped[0].name} is opened")
         if dropped:
-            self.controller.open(dropped[0])
+            self.controller.opener.open(dropped[0])
 
     def _room_for_picture(self) -> tuple[int, int]:
         window = glfw_utils.glfw_window_hello_imgui()
@@ -130,13 +147,16 @@ class App:
     def _capture_picture(self) -> None:
         if self.ui.capture_wanted is CaptureKind.PICTURE and self.ui.display is not None:
             self.ui.capture_wanted = None
-            self.controller.capture(self.ui.display.read() if self.controller.frame is not None else None)
+            self.controller.keeper.capture(self.ui.display.read() if self.controller.frame is not None else None)
+        if self.ui.capture_wanted is CaptureKind.WINDOW:
+            self.ui.capture_wanted = None
+            self._capture_this_frame = True  # when it is drawn, from here on, with all that was asked for before
 
     def _capture_window(self) -> None:
-        if self.ui.capture_wanted is CaptureKind.WINDOW and self.ui.display is not None:
-            self.ui.capture_wanted = None
+        if self._capture_this_frame and self.ui.display is not None:
+            self._capture_this_frame = False
             size = glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui())
-            self.controller.capture(self.ui.display.read_window(*size))
+            self.controller.keeper.capture(self.ui.display.read_window(*size))
 
     def _stay_awake(self) -> None:
         """Doze only when nothing is traced, moves or is loaded."""
@@ -165,7 +185,6 @@ class App:
         params.fps_idling.time_active_after_last_event = 1.0
         call = params.callbacks
         call.setup_imgui_config = _configure_imgui
-        call.setup_imgui_style = style.apply
         call.load_additional_fonts = style.load_fonts
         call.post_init = self._ready
         call.show_menus = lambda: self._menus()
@@ -184,8 +203,8 @@ class App:
             split("MainDockSpace", "Right", imgui.Dir.right, 0.295),
             split("MainDockSpace", "Bottom", down, 0.25),
             split("Left", "LeftBottom", down, 0.52),
-            split("Right", "RightBottom", down, 0.36),
-            split("Right", "RightMiddle", down, 0.36),
+            split("Right", "RightBottom", down, 0.38),
+            split("Right", "RightMiddle", down, 0.45),
         ]
         docking.dockable_windows = [self._window(label, space, show) for label, (space, show) in PANELS.items()]
         return docking
@@ -208,12 +227,11 @@ class App:
 
     def _ready(self) -> None:
         """The window and its GL context exist."""
-        style.apply_to_plots()
         self.ui.display = Display()
         self.ui.renderer_name = self.ui.display.context.info["GL_RENDERER"]
         self.controller.wake = hello_imgui.request_refresh
-        glfw.set_drop_callback(glfw_utils.glfw_window_hello_imgui(), self._dropped)
-        self.controller.start(self.scene_path)
+        glfw.set_drop_callback(glfw_utils.glfw_window_hello_imgui(), self._dropped)  # type: ignore[arg-type]  # it gets a list
+        self.controller.opener.start(self.scene_path)
 
     def _dropped(self, _window: Any, paths: list[str]) -> None:
         self.ui.dropped = [Path(p) for p in paths]

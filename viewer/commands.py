@@ -67,8 +67,8 @@ def _file(ui: Ui) -> list[Command]:
 
     return [
         Command("Open...", "File", browse, "Ctrl+O"),
-        Command("Reload", "File", c.reload, "F5", enabled=lambda: c.session.scene is not None),
-        Command("Stop loading", "File", c.cancel_load, "Escape", enabled=lambda: c.load_job is not None),
+        Command("Reload", "File", c.opener.reload, "F5", enabled=lambda: c.session.scene is not None),
+        Command("Stop loading", "File", c.opener.cancel, "Escape", enabled=lambda: c.opener.load_job is not None),
         Command("Save picture", "File", want(CaptureKind.PICTURE), "F12", separated=True),
         Command("Save picture with panels", "File", want(CaptureKind.WINDOW), "Shift+F12"),
         Command("Quit", "File", lambda: ui.request_exit(), "Ctrl+Q", separated=True),
@@ -82,7 +82,7 @@ def _view(ui: Ui) -> list[Command]:
     def show(view: View) -> Command:
         number = list(View).index(view) + 1
         return Command(
-            view.title, "View", lambda: c.set_view(view), str(number), checked=lambda: c.session.view is view
+            view.label, "View", lambda: c.set_view(view), str(number), checked=lambda: c.session.view is view
         )
 
     def toggle(name: str) -> Callable[[], None]:
@@ -120,7 +120,7 @@ def _camera(ui: Ui) -> list[Command]:
             checked=lambda: c.session.follow,
             enabled=here,
         ),
-        Command("Add bookmark", "Camera", c.add_bookmark, "Ctrl+B", enabled=here, separated=True),
+        Command("Add bookmark", "Camera", c.keeper.add_bookmark, "Ctrl+B", enabled=here, separated=True),
     ]
 
 

@@ -15,15 +15,15 @@ from typing import Any
 
 import numpy as np
 
-from tracer.compilation import warm_up
-from tracer.renderer import Frame, Settings
+from tracer.renderer import Frame, Renderer, Settings
 from tracer.scene.load import scene_info
 from tracer.scene.model import Camera, Scene
-from viewer import capture, navigation, opening
+from viewer import navigation
 from viewer.history import History
-from viewer.jobs import Job
+from viewer.keeper import Keeper
+from viewer.opener import Opener
 from viewer.picking import Pick, pick, refreshed
-from viewer.preferences import Preferences, default_screenshot_folder, save_preferences
+from viewer.preferences import Preferences, save_preferences
 from viewer.render_thread import RenderRequest, RenderThread, Traced
 from viewer.resolution import ResolutionControl, divided
 from viewer.session import Session, Snapshot
@@ -68,13 +68,10 @@ class Controller:
         self.selected: Pick | None = None
         self.hovered: tuple[float, float] | None = None
         self.message: Message | None = None
-        self.warm_up_job: Job[None] | None = None
-        self.load_job: Job[opening.Opened] | None = None
+        self.opener = Opener(self)
+        self.keeper = Keeper(self)
         self.drawn_seconds = 0.0
         self.size = (0, 0)
-        self._saving: list[Job[Path]] = []
-        self._abandoned: list[Job] = []
-        self._restore_after_load: Snapshot | None = None
         self._glide: Glide | None = None
         self._moving_until = 0.0
         self._serial = 0
@@ -92,7 +89,8 @@ class Controller:
         if size != self.size:
             self.size = size
             self.moved()
-        self._follow_jobs()
+        self.opener.follow()
+        self.keeper.follow()
         frame = self._take_frame()
         self._pass_time(step)
         self._follow_glide(now)
@@ -113,21 +111,8 @@ class Controller:
     @property
     def active(self) -> bool:
         """Whether the window must not doze."""
-        jobs = (self.warm_up_job, self.load_job, *self._saving)
-        return self.moving or self.session.playing or self.render.busy or any(j is not None for j in jobs)
-
-    def _follow_jobs(self) -> None:
-        if self.warm_up_job is not None and self.warm_up_job.done:
-            job, self.warm_up_job = self.warm_up_job, None
-            if job.error:
-                self.say(f"kernels not compiled: {job.error}", error=True)
-        if self.load_job is not None and self.load_job.done:
-            load, self.load_job = self.load_job, None
-            self._loaded(load)
-        for save in [s for s in self._saving if s.done]:
-            self._saving.remove(save)
-            self.say(save.error or f"saved {save.result}", error=save.error is not None)
-        self._abandoned = [job for job in self._abandoned if not job.done]
+        working = self.render.busy or self.opener.busy or self.keeper.busy
+        return working or self.moving or self.session.playing
 
     def _take_frame(self) -> Frame | None:
         error = self.render.take_error()
@@ -201,7 +186,7 @@ class Controller:
     def view_title(self) -> str:
         """The view, and the light where it shows one."""
         view = self.session.view
-        return f"{view.title}, light {self.session.light}" if view is View.SHADOW else view.title
+        return f"{view.label}, light {self.session.light}" if view is View.SHADOW else view.label
 
     # --- messages and selection ------------------------------------------------------------------
 
@@ -227,39 +212,16 @@ class Controller:
         found = self.pick(at)
         self.selected = found if found is not None and found.primitive >= 0 else None
 
-    # --- opening ---------------------------------------------------------------------------------
-
-    def start(self, path: Path | None) -> None:
-        """Compile or load the kernels in the background, and open a first scene meanwhile."""
-        self.warm_up_job = Job("Preparing kernels", warm_up, lambda: self.wake())
-        if path is not None:
-            self.open(path)
-
-    def open(self, path: Path) -> None:
-        """Open a scene, or restore what a captured picture shows; anything else is one line."""
-        refused = opening.refusal(path)
-        if refused:
-            self.say(refused, error=True)
-        elif opening.is_capture(path):
-            self.restore_capture(path)
-        else:
-            self._load(path, None)
-
-    def restore_capture(self, path: Path) -> None:
-        """Bring back scene, camera, time, settings and view of a captured picture."""
-        try:
-            snapshot = capture.read(path)
-        except capture.CaptureError as error:
-            self.say(str(error), error=True)
-            return
-        scene = opening.find_scene(snapshot.scene, path)
-        if scene is None:
-            self.say(f"{path.name}: its scene is gone: {snapshot.scene}", error=True)
-        elif self.session.scene is not None and _same_file(scene, self.session.scene):
-            self.restore(snapshot)
-            self.say(f"restored {path.name}")
-        else:
-            self._load(scene, snapshot)
+    def show(self, scene: Scene, renderer: Renderer) -> None:
+        """Look at another scene: what was learnt and drawn of the old one is gone, settings and view stay."""
+        self.session.open(scene)
+        self.info = scene_info(scene)
+        self.render.use(renderer)
+        self.history.clear()
+        self.resolution.forget()
+        self.traced = self.selected = self._glide = self._last_request = None
+        self.preferences.remember_scene(Path(scene.path).absolute())
+        self.save_preferences()
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot of the open scene."""
@@ -267,55 +229,6 @@ class Controller:
         self.session.restore(snapshot)
         self._store_settings()
         self.preferences.view = self.session.view.value
-
-    def reload(self) -> None:
-        """Read the scene's file again and keep the place."""
-        if self.session.scene is not None:
-            self._load(Path(self.session.scene.path), self.session.snapshot())
-
-    def cancel_load(self) -> None:
-        """Give up the load that is under way; the scene that is open stays."""
-        if self.load_job is not None:
-            self.load_job.cancel()
-
-    def _load(self, path: Path, then: Snapshot | None) -> None:
-        if self.load_job is not None:
-            self.load_job.cancel()
-            self._abandoned.append(self.load_job)
-        self._restore_after_load = then
-        settings = self.session.settings
-
-        def ready() -> bool:
-            return self.warm_up_job is None or self.warm_up_job.done
-
-        self.load_job = Job(
-            f"Loading {path.name}", lambda p: opening.open_scene(path, settings, ready, p), lambda: self.wake()
-        )
-
-    def _loaded(self, job: Job[opening.Opened]) -> None:
-        if job.cancelled:
-            self.say("loading cancelled" + (": the scene that was open stays" if self.session.scene else ""))
-        elif job.error is not None or job.result is None:
-            self.say(job.error or "nothing was loaded", error=True)
-        else:
-            opened = job.result
-            self._show(opened)
-            count = len(opened.scene.warnings)
-            warned = f", {count} warning{'s' * (count > 1)}" if count else ""
-            self.say(f"{opened.scene.path.name} opened in {opened.seconds:.1f} s{warned}")
-
-    def _show(self, opened: opening.Opened) -> None:
-        self.session.open(opened.scene)
-        self.info = scene_info(opened.scene)
-        self.render.use(opened.renderer)
-        self.history.clear()
-        self.resolution.forget()
-        self.traced = self.selected = self._glide = self._last_request = None
-        if self._restore_after_load is not None:
-            self.restore(self._restore_after_load)
-            self._restore_after_load = None
-        self.preferences.remember_scene(Path(opened.scene.path).absolute())
-        self.save_preferences()
 
     # --- settings --------------------------------------------------------------------------------
 
@@ -379,9 +292,9 @@ class Controller:
         self.session.move(camera)
         self.moved()
 
-    def glide(self, camera: Camera) -> None:
+    def glide(self, camera: Camera, start: Camera | None = None) -> None:
         """Move the camera there in a moment's time."""
-        self._glide = Glide(self.session.camera, camera, time.monotonic())
+        self._glide = Glide(start or self.session.camera, camera, time.monotonic())
 
     def follow_path(self, follow: bool) -> None:
         """Put the camera on the scene's own path, or take it off where it is."""
@@ -406,63 +319,6 @@ class Controller:
         self.session.playing = False
         self.session.go_to_frame(self.session.frame + frames)
 
-    # --- bookmarks and captures ------------------------------------------------------------------
-
-    @property
-    def bookmarks(self) -> list[dict]:
-        """The bookmarks of the open scene: {"name": ..., "state": a snapshot's JSON}."""
-        if self.session.scene is None:
-            return []
-        return self.preferences.bookmarks.setdefault(str(Path(self.session.scene.path).absolute()), [])
-
-    def add_bookmark(self, name: str = "") -> None:
-        if self.session.scene is None:
-            return
-        name = name.strip() or f"frame {self.session.frame}"
-        self.bookmarks.append({"name": name, "state": self.session.snapshot().to_json()})
-        self.save_preferences()
-        self.say(f"bookmarked as {name!r}")
-
-    def go_to_bookmark(self, index: int) -> None:
-        """Glide to a bookmark and take over its time and view; settings stay as they are."""
-        try:
-            snapshot = Snapshot.from_json(self.bookmarks[index]["state"])
-        except (ValueError, KeyError, TypeError, IndexError) as error:
-            self.say(f"this bookmark is damaged: {error}", error=True)
-            return
-        start = self.session.camera
-        self.session.restore(replace(snapshot, settings={}))
-        if not snapshot.follow:
-            self._glide = Glide(start, snapshot.camera, time.monotonic())
-
-    def capture(self, pixels: np.ndarray | None) -> None:
-        """Save a picture, (h, w, 3) uint8, under the user's template; the file is written on a thread."""
-        frame = self.frame
-        if frame is None or pixels is None or self.session.scene is None:
-            self.say("there is no picture to save yet", error=True)
-            return
-        session, preferences = self.session, self.preferences
-        height, width = pixels.shape[:2]
-        values = {
-            "scene": session.scene.path.stem if session.scene else "",
-            "view": session.view.value,
-            "frame": session.frame,
-            "seconds": frame.time,
-            "method": frame.settings.method,
-            "light": session.light,
-            "width": width,
-            "height": height,
-        }
-        snapshot = replace(session.snapshot(), time=frame.time, camera=frame.camera)
-        text = capture.metadata(snapshot, session.frame, (frame.width, frame.height), frame.statistics.to_dict())
-        folder = Path(preferences.screenshot_folder or default_screenshot_folder()).expanduser()
-        try:
-            name = capture.file_name(preferences.screenshot_template, values)
-        except capture.CaptureError as error:
-            self.say(str(error), error=True)
-            return
-        self._saving.append(Job("Saving", lambda _: capture.save(pixels, folder, name, text), lambda: self.wake()))
-
     # --- the end ---------------------------------------------------------------------------------
 
     def save_preferences(self) -> None:
@@ -473,11 +329,9 @@ class Controller:
     def close(self, timeout: float = 30.0) -> bool:
         """Stop everything, finish writing pictures and save the preferences; false if something would not stop."""
         deadline = time.monotonic() + timeout
-        jobs = [job for job in (self.warm_up_job, self.load_job, *self._abandoned) if job is not None]
-        for job in jobs:
-            job.cancel()
+        jobs = [*self.opener.cancel_all(), *self.keeper.saving]
         stopped = self.render.close(timeout)
-        for job in (*self._saving, *jobs):
+        for job in jobs:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))
         self.save_preferences()
         return stopped
@@ -496,10 +350,3 @@ def _settings_from(p: Preferences) -> Settings:
 
 def _view_from(p: Preferences) -> View:
     return View(p.view) if p.view in set(View) else View.COLOR
-
-
-def _same_file(path: Path, scene: Scene) -> bool:
-    try:
-        return path.samefile(scene.path)
-    except OSError:
-        return False

@@ -158,7 +158,7 @@ class Display:
             )
             for unit, name in enumerate(_UNITS):
                 if name in program:
-                    program[name].value = unit
+                    program[name] = unit
             self._passes[view] = (program, self.context.vertex_array(program, []))
         return self._passes[view]
 
@@ -182,7 +182,7 @@ class Display:
         }
         for name, value in values.items():
             if name in program:
-                program[name].value = value
+                program[name] = value
 
     def _ensure_target(self) -> None:
         if self._target is not None and self._target.size == self.size:

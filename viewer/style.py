@@ -40,8 +40,8 @@ _COLORS = {
     imgui.Col_.scrollbar_grab_hovered: _rgb("525B6B"),
     imgui.Col_.scrollbar_grab_active: _rgb("616C7F"),
     imgui.Col_.check_mark: _rgb("6CB2F5"),
-    imgui.Col_.slider_grab: _rgb("4E92D6"),
-    imgui.Col_.slider_grab_active: _rgb("6CB2F5"),
+    imgui.Col_.slider_grab: _rgb("4E92D6", 0.6),
+    imgui.Col_.slider_grab_active: _rgb("6CB2F5", 0.7),
     imgui.Col_.button: _rgb("343B47"),
     imgui.Col_.button_hovered: _rgb("41506A"),
     imgui.Col_.button_active: _rgb("3A6EA5"),
@@ -71,9 +71,21 @@ _COLORS = {
 }
 
 
-def apply() -> None:
-    """Set ImGui's style; sizes are in ems so that they follow the screen's density."""
-    style, em = imgui.get_style(), hello_imgui.em_size()
+_applied_em = 0.0
+
+
+def follow_density() -> None:
+    """Set all styles for the screen the window is on; does nothing until its density changes."""
+    global _applied_em
+    em = hello_imgui.em_size()
+    if em > 0.0 and em != _applied_em:
+        _applied_em = em
+        _style_widgets(em)
+        _style_plots(em)
+
+
+def _style_widgets(em: float) -> None:
+    style = imgui.get_style()
     for slot, color in _COLORS.items():
         style.set_color_(int(slot), color)
     style.window_padding = ImVec2(0.55 * em, 0.45 * em)
@@ -93,9 +105,8 @@ def apply() -> None:
     style.window_menu_button_position = imgui.Dir.none
 
 
-def apply_to_plots() -> None:
-    """Set ImPlot's style."""
-    style, em = implot.get_style(), hello_imgui.em_size()
+def _style_plots(em: float) -> None:
+    style = implot.get_style()
     style.plot_padding = ImVec2(0.35 * em, 0.3 * em)
     style.label_padding = ImVec2(0.25 * em, 0.2 * em)
     style.legend_padding = ImVec2(0.4 * em, 0.25 * em)

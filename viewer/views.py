@@ -32,7 +32,7 @@ class View(StrEnum):
     PIXEL_COUNT = "pixel-count"
 
     @property
-    def title(self) -> str:
+    def label(self) -> str:
         return _TITLES[self]
 
     @property

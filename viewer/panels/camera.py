@@ -32,12 +32,12 @@ def _place(ui: Ui) -> None:
             row("Position")
             changed, position = imgui.drag_float3("##position", list(camera.position), 0.02 * c.pace, format="%.4g")
             if changed:
-                c.move(replace(camera, position=tuple(position)))
+                c.move(replace(camera, position=(position[0], position[1], position[2])))
             row("Direction")
             view = [float(x) for x in camera.basis()[2]]
             changed, direction = imgui.drag_float3("##direction", view, 0.01, -1.0, 1.0, "%.3f")
             if changed and sum(x * x for x in direction) > 1e-6:
-                c.move(replace(camera, direction=tuple(direction)))
+                c.move(replace(camera, direction=(direction[0], direction[1], direction[2])))
             row("Angle", "vertical field of view")
             changed, angle = imgui.slider_float("##angle", camera.angle, 5.0, 120.0, "%.1f degrees")
             if changed:
@@ -96,15 +96,15 @@ def _bookmarks(ui: Ui) -> None:
     entered, ui.new_bookmark = imgui.input_text_with_hint("##bookmark", "name", ui.new_bookmark, flags)
     imgui.same_line()
     if imgui.button(button, (-1.0, 0.0)) or entered:
-        c.add_bookmark(ui.new_bookmark)
+        c.keeper.add_bookmark(ui.new_bookmark)
         ui.new_bookmark = ""
     tooltip("remember this place (Ctrl+B)")
     gone = None
-    for index, bookmark in enumerate(c.bookmarks):
+    for index, bookmark in enumerate(c.keeper.bookmarks):
         imgui.push_id(index)
         width = imgui.get_content_region_avail().x - em(2.2)
         if imgui.selectable(str(bookmark.get("name", "?")), False, 0, (width, 0.0))[0]:
-            c.go_to_bookmark(index)
+            c.keeper.go_to_bookmark(index)
         tooltip("go there")
         imgui.same_line()
         if imgui.small_button(icons.ICON_FA_XMARK):
@@ -112,5 +112,4 @@ def _bookmarks(ui: Ui) -> None:
         tooltip("forget it")
         imgui.pop_id()
     if gone is not None:
-        del c.bookmarks[gone]
-        c.save_preferences()
+        c.keeper.forget_bookmark(gone)

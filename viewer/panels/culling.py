@@ -14,9 +14,7 @@ def show(ui: Ui) -> None:
     c = ui.controller
     s, p = c.session.settings, c.preferences
     checkbox("Shadow culling", s.method != "none", lambda _: c.toggle_culling(), "skip shadow rays that are known (C)")
-    tip = (
-        "test both pixels of a pair against the other's primitive, not only the current one against its neighbours (Y)"
-    )
+    tip = "test both pixels of a pair against each other's primitive, not just one of them (Y)"
     checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.change(symmetric=on), tip)
     tip = "trace every culled shadow ray as well, and count those that would have answered otherwise (V)"
     checkbox("Verify", s.verify, lambda on: c.change(verify=on), tip)
@@ -28,10 +26,6 @@ def show(ui: Ui) -> None:
             changed, factor = imgui.slider_float("##zoom", s.zoom_factor, 1.0, 64.0, "%.1f", flags)
             if changed:
                 c.change(zoom_factor=factor)
-            row("Max bounces", "of reflected and refracted rays")
-            changed, depth = imgui.slider_int("##depth", s.depth, 0, 20)
-            if changed:
-                c.change(depth=min(max(depth, 0), 100))
     if wide_button(f"{icons.ICON_FA_ERASER}  Reset modes", "forget all that was learnt (Backspace)", 2):
         c.reset_modes()
     imgui.same_line()

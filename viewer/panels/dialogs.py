@@ -33,7 +33,7 @@ def _centred(width: float) -> None:
 def _progress(ui: Ui) -> None:
     """Loading and preparing the kernels: a small window at the middle, the rest stays usable."""
     c = ui.controller
-    jobs = [job for job in (c.warm_up_job, c.load_job) if job is not None]
+    jobs = [job for job in (c.opener.warm_up_job, c.opener.load_job) if job is not None]
     if not jobs:
         return
     _centred(em(26.0))
@@ -42,11 +42,11 @@ def _progress(ui: Ui) -> None:
     imgui.begin("##progress", None, int(flags))
     for job in jobs:
         _job(job)
-    if c.load_job is not None:
-        if c.load_job.stopping:
+    if c.opener.load_job is not None:
+        if c.opener.load_job.stopping:
             imgui.text_colored(QUIET, "cancelling ...")
         elif imgui.button(f"{icons.ICON_FA_XMARK}  Cancel##load"):
-            c.cancel_load()
+            c.opener.cancel()
     imgui.end()
 
 
@@ -63,7 +63,8 @@ def _browser(ui: Ui) -> None:
         imgui.open_popup(_OPEN)
         b.problem = ""
     _centred(em(38.0))
-    shown, b.open = imgui.begin_popup_modal(_OPEN, b.open, int(imgui.WindowFlags_.no_resize))
+    shown, stays = imgui.begin_popup_modal(_OPEN, b.open, int(imgui.WindowFlags_.no_resize))
+    b.open = bool(stays)
     if not shown:
         return
     chosen = _path_line(ui)
@@ -151,7 +152,7 @@ def _choose(ui: Ui, path: Path) -> None:
     b.problem = problem or ""
     if problem is None:
         b.folder, b.typed, b.open = path.parent, "", False
-        ui.controller.open(path)
+        ui.controller.opener.open(path)
 
 
 def _shortcuts(ui: Ui) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.culling.modes import MAX_CULLED_LIGHTS, OcclusionMode, ShadowMode
+from tracer.culling.modes import OcclusionMode, ShadowMode
 from viewer.panels.widgets import QUIET, count, em, heading, paragraph, properties, tooltip, value
 from viewer.picking import Pick
 from viewer.ui import Ui
@@ -35,34 +35,40 @@ def show(ui: Ui) -> None:
 
 
 def _details(ui: Ui, pick: Pick) -> None:
-    with properties("pick", 5.6) as shown:
+    with properties("primitive", 5.8) as shown:
         if shown:
-            value("Pixel", f"{pick.x}, {pick.y}")
             value("Primitive", f"{pick.primitive}  ({pick.kind})")
             value("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""))
             if pick.material is not None:
                 value("Material", pick.material.name, _describe(pick))
+            value("Pixels", f"{count(pick.pixels)} now, {count(pick.highest)} at most", "that this primitive covers")
+    heading("Modes")
+    _modes(ui, pick)
+    paragraph(_verdict(pick), QUIET)
+    heading("Pixel")
+    with properties("pixel", 5.8) as shown:
+        if shown:
+            value("At", f"{pick.x}, {pick.y}")
             value("Depth", f"{pick.depth:.5g}")
             if pick.point is not None:
                 value("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
             if pick.normal is not None:
                 value("Normal", "{:.2f}, {:.2f}, {:.2f}".format(*pick.normal))
-            value("Pixels", f"{count(pick.pixels)} now, {count(pick.highest)} at most", "that this primitive covers")
-    heading("Modes")
+
+
+def _modes(ui: Ui, pick: Pick) -> None:
+    """The occlusion mode, and the shadow mode per light."""
     if pick.occlusion is not None:
         _mode("occlusion", pick.occlusion.name, OCCLUSION_COLORS[pick.occlusion], OCCLUSION_MEANING[pick.occlusion])
-    covered = pick.shadows[:MAX_CULLED_LIGHTS]
-    for light, mode in enumerate(covered):
-        name = f"light {light}"
-        if pick.occlusion is OcclusionMode.DYNAMIC or mode is None:
-            imgui.text_colored(QUIET, f"{name}: traced always")
-        else:
-            _mode(name, mode.name, SHADOW_COLORS[mode], SHADOW_MEANING[mode])
-            tooltip(ui.light_name(light) + ": " + SHADOW_MEANING[mode])
-    if len(pick.shadows) > len(covered):
-        imgui.text_colored(QUIET, f"{len(pick.shadows) - len(covered)} more lights: not culled")
-    imgui.dummy(ImVec2(0.0, em(0.2)))
-    paragraph(_verdict(pick), QUIET)
+    if pick.occlusion is OcclusionMode.DYNAMIC:
+        return
+    for light, mode in enumerate(pick.shadows):
+        if mode is not None:
+            meaning = f"{ui.light_name(light)}: {SHADOW_MEANING[mode]}"
+            _mode(f"light {light}", mode.name, SHADOW_COLORS[mode], meaning)
+    uncovered = sum(mode is None for mode in pick.shadows)
+    if uncovered:
+        imgui.text_colored(QUIET, f"{uncovered} more lights: not culled")
 
 
 def _mode(name: str, mode: str, color: tuple[float, float, float], meaning: str) -> None:
@@ -73,7 +79,7 @@ def _mode(name: str, mode: str, color: tuple[float, float, float], meaning: str)
     imgui.dummy(ImVec2(0.8 * side, side))
     imgui.same_line(0.0, em(0.4))
     imgui.text_colored(QUIET, name)
-    imgui.same_line(em(5.6))
+    imgui.same_line(em(6.4))
     imgui.text_unformatted(mode.replace("_", " ").lower())
     tooltip(meaning)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui
+from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer import navigation
 from viewer.panels import timeline
@@ -67,7 +67,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
 def _placeholder(ui: Ui, room: ImVec2) -> None:
     """What stands there before the first picture."""
     c = ui.controller
-    if c.load_job is not None or c.warm_up_job is not None or c.render.busy:
+    if c.opener.load_job is not None or c.opener.warm_up_job is not None or c.render.busy:
         return  # the progress window speaks
     text = "Open a scene (Ctrl+O), or drop one on this window"
     width = imgui.calc_text_size(text).x
@@ -122,9 +122,10 @@ def _wheel(ui: Ui, notches: float) -> None:
     c = ui.controller
     if c.preferences.navigation == "orbit":
         point = point_at(c.frame, *c.hovered) if c.frame is not None and c.hovered is not None else None
-        pivot = ui.pivot if point is None else point
-        if pivot is not None:
-            c.move(navigation.dolly(c.session.camera, pivot, notches))
+        if point is not None:
+            ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
+        if ui.pivot is not None:
+            c.move(navigation.dolly(c.session.camera, ui.pivot, notches))
     else:
         c.preferences.speed = min(max(c.preferences.speed * 1.2**notches, 0.001), 1000.0)
         c.say(f"flying speed {c.preferences.speed:.3g}")
@@ -162,10 +163,7 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
         return
     pad = em(0.35)
     lower = ImVec2(corner.x + size.x + 3.0 * pad, corner.y + size.y + 2.0 * pad)
+    back, front = (imgui.get_color_u32(ImVec4(*color)) for color in ((0.05, 0.06, 0.08, 0.72), (0.93, 0.94, 0.96, 1.0)))
     draw = imgui.get_window_draw_list()
-    draw.add_rect_filled(corner, lower, imgui.get_color_u32(ImVec4(0.05, 0.06, 0.08, 0.72)), em(0.3))
-    draw.add_text(
-        ImVec2(corner.x + 1.5 * pad, corner.y + pad), imgui.get_color_u32(ImVec4(0.93, 0.94, 0.96, 1.0)), text
-    )
-    if c.session.playing:
-        hello_imgui.request_refresh()
+    draw.add_rect_filled(corner, lower, back, em(0.3))
+    draw.add_text(ImVec2(corner.x + 1.5 * pad, corner.y + pad), front, text)

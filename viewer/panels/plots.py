@@ -18,12 +18,13 @@ _BLUE, _GREEN, _ORANGE, _SKY = (
 
 _PLOTS = (
     ("Shadow rays", (("due", "due", _SKY), ("culled", "culled", _GREEN), ("dynamic only", "dynamic_only", _ORANGE))),
-    ("Steps and tests", (("traversal steps", "steps", _BLUE), ("of shadow rays", "shadow_steps", _SKY),
-                         ("intersection tests", "tests", _ORANGE))),
+    ("Steps and tests", (("steps", "steps", _BLUE), ("of shadow rays", "shadow_steps", _SKY),
+                         ("tests", "tests", _ORANGE))),
     ("Milliseconds", (("traced", "traced_ms", _BLUE), ("drawn", "drawn_ms", _ORANGE))),
 )  # fmt: skip
 _FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
-_AXIS = int(implot.AxisFlags_.auto_fit | implot.AxisFlags_.no_highlight)
+_AXIS = int(implot.AxisFlags_.no_highlight)
+_LEGEND = implot.LegendFlags_
 
 
 def show(ui: Ui) -> None:
@@ -58,18 +59,21 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
     per_pixel = ui.per_pixel and title != "Milliseconds"
     if not implot.begin_plot(f"{title}{' per pixel' if per_pixel else ''}##{title}", size, _FLAGS):
         return
+    curves = [(label, _values(ui, name, per_pixel), color) for label, name, color in series]
+    last = history.first + max(len(history) - 1, 10)
+    top = max(float(values.max()) for _, values, _ in curves)
     implot.setup_axes("", "", _AXIS, _AXIS)
-    implot.setup_axis_format(implot.ImAxis_.y1, "%.3g")
-    implot.setup_axis_limits_constraints(implot.ImAxis_.y1, 0.0, float("inf"))
-    implot.setup_legend(implot.Location_.north_west, int(implot.LegendFlags_.no_menus))
-    for label, name, color in series:
-        values = history.values(name)
-        if per_pixel:
-            values = _contiguous(values / np.maximum(history.values("pixels"), 1.0))
-        spec = implot.Spec(line_color=color, line_weight=1.6)
-        implot.plot_line(label, values, 1.0, float(history.first), spec)
+    implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
+    implot.setup_axis_format(implot.ImAxis_.y1, "%.4g")
+    implot.setup_axes_limits(history.first, last, 0.0, 1.12 * top if top > 0.0 else 1.0, int(imgui.Cond_.always))
+    implot.setup_legend(implot.Location_.south, int(_LEGEND.outside | _LEGEND.horizontal | _LEGEND.no_menus))
+    for label, values, color in curves:
+        implot.plot_line(label, values, 1.0, float(history.first), implot.Spec(line_color=color, line_weight=1.6))
     implot.end_plot()
 
 
-def _contiguous(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.ascontiguousarray(values, np.float64)
+def _values(ui: Ui, name: str, per_pixel: bool) -> NDArray[np.float64]:
+    """A series as ImPlot wants it, contiguous float64."""
+    history = ui.controller.history
+    values = history.values(name)
+    return values / np.maximum(history.values("pixels"), 1.0) if per_pixel else values

@@ -46,13 +46,13 @@ def _recent(ui: Ui) -> None:
         return
     for name, path in embedded_scenes().items():
         if imgui.menu_item(f"{name}##embedded", "comes with Shadowcull", False, True)[0]:
-            ui.controller.open(path)
+            ui.controller.opener.open(path)
     recent = [r for r in ui.controller.preferences.recent if Path(r) not in embedded_scenes().values()]
     if recent:
         imgui.separator()
     for text in recent:
         if imgui.menu_item(f"{Path(text).name}##{text}", "", False, True)[0]:
-            ui.controller.open(Path(text))
+            ui.controller.opener.open(Path(text))
         tooltip(text)
     imgui.end_popup()
 
@@ -61,7 +61,7 @@ def _facts(ui: Ui) -> None:
     c = ui.controller
     scene, info = c.session.scene, c.info
     assert scene is not None
-    with properties("facts", 6.0) as shown:
+    with properties("facts", 7.0) as shown:
         if shown:
             value("File", scene.path.name, str(scene.path))
             value("Triangles", count(info.get("triangles", 0)))
@@ -95,9 +95,10 @@ def _lights(ui: Ui) -> None:
     if imgui.begin_child("lights", (0.0, height)):
         for index, light in enumerate(lights):
             strongest = max(*light.color, 1e-9)
-            swatch = (*(channel / strongest for channel in light.color), 1.0)
+            red, green, blue = (channel / strongest for channel in light.color)
             side = imgui.get_text_line_height()
-            imgui.color_button(f"##light{index}", swatch, int(imgui.ColorEditFlags_.no_tooltip), (side, side))
+            flags = int(imgui.ColorEditFlags_.no_tooltip)
+            imgui.color_button(f"##light{index}", (red, green, blue, 1.0), flags, (side, side))
             imgui.same_line()
             name = f"{index}  {light.name}" + ("  (moves)" if light.track else "")
             if index >= MAX_CULLED_LIGHTS:

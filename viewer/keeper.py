@@ -1,0 +1,98 @@
+"""What is kept: bookmarks in the preferences, and pictures in files."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viewer import capture
+from viewer.jobs import Job
+from viewer.preferences import default_screenshot_folder
+from viewer.session import Snapshot
+
+if TYPE_CHECKING:
+    from viewer.controller import Controller
+
+
+class Keeper:
+    """Adds and finds bookmarks; writes pictures on threads, so that the window does not wait for a disk."""
+
+    def __init__(self, controller: Controller) -> None:
+        self._c = controller
+        self.saving: list[Job[Path]] = []
+
+    @property
+    def busy(self) -> bool:
+        return bool(self.saving)
+
+    def follow(self) -> None:
+        """Tell of the pictures that have been written, or could not be."""
+        for job in [job for job in self.saving if job.done]:
+            self.saving.remove(job)
+            self._c.say(job.error or f"saved {job.result}", error=job.error is not None)
+
+    @property
+    def bookmarks(self) -> list[dict]:
+        """The bookmarks of the open scene: {"name": ..., "state": a snapshot's JSON}."""
+        scene = self._c.session.scene
+        if scene is None:
+            return []
+        return self._c.preferences.bookmarks.setdefault(str(Path(scene.path).absolute()), [])
+
+    def add_bookmark(self, name: str = "") -> None:
+        session = self._c.session
+        if session.scene is None:
+            return
+        name = name.strip() or f"frame {session.frame}"
+        self.bookmarks.append({"name": name, "state": session.snapshot().to_json()})
+        self._c.save_preferences()
+        self._c.say(f"bookmarked as {name!r}")
+
+    def forget_bookmark(self, index: int) -> None:
+        del self.bookmarks[index]
+        self._c.save_preferences()
+
+    def go_to_bookmark(self, index: int) -> None:
+        """Glide to a bookmark and take over its time and view; settings stay as they are."""
+        try:
+            snapshot = Snapshot.from_json(self.bookmarks[index]["state"])
+        except (ValueError, KeyError, TypeError, IndexError) as error:
+            self._c.say(f"this bookmark is damaged: {error}", error=True)
+            return
+        start = self._c.session.camera
+        self._c.restore(replace(snapshot, settings={}))
+        if not snapshot.follow:
+            self._c.glide(snapshot.camera, start)
+
+    def capture(self, pixels: NDArray[np.uint8] | None) -> None:
+        """Save a picture, (h, w, 3) uint8, of the newest frame, named by the user's template."""
+        session, preferences, frame = self._c.session, self._c.preferences, self._c.frame
+        if frame is None or pixels is None or session.scene is None:
+            self._c.say("there is no picture to save yet", error=True)
+            return
+        height, width = pixels.shape[:2]
+        values = {
+            "scene": session.scene.path.stem,
+            "view": session.view.value,
+            "frame": session.frame,
+            "seconds": frame.time,
+            "method": frame.settings.method,
+            "light": session.light,
+            "width": width,
+            "height": height,
+        }
+        # What the picture shows, which may be a moment older than what the user asks for by now.
+        snapshot = replace(session.snapshot(), time=frame.time, camera=frame.camera)
+        size = (frame.width, frame.height)
+        text = capture.metadata(snapshot, session.frame, size, frame.statistics.to_dict())
+        folder = Path(preferences.screenshot_folder or default_screenshot_folder()).expanduser()
+        try:
+            name = capture.file_name(preferences.screenshot_template, values)
+        except capture.CaptureError as error:
+            self._c.say(str(error), error=True)
+            return
+        self.saving.append(Job("Saving", lambda _: capture.save(pixels, folder, name, text), lambda: self._c.wake()))

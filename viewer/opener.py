@@ -1,0 +1,135 @@
+"""Opening scenes and captures beside the window, and preparing the kernels.
+
+While a scene is read the one that is open stays usable, and it stays open if the reading fails or
+is cancelled.  A second request to open takes the place of the first.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tracer.compilation import warm_up
+from tracer.scene.model import Scene
+from viewer import capture, opening
+from viewer.jobs import Job
+from viewer.session import Snapshot
+
+if TYPE_CHECKING:
+    from viewer.controller import Controller
+
+
+class Opener:
+    """Runs `viewer.opening` on threads and hands its results to the controller."""
+
+    def __init__(self, controller: Controller) -> None:
+        self._c = controller
+        self.warm_up_job: Job[None] | None = None
+        self.load_job: Job[opening.Opened] | None = None
+        self._abandoned: list[Job] = []
+        self._restore_after_load: Snapshot | None = None
+
+    @property
+    def busy(self) -> bool:
+        return self.load_job is not None or self.warm_up_job is not None
+
+    def start(self, path: Path | None) -> None:
+        """Compile or load the kernels in the background, and open a first scene meanwhile."""
+        self.warm_up_job = Job("Preparing kernels", warm_up, lambda: self._c.wake())
+        if path is not None:
+            self.open(path)
+
+    def follow(self) -> None:
+        """Take up what the jobs have finished."""
+        if self.warm_up_job is not None and self.warm_up_job.done:
+            job, self.warm_up_job = self.warm_up_job, None
+            if job.error:
+                self._c.say(f"kernels not compiled: {job.error}", error=True)
+        if self.load_job is not None and self.load_job.done:
+            load, self.load_job = self.load_job, None
+            self._loaded(load)
+        self._abandoned = [job for job in self._abandoned if not job.done]
+
+    def open(self, path: Path) -> None:
+        """Open a scene, or restore what a captured picture shows; anything else is one line."""
+        refused = opening.refusal(path)
+        if refused:
+            self._c.say(refused, error=True)
+        elif opening.is_capture(path):
+            self._restore_capture(path)
+        else:
+            self._load(path, None)
+
+    def reload(self) -> None:
+        """Read the scene's file again and keep the place."""
+        session = self._c.session
+        if session.scene is not None:
+            self._load(Path(session.scene.path), session.snapshot())
+
+    def cancel(self) -> None:
+        """Give up the load that is under way; the scene that is open stays."""
+        if self.load_job is not None:
+            self.load_job.cancel()
+
+    def cancel_all(self) -> list[Job]:
+        """Ask every job to stop; returns them, to be waited for."""
+        jobs = [job for job in (self.warm_up_job, self.load_job, *self._abandoned) if job is not None]
+        for job in jobs:
+            job.cancel()
+        return jobs
+
+    def _restore_capture(self, path: Path) -> None:
+        """Bring back scene, camera, time, settings and view of a captured picture."""
+        try:
+            snapshot = capture.read(path)
+        except capture.CaptureError as error:
+            self._c.say(str(error), error=True)
+            return
+        found = opening.find_scene(snapshot.scene, path)
+        scene = self._c.session.scene
+        if found is None:
+            self._c.say(f"{path.name}: its scene is gone: {snapshot.scene}", error=True)
+        elif scene is not None and self.load_job is None and _same_file(found, scene):
+            self._c.restore(snapshot)
+            self._c.say(f"restored {path.name}")
+        else:
+            self._load(found, snapshot)
+
+    def _load(self, path: Path, then: Snapshot | None) -> None:
+        if self.load_job is not None:
+            self.load_job.cancel()
+            self._abandoned.append(self.load_job)
+        self._restore_after_load = then
+        settings = self._c.session.settings
+        self.load_job = Job(
+            f"Loading {path.name}",
+            lambda progress: opening.open_scene(path, settings, self._kernels_ready, progress),
+            lambda: self._c.wake(),
+        )
+
+    def _kernels_ready(self) -> bool:
+        job = self.warm_up_job
+        return job is None or job.done
+
+    def _loaded(self, job: Job[opening.Opened]) -> None:
+        if job.cancelled:
+            stays = ": the scene that was open stays" if self._c.session.scene is not None else ""
+            self._c.say(f"loading cancelled{stays}")
+        elif job.error is not None or job.result is None:
+            self._c.say(job.error or "nothing was loaded", error=True)
+        else:
+            opened = job.result
+            self._c.show(opened.scene, opened.renderer)
+            if self._restore_after_load is not None:
+                self._c.restore(self._restore_after_load)
+            count = len(opened.scene.warnings)
+            warned = f", {count} warning{'s' * (count > 1)}" if count else ""
+            self._c.say(f"{opened.scene.path.name} opened in {opened.seconds:.1f} s{warned}")
+        self._restore_after_load = None
+
+
+def _same_file(path: Path, scene: Scene) -> bool:
+    try:
+        return path.samefile(scene.path)
+    except OSError:
+        return False

@@ -1,0 +1,56 @@
+"""How finely to trace: resolution, in motion and at rest, and the rays of a pixel."""
+
+from __future__ import annotations
+
+import os
+
+from imgui_bundle import imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from viewer.panels.widgets import checkbox, em, properties, row
+from viewer.ui import Ui
+
+_RESOLUTIONS = ((256, 256), (512, 512), (800, 600), (1024, 1024), (1280, 720), (1920, 1080))
+
+
+def show(ui: Ui) -> None:
+    """The panel."""
+    c = ui.controller
+    p = c.preferences
+    checkbox("Fixed", p.fixed_resolution, lambda on: setattr(p, "fixed_resolution", on), "else that of the window")
+    if p.fixed_resolution:
+        imgui.same_line()
+        imgui.set_next_item_width(-em(2.2))
+        changed, size = imgui.input_int2("##size", [p.fixed_width, p.fixed_height])
+        if changed:
+            p.fixed_width, p.fixed_height = (min(max(n, 1), 8192) for n in size)
+        imgui.same_line()
+        if imgui.button(icons.ICON_FA_CHEVRON_DOWN, (-1.0, 0.0)):
+            imgui.open_popup("sizes")
+        if imgui.begin_popup("sizes"):
+            for width, height in _RESOLUTIONS:
+                if imgui.menu_item(f"{width} x {height}", "", False, True)[0]:
+                    p.fixed_width, p.fixed_height = width, height
+            imgui.end_popup()
+    tip = "trace coarser frames while the camera moves, to hold the frame rate"
+    checkbox("Coarser in motion", p.dynamic_resolution, lambda on: setattr(p, "dynamic_resolution", on), tip)
+    with properties("quality", 5.0) as shown:
+        if shown:
+            if p.dynamic_resolution:
+                row("Hold", "frames per second to hold in motion")
+                changed, fps = imgui.slider_float("##fps", p.target_fps, 2.0, 60.0, "%.0f fps")
+                p.target_fps = min(max(fps, 1.0), 240.0) if changed else p.target_fps
+            row("Bounces", "of reflected and refracted rays, at most")
+            changed, depth = imgui.slider_int("##depth", c.session.settings.depth, 0, 20)
+            if changed:
+                c.change(depth=min(max(depth, 0), 100))
+            row("Samples", "rays per pixel; statistics and modes are those of the first")
+            samples = [1, 4, 9, 16]
+            now = samples.index(c.session.settings.samples) if c.session.settings.samples in samples else 0
+            changed, index = imgui.combo("##samples", now, [str(n) for n in samples])
+            if changed:
+                c.change(samples=samples[index])
+            row("Threads", "0: all cores; the picture and the numbers are the same for any")
+            changed, threads = imgui.slider_int("##threads", c.session.settings.threads, 0, os.cpu_count() or 1)
+            if changed:
+                c.change(threads=min(max(threads, 0), 1024))
