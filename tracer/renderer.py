@@ -55,12 +55,8 @@ class Renderer:
 
         Raises Cancelled, with the modes as they were, once `cancel()` turns true.
         """
-        settings = self.settings.validated()
-        camera = camera or self.scene.camera_at(time)
-        frame = _Unfinished(self, settings, camera, time, cancel)
+        frame = self.begin(time, camera, cancel)
         try:
-            with frame.phase("place"):
-                self._place(time, frame)
             with frame.phase("primary"):
                 frame.trace_primary_rays()
             with frame.phase("occlusion testing"):
@@ -74,11 +70,15 @@ class Renderer:
             raise
         return frame.finished()
 
-    def _place(self, time: float, frame: _Unfinished) -> None:
-        """Move dynamic objects and lights to where they are now."""
-        self.world.place(time)
-        self._look.lights[:] = light_positions(self.scene, time)
-        frame.memory.follow_lights(self._look.lights)
+    def begin(self, time: float, camera: Camera | None = None, cancel: Cancel = None) -> UnfinishedFrame:
+        """A frame whose dynamic objects and lights are in place, and whose phases are still to come."""
+        settings = self.settings.validated()
+        frame = UnfinishedFrame(self, settings, camera or self.scene.camera_at(time), time, cancel)
+        with frame.phase("place"):
+            self.world.place(time)
+            self._look.lights[:] = light_positions(self.scene, time)
+            frame.memory.follow_lights(self._look.lights)
+        return frame
 
     def _memory(self, settings: Settings, workers: int) -> Memory:
         """The modes at this resolution; made, or given room for more workers, where need be."""
@@ -92,7 +92,7 @@ class Renderer:
         return memory
 
 
-class _Unfinished:
+class UnfinishedFrame:
     """A frame under way: the phases of `Renderer.render` over its buffers."""
 
     def __init__(self, renderer: Renderer, settings: Settings, camera: Camera, time: float, cancel: Cancel) -> None:
