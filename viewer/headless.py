@@ -65,7 +65,7 @@ def render(path: Path, options: Namespace) -> None:
         if view is View.SHADOW and light >= len(scene.lights):
             raise ValueError(f"--view shadow:{light}: {lights_in_words(len(scene.lights))}")
         time = _time(scene, options.frame, options.time)
-        prepare_kernels(work)
+        prepare_kernels(work, len(scene.lights))
         renderer = Renderer(scene, settings, work.progress)
         _render_before(renderer, time, options, work)
         work.progress(f"tracing {settings.width} x {settings.height}", 0.0)
@@ -99,11 +99,11 @@ def buffers(frame: Frame) -> dict[str, np.ndarray]:
     }
 
 
-def prepare_kernels(work: Work) -> None:
-    """Compile or load every kernel; the first time takes a while and says so, terminal or not."""
+def prepare_kernels(work: Work, lights: int) -> None:
+    """Compile or load every kernel that so many lights need; the first time takes a while and says so, terminal or not."""
     if next(cache_folder().rglob("*.nbi"), None) is None:
         work.note("compiling the kernels, once for this version; this takes a minute or less")
-    warm_up(work.progress)
+    warm_up(work.progress, lights)
 
 
 def _settings(options: Namespace) -> Settings:
