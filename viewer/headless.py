@@ -100,7 +100,7 @@ def buffers(frame: Frame) -> dict[str, np.ndarray]:
 
 
 def prepare_kernels(work: Work, lights: int) -> None:
-    """Compile or load every kernel that so many lights need; the first time takes a while and says so, terminal or not."""
+    """Compile or load every kernel that so many lights need; the first time takes a while and says so."""
     if next(cache_folder().rglob("*.nbi"), None) is None:
         work.note("compiling the kernels, once for this version; this takes a minute or less")
     warm_up(work.progress, lights)
