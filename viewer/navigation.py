@@ -52,7 +52,7 @@ def look(camera: Camera, right: float, up: float, world: Vector) -> Camera:
 
 def orbit(camera: Camera, pivot: Sequence[float], right: float, up: float, world: Vector) -> Camera:
     """Turn the camera around a point, as if the hand moved the world by so many radians right and up."""
-    turn = _rotation(camera, -right, -up, world)
+    turn = _rotation(camera, right, up, world)
     arm = np.subtract(camera.position, pivot)
     return replace(_turned(camera, turn), position=_triple(np.asarray(pivot) + turn @ arm))
 
@@ -116,9 +116,8 @@ def _rotation(camera: Camera, right: float, up: float, world: Vector) -> Vector:
     """The (3, 3) turn by a heading about the world's up and a pitch about the camera's right hand."""
     hand, _, view = camera.basis()
     pitch = math.asin(min(max(float(view @ world), -1.0), 1.0))
-    allowed = min(max(pitch + up, -STEEPEST), STEEPEST) - pitch
-    if abs(pitch) > STEEPEST:  # already steeper than we would go: only the way back is open
-        allowed = allowed if allowed * pitch < 0 else 0.0
+    # Where the camera is steeper already than we would go, only the way back is open.
+    allowed = min(max(pitch + up, min(-STEEPEST, pitch)), max(STEEPEST, pitch)) - pitch
     return _about(world, -right) @ _about(hand, allowed)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from tracer.compilation import warm_up
 from tracer.renderer import Renderer, Settings
 from tracer.scene.load import load_scene
 from tracer.scene.model import Progress, Scene, SceneError
@@ -55,6 +56,7 @@ def open_scene(path: Path, settings: Settings, ready: Callable[[], bool], progre
     while not ready():
         progress(f"{path.name}: waiting for the kernels", 1.0)
         time.sleep(0.02)
+    warm_up(progress, len(scene.lights))  # many lights need wider words, and kernels for them
     renderer = Renderer(scene, settings, progress)
     return Opened(scene, renderer, time.perf_counter() - started)
 

@@ -67,7 +67,7 @@ def _hex(code: str) -> Color:
 
 
 BACKGROUND = _hex("16181D")
-GREY = _hex("8A8F98")
+GREY = _hex("5C616C")
 
 OCCLUSION_COLORS: dict[OcclusionMode, Color] = {
     OcclusionMode.INIT: GREY,

@@ -1,0 +1,152 @@
+"""What the viewer's tests share: a scene of numbers, frames of it, and a renderer that traces nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from threading import Event
+
+import numpy as np
+import pytest
+
+from tracer.frame import Frame, Settings
+from tracer.scene.animation import Animation
+from tracer.scene.model import (
+    Camera,
+    Cancelled,
+    Light,
+    Material,
+    Quadrics,
+    Scene,
+    SceneObject,
+    Triangles,
+    empty_quadrics,
+)
+
+TINY_SCENE = """
+b 0.3 0.4 0.5
+v
+from 0 1.5 6
+at 0 0.5 0
+up 0 1 0
+angle 45
+hither 0.01
+resolution 64 48
+l 3 5 4  0.6 0.6 0.6
+l -4 4 3  0.4 0.4 0.4
+f 0.8 0.3 0.2  0.7 0.2 10 0 1
+s 0 0.8 0 0.8
+f 0.6 0.6 0.6  0.8 0 1 0 1
+p 4
+-4 0 -4
+-4 0 4
+4 0 4
+4 0 -4
+a 0 4 20
+k mover {
+transl 3
+-1 2 0.5 1 0 0 0
+0 2 0.5 1 0 0 0
+6 -2 0.5 1 0 0 0
+rot 3
+-1 0 0 1 0
+0 0 0 1 0
+6 0 0 1 0
+}
+"""
+
+
+@pytest.fixture(autouse=True)
+def own_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A configuration folder of each test's own."""
+    folder = tmp_path / "config"
+    monkeypatch.setenv("SHADOWCULL_CONFIG_DIR", str(folder))
+    return folder
+
+
+@pytest.fixture
+def tiny_scene_file(tmp_path: Path) -> Path:
+    """A sphere on a square with two lights, 20 frames long, as an AFF file."""
+    path = tmp_path / "tiny.aff"
+    path.write_text(TINY_SCENE)
+    return path
+
+
+def triangles(count: int) -> Triangles:
+    zero = np.zeros(count, np.int32)
+    corners = np.zeros((count, 3, 3), np.float32)
+    return Triangles(corners, corners.copy(), np.zeros((count, 3, 2), np.float32), zero, zero - 1)
+
+
+def make_scene(lights: int = 3, frames: int = 11, path: str = "scene.aff") -> Scene:
+    """Four static triangles and a sphere, two triangles that move; time runs from 0 to 10 seconds."""
+    sphere = Quadrics(np.zeros(1, np.int32), np.eye(4)[None, :3], np.ones((1, 2), np.float32),
+                      np.zeros(1, np.bool_), np.zeros(1, np.int32))  # fmt: skip
+    return Scene(
+        path=Path(path),
+        objects=(
+            SceneObject("static", triangles(4), sphere),
+            SceneObject("train", triangles(2), empty_quadrics(), (np.eye(4),)),
+        ),
+        materials=(Material("brick"),),
+        textures=(),
+        lights=tuple(Light(f"light {i}", (0.0, 5.0, float(i))) for i in range(lights)),
+        camera=Camera((0.0, 1.0, 5.0), (0.0, 0.0, -1.0)),
+        animation=Animation.empty(),
+        time_range=(0.0, 10.0),
+        frames=frames,
+    )
+
+
+def make_frame(settings: Settings | None = None, time: float = 0.0, camera: Camera | None = None) -> Frame:
+    """A frame whose columns are the scene's seven primitives and one miss; two units away, facing us."""
+    settings = settings or Settings(width=16, height=8)
+    width, height = settings.width, settings.height
+    primitive = np.broadcast_to((np.arange(width) * 8 // width).astype(np.int32), (height, width)).copy()
+    primitive[primitive == 7] = -1
+    hit = primitive >= 0
+    counts = np.bincount(primitive[hit], minlength=7).astype(np.int32)
+    #        occlusion   light 0    light 1    light 2
+    modes = [0, 1, 2 | 1 << 2 | 2 << 4, 2 | 2 << 2 | 3 << 4 | 1 << 6, 3, 3, 2 | 3 << 2]
+    normal = np.zeros((height, width, 3), np.float32)
+    normal[hit] = (0, 0, 1)
+    return Frame(
+        time=time,
+        camera=camera or Camera((0.0, 1.0, 5.0), (0.0, 0.0, -1.0)),
+        settings=settings,
+        color=np.full((height, width, 3), 0.5, np.float32),
+        depth=np.where(hit, np.float32(2.0), np.float32(np.inf)),
+        primitive=primitive,
+        normal=normal,
+        modes=np.array(modes, np.uint32),
+        pixel_count=counts,
+        highest_count=np.where(np.arange(7) == 3, counts * 2, 0).astype(np.int32),
+        lights=3,
+    )
+
+
+class FakeRenderer:
+    """Delivers `make_frame` when `go` is set; says what it was asked, and stops when told to."""
+
+    def __init__(self) -> None:
+        self.settings = Settings()
+        self.asked: list[tuple[float, Settings]] = []
+        self.cancelled: list[float] = []
+        self.resets = 0
+        self.started = Event()
+        self.go = Event()
+        self.go.set()
+        self.failing: Exception | None = None
+
+    def reset_modes(self) -> None:
+        self.resets += 1
+
+    def render(self, time: float = 0.0, camera: Camera | None = None, cancel=None) -> Frame:
+        self.asked.append((time, self.settings))
+        self.started.set()
+        while not self.go.wait(0.002):
+            if cancel is not None and cancel():
+                self.cancelled.append(time)
+                raise Cancelled()
+        if self.failing is not None:
+            raise self.failing
+        return make_frame(self.settings, time, camera)

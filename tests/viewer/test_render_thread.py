@@ -1,0 +1,158 @@
+"""The newest request wins, what is worthless is cancelled, and nothing blocks or dies."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import pytest
+from tests.viewer.conftest import FakeRenderer
+
+from tracer.frame import Settings
+from tracer.scene.model import Camera
+from viewer.render_thread import RenderRequest, RenderThread, Traced
+
+CAMERA = Camera((0, 0, 5), (0, 0, -1))
+
+
+def request(at: float, **kinds) -> RenderRequest:
+    return RenderRequest(at, CAMERA, Settings(width=8, height=8), **kinds)
+
+
+@pytest.fixture
+def thread():
+    thread = RenderThread()
+    yield thread
+    assert thread.close(5.0)
+
+
+def taken(thread: RenderThread, timeout: float = 5.0) -> Traced:
+    end = time.monotonic() + timeout
+    while time.monotonic() < end:
+        if (traced := thread.take()) is not None:
+            return traced
+        time.sleep(0.002)
+    raise AssertionError("no frame came")
+
+
+def idle(thread: RenderThread, timeout: float = 5.0) -> None:
+    end = time.monotonic() + timeout
+    while thread.busy and time.monotonic() < end:
+        time.sleep(0.002)
+    assert not thread.busy
+
+
+def test_a_request_becomes_a_frame_once(thread):
+    thread.use(FakeRenderer())
+    thread.submit(request(1.0))
+    assert taken(thread).frame.time == 1.0
+    assert thread.take() is None
+
+
+def test_of_those_that_wait_only_the_newest_is_traced(thread):
+    renderer = FakeRenderer()
+    renderer.go.clear()
+    thread.use(renderer)
+    thread.submit(request(0.0, interactive=True))
+    assert renderer.started.wait(5.0)
+    for at in (1.0, 2.0, 3.0):
+        thread.submit(request(at, interactive=True))
+    renderer.go.set()
+    idle(thread)
+    assert [at for at, _ in renderer.asked] == [0.0, 3.0]
+
+
+def test_a_fine_frame_is_cut_short_by_a_newer_request(thread):
+    renderer = FakeRenderer()
+    renderer.go.clear()
+    thread.use(renderer)
+    thread.submit(request(0.0))
+    assert renderer.started.wait(5.0)
+    thread.submit(request(1.0, interactive=True))
+    end = time.monotonic() + 5.0
+    while not renderer.cancelled and time.monotonic() < end:
+        time.sleep(0.002)
+    renderer.go.set()
+    assert taken(thread).frame.time == 1.0
+    assert renderer.cancelled == [0.0]
+
+
+def test_a_coarse_frame_in_motion_is_let_finish(thread):
+    renderer = FakeRenderer()
+    renderer.go.clear()
+    thread.use(renderer)
+    thread.submit(request(0.0, interactive=True))
+    assert renderer.started.wait(5.0)
+    thread.submit(request(1.0, interactive=True))
+    time.sleep(0.05)
+    assert renderer.cancelled == []
+    renderer.go.set()
+    idle(thread)
+    assert [at for at, _ in renderer.asked] == [0.0, 1.0]
+
+
+def test_the_same_request_again_does_not_cancel_itself():
+    running = request(0.0)
+    assert not request(0.0).supersedes(running)
+    coarse = request(0.0, interactive=True)
+    assert not replace(coarse, settings=Settings(width=4, height=4)).supersedes(coarse)
+    assert replace(coarse, settings=replace(coarse.settings, method="none")).supersedes(coarse)
+
+
+def test_errors_are_one_line_and_the_thread_lives_on(thread):
+    renderer = FakeRenderer()
+    renderer.failing = RuntimeError("first line\nsecond line")
+    thread.use(renderer)
+    thread.submit(request(0.0))
+    idle(thread)
+    error = thread.take_error()
+    assert error is not None and "first line second line" in error and "\n" not in error
+    assert thread.take_error() is None
+    renderer.failing = None
+    thread.submit(request(1.0))
+    assert taken(thread).frame.time == 1.0
+
+
+def test_a_frame_of_a_scene_that_was_left_is_not_delivered(thread):
+    old, new = FakeRenderer(), FakeRenderer()
+    old.go.clear()
+    thread.use(old)
+    thread.submit(request(0.0))
+    assert old.started.wait(5.0)
+    thread.use(new)
+    old.go.set()
+    idle(thread)
+    assert thread.take() is None
+    thread.submit(request(5.0))
+    assert taken(thread).frame.time == 5.0
+
+
+def test_modes_are_reset_on_the_threads_own_time(thread):
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    thread.reset_modes()
+    assert renderer.resets == 0
+    thread.submit(request(0.0))
+    taken(thread)
+    assert renderer.resets == 1
+
+
+def test_nothing_is_traced_without_a_scene_and_nothing_waits_for_it(thread):
+    thread.submit(request(0.0))
+    assert not thread.busy
+    thread.use(FakeRenderer())
+    assert thread.take() is None
+
+
+def test_closing_cuts_a_trace_short():
+    thread, renderer = RenderThread(), FakeRenderer()
+    renderer.go.clear()
+    thread.use(renderer)
+    thread.submit(request(0.0))
+    assert renderer.started.wait(5.0)
+    began = time.monotonic()
+    assert thread.close(5.0)
+    assert time.monotonic() - began < 1.0
+    assert renderer.cancelled == [0.0]
+    thread.submit(request(1.0))
+    assert not thread.busy

@@ -1,0 +1,136 @@
+"""Legends count what the frame holds; colours can be told apart; picks tell what is there."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.viewer.conftest import make_frame, make_scene
+from tracer.culling.modes import OcclusionMode, ShadowMode
+from viewer import views
+from viewer.history import SERIES, History
+from viewer.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
+from viewer.resolution import ResolutionControl, divided
+
+
+def test_the_occlusion_legend_counts_primitives_and_pixels():
+    rows = {r.name: r for r in views.occlusion_legend(make_frame())}
+    assert {name: r.primitives for name, r in rows.items()} == {
+        "INIT": 1, "PARTIALLY_OCCLUDED": 1, "FULLY_RENDERED": 3, "DYNAMIC": 2,
+    }  # fmt: skip
+    assert rows["FULLY_RENDERED"].pixels == 3 * 16
+    assert sum(r.pixel_share for r in rows.values()) == pytest.approx(1.0)
+    assert sum(r.primitive_share for r in rows.values()) == pytest.approx(1.0)
+
+
+def test_the_shadow_legend_counts_what_moves_apart():
+    rows = {r.name: r.primitives for r in views.shadow_legend(make_frame(), 0)}
+    assert rows == {"INIT": 2, "FULL_SHADOW": 1, "NON_SHADOW": 1, "PARTIAL_SHADOW": 1, "DYNAMIC": 2}
+    assert views.shadow_legend(make_frame(), 31) == []
+    assert views.shadow_legend(make_frame(), 15) == []
+
+
+def test_wide_words_reach_light_30():
+    frame = make_frame()
+    words = frame.modes.astype(np.uint64) | (np.uint64(2) << np.uint64(62))
+    frame = replace(frame, modes=words)
+    rows = {r.name: r.primitives for r in views.shadow_legend(frame, 30)}
+    assert rows["NON_SHADOW"] == 5
+    assert shadow_mode_of(frame, 0, 30) is ShadowMode.NON_SHADOW
+    assert shadow_mode_of(frame, 0, 31) is None
+
+
+def dichromat(color: views.Color) -> np.ndarray:
+    """What is left of a colour without red-green vision (Vienot et al. 1999, deuteranopia, roughly linear)."""
+    linear = np.power(color, 2.2)
+    lms = np.array([[17.88, 43.52, 4.12], [3.46, 27.16, 3.87], [0.03, 0.18, 1.47]]) @ linear
+    lms[1] = 0.4942 * lms[0] + 1.2483 * lms[2]
+    back = np.linalg.inv([[17.88, 43.52, 4.12], [3.46, 27.16, 3.87], [0.03, 0.18, 1.47]]) @ lms
+    return np.power(np.clip(back, 0.0, 1.0), 1 / 2.2)
+
+
+@pytest.mark.parametrize("palette", [views.OCCLUSION_COLORS, views.SHADOW_COLORS])
+def test_mode_colours_can_be_told_apart_without_red_green_vision(palette):
+    for a, b in itertools.combinations(palette.values(), 2):
+        assert np.linalg.norm(dichromat(a) - dichromat(b)) > 0.15
+
+
+def test_the_colour_map_grows_lighter_all_the_way():
+    grey = views.color_map() @ np.array([0.2126, 0.7152, 0.0722])
+    assert (np.diff(grey) > -1e-3).all() and grey[-1] - grey[0] > 0.6
+
+
+def test_the_depth_range_ignores_misses():
+    assert views.depth_range(make_frame())[0] == pytest.approx(2.0)
+    empty = replace(make_frame(), depth=np.full((8, 16), np.inf, np.float32))
+    assert views.depth_range(empty) == (0.0, 1.0)
+
+
+def test_a_pick_tells_what_the_pixel_shows():
+    frame, scene = make_frame(), make_scene()
+    at = ((2 * 3 + 0.5) / 16, 0.5)  # the fourth primitive
+    found = pick(frame, scene, *at)
+    assert (found.primitive, found.kind, found.object_name, found.dynamic) == (3, "triangle", "static", False)
+    assert found.material is not None and found.material.name == "brick"
+    assert found.occlusion is OcclusionMode.FULLY_RENDERED
+    assert found.shadows == (ShadowMode.NON_SHADOW, ShadowMode.PARTIAL_SHADOW, ShadowMode.FULL_SHADOW)
+    assert (found.pixels, found.highest) == (16, 32)
+    assert math.dist(found.point, frame.camera.position) == pytest.approx(2.0)
+    assert pick(frame, scene, (2 * 4 + 0.5) / 16, 0.5).object_name == "train"
+    assert pick(frame, scene, (2 * 6 + 0.5) / 16, 0.5).kind == "sphere"
+    assert pick(frame, scene, 0.99, 0.5).primitive == -1
+
+
+def test_a_kept_pick_follows_its_primitives_modes():
+    frame = make_frame()
+    found = pick(frame, make_scene(), (2 * 3 + 0.5) / 16, 0.5)
+    later = make_frame()
+    later.modes[3] = 1
+    assert refreshed(found, later).occlusion is OcclusionMode.PARTIALLY_OCCLUDED
+    assert refreshed(found, later).point == found.point
+
+
+def test_points_outside_the_picture_are_clamped_and_misses_have_none():
+    frame = make_frame()
+    assert pixel_at(frame, -1.0, 7.0) == (0, 7)
+    assert point_at(frame, 0.99, 0.5) is None and extent_at(frame, 0.99, 0.5) is None
+    assert extent_at(frame, 0.1, 0.5) > 0.0
+
+
+def test_history_keeps_the_newest_in_order_and_contiguous():
+    history, frame = History(capacity=5), make_frame()
+    for i in range(13):
+        frame.statistics.shadow.due = i
+        history.add(frame, 0.001)
+        due = history.values("due")
+        assert list(due) == list(range(max(0, i - 4), i + 1))
+        assert due.flags.c_contiguous and due.dtype == np.float64
+    assert history.first == 8 and all(len(history.values(name)) == 5 for name in SERIES)
+    history.clear()
+    assert len(history) == 0 and len(history.values("due")) == 0
+
+
+def test_resolution_drops_until_the_frame_rate_holds_and_comes_back():
+    control = ResolutionControl()
+    control.observe(1.0, 1000 * 1000)  # a microsecond per pixel
+    assert control.choose(1000, 1000, 30.0) == 6
+    assert control.choose(100, 100, 30.0) == 1
+    assert control.choose(4000, 4000, 60.0) == 8
+
+
+def test_resolution_does_not_flutter():
+    control = ResolutionControl()
+    control.observe(1.0, 1000 * 1000)
+    control.choose(1000, 1000, 4.0)
+    assert control.divisor == 2
+    assert control.choose(1000, 1000, 1.1) == 2  # 1 would fit, but with nothing to spare
+    assert control.choose(1000, 1000, 0.5) == 1
+
+
+def test_divided_sizes_are_never_empty():
+    assert divided(3, 1, 8) == (1, 1)
+    assert divided(1000, 500, 3) == (333, 167)
