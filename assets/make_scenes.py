@@ -12,9 +12,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from generate import figures, icon, pictures, room, textures  # noqa: E402
-from generate.images import png, ppm  # noqa: E402
-from generate.mesh import Array  # noqa: E402
+from generate import figures, icon, pictures, room, textures
+from generate.images import png, ppm
+from generate.mesh import Array
 
 TEXTURES: dict[str, Callable[[], Array]] = {
     "parquet": textures.parquet,

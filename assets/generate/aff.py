@@ -75,7 +75,12 @@ class Model:
         self.quadrics.setdefault(material, []).append(statement)
 
     def place(
-        self, model: Model, at: Point = (0, 0, 0), turn: float = 0.0, scale: float = 1.0, material: Material | None = None
+        self,
+        model: Model,
+        at: Point = (0, 0, 0),
+        turn: float = 0.0,
+        scale: float = 1.0,
+        material: Material | None = None,
     ) -> None:
         """Holds another model: scaled, turned about y by degrees, then moved; in a material, if it has none itself."""
         transform = f"xs {numbers((scale,) * 3, 5)}  0 1 0 {number(turn)}  {numbers(at, 5)}"
@@ -121,7 +126,7 @@ def mesh_text(mesh: Mesh, texture: str | None, decimals: int = 4) -> str:
     if texture is not None:
         uvs = mesh.uvs.copy()
         uvs[..., 1] = 1.0 - uvs[..., 1]  # an AFF file counts v from the top of the image
-        coordinates, t = indexed(uvs, 4)
+        coordinates, t = indexed(uvs, 3)
         lines += [f"texturecoords {len(coordinates)} ../textures/{texture}.ppm", *coordinates]
         columns.append(t)
     table = np.concatenate(columns, axis=1)[keep]

@@ -12,7 +12,17 @@ from generate.images import generator
 from generate.mesh import Mesh, join
 from generate.shapes import box, grid, lathe, pillow, rounded_box, sheet, tube, turned
 
-BALUSTER = [(0.6, 0.0), (0.75, 0.03), (0.55, 0.08), (0.7, 0.2), (1.0, 0.45), (1.1, 0.62), (0.75, 0.72), (1.0, 0.76), (1.0, 1.0)]
+BALUSTER = [
+    (0.6, 0.0),
+    (0.75, 0.03),
+    (0.55, 0.08),
+    (0.7, 0.2),
+    (1.0, 0.45),
+    (1.1, 0.62),
+    (0.75, 0.72),
+    (1.0, 0.76),
+    (1.0, 1.0),
+]
 
 
 def leg(height: float, radius: float, segments: int = 12, samples: int = 14) -> Mesh:
@@ -22,7 +32,7 @@ def leg(height: float, radius: float, segments: int = 12, samples: int = 14) -> 
 
 def armchair() -> Model:
     model = Model("armchair")
-    model.add(m.CLOTH, *[part.mapped("y", 5.0) for part in (
+    model.add(m.CLOTH, *[part.mapped("y", 3.2) for part in (
         rounded_box((-0.36, 0.17, -0.36), (0.36, 0.33, 0.36), 0.05, 2),
         pillow((-0.30, 0.28, -0.27), (0.30, 0.47, 0.40), 0.42, 8, 20),
         rounded_box((-0.44, 0.17, -0.36), (-0.29, 0.60, 0.36), 0.07, 2),
@@ -38,7 +48,7 @@ def armchair() -> Model:
             tube([(0.40, 0.80, 0), (0.41, 0.70, 0.10), (0.40, 0.45, 0.13)], [0.06, 0.07, 0.05], 10),
         ]
     )
-    model.add(m.CLOTH, back.mapped("y", 5.0).turned("x", -12).moved(0, 0.22, -0.32))
+    model.add(m.CLOTH, back.mapped("y", 3.2).turned("x", -12).moved(0, 0.22, -0.32))
     for x in (-0.33, 0.33):
         for z in (-0.30, 0.30):
             model.add(m.MAHOGANY, leg(0.20, 0.032).moved(x, 0, z))
@@ -63,8 +73,12 @@ def wooden_chair() -> Model:
     for k in range(7):
         x = -0.18 + 0.06 * k
         radius = 0.015 if k in (0, 6) else 0.008
-        parts.append(tube([(x, 0.46, -0.19), (x * 1.04, 0.70, -0.20 + lean * 0.4), (x * 1.06, 0.93, -0.20 + lean)], radius, 8))
-    top = [(x, 0.95 + 0.03 * math.cos(x * 7), -0.20 + lean - 0.02 * math.cos(x * 7)) for x in np.linspace(-0.22, 0.22, 9)]
+        parts.append(
+            tube([(x, 0.46, -0.19), (x * 1.04, 0.70, -0.20 + lean * 0.4), (x * 1.06, 0.93, -0.20 + lean)], radius, 8)
+        )
+    top = [
+        (x, 0.95 + 0.03 * math.cos(x * 7), -0.20 + lean - 0.02 * math.cos(x * 7)) for x in np.linspace(-0.22, 0.22, 9)
+    ]
     parts.append(tube(top, 0.024, 8))
     model.add(m.OAK, *parts)
     return model
@@ -93,7 +107,8 @@ def round_table() -> Model:
     model = Model("round_table")
     top = lathe([(0, 0.465), (0.44, 0.465), (0.52, 0.475), (0.535, 0.485), (0.53, 0.497), (0.515, 0.50), (0.40, 0.50),
                  (0.20, 0.50), (0, 0.50)], 40)  # fmt: skip
-    pillar = turned([(0.05, 0.10), (0.075, 0.13), (0.045, 0.17), (0.04, 0.22), (0.07, 0.30), (0.06, 0.36), (0.035, 0.40),
+    pillar = turned([(0.05, 0.10), (0.075, 0.13), (0.045, 0.17), (0.04, 0.22), (0.07, 0.30), (0.06, 0.36),
+                     (0.035, 0.40),
                      (0.06, 0.43), (0.16, 0.466)], 28, 20)  # fmt: skip
     model.add(m.MAHOGANY, top.mapped("x", 0.9), pillar.mapped("y", 1.2))
     for k in range(3):
@@ -113,10 +128,12 @@ def sideboard() -> Model:
             model.add(m.WALNUT, leg(0.15, 0.035).moved(x, 0, z))
     for k in range(4):
         x = -0.79 + 0.40 * k
-        frame = rounded_box((x, 0.19, 0.43), (x + 0.38, 0.66, 0.458), 0.01, 2)
-        panel = rounded_box((x + 0.06, 0.25, 0.45), (x + 0.32, 0.60, 0.468), 0.012, 2)
-        drawer = rounded_box((x, 0.68, 0.43), (x + 0.38, 0.84, 0.458), 0.01, 2)
-        model.add(m.WALNUT, frame.mapped("y", 1.0, (0.2, 0)), panel.mapped("y", 1.0, (0.5, 0.4)), drawer.mapped("x", 1.0))
+        frame = rounded_box((x, 0.19, 0.43), (x + 0.38, 0.66, 0.458), 0.01)
+        panel = rounded_box((x + 0.06, 0.25, 0.45), (x + 0.32, 0.60, 0.468), 0.012)
+        drawer = rounded_box((x, 0.68, 0.43), (x + 0.38, 0.84, 0.458), 0.01)
+        model.add(
+            m.WALNUT, frame.mapped("y", 1.0, (0.2, 0)), panel.mapped("y", 1.0, (0.5, 0.4)), drawer.mapped("x", 1.0)
+        )
         model.sphere(m.BRASS, (x + (0.34 if k % 2 == 0 else 0.04), 0.44, 0.475), 0.014)
         model.sphere(m.BRASS, (x + 0.19, 0.76, 0.475), 0.014)
     return model
@@ -125,8 +142,8 @@ def sideboard() -> Model:
 def book(width: float, height: float, depth: float, spine: int) -> tuple[Mesh, Mesh]:
     """Cover and pages of a standing book: left edge at x = 0, its back at z = 0, towards +z."""
     u0, u1 = spine / 32 + 0.002, (spine + 1) / 32 - 0.002
-    points = np.empty((2, 5, 3))
-    s = np.linspace(0, 1, 5)
+    points = np.empty((2, 4, 3))
+    s = np.linspace(0, 1, 4)
     points[..., 0] = s * width
     points[..., 1] = np.array([[0.0], [height]])
     points[..., 2] = 0.22 * width * (1 - (2 * s - 1) ** 2)
@@ -191,7 +208,9 @@ def bookcase(name: str, width: float, shelves: int, seed: int, wood: Material = 
         if k < shelves:
             row_of_books(model, -inner + 0.006, inner - 0.006, y, depth - 0.07, gap - 0.055, seed + k)
     model.add(wood, box((-inner, 0, 0.02), (inner, 0.076, depth - 0.02)).mapped("x", 1.0))
-    crown = rounded_box((-width / 2 - 0.03, height - 0.005, 0), (width / 2 + 0.03, height + 0.05, depth + 0.03), 0.02, 2)
+    crown = rounded_box(
+        (-width / 2 - 0.03, height - 0.005, 0), (width / 2 + 0.03, height + 0.05, depth + 0.03), 0.02, 2
+    )
     model.add(wood, crown.mapped("x", 1.0, (0.7, 0.1)))
     return model
 

@@ -50,7 +50,7 @@ def shell() -> Model:
         model.add(m.PAINT, on_wall(patch(0, 0, length, RAIL, 0.32), wall))
         pieces = [(0.0, RAIL, length, HEIGHT)]
         if wall == "north":
-            left, bottom, right, top = WINDOW
+            left, _, right, top = WINDOW
             pieces = [(0, RAIL, left, HEIGHT), (right, RAIL, length, HEIGHT), (left, top, right, HEIGHT)]
         papered = join([patch(*piece) for piece in pieces])
         model.add(m.WALLPAPER, on_wall(papered.mapped("y", 1 / 0.8), wall))
@@ -101,7 +101,12 @@ def window() -> Model:
     for i, ((x0, y0), (x1, y1)) in enumerate(bars):
         inset = 0.0008 * i  # crossing bars do not share a plane
         model.add(m.TRIM, rounded_box((x0, y0, depth[0] + inset), (x1, y1, depth[1] - inset), 0.006))
-    model.add(m.MARBLE, rounded_box((left - 0.08, bottom - 0.035, -0.08), (right + 0.08, bottom + 0.004, 0.10), 0.012, 2).mapped("x", 1.5))
+    model.add(
+        m.MARBLE,
+        rounded_box((left - 0.08, bottom - 0.035, -0.08), (right + 0.08, bottom + 0.004, 0.10), 0.012, 2).mapped(
+            "x", 1.5
+        ),
+    )
     casing = [
         ((left - 0.09, bottom, 0), (left, top + 0.09, 0.028)),
         ((right, bottom, 0), (right + 0.09, top + 0.09, 0.028)),
@@ -165,10 +170,16 @@ def door() -> Model:
     model = Model("door")
     model.add(m.MAHOGANY, box((0, 0, 0), (0.9, 2.05, 0.035)).mapped("y", 1.2))
     for x in (0.10, 0.50):
-        for low, high in ((0.18, 0.85), (1.00, 1.90)):
-            model.add(m.MAHOGANY, rounded_box((x, low, 0.03), (x + 0.30, high, 0.052), 0.015, 2).mapped("y", 1.2, (0.3, 0)))
-    for piece in (((-0.10, 0, 0), (0, 2.15, 0.05)), ((0.9, 0, 0), (1.0, 2.15, 0.05)), ((0, 2.05, 0), (0.9, 2.15, 0.05))):
-        model.add(m.TRIM, rounded_box(*piece, 0.01))
+        for foot, head in ((0.18, 0.85), (1.00, 1.90)):
+            model.add(
+                m.MAHOGANY, rounded_box((x, foot, 0.03), (x + 0.30, head, 0.052), 0.015, 2).mapped("y", 1.2, (0.3, 0))
+            )
+    for low, high in (
+        ((-0.10, 0, 0), (0, 2.15, 0.05)),
+        ((0.9, 0, 0), (1.0, 2.15, 0.05)),
+        ((0, 2.05, 0), (0.9, 2.15, 0.05)),
+    ):
+        model.add(m.TRIM, rounded_box(low, high, 0.01))
     knob = lathe([(0, 0), (0.028, 0), (0.028, 0.006), (0.010, 0.012), (0.010, 0.03)], 16)
     model.add(m.BRASS, knob.turned("x", 90).moved(0.83, 1.02, 0.035))
     model.sphere(m.BRASS, (0.83, 1.02, 0.082), 0.027)
@@ -202,14 +213,20 @@ def fireplace() -> Model:
             rounded_box((x - 0.105, 0.13, front - 0.02), (x + 0.105, 0.99, front + 0.075), 0.012, 2),
             rounded_box((x - 0.125, 0.95, front - 0.02), (x + 0.125, 1.03, front + 0.10), 0.008),
         ]
-        marble += [tube([(x + dx, 0.17, front + 0.075), (x + dx, 0.91, front + 0.075)], 0.014, 8) for dx in (-0.06, 0, 0.06)]
+        marble += [
+            tube([(x + dx, 0.17, front + 0.075), (x + dx, 0.91, front + 0.075)], 0.014, 8) for dx in (-0.06, 0, 0.06)
+        ]
     marble += [
         rounded_box((-0.66, top + 0.02, front - 0.02), (0.66, 1.0, front + 0.062), 0.01, 2),
         rounded_box((-0.80, 1.03, front - 0.02), (0.80, 1.075, front + 0.16), 0.015, 2),
         rounded_box((-0.86, 1.07, front - 0.02), (0.86, 1.115, front + 0.21), 0.018, 2),
     ]
     model.add(m.MARBLE, *[piece.mapped("y", 1.4) for piece in marble])
-    for x, y, z, tilt, radius in ((-0.01, 0.11, 0.14, 4, 0.048), (0.03, 0.11, 0.26, -6, 0.043), (0.0, 0.185, 0.20, 14, 0.040)):
+    for x, y, z, tilt, radius in (
+        (-0.01, 0.11, 0.14, 4, 0.048),
+        (0.03, 0.11, 0.26, -6, 0.043),
+        (0.0, 0.185, 0.20, 14, 0.040),
+    ):
         dx, dz = 0.24 * math.cos(math.radians(tilt)), 0.24 * math.sin(math.radians(tilt))
         model.add(m.BARK, tube([(x - dx, y, z - dz), (x, y + 0.006, z), (x + dx, y, z + dz)], radius, 10))
     for x in (-0.2, 0.0, 0.2):

@@ -7,6 +7,7 @@ import zlib
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from generate.mesh import Array
 
@@ -60,7 +61,7 @@ def step(edge: float | Array, value: Array, softness: float) -> Array:
     return t * t * (3 - 2 * t)
 
 
-def paint(image: Array, mask: Array, colour: Colour | Array) -> Array:
+def paint(image: Array, mask: NDArray[np.floating], colour: Colour | Array) -> Array:
     """Colour laid over an image where the mask is 1."""
     return image + mask[..., None] * (np.asarray(colour) - image)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from generate.aff import Colour, Material
 
 AMBIENT = 0.30
+GLOBAL_AMBIENT = 1.3  # the scene's `am`, which scales every ambient part
 
 
 def matte(name: str, colour: Colour, ambient: float = AMBIENT) -> Material:
@@ -30,13 +31,14 @@ def textured(name: str, texture: str, tint: Colour = (1, 1, 1), specular: float 
 
 def glowing(name: str, colour: Colour, texture: str | None = None) -> Material:
     """Shines by its ambient part alone: shadows and lights do not touch it."""
-    return Material(name, (0.0, 0.0, 0.0), colour, texture=texture)
+    r, g, b = (c / GLOBAL_AMBIENT for c in colour)
+    return Material(name, (0.0, 0.0, 0.0), (r, g, b), texture=texture)
 
 
 PARQUET = textured("parquet", "parquet", (0.95, 0.95, 0.95), 0.06, 12)
 WALLPAPER = textured("wallpaper", "wallpaper")
-PAINT = matte("painted panels", (0.86, 0.83, 0.75))
-TRIM = matte("painted trim", (0.90, 0.87, 0.80))
+PAINT = matte("painted panels", (0.76, 0.73, 0.66))
+TRIM = matte("painted trim", (0.84, 0.81, 0.74))
 CEILING = matte("ceiling", (0.88, 0.86, 0.81))
 BEAM = textured("beam", "wood", (0.85, 0.75, 0.65))
 BRICK = textured("brick", "brick", (0.95, 0.95, 0.95))
@@ -49,7 +51,7 @@ RUG = textured("rug", "rug")
 SPINES = textured("book spines", "spines", (1.1, 1.1, 1.1))
 PAGES = matte("pages", (0.88, 0.83, 0.70))
 CURTAIN = matte("curtain", (0.66, 0.24, 0.17), 0.34)
-GARDEN = glowing("garden", (0.95, 0.95, 0.95), "garden")
+GARDEN = glowing("garden", (1.0, 1.0, 1.0), "garden")
 SEASCAPE = textured("seascape", "seascape", (1.2, 1.2, 1.2))
 PARTITION = textured("partition", "partition")
 ECLIPSE = textured("eclipse", "eclipse")
@@ -67,14 +69,14 @@ IRON = glossy("iron", (0.10, 0.10, 0.11), 0.06, 8)
 CHROME = metal("chrome", (0.10, 0.10, 0.11), (0.72, 0.73, 0.75), 50)
 
 IVORY = glossy("boxwood", (0.84, 0.72, 0.50), 0.06, 25)
-EBONY = glossy("ebony", (0.13, 0.085, 0.065), 0.10, 25)
+EBONY = glossy("ebony", (0.15, 0.095, 0.07), 0.05, 25)
 LEATHER = matte("green leather", (0.10, 0.24, 0.16))
-SHADE = glowing("lamp shade", (0.96, 0.80, 0.52))
+SHADE = glowing("lamp shade", (0.98, 0.84, 0.58))
 BULB = glowing("bulb", (1.0, 0.96, 0.84))
 FLAME = glowing("flame", (1.0, 0.62, 0.14))
 EMBER = glowing("ember", (0.92, 0.28, 0.06))
 WAX = matte("wax", (0.92, 0.88, 0.76), 0.4)
-SOOT = matte("soot", (0.14, 0.10, 0.08))
+SOOT = matte("soot", (0.22, 0.15, 0.11))
 BARK = matte("log", (0.34, 0.22, 0.13))
 TERRACOTTA = matte("terracotta", (0.66, 0.34, 0.20))
 SOIL = matte("soil", (0.17, 0.11, 0.07))

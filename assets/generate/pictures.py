@@ -12,7 +12,7 @@ from generate.mesh import Array
 SKY = (0.62, 0.76, 0.92)
 
 
-def garden(width: int = 576, height: int = 256) -> Array:
+def garden(width: int = 512, height: int = 230) -> Array:
     """The view from the window: sky, hills, a hedge, trees, a lawn with flower beds and a path."""
     x, y = coordinates(width, height)
     wide = x * 4
@@ -21,7 +21,8 @@ def garden(width: int = 576, height: int = 256) -> Array:
     sky = ramp(high, [(0.45, (0.86, 0.91, 0.95)), (0.9, SKY), (1.0, SKY)])
     image = paint(sky, step(0.55, cloud, 0.22) * (1 - step(0.90, high, 0.15)) * 0.85, (0.97, 0.97, 0.98))
     for base, height_, seed, colour in (
-        (0.50, 0.16, 211, (0.55, 0.66, 0.76)), (0.46, 0.12, 212, (0.42, 0.56, 0.56)), (0.42, 0.10, 213, (0.30, 0.47, 0.32)),
+        (0.50, 0.16, 211, (0.55, 0.66, 0.76)), (0.46, 0.12, 212, (0.42, 0.56, 0.56)),
+        (0.42, 0.10, 213, (0.30, 0.47, 0.32)),
     ):  # fmt: skip
         ridge = base + height_ * (clouds(wide * 0.9, 0 * y, (4, 1), seed, 4) - 0.35)
         image = paint(image, 1 - step(ridge, high, 0.008), colour)
@@ -122,7 +123,9 @@ def eclipse(width: int = 224, height: int = 288) -> Array:
     """A ball, a light and the shadow between them."""
     x, y = coordinates(width, height)
     py = y * height / width
-    image = ramp(y, [(0, (0.86, 0.55, 0.24)), (0.66, (0.95, 0.80, 0.52)), (0.70, (0.55, 0.38, 0.26)), (1, (0.33, 0.20, 0.16))])
+    image = ramp(
+        y, [(0, (0.86, 0.55, 0.24)), (0.66, (0.95, 0.80, 0.52)), (0.70, (0.55, 0.38, 0.26)), (1, (0.33, 0.20, 0.16))]
+    )
     sun = np.hypot(x - 0.25, py - 0.26)
     for k in range(6, 0, -1):
         image = paint(image, 0.35 * (1 - step(0.085 + 0.05 * k, sun, 0.006)), (0.99, 0.90, 0.62))
@@ -132,7 +135,9 @@ def eclipse(width: int = 224, height: int = 288) -> Array:
     ball = np.hypot(x - 0.60, py - 0.80)
     height_ = np.sqrt(np.clip(1 - (ball / 0.235) ** 2, 0, 1))
     lit = ((0.60 - x) * 0.55 + (0.80 - py) * 0.70) / 0.235 * 0.9 + 0.35 * height_
-    shade = ramp(lit, [(-0.2, (0.10, 0.05, 0.12)), (0.2, (0.40, 0.10, 0.16)), (0.9, (0.93, 0.42, 0.25)), (1.3, (1, 0.8, 0.6))])
+    shade = ramp(
+        lit, [(-0.2, (0.10, 0.05, 0.12)), (0.2, (0.40, 0.10, 0.16)), (0.9, (0.93, 0.42, 0.25)), (1.3, (1, 0.8, 0.6))]
+    )
     image = paint(image, 1 - step(0.235, ball, 0.006), shade)
     return image * (0.92 + 0.16 * clouds(x * 70, y * 90, (70, 90), 501, 2))[..., None]
 
@@ -144,7 +149,8 @@ def globe(width: int = 256, height: int = 128) -> Array:
     polar = np.abs(y - 0.5) * 2
     tone = land - 0.10 * step(0.75, polar, 0.3)
     image = ramp(tone, [(0.30, (0.20, 0.36, 0.45)), (0.51, (0.42, 0.58, 0.58)), (0.52, (0.45, 0.36, 0.18)),
-                        (0.54, (0.82, 0.74, 0.48)), (0.62, (0.62, 0.62, 0.32)), (0.75, (0.60, 0.42, 0.24))])  # fmt: skip
+                        (0.54, (0.82, 0.74, 0.48)), (0.62, (0.62, 0.62, 0.32)),
+                        (0.75, (0.60, 0.42, 0.24))])  # fmt: skip
     image = paint(image, step(0.86, polar + 0.2 * (land - 0.5), 0.04), (0.93, 0.92, 0.88))
     meridian = np.abs((x * 12) % 1 - 0.5) > 0.485
     parallel = np.abs((y * 6) % 1 - 0.5) > 0.47

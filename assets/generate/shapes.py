@@ -60,11 +60,13 @@ def rounded_box(low: Point, high: Point, radius: float, steps: int = 1) -> Mesh:
     side = lattice(points[::-1], normals[::-1], np.zeros((*shape, 2)))
     low_c, high_c = lo + radius, hi - radius
     width, depth = high_c[0] - low_c[0], high_c[2] - low_c[2]
+    if min(width, depth) < 1e-9:
+        return side
     caps = [
         grid((low_c[0], hi[1], high_c[2]), (width, 0, 0), (0, 0, -depth)),
         grid((low_c[0], lo[1], low_c[2]), (width, 0, 0), (0, 0, depth)),
     ]
-    return join([side, *caps]) if min(width, depth) > 1e-9 else side
+    return join([side, *caps])
 
 
 def lathe(profile: Sequence[tuple[float, float]], segments: int = 24, crease: float = 40.0) -> Mesh:

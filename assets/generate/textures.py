@@ -27,7 +27,9 @@ def parquet(size: int = 384) -> Array:
     stave = row * 2 * long + column + np.where(flat, 0, 4 * long * long)
     shift = generator(11).random_sample(8 * long * long)[stave]
     grain = clouds(along * 1.6 + shift * 64, across * 9 + shift * 512, (64, 512), 21, 4, 0.6)
-    rings = 0.5 + 0.5 * np.sin((across * 3 + 2.4 * noise(along * 0.7 + shift * 64, across * 2, (64, 64), 5)) * 6 + shift * 50)
+    rings = 0.5 + 0.5 * np.sin(
+        (across * 3 + 2.4 * noise(along * 0.7 + shift * 64, across * 2, (64, 64), 5)) * 6 + shift * 50
+    )
     tone = 0.16 + 0.42 * shift + 0.50 * (grain - 0.35) + 0.14 * rings
     image = ramp(tone, OAK)
     edge = np.minimum(np.minimum(across, 1 - across), np.minimum(along, long - along))
@@ -81,7 +83,9 @@ def brick(size: int = 256) -> Array:
     number = (np.floor(u).astype(int) % 4) + 4 * course
     tone = generator(91).random_sample(32)[number]
     rough = clouds(x * 24, y * 24, (24, 24), 95, 3)
-    image = ramp(0.6 * tone + 0.5 * rough, [(0, (0.34, 0.13, 0.09)), (0.5, (0.53, 0.24, 0.16)), (1, (0.70, 0.42, 0.30))])
+    image = ramp(
+        0.6 * tone + 0.5 * rough, [(0, (0.34, 0.13, 0.09)), (0.5, (0.53, 0.24, 0.16)), (1, (0.70, 0.42, 0.30))]
+    )
     along, across = u % 1, (y * 8) % 1
     edge = np.minimum(np.minimum(along, 1 - along) * 2.2, np.minimum(across, 1 - across))
     joint = 1 - step(0.075 + 0.03 * (rough - 0.5), edge, 0.05)
@@ -95,11 +99,11 @@ def cloth(size: int = 128) -> Array:
     diamond = step(0.0, a * b, 0.6)
     weave = clouds(x * 64, y * 64, (64, 64), 101, 2)
     image = ramp(0.75 * diamond + 0.25 * weave, [(0, (0.42, 0.09, 0.08)), (1, (0.57, 0.16, 0.12))])
-    dot = 1 - step(0.12, np.hypot(((x * 8) % 1) - 0.5, ((y * 8) % 1) - 0.5), 0.1)
-    return paint(image, dot, (0.80, 0.62, 0.32))
+    dot = 1 - step(0.15, np.hypot(((x * 8) % 1) - 0.5, ((y * 8) % 1) - 0.5), 0.16)
+    return paint(image, 0.7 * dot, (0.74, 0.50, 0.27))
 
 
-def rug(width: int = 432, height: int = 320) -> Array:
+def rug(width: int = 384, height: int = 288) -> Array:
     """A carpet: borders within borders, and a medallion; symmetric both ways."""
     x, y = coordinates(width, height)
     half_x, half_y = 1.35, 1.0
@@ -125,15 +129,15 @@ def rug(width: int = 432, height: int = 320) -> Array:
     for size, colour in ((0.36, gold), (0.34, blue), (0.22, cream), (0.20, red), (0.09, gold)):
         wave = 0.02 * np.cos(12 * np.arctan2(half_y - 0.24 - py, half_x - 0.24 - px))
         image = paint(image, 1 - step(size + wave, corner, soft), colour)
-    for start, end, colour in (
-        (0.0, 0.245, gold), (0.0, 0.235, blue), (0.0, 0.085, cream), (0.0, 0.075, red), (0.0, 0.03, cream),
+    for width_, colour in (
+        (0.245, gold), (0.235, blue), (0.085, cream), (0.075, red), (0.03, cream),
     ):  # fmt: skip
-        image = paint(image, step(start, inset, soft) * (1 - step(end, inset, soft)), colour)
+        image = paint(image, 1 - step(width_, inset, soft), colour)
     run = np.where(half_x - px < half_y - py, py, px)
-    wave = np.sin(run * 2 * math.pi * 5)
-    stem = (1 - step(0.010, np.abs(inset - 0.16 - 0.030 * wave), 0.010)) * step(0.09, inset, 0.01)
+    vine = np.sin(run * 2 * math.pi * 5)
+    stem = (1 - step(0.010, np.abs(inset - 0.16 - 0.030 * vine), 0.010)) * step(0.09, inset, 0.01)
     image = paint(image, stem, gold)
-    flower = np.hypot((run * 10 % 1 - 0.5) / 10, inset - 0.16 - 0.030 * wave)
+    flower = np.hypot((run * 10 % 1 - 0.5) / 10, inset - 0.16 - 0.030 * vine)
     image = paint(image, (1 - step(0.026, flower, 0.01)) * step(0.09, inset, 0.01), cream)
     image = paint(image, (1 - step(0.011, flower, 0.008)) * step(0.09, inset, 0.01), red)
     image = paint(image, (1 - step(0.012, np.abs((run * 12) % 1 - 0.5), 0.4)) * (1 - step(0.068, inset, 0.01))
@@ -168,7 +172,9 @@ def spines(width: int = 512, height: int = 192, count: int = 32) -> Array:
             label = step(top, y, 0.01) * (1 - step(bottom, y, 0.01)) * (1 - step(0.40, np.abs(u - 0.5), 0.05))
             dark = random.random_sample() < 0.5
             picture = paint(picture, label, cover * 0.45 if dark else (0.88, 0.82, 0.66))
-            words = random.random_sample((height // 3 + 1, 8))[(np.arange(height) // 3)[:, None], (u * 8).astype(int) % 8]
+            words = random.random_sample((height // 3 + 1, 8))[
+                (np.arange(height) // 3)[:, None], (u * 8).astype(int) % 8
+            ]
             lines = label * (words > 0.45) * (np.abs(u - 0.5) < 0.30) * (((y * height // 3).astype(int)) % 2)
             picture = paint(picture, lines, gold if dark else (0.2, 0.12, 0.08))
         round_back = 0.62 + 0.38 * np.sqrt(np.clip(1 - (2 * u - 1) ** 2, 0, 1))

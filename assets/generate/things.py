@@ -1,4 +1,4 @@
-"""Things that stand about: lamps, glasses, fruit, a globe, a plant, a clock.  Each at the origin, upwards along y."""
+"""Things that stand about: glasses, fruit, a globe, a plant, a clock.  Each at the origin, upwards along y."""
 
 from __future__ import annotations
 
@@ -13,58 +13,6 @@ from generate.mesh import Mesh, join
 from generate.shapes import box, curve, grid, lathe, rounded_box, sheet, thinned, tube, turned
 
 
-def desk_lamp() -> Model:
-    """0.46 m high, its open shade a cone; the light belongs inside it, at y = 0.37."""
-    model = Model("desk_lamp")
-    base = turned([(0, 0.0), (0.085, 0.0), (0.09, 0.012), (0.05, 0.03), (0.018, 0.05), (0.022, 0.09), (0.034, 0.13),
-                   (0.022, 0.19), (0.012, 0.25), (0.012, 0.30)], 36, 20)  # fmt: skip
-    model.add(m.BRASS, base)
-    model.cone(m.SHADE, (0, 0.30, 0), 0.145, (0, 0.46, 0), 0.075)
-    for k in range(3):
-        a = 2 * math.pi * k / 3
-        spoke = [(0.01 * math.cos(a), 0.298, 0.01 * math.sin(a)), (0.145 * math.cos(a), 0.302, 0.145 * math.sin(a))]
-        model.add(m.BRASS, tube(spoke, 0.0018, 5))
-    model.sphere(m.BULB, (0, 0.315, 0), 0.014)
-    return model
-
-
-def floor_lamp() -> Model:
-    """1.72 m high; the light belongs inside its shade, at y = 1.62."""
-    model = Model("floor_lamp")
-    base = turned([(0, 0), (0.15, 0.0), (0.155, 0.018), (0.09, 0.035), (0.03, 0.06), (0.024, 0.12), (0.016, 0.16)], 24, 24)
-    knop = turned([(0.013, 0.80), (0.028, 0.83), (0.035, 0.86), (0.028, 0.89), (0.013, 0.92)], 16, 16)
-    model.add(m.BRASS, base, knop)
-    model.cone(m.BRASS, (0, 0.15, 0), 0.013, (0, 1.52, 0), 0.011)
-    model.cone(m.SHADE, (0, 1.45, 0), 0.25, (0, 1.74, 0), 0.15)
-    for k in range(3):
-        a = 2 * math.pi * k / 3 + 0.4
-        model.add(m.BRASS, tube([(0, 1.515, 0), (0.243 * math.cos(a), 1.46, 0.243 * math.sin(a))], 0.003, 5))
-    model.sphere(m.BULB, (0, 1.535, 0), 0.022)
-    return model
-
-
-def chandelier() -> Model:
-    """Hangs from y = 0 down to -0.95; the light belongs in its middle, at y = -0.88."""
-    model = Model("chandelier")
-    rose = lathe([(0.0, -0.05), (0.03, -0.05), (0.07, -0.03), (0.10, -0.012), (0.105, 0.0)], 24)
-    hub = turned([(0, -0.80), (0.02, -0.79), (0.035, -0.76), (0.06, -0.70), (0.05, -0.64), (0.02, -0.60), (0.028, -0.55), (0.012, -0.50)],
-                 24, 20)  # fmt: skip
-    model.add(m.BRASS, rose, hub)
-    model.cone(m.BRASS, (0, -0.51, 0), 0.009, (0, -0.03, 0), 0.009)
-    for k in range(6):
-        a = math.pi * k / 3
-        path = [(0.04, -0.69), (0.13, -0.80), (0.23, -0.83), (0.31, -0.76), (0.33, -0.67)]
-        arm = [(r * math.cos(a), y, r * math.sin(a)) for r, y in curve(path, 11)]
-        x, z = 0.33 * math.cos(a), 0.33 * math.sin(a)
-        saucer = lathe([(0, -0.675), (0.02, -0.675), (0.048, -0.655), (0.046, -0.652), (0.018, -0.668), (0, -0.668)], 14)
-        model.add(m.BRASS, tube(arm, 0.009, 7), saucer.moved(x, 0, z))
-        model.cone(m.WAX, (x, -0.668, z), 0.013, (x, -0.56, z), 0.012)
-        bulb = lathe([(0.004, -0.56), (0.014, -0.54), (0.015, -0.525), (0.008, -0.50), (0, -0.475)], 10, 80)
-        model.add(m.BULB, bulb.moved(x, 0, z))
-    model.sphere(m.BRASS, (0, -0.815, 0), 0.022)
-    return model
-
-
 def globe() -> Model:
     """0.42 m high, on a turned foot, with its axis tilted in a brass ring."""
     model = Model("globe")
@@ -77,7 +25,9 @@ def globe() -> Model:
     for sign in (-1, 1):
         a = math.radians(90 - 23)
         model.sphere(m.BRASS, (sign * 0.136 * math.cos(a), 0.26 + sign * 0.136 * math.sin(a), 0), 0.010)
-    foot = turned([(0, 0), (0.09, 0.0), (0.092, 0.012), (0.05, 0.03), (0.018, 0.05), (0.025, 0.08), (0.012, 0.115)], 22, 20)
+    foot = turned(
+        [(0, 0), (0.09, 0.0), (0.092, 0.012), (0.05, 0.03), (0.018, 0.05), (0.025, 0.08), (0.012, 0.115)], 22, 20
+    )
     model.add(m.MAHOGANY, foot.mapped("y", 2))
     return model
 
@@ -86,28 +36,55 @@ def tumbler() -> Model:
     model = Model("tumbler", decimals=5)
     outside = [(0.0, 0.0), (0.030, 0.0), (0.033, 0.004), (0.035, 0.03), (0.0385, 0.088), (0.0385, 0.0905)]
     inside = [(0.0365, 0.0905), (0.0355, 0.086), (0.0322, 0.018), (0.028, 0.013), (0.0, 0.012)]
-    model.add(m.GLASS, lathe(outside + inside, 28, 50))
+    model.add(m.GLASS, lathe(outside + inside, 28, 28))
     return model
 
 
 def goblet() -> Model:
     """A wine glass, 0.17 m high, a third full."""
     model = Model("goblet", decimals=5)
-    profile = [(0.0, 0.0), (0.036, 0.0), (0.036, 0.003), (0.012, 0.009), (0.0045, 0.020), (0.0040, 0.05), (0.006, 0.073),
+    profile = [(0.0, 0.0), (0.036, 0.0), (0.036, 0.003), (0.012, 0.009), (0.0045, 0.020), (0.0040, 0.05),
+               (0.006, 0.073),
                (0.022, 0.085), (0.034, 0.105), (0.0375, 0.125), (0.0350, 0.150), (0.0325, 0.168)]  # fmt: skip
     bowl = [(0.0312, 0.168), (0.0336, 0.150), (0.0360, 0.125), (0.0325, 0.106), (0.020, 0.0875), (0.0, 0.0805)]
-    model.add(m.GLASS, lathe(profile + bowl, 28, 50))
+    model.add(m.GLASS, lathe(profile + bowl, 22, 50))
     wine = [(0.0, 0.0812), (0.0195, 0.0880), (0.0318, 0.1062), (0.0343, 0.1150), (0.0, 0.1150)]
-    model.add(m.WINE, lathe(wine, 28, 45))
+    model.add(m.WINE, lathe(wine, 22, 45))
     return model
 
 
 def carafe() -> Model:
     """0.27 m high, with a glass stopper."""
     model = Model("carafe", decimals=5)
-    outside = curve([(0.060, 0.004), (0.074, 0.03), (0.072, 0.075), (0.045, 0.125), (0.0215, 0.165), (0.0195, 0.205), (0.030, 0.232)], 26)
-    inside = curve([(0.026, 0.230), (0.0165, 0.204), (0.0185, 0.165), (0.042, 0.122), (0.0685, 0.075), (0.0705, 0.034), (0.056, 0.012)], 22)
-    profile = [(0.0, 0.0), (0.056, 0.0)] + [(float(r), float(y)) for r, y in np.concatenate([thinned(outside, 0.0012), thinned(inside, 0.0012)])] + [(0.0, 0.010)]
+    outside = curve(
+        [
+            (0.060, 0.004),
+            (0.074, 0.03),
+            (0.072, 0.075),
+            (0.045, 0.125),
+            (0.0215, 0.165),
+            (0.0195, 0.205),
+            (0.030, 0.232),
+        ],
+        26,
+    )
+    inside = curve(
+        [
+            (0.026, 0.230),
+            (0.0165, 0.204),
+            (0.0185, 0.165),
+            (0.042, 0.122),
+            (0.0685, 0.075),
+            (0.0705, 0.034),
+            (0.056, 0.012),
+        ],
+        22,
+    )
+    profile = (
+        [(0.0, 0.0), (0.056, 0.0)]
+        + [(float(r), float(y)) for r, y in np.concatenate([thinned(outside, 0.0012), thinned(inside, 0.0012)])]
+        + [(0.0, 0.010)]
+    )
     model.add(m.GLASS, lathe(profile, 32, 50))
     model.sphere(m.CRYSTAL, (0, 0.262, 0), 0.030)
     return model
@@ -115,7 +92,20 @@ def carafe() -> Model:
 
 def tray() -> Model:
     model = Model("tray")
-    plate = lathe([(0, 0.004), (0.18, 0.004), (0.20, 0.010), (0.215, 0.024), (0.210, 0.024), (0.196, 0.014), (0.178, 0.009), (0, 0.009)], 40, 30)
+    plate = lathe(
+        [
+            (0, 0.004),
+            (0.18, 0.004),
+            (0.20, 0.010),
+            (0.215, 0.024),
+            (0.210, 0.024),
+            (0.196, 0.014),
+            (0.178, 0.009),
+            (0, 0.009),
+        ],
+        40,
+        30,
+    )
     model.add(m.CHROME, plate.scaled(1.0, 1.0, 0.72))
     return model
 
@@ -123,19 +113,26 @@ def tray() -> Model:
 def fruit_bowl() -> Model:
     """China on a foot with apples, oranges (true spheres) and pears."""
     model = Model("fruit_bowl")
-    bowl = [(0, 0.0), (0.06, 0.0), (0.062, 0.008), (0.04, 0.022), (0.09, 0.04), (0.135, 0.075), (0.155, 0.115), (0.150, 0.115),
+    bowl = [(0, 0.0), (0.06, 0.0), (0.062, 0.008), (0.04, 0.022), (0.09, 0.04), (0.135, 0.075), (0.155, 0.115),
+            (0.150, 0.115),
             (0.128, 0.078), (0.085, 0.046), (0.0, 0.036)]  # fmt: skip
     model.add(m.CHINA, lathe(bowl, 36, 60))
     rim = [(0.1545 * math.cos(a), 0.114, 0.1545 * math.sin(a)) for a in np.linspace(0, 2 * math.pi, 49)]
     model.add(m.BLUE_CHINA, tube(rim, 0.005, 6))
     for x, y, z, radius, kind in (
-        (-0.055, 0.098, 0.045, 0.042, m.APPLE), (0.060, 0.098, 0.040, 0.040, m.ORANGE), (0.0, 0.096, -0.068, 0.041, m.APPLE),
-        (-0.075, 0.105, -0.035, 0.036, m.ORANGE), (0.078, 0.105, -0.040, 0.037, m.APPLE), (0.004, 0.155, 0.002, 0.040, m.ORANGE),
+        (-0.055, 0.098, 0.045, 0.042, m.APPLE), (0.060, 0.098, 0.040, 0.040, m.ORANGE),
+        (0.0, 0.096, -0.068, 0.041, m.APPLE),
+        (-0.075, 0.105, -0.035, 0.036, m.ORANGE), (0.078, 0.105, -0.040, 0.037, m.APPLE),
+        (0.004, 0.155, 0.002, 0.040, m.ORANGE),
     ):  # fmt: skip
         model.sphere(kind, (x, y, z), radius)
         if kind is m.APPLE:
             model.add(m.STEM, tube([(x, y + radius * 0.96, z), (x + 0.006, y + radius + 0.016, z + 0.003)], 0.0018, 6))
-    pear = turned([(0.0, 0.0), (0.030, 0.006), (0.040, 0.030), (0.034, 0.058), (0.019, 0.080), (0.013, 0.094), (0.0, 0.100)], 20, 18)
+    pear = turned(
+        [(0.0, 0.0), (0.030, 0.006), (0.040, 0.030), (0.034, 0.058), (0.019, 0.080), (0.013, 0.094), (0.0, 0.100)],
+        20,
+        18,
+    )
     stalk = tube([(0, 0.098, 0), (0.004, 0.118, 0.002)], 0.0018, 6)
     for x, z, lean in ((0.005, 0.088, 30), (-0.06, 0.0, -14)):
         model.add(m.PEAR, pear.turned("x", lean).moved(x, 0.108 if lean < 0 else 0.09, z))
@@ -146,8 +143,14 @@ def fruit_bowl() -> Model:
 def vase() -> Model:
     """Blue china, 0.34 m, with dry twigs."""
     model = Model("vase")
-    outside = curve([(0.045, 0.0), (0.055, 0.02), (0.09, 0.12), (0.085, 0.20), (0.04, 0.27), (0.032, 0.30), (0.05, 0.34)], 28)
-    profile = [(0.0, 0.0)] + [(float(r), float(y)) for r, y in thinned(outside, 0.0015)] + [(0.046, 0.34), (0.028, 0.30), (0.03, 0.26)]
+    outside = curve(
+        [(0.045, 0.0), (0.055, 0.02), (0.09, 0.12), (0.085, 0.20), (0.04, 0.27), (0.032, 0.30), (0.05, 0.34)], 28
+    )
+    profile = (
+        [(0.0, 0.0)]
+        + [(float(r), float(y)) for r, y in thinned(outside, 0.0015)]
+        + [(0.046, 0.34), (0.028, 0.30), (0.03, 0.26)]
+    )
     model.add(m.BLUE_CHINA, lathe(profile, 30, 50))
     random = generator(701)
     for k in range(11):
@@ -171,7 +174,11 @@ def leaf(length: float, width: float, droop: float) -> Mesh:
         half = width * math.sin(math.pi * min(s**0.75, 1.0)) * 0.5 + 0.0015
         for i in range(rows + 1):
             t = i / rows * 2 - 1
-            points[i, j] = (length * s, 0.25 * length * s - droop * length * s * s + 0.22 * width * abs(t) * math.sin(math.pi * s), -half * t)
+            points[i, j] = (
+                length * s,
+                0.25 * length * s - droop * length * s * s + 0.22 * width * abs(t) * math.sin(math.pi * s),
+                -half * t,
+            )
     return sheet(points)
 
 
@@ -203,18 +210,6 @@ def plant() -> Model:
     return model
 
 
-def candlestick() -> Model:
-    model = Model("candlestick")
-    stick = turned([(0, 0), (0.05, 0.0), (0.052, 0.008), (0.02, 0.022), (0.012, 0.05), (0.018, 0.09), (0.010, 0.13), (0.014, 0.165),
-                    (0.026, 0.18), (0.014, 0.182)], 34, 18)  # fmt: skip
-    model.add(m.BRASS, stick)
-    model.cone(m.WAX, (0, 0.175, 0), 0.0115, (0, 0.30, 0), 0.0105)
-    model.add(m.WAX, lathe([(0.0105, 0.30), (0.006, 0.297), (0, 0.297)], 12))
-    flame = lathe([(0, 0.302), (0.005, 0.310), (0.0065, 0.318), (0.004, 0.332), (0, 0.350)], 10, 80)
-    model.add(m.FLAME, flame)
-    return model
-
-
 def desk_things() -> Model:
     """Papers, a stack of books, a cup of pencils, a crystal ball; the desk's top is y = 0 and its middle the origin."""
     model = Model("desk_things")
@@ -223,15 +218,21 @@ def desk_things() -> Model:
         model.add(m.PAPER, sheet_.turned("y", turn).moved(x, 0.0032 + 0.0012 * k, z))
     pen = tube([(0.05, 0.0105, 0.13), (0.13, 0.0105, 0.00)], 0.004, 8)
     model.add(m.BLACK_PAINT, pen)
-    for k, (width, height, cover) in enumerate(((0.26, 0.035, m.BLUE_PAINT), (0.24, 0.028, m.RED_PAINT), (0.21, 0.04, m.GREEN_PAINT))):
+    for k, (width, height, cover) in enumerate(
+        ((0.26, 0.035, m.BLUE_PAINT), (0.24, 0.028, m.RED_PAINT), (0.21, 0.04, m.GREEN_PAINT))
+    ):
         y = (0.0, 0.0352, 0.0634)[k]
-        turn = (4.0, -7.0, 12.0)[k]
+        angle = (4.0, -7.0, 12.0)[k]
         half, deep = width / 2, width * 0.36
-        block = join([box((-half, y, -deep), (half, y + 0.003, deep)), box((-half, y + height - 0.003, -deep), (half, y + height, deep)),
-                      box((-half, y + 0.003, deep - 0.004), (half, y + height - 0.003, deep))])  # fmt: skip
+        boards = [
+            box((-half, y, -deep), (half, y + 0.003, deep)),
+            box((-half, y + height - 0.003, -deep), (half, y + height, deep)),
+            box((-half, y + 0.003, deep - 0.004), (half, y + height - 0.003, deep)),
+        ]
+        block = join(boards)
         pages = box((-half + 0.005, y + 0.003, -deep + 0.005), (half - 0.005, y + height - 0.003, deep - 0.004))
-        model.add(cover, block.turned("y", turn).moved(0.33, 0, -0.17))
-        model.add(m.PAGES, pages.turned("y", turn).moved(0.33, 0, -0.17))
+        model.add(cover, block.turned("y", angle).moved(0.33, 0, -0.17))
+        model.add(m.PAGES, pages.turned("y", angle).moved(0.33, 0, -0.17))
     model.cone(m.CHROME, (-0.28, 0, -0.17), 0.036, (-0.28, 0.095, -0.17), 0.040)
     model.add(m.IRON, lathe([(0.0365, 0.003), (0, 0.003)], 20).moved(-0.28, 0, -0.17))
     for k, paint_ in enumerate((m.YELLOW_PAINT, m.RED_PAINT, m.BLUE_PAINT, m.GREEN_PAINT, m.YELLOW_PAINT)):
@@ -263,7 +264,9 @@ def clock() -> Model:
         rounded_box((-0.16, 0.14, 0.265), (0.16, 0.49, 0.28), 0.01, 2),
     ]
     model.add(m.MAHOGANY, *[part.mapped("y", 1.2) for part in wood])
-    crest = lathe([(0, 0), (0.19, 0.0), (0.19, 0.012), (0.15, 0.05), (0.05, 0.085), (0, 0.09)], 28, 30).scaled(1.2, 1, 0.7)
+    crest = lathe([(0, 0), (0.19, 0.0), (0.19, 0.012), (0.15, 0.05), (0.05, 0.085), (0, 0.09)], 28, 30).scaled(
+        1.2, 1, 0.7
+    )
     model.add(m.MAHOGANY, crest.mapped("x", 1.2).moved(0, 2.06, 0.15))
     for x in (-0.2, 0.2):
         model.add(m.BRASS, turned([(0.012, 0), (0.03, 0.03), (0.02, 0.07), (0, 0.12)], 10, 12).moved(x, 2.06, 0.2))

@@ -147,18 +147,46 @@ CIRCLE, DROP, BANK = 1.30, 0.52, 20.0
 def airplane() -> Model:
     """A biplane facing +x that hangs on a string; the pivot is CIRCLE metres to its right and DROP above."""
     model = Model("airplane")
-    hull = turned([(0, -0.20), (0.012, -0.19), (0.022, -0.12), (0.036, 0.0), (0.042, 0.10), (0.040, 0.15), (0.030, 0.17), (0, 0.172)], 26, 18)
+    hull = turned(
+        [
+            (0, -0.20),
+            (0.012, -0.19),
+            (0.022, -0.12),
+            (0.036, 0.0),
+            (0.042, 0.10),
+            (0.040, 0.15),
+            (0.030, 0.17),
+            (0, 0.172),
+        ],
+        26,
+        18,
+    )
     model.add(m.RED_PAINT, hull.turned("z", -90))
 
     def wing(y: float, span: float, chord: float, x: float) -> Mesh:
-        ring = [(0.5, 0.0), (0.30, 0.09), (0.05, 0.10), (-0.25, 0.06), (-0.5, 0.0), (-0.25, -0.02), (0.05, -0.03), (0.30, -0.04), (0.5, 0.0)]
+        ring = [
+            (0.5, 0.0),
+            (0.30, 0.09),
+            (0.05, 0.10),
+            (-0.25, 0.06),
+            (-0.5, 0.0),
+            (-0.25, -0.02),
+            (0.05, -0.03),
+            (0.30, -0.04),
+            (0.5, 0.0),
+        ]
         stations = []
         for s in np.linspace(-1, 1, 13):
             c = chord * math.sqrt(max(1 - (abs(s) ** 6), 0.02))
             stations.append([(x + c * a, y + 0.6 * c * b + 0.015 * abs(s), s * span) for a, b in ring])
         return sheet(np.asarray(stations)[::-1])
 
-    model.add(m.YELLOW_PAINT, wing(-0.026, 0.25, 0.095, 0.055), wing(0.075, 0.28, 0.10, 0.075), wing(0.012, 0.095, 0.06, -0.165))
+    model.add(
+        m.YELLOW_PAINT,
+        wing(-0.026, 0.25, 0.095, 0.055),
+        wing(0.075, 0.28, 0.10, 0.075),
+        wing(0.012, 0.095, 0.06, -0.165),
+    )
     fin = wing(0.0, 0.06, 0.06, 0.0).turned("x", 90).moved(-0.17, 0.05, 0)
     model.add(m.RED_PAINT, fin)
     for z in (-0.18, 0.18, -0.05, 0.05):
@@ -177,10 +205,12 @@ def airplane() -> Model:
     model.add(m.BLACK_PAINT, tube([(0.05, 0.085, 0.0), pivot], 0.0022, 5))
     blades = Model("propeller")
     for turn in (0.0, 180.0):
-        blade = [[(0.004 * math.sin(a) * (1 - s), 0.012 + 0.078 * s, 0.013 * math.cos(a) * (1 - 0.5 * s) * (0.4 + 2 * s * (1.2 - s))) for s in np.linspace(0, 1, 6)]
-                 for a in np.linspace(0, 2 * math.pi, 9)]  # fmt: skip
-        model_blade = sheet(np.asarray(blade))
-        blades.add(m.MAHOGANY, model_blade.turned("x", turn).mapped("y", 3))
+        rows = []
+        for a in np.linspace(0, 2 * math.pi, 9):
+            across, thick = 0.013 * math.cos(a), 0.004 * math.sin(a)
+            rows.append([(thick * (1 - s), 0.012 + 0.078 * s, across * (1 - 0.5 * s) * (0.4 + 2 * s * (1.2 - s)))
+                         for s in np.linspace(0, 1, 6)])  # fmt: skip
+        blades.add(m.MAHOGANY, sheet(np.asarray(rows)).turned("x", turn).mapped("y", 3))
     nose = Model("airplane_nose")
     nose.animate(blades, "propeller")
     model.place(nose, (0.186, 0, 0))

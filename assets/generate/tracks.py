@@ -34,7 +34,7 @@ def axis_angle(matrix: Array) -> tuple[float, float, float, float]:
 def key_times(start: float, end: float, keys: int) -> Array:
     """`keys` times from start to end, and one more on either side."""
     step = (end - start) / (keys - 1)
-    return start + step * np.arange(-1, keys + 1)
+    return np.asarray(start + step * np.arange(-1, keys + 1), np.float64)
 
 
 def translation(times: Array, where: Callable[[float], Sequence[float]]) -> str:

@@ -1,0 +1,137 @@
+"""The embedded scenes are what their generator writes: a sound room, a safe flight, two figures."""
+
+from __future__ import annotations
+
+import importlib.util
+import io
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import tracer
+from tracer.culling.modes import OcclusionMode, ShadowMode, occlusion_mode, shadow_mode
+
+ASSETS = Path(__file__).resolve().parent.parent / "assets"
+SCENES = ASSETS / "scenes"
+
+
+@pytest.fixture(scope="module")
+def make_scenes() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("make_scenes", ASSETS / "make_scenes.py")
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def study() -> tracer.Scene:
+    return tracer.load_scene(SCENES / "default.aff")
+
+
+@pytest.mark.slow
+def test_the_generator_writes_the_committed_files(make_scenes: ModuleType) -> None:
+    files = make_scenes.make()
+    committed = {p.relative_to(ASSETS).as_posix() for p in SCENES.rglob("*") if p.is_file()} | {"icon.png"}
+    assert committed == set(files)
+    for path, data in files.items():
+        held = (ASSETS / path).read_bytes()
+        if path.endswith(".png"):  # zlib may pack the same pixels otherwise
+            images = [np.asarray(Image.open(io.BytesIO(d))) for d in (held, data)]
+            assert np.array_equal(images[0], images[1]), path
+        else:
+            assert held == data, f"{path} differs from what assets/make_scenes.py writes"
+
+
+def test_the_embedded_files_stay_small() -> None:
+    assert sum(p.stat().st_size for p in SCENES.rglob("*") if p.is_file()) < 6_000_000
+
+
+def test_the_study_has_what_a_first_look_needs(study: tracer.Scene) -> None:
+    info = tracer.scene_info(study)
+    assert info["warnings"] == []
+    assert 20_000 <= info["triangles"] <= 100_000
+    assert info["dynamic_triangles"] >= 1_000
+    assert info["lights"] == 6
+    assert info["spheres"] >= 100 and info["cones"] >= 30
+    assert info["textures"] == 14
+    assert info["frames"] == 200
+    assert any(max(m.specular) > 0.8 for m in study.materials), "a mirror"
+    assert any(m.transmission > 0.5 and m.ior > 1.4 for m in study.materials), "glass"
+    assert len(study.objects) >= 7, "train, airplane, propeller, pendulum"
+
+
+def test_triangles_are_sound(study: tracer.Scene) -> None:
+    for thing in study.objects:
+        corners = thing.triangles.corners.astype(np.float64)
+        normals = thing.triangles.normals.astype(np.float64)
+        assert np.isfinite(corners).all() and np.isfinite(normals).all()
+        geometric = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        length = np.linalg.norm(geometric, axis=1)
+        # Corner normals lie on the same side as the face, or textures and glass would turn inside out.
+        agree = np.einsum("nck,nk->nc", normals, geometric / np.maximum(length, 1e-20)[:, None]).mean(axis=1)
+        assert (agree[length > 1e-9] > 0).mean() > 0.999
+
+
+def test_the_flight_is_smooth_and_stays_in_the_room(study: tracer.Scene) -> None:
+    cameras = [study.camera_at(study.frame_time(i)) for i in range(study.frames)]
+    positions = np.array([c.position for c in cameras])
+    views = np.array([c.basis()[2] for c in cameras])
+    assert np.isfinite(positions).all() and np.isfinite(views).all()
+    assert (positions > (0.3, 0.2, 0.3)).all() and (positions < (6.2, 2.6, 5.0)).all()
+    assert np.linalg.norm(np.diff(positions, axis=0), axis=1).max() < 0.2
+    turn = np.degrees(np.arccos(np.clip((views[1:] * views[:-1]).sum(axis=1), -1, 1)))
+    assert turn.max() < 12
+    assert np.allclose(positions[0], positions[-1], atol=1e-3), "the flight closes, so that it can loop"
+
+
+@pytest.mark.slow
+def test_the_camera_never_touches_anything(study: tracer.Scene) -> None:
+    random = np.random.default_rng(0)
+    directions = random.normal(size=(120, 3))
+    directions = (directions / np.linalg.norm(directions, axis=1, keepdims=True)).astype(np.float32)
+    for frame in range(0, study.frames, 5):
+        time = study.frame_time(frame)
+        origin = np.asarray(study.camera_at(time).position, np.float32)
+        world = tracer.World(study, time)
+        rays = tracer.RayBatch(np.broadcast_to(origin, directions.shape), directions)
+        assert world.closest_hits(rays).t.min() > 0.12, f"frame {frame}"
+
+
+@pytest.mark.parametrize(
+    ("size", "symmetric", "expected"),
+    [
+        (3, False, "PFiiii"),
+        (9, False, "PFPFFF"),
+        (9, True, "PFPFPF"),
+    ],
+)
+def test_figure_3_marks_what_goes_on_behind_something(size: int, symmetric: bool, expected: str) -> None:
+    scene = tracer.load_scene(SCENES / "figure3.aff")
+    renderer = tracer.Renderer(scene, tracer.Settings(width=size, height=size, symmetric=symmetric))
+    modes = occlusion_mode(renderer.render(0.0).modes)
+    names = {
+        "i": OcclusionMode.INIT,
+        "P": OcclusionMode.PARTIALLY_OCCLUDED,
+        "F": OcclusionMode.FULLY_RENDERED,
+    }
+    assert [OcclusionMode(int(m)) for m in modes] == [names[letter] for letter in expected]
+
+
+def test_figure_4_shows_its_shadow_only_after_zooming_in() -> None:
+    scene = tracer.load_scene(SCENES / "figure4.aff")
+    culled = tracer.Renderer(scene, tracer.Settings(width=128, height=128))
+    traced = tracer.Renderer(scene, tracer.Settings(width=128, height=128, method="none"))
+    modes, shadow, truth = [], [], []
+    for i in range(40):
+        time = scene.frame_time(i)
+        frame, reference = culled.render(time), traced.render(time)
+        modes.append(int(shadow_mode(frame.modes[0], 0)))
+        for counts, picture in ((shadow, frame), (truth, reference)):
+            counts.append(int(((picture.primitive == 0) & (picture.color.max(axis=2) < 0.25)).sum()))
+    assert truth[:12] == [0] * 12 and min(truth[13:]) > 0
+    assert shadow[:27] == [0] * 27 and set(modes[:27]) == {ShadowMode.NON_SHADOW}
+    assert shadow[27:] == truth[27:] and set(modes[27:]) == {ShadowMode.PARTIAL_SHADOW}
