@@ -125,7 +125,9 @@ def test_figure_4_shows_its_shadow_only_after_zooming_in() -> None:
     scene = tracer.load_scene(SCENES / "figure4.aff")
     culled = tracer.Renderer(scene, tracer.Settings(width=128, height=128))
     traced = tracer.Renderer(scene, tracer.Settings(width=128, height=128, method="none"))
-    modes, shadow, truth = [], [], []
+    modes: list[int] = []
+    shadow: list[int] = []
+    truth: list[int] = []
     for i in range(40):
         time = scene.frame_time(i)
         frame, reference = culled.render(time), traced.render(time)
