@@ -1,9 +1,9 @@
 """Shadow culling for interactive ray tracing, after Nah, Lee, Park and Han: the tracer, of use alone.
 
-    scene = tracer.load_scene("kitchen.aff")
-    renderer = tracer.Renderer(scene, tracer.Settings(width=512, height=512, method="paper"))
-    frame = renderer.render(time=5.0)
-    frame.statistics.shadow.traversal_steps
+scene = tracer.load_scene("kitchen.aff")
+renderer = tracer.Renderer(scene, tracer.Settings(width=512, height=512, method="paper"))
+frame = renderer.render(time=5.0)
+frame.statistics.shadow.traversal_steps
 """
 
 from tracer.frame import Frame, Settings

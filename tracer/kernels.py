@@ -11,12 +11,15 @@ from __future__ import annotations
 import hashlib
 import os
 import tempfile
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numba
 import platformdirs
-from numba import config, njit
+from numba import njit
+from numba.core import config as _config
 
 _KERNEL_FOLDERS = ("geometry", "culling", "shading")
 
@@ -43,8 +46,9 @@ def cache_folder() -> Path:
         return Path(tempfile.mkdtemp(prefix="shadowcull-kernels-"))
 
 
-def kernel(function):
+def kernel(function: Callable) -> Any:
     """Compile `function` with numba: cached, free of the GIL, division by zero as in IEEE 754."""
+    config: Any = _config  # its names are made at run time
     saved, config.CACHE_DIR = config.CACHE_DIR, str(cache_folder())
     try:
         return njit(cache=True, nogil=True, error_model="numpy")(function)
@@ -52,6 +56,6 @@ def kernel(function):
         config.CACHE_DIR = saved
 
 
-def inlined(function):
+def inlined(function: Callable) -> Any:
     """A small kernel that disappears into its callers; it is compiled with them."""
     return njit(nogil=True, error_model="numpy", forceinline=True)(function)

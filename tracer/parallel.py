@@ -17,7 +17,9 @@ from tracer.scene.model import Cancelled
 
 def thread_count(wanted: int = 0) -> int:
     """`wanted` threads, or as many as this process may use at once for 0."""
-    return wanted if wanted > 0 else len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if wanted > 0:
+        return wanted
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @cache

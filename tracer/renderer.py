@@ -96,7 +96,8 @@ class UnfinishedFrame:
     """A frame under way: the phases of `Renderer.render` over its buffers."""
 
     def __init__(self, renderer: Renderer, settings: Settings, camera: Camera, time: float, cancel: Cancel) -> None:
-        self._renderer, self._settings, self._camera, self._time, self._cancel = renderer, settings, camera, time, cancel
+        self._renderer, self._settings = renderer, settings
+        self._camera, self._time, self._cancel = camera, time, cancel
         self._workers = thread_count(settings.threads)
         self.memory = renderer._memory(settings, self._workers)
         self._counts = np.zeros((self._workers, COUNTERS), np.int64)
@@ -140,7 +141,11 @@ class UnfinishedFrame:
         for_each_chunk(tile_work, len(self._tiles), self._workers, self._cancel)
 
     def trace_primary_rays(self) -> None:
-        kd, rays, buffers, counts = self._renderer.world.kd, self._rays, self._buffers, self._counts
+        """What does each pixel see?"""
+        self._trace_primary(self._rays, self._buffers, self._counts)
+
+    def _trace_primary(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
+        kd = self._renderer.world.kd
         self._for_each_tile(lambda tile, worker: trace_primary(kd, rays, tile, buffers, counts[worker]))
 
     def test_occlusion(self) -> None:
@@ -175,18 +180,14 @@ class UnfinishedFrame:
 
     def _average_samples(self) -> None:
         """Mix in further samples a pixel, placed by the R2 sequence; they use modes but count nothing."""
-        samples, kd = self._settings.samples, self._renderer.world.kd
+        samples = self._settings.samples
         golden = 1.32471795724474602596  # its powers step through the plane evenly (Roberts 2018)
         gained = self.memory.gained.copy()
         for k in range(1, samples):
             shift = ((0.5 + k / golden) % 1.0, (0.5 + k / golden**2) % 1.0)
             rays = pinhole(self._camera, self._settings.width, self._settings.height, shift)
             buffers, counts = self._empty_buffers(), np.zeros_like(self._counts)
-
-            def primary(tile: tuple[int, int, int, int], worker: int, buffers=buffers, rays=rays, counts=counts) -> None:
-                trace_primary(kd, rays, tile, buffers, counts[worker])
-
-            self._for_each_tile(primary)
+            self._trace_primary(rays, buffers, counts)
             self._shade(rays, buffers, counts, False)
             self._buffers.color[:] += buffers.color
         self._buffers.color[:] /= np.float32(samples)

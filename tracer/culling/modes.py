@@ -51,7 +51,7 @@ def occlusion_mode(word):
     return (np.asarray(word) & np.asarray(word).dtype.type(3)).astype(np.uint8)
 
 
-def shadow_mode(word, light: int):
+def shadow_mode(word, light):
     """Shadow mode of a light, of a word or of an array of them, as uint8; INIT for lights that have none."""
     word = np.asarray(word)
     if light >= MAX_CULLED_LIGHTS:

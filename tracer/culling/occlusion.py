@@ -11,10 +11,10 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.culling.modes import DYNAMIC, FULLY_RENDERED, INIT, PARTIALLY_OCCLUDED, occlusion_bits
+from tracer.geometry.camera import primary_ray
 from tracer.geometry.queries import hits_alone
 from tracer.geometry.rays import MISS
 from tracer.kernels import inlined, kernel
-from tracer.geometry.camera import primary_ray
 
 
 @inlined
@@ -61,7 +61,8 @@ def set_occlusion_modes(words, hidden, pixel_count, highest_count, zoom_factor):
     what a FULLY_RENDERED unit was last examined at; past zoom_factor times that it is INIT again.
     """
     for unit in range(len(words)):
-        mode = occlusion_bits(words[unit])
+        mode, was_hidden = occlusion_bits(words[unit]), hidden[unit]
+        hidden[unit] = False
         if mode == DYNAMIC:
             continue
         count = pixel_count[unit]
@@ -71,12 +72,11 @@ def set_occlusion_modes(words, hidden, pixel_count, highest_count, zoom_factor):
                 highest_count[unit] = count
         else:  # PARTIALLY_OCCLUDED of the last frame starts this one as INIT
             mode = INIT
-            if hidden[unit]:
+            if was_hidden:
                 mode = PARTIALLY_OCCLUDED
             elif count > 0:
                 mode = FULLY_RENDERED
                 highest_count[unit] = count
-        hidden[unit] = False
         words[unit] = (np.uint64(words[unit]) & ~np.uint64(3)) | np.uint64(mode)
 
 

@@ -31,7 +31,7 @@ def inverse(x):
 
 @inlined
 def hit_box(ray, boxes, i):
-    """Interval of t in which a ray is inside the i-th of boxes (lower, upper); empty where first > second (slab test)."""
+    """Interval of t of a ray in the i-th of boxes (lower, upper); empty where first > second (slab test)."""
     b = 6 * i
     ix, iy, iz = inverse(ray.dx), inverse(ray.dy), inverse(ray.dz)
     x0, x1 = (boxes[b] - ray.ox) * ix, (boxes[b + 3] - ray.ox) * ix
@@ -62,7 +62,7 @@ def hit_triangle(ray, triangles, i):
     if not (v >= ZERO and u + v <= ONE):
         return INFINITY, ZERO, ZERO
     t = f * (e2x * qx + e2y * qy + e2z * qz)
-    if not (t > ray.t_min and t <= ray.t_max):
+    if not (t > ray.t_min and t < ray.t_max):
         return INFINITY, ZERO, ZERO
     return t, u, v
 
@@ -96,7 +96,7 @@ def _cone_root(a, half_b, c, z, dz, ray):
         first = q / a
         second = c / q if q != 0.0 else first
     for t in (min(first, second), max(first, second)):
-        if ray.t_min < t <= ray.t_max and z + t * dz >= 0.0 and z + t * dz <= 1.0:
+        if ray.t_min < t < ray.t_max and z + t * dz >= 0.0 and z + t * dz <= 1.0:
             return t
     return np.inf
 
@@ -118,7 +118,7 @@ def hit_quadric(ray, quadrics, i):
             return INFINITY
         half = math.sqrt(room / a)
         for t in (closest - half, closest + half):
-            if ray.t_min < t <= ray.t_max:
+            if ray.t_min < t < ray.t_max:
                 return np.float32(t)
         return INFINITY
     slope = np.float64(quadrics[q + R1]) - np.float64(quadrics[q + R0])

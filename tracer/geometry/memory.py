@@ -8,12 +8,20 @@ long as somebody else keeps the arrays alive: a kernel borrows what it was calle
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
 
-@intrinsic
+def _intrinsic(function: Callable) -> Any:
+    """numba's `intrinsic`, whose result is called without the typing context."""
+    return intrinsic(function)
+
+
+@_intrinsic
 def pointer(typingctx, array):
     """Pointer to the first element of a contiguous array, read and written like a flat array."""
     if not isinstance(array, types.Array) or array.layout != "C":
@@ -25,20 +33,20 @@ def pointer(typingctx, array):
     return types.CPointer(array.dtype)(array), codegen
 
 
-def _without_counts(context, builder, kind, value):
+def _without_counts(context: Any, builder: Any, kind: Any, value: Any) -> Any:
     if isinstance(kind, types.Array):
         array = context.make_array(kind)(context, builder, value)
         array.meminfo = cgutils.get_null_value(array.meminfo.type)
         array.parent = cgutils.get_null_value(array.parent.type)
         return array._getvalue()
     if isinstance(kind, types.BaseTuple):
-        for i, member in enumerate(kind):
-            item = _without_counts(context, builder, member, builder.extract_value(value, i))
+        for i in range(len(kind)):
+            item = _without_counts(context, builder, kind[i], builder.extract_value(value, i))
             value = builder.insert_value(value, item, i)
     return value
 
 
-@intrinsic
+@_intrinsic
 def borrowed(typingctx, data):
     """The same array, or tuple of arrays, tuples and numbers, with no reference counted."""
 
@@ -49,7 +57,7 @@ def borrowed(typingctx, data):
 
 
 def _local(dtype):
-    @intrinsic
+    @_intrinsic
     def local(typingctx, count):
         """Memory for `count` (a literal number) elements that lasts until the calling kernel returns."""
         if not isinstance(count, types.IntegerLiteral):
@@ -68,7 +76,7 @@ local_float32 = _local(types.float32)
 local_int32 = _local(types.int32)
 
 
-@intrinsic
+@_intrinsic
 def float_bits(typingctx, number):
     """The bits of a number, rounded to float32, as int32."""
 

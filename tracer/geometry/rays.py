@@ -17,14 +17,14 @@ INFINITY = np.float32(np.inf)
 class Ray(NamedTuple):
     """One ray, float32: origin, direction (of any length: t is in its units) and the open interval of t."""
 
-    ox: float
-    oy: float
-    oz: float
-    dx: float
-    dy: float
-    dz: float
-    t_min: float
-    t_max: float
+    ox: Any
+    oy: Any
+    oz: Any
+    dx: Any
+    dy: Any
+    dz: Any
+    t_min: Any
+    t_max: Any
 
 
 class Rays(NamedTuple):
@@ -72,13 +72,13 @@ def empty_hits(n):
 
 
 class RayPointers(NamedTuple):
-    """A batch of `count` rays as pointers, to be read one ray at a time."""
+    """A batch of `size` rays as pointers, to be read one ray at a time."""
 
     origin: Any
     direction: Any
     t_min: Any
     t_max: Any
-    count: int
+    size: int
 
 
 @inlined
@@ -90,5 +90,5 @@ def ray_pointers(rays):
 @inlined
 def ray_at(rays, i):
     """The i-th of a batch given as pointers."""
-    o, d, y, z = rays.origin, rays.direction, rays.count + i, 2 * rays.count + i
+    o, d, y, z = rays.origin, rays.direction, rays.size + i, 2 * rays.size + i
     return Ray(o[i], o[y], o[z], d[i], d[y], d[z], rays.t_min[i], rays.t_max[i])

@@ -8,6 +8,7 @@ batches: `closest_hits` and `any_hits`.
 from __future__ import annotations
 
 import threading
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,9 +92,9 @@ class World:
         self._triangles = triangle_rows(np.concatenate(corners))
         self.normals = np.concatenate([o.triangles.normals for o in objects]).reshape(-1, 9)
         self._quadrics = np.concatenate([quadric_rows(o.quadrics) for o in objects])
-        self.object_of = np.concatenate(
-            [np.repeat(np.arange(len(objects)), [len(getattr(o, kind)) for o in objects]) for kind in ("triangles", "quadrics")]
-        ).astype(np.int32)
+        counts = [[len(o.triangles) for o in objects], [len(o.quadrics) for o in objects]]
+        owners = [np.repeat(np.arange(len(objects)), n) for n in counts]
+        self.object_of = np.concatenate(owners).astype(np.int32)
         self._trees: list[Tree] = []
         for index in range(len(objects)):
             self._trees.append(self._build(index, progress))
@@ -126,7 +127,7 @@ class World:
             builder.join()
         return result[0]
 
-    def _globalised(self, indices) -> tuple[Trees, NDArray[np.int32]]:
+    def _globalised(self, indices: Iterable[int]) -> tuple[Trees, NDArray[np.int32]]:
         """Trees of several objects back to back, their items numbers of the whole scene; and all objects' roots."""
         scene = self.scene
         words, items = [], []

@@ -63,7 +63,7 @@ def texture_color(look, texture, u, v):
     """Bilinear (r, g, b) of a repeating texture; v = 0 is the bottom of the picture."""
     start, width, height = look.texture_table[texture]
     x, y = (u - math.floor(u)) * width - 0.5, (1.0 - (v - math.floor(v))) * height - 0.5
-    x0, y0 = int(math.floor(x)), int(math.floor(y))
+    x0, y0 = math.floor(x), math.floor(y)
     fx, fy = np.float32(x - x0), np.float32(y - y0)
     left, right = x0 % width, (x0 + 1) % width
     upper, lower = start + (y0 % height) * width * 3, start + ((y0 + 1) % height) * width * 3

@@ -65,10 +65,10 @@ class _Search(NamedTuple):
 class _Best(NamedTuple):
     """The nearest hit so far."""
 
-    t: float
-    primitive: int
-    u: float
-    v: float
+    t: Any
+    primitive: Any
+    u: Any
+    v: Any
 
 
 @inlined
@@ -114,8 +114,8 @@ def _closest_in_tree(s, trees, o, ray, enter, leave, best):
         leaf = next_leaf(trees, ray, s.stack, pending)
         pending = leaf.pending
         s.counts[STEPS] += leaf.steps
-        s.counts[TESTS] += leaf.count
-        for i in range(leaf.first, leaf.first + leaf.count):
+        s.counts[TESTS] += leaf.size
+        for i in range(leaf.first, leaf.first + leaf.size):
             primitive = trees.items[i]
             t, u, v = _hit_primitive(s.triangles, s.triangle_count, s.quadrics, ray, primitive)
             if t < best.t or (t == best.t and t < INFINITY and primitive < best.primitive):
@@ -134,7 +134,7 @@ def _any_in_tree(s, trees, o, ray, enter, leave):
         leaf = next_leaf(trees, ray, s.stack, pending)
         pending = leaf.pending
         s.counts[STEPS] += leaf.steps
-        for i in range(leaf.first, leaf.first + leaf.count):
+        for i in range(leaf.first, leaf.first + leaf.size):
             s.counts[TESTS] += 1
             if _hit_primitive(s.triangles, s.triangle_count, s.quadrics, ray, trees.items[i])[0] < INFINITY:
                 return True
@@ -158,7 +158,7 @@ def _closest_dynamic(s, ray, best):
         pending = leaf.pending
         s.counts[STEPS] += leaf.steps
         enter, leave = _piece(leaf)
-        for i in range(leaf.first, leaf.first + leaf.count):
+        for i in range(leaf.first, leaf.first + leaf.size):
             o = s.top.items[i]
             local = transform_ray(ray, s.to_object, o, 12)
             best = _closest_in_tree(s, s.dynamic, o, local, enter, min(leave, best.t), best)
@@ -176,7 +176,7 @@ def _any_dynamic(s, ray):
         pending = leaf.pending
         s.counts[STEPS] += leaf.steps
         enter, leave = _piece(leaf)
-        for i in range(leaf.first, leaf.first + leaf.count):
+        for i in range(leaf.first, leaf.first + leaf.size):
             o = s.top.items[i]
             if _any_in_tree(s, s.dynamic, o, transform_ray(ray, s.to_object, o, 12), enter, leave):
                 return True

@@ -46,7 +46,7 @@ class Leaf(NamedTuple):
     """A leaf that a ray enters: its items, the ray's interval in it, and what it took to get there."""
 
     first: int
-    count: int
+    size: int
     enter: float
     leave: float
     steps: int

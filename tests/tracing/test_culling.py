@@ -1,0 +1,175 @@
+"""Shadow culling over frames: what is culled, what must not be, and when modes are dropped."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import tracer
+from tests.tracing.worlds import moved, quad, scene
+from tracer.culling.modes import OcclusionMode, ShadowMode, occlusion_mode, shadow_mode
+from tracer.scene.model import Camera
+
+SETTINGS = tracer.Settings(width=48, height=48, depth=2, threads=1, verify=True)
+LIGHT = (0.0, 0.0, 20.0)
+BEHIND = Camera((0.0, -12.0, 4.0), (0.0, 12.0, -4.0), (0.0, 0.0, 1.0), 40.0)
+
+
+def floor(n: int = 8) -> list:
+    """A floor of n x n squares in z = 0, all of it in the picture of the default camera."""
+    edge = np.linspace(-3, 3, n + 1)
+    return [
+        t
+        for x0, x1 in pairwise(edge)
+        for y0, y1 in pairwise(edge)
+        for t in quad((x0, y0, 0), (x1, y0, 0), (x1, y1, 0), (x0, y1, 0))
+    ]
+
+
+def roof(z: float, half: float) -> list:
+    return quad((-half, -half, z), (half, -half, z), (half, half, z), (-half, half, z))
+
+
+def shadow_scene(**extra):
+    """A floor lit from above, a roof between the light and its middle; seen from the side, below the roof."""
+    return scene(floor() + roof(6.0, 1.0), lights=[LIGHT], camera=BEHIND, **extra)
+
+
+def test_what_is_seen_whole_is_culled_in_the_next_frame():
+    renderer = tracer.Renderer(shadow_scene(), SETTINGS)
+    first, second = renderer.render(), renderer.render()
+    assert first.statistics.shadow.culled == first.statistics.shadow.dynamic_only == 0
+    assert second.statistics.shadow.culled > 0
+    assert second.statistics.shadow.dynamic_only > 0
+    assert second.statistics.shadow.rays < first.statistics.shadow.rays
+    assert second.statistics.shadow.due == first.statistics.shadow.due
+    assert np.array_equal(first.color, second.color)
+    assert second.statistics.shadow.wrong == 0
+
+
+def test_modes_tell_lit_shadowed_and_partly_shadowed_apart():
+    frame = tracer.Renderer(shadow_scene(), replace(SETTINGS, width=96, height=96)).render()
+    seen_whole = occlusion_mode(frame.modes) == OcclusionMode.FULLY_RENDERED
+    found = set(shadow_mode(frame.modes, 0)[seen_whole].tolist())
+    assert {ShadowMode.FULL_SHADOW, ShadowMode.NON_SHADOW, ShadowMode.PARTIAL_SHADOW} <= found
+
+
+def test_none_culls_nothing_and_gives_the_same_picture():
+    paper, none = (tracer.Renderer(shadow_scene(), replace(SETTINGS, method=m)) for m in ("paper", "none"))
+    for _ in range(3):
+        a, b = paper.render(), none.render()
+    assert b.statistics.shadow.culled == b.statistics.occlusion_tests == 0
+    assert a.statistics.shadow.culled > 0
+    assert np.array_equal(a.color, b.color)
+
+
+def test_a_moving_object_leaves_no_stale_shadow():
+    """Its shadow falls on squares that are known as NON_SHADOW; taken away, the light is back."""
+    above = np.eye(4)
+    with_object = shadow_scene(dynamic=(moved("kite", roof(5.0, 0.6), _shifted(above, 2.0)),))
+    gone = shadow_scene(dynamic=(moved("kite", roof(5.0, 0.6), _shifted(above, 200.0)),))
+    renderer = tracer.Renderer(gone, replace(SETTINGS, record_lights=True))
+    renderer.render()
+    lit = renderer.render().lit
+    # The same renderer, its object placed elsewhere: what culling knows must still hold.
+    renderer.world.scene = renderer.scene = with_object
+    shadowed = renderer.render()
+    reference = tracer.Renderer(with_object, replace(SETTINGS, method="none", record_lights=True)).render()
+    assert (shadowed.lit != lit).any()
+    assert np.array_equal(shadowed.lit, reference.lit)
+    assert np.array_equal(shadowed.color, reference.color)
+    assert shadowed.statistics.shadow.dynamic_only > 0
+
+
+def _shifted(matrix: np.ndarray, x: float) -> np.ndarray:
+    result = matrix.copy()
+    result[0, 3] = x
+    return result
+
+
+def test_dynamic_primitives_stay_dynamic_and_are_never_culled():
+    world = shadow_scene(dynamic=(moved("all", floor(2), _shifted(np.eye(4), 0.1)),))
+    renderer = tracer.Renderer(world, SETTINGS)
+    for _ in range(3):
+        frame = renderer.render()
+    dynamic = frame.modes[len(world.objects[0].triangles) :]
+    assert (occlusion_mode(dynamic) == OcclusionMode.DYNAMIC).all()
+    assert (shadow_mode(dynamic, 0) == ShadowMode.INIT).all()
+
+
+def test_a_primitive_on_the_screens_edge_is_partially_occluded():
+    close = Camera((0.0, 0.0, 4.0), (0.0, 0.0, -1.0), angle=40.0)
+    frame = tracer.Renderer(scene(floor(), lights=[LIGHT], camera=close), SETTINGS).render()
+    edge = np.concatenate([frame.occlusion_mode[0], frame.occlusion_mode[-1], frame.occlusion_mode[:, 0]])
+    assert (edge == OcclusionMode.PARTIALLY_OCCLUDED).all()
+    assert (frame.occlusion_mode == OcclusionMode.FULLY_RENDERED).any()
+
+
+@pytest.mark.parametrize("zoom_factor, anew", [(4.0, True), (1000.0, False)])
+def test_a_primitive_past_the_zoom_factor_is_examined_anew(zoom_factor, anew):
+    renderer = tracer.Renderer(scene(floor(), lights=[LIGHT]), replace(SETTINGS, zoom_factor=zoom_factor))
+    before = renderer.render()
+    after = renderer.render(camera=Camera((0.0, 0.0, 3.0), (0.0, 0.0, -1.0), angle=40.0))
+    middle = after.primitive[24, 24]
+    assert after.pixel_count[middle] > 4 * before.pixel_count[middle] > 0
+    mode = OcclusionMode.INIT if anew else OcclusionMode.FULLY_RENDERED
+    assert occlusion_mode(after.modes)[middle] == mode
+    assert after.highest_count[middle] == (after if anew else before).pixel_count[middle]
+
+
+def test_fully_rendered_outlives_later_occlusion():
+    renderer = tracer.Renderer(scene(floor(), lights=[LIGHT]), replace(SETTINGS, zoom_factor=1000.0))
+    whole = occlusion_mode(renderer.render().modes) == OcclusionMode.FULLY_RENDERED
+    cut = renderer.render(camera=Camera((1.3, 1.3, 6.0), (0.0, 0.0, -1.0), angle=20.0))
+    at_edge = np.unique(cut.primitive[0][cut.primitive[0] >= 0])
+    assert whole[at_edge].any()
+    assert (occlusion_mode(cut.modes)[at_edge[whole[at_edge]]] != OcclusionMode.PARTIALLY_OCCLUDED).all()
+
+
+def test_modes_learnt_at_one_resolution_do_not_speak_at_another():
+    renderer = tracer.Renderer(shadow_scene(), SETTINGS)
+    renderer.render()
+    renderer.settings = replace(SETTINGS, width=96, height=96)
+    assert renderer.render().statistics.shadow.culled == 0
+    renderer.settings = SETTINGS
+    assert renderer.render().statistics.shadow.culled > 0
+
+
+def test_reset_forgets_everything():
+    renderer = tracer.Renderer(shadow_scene(), SETTINGS)
+    renderer.render()
+    renderer.reset_modes()
+    assert renderer.render().statistics.shadow.culled == 0
+
+
+def test_a_cancelled_frame_leaves_the_modes_as_they_were():
+    renderer, untouched = (tracer.Renderer(shadow_scene(), SETTINGS) for _ in range(2))
+    for r in (renderer, untouched):
+        r.render()
+    asked = []
+
+    def after_some_tiles() -> bool:
+        asked.append(True)
+        return len(asked) > 6
+
+    with pytest.raises(tracer.Cancelled):
+        renderer.render(cancel=after_some_tiles)
+    a, b = renderer.render(), untouched.render()
+    assert np.array_equal(a.modes, b.modes)
+    assert a.statistics.shadow == b.statistics.shadow
+
+
+def test_forty_lights_are_traced_and_thirty_one_culled():
+    lights = [(np.cos(i), np.sin(i), 20.0) for i in range(40)]
+    many = scene(floor(3) + roof(6.0, 1.0), lights=lights, camera=BEHIND)
+    renderer = tracer.Renderer(many, replace(SETTINGS, width=24, height=24))
+    first, second = renderer.render(), renderer.render()
+    assert np.array_equal(first.color, second.color)
+    assert second.shadow_mode.shape == (24, 24, 40)
+    hit = second.primitive >= 0
+    assert (second.shadow_mode[hit][:, 31:] == ShadowMode.INIT).all()
+    assert (second.shadow_mode[hit][:, :31] != ShadowMode.INIT).any()
+    assert 0 < second.statistics.shadow.culled < second.statistics.shadow.due

@@ -1,0 +1,93 @@
+"""The packed word, occlusion testing and mode setting, against their naive twins."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import tracer
+from tests.tracing import naive
+from tests.tracing.worlds import random_corners, scene
+from tracer.culling import modes
+from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.culling.occlusion import occlusion_testing, set_occlusion_modes
+from tracer.geometry.camera import pinhole
+from tracer.scene.model import Camera
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.integers(1, 31), st.data())
+def test_a_word_keeps_every_mode_apart(lights, data):
+    word = modes.word_type(lights)
+    words, gained = np.zeros(1, word), np.zeros((2, 1), word)
+    expected = [0] * lights
+    words[0] = occlusion = data.draw(st.integers(0, 3))
+    for _ in range(data.draw(st.integers(0, 20))):
+        light, bit, worker = (data.draw(st.integers(*r)) for r in ((0, lights - 1), (1, 2), (0, 1)))
+        gained[worker, 0] |= word(bit << (2 + 2 * light))
+        expected[light] |= bit
+    modes.merge_words(words, gained)
+    assert int(modes.occlusion_mode(words)[0]) == occlusion
+    assert [int(modes.shadow_mode(words, light)[0]) for light in range(lights)] == expected
+    assert not gained.any()
+
+
+@pytest.mark.parametrize("lights, size", [(0, 4), (15, 4), (16, 8), (31, 8), (40, 8)])
+def test_the_word_is_as_small_as_it_can_be(lights, size):
+    assert np.dtype(modes.word_type(lights)).itemsize == size
+
+
+def test_or_makes_partial_shadow():
+    assert ShadowMode.FULL_SHADOW | ShadowMode.NON_SHADOW == ShadowMode.PARTIAL_SHADOW
+
+
+def test_a_moved_light_is_forgotten_alone():
+    word = np.uint32(OcclusionMode.FULLY_RENDERED | ShadowMode.FULL_SHADOW << 2 | ShadowMode.NON_SHADOW << 4)
+    words = np.array([word, word & ~np.uint32(3) | np.uint32(OcclusionMode.DYNAMIC)])
+    modes.forget_lights(words, [0, 35])
+    assert modes.occlusion_mode(words).tolist() == [OcclusionMode.INIT, OcclusionMode.DYNAMIC]
+    assert modes.shadow_mode(words, 0).tolist() == [0, 0]
+    assert modes.shadow_mode(words, 1).tolist() == [2, 2]
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    st.lists(
+        st.tuples(st.integers(0, 3), st.booleans(), st.integers(0, 40), st.integers(0, 10)), min_size=1, max_size=20
+    ),
+    st.floats(1.0, 10.0),
+    st.integers(0, 2**30 - 1),
+)
+def test_occlusion_modes_are_set_by_the_papers_rules(units, zoom, shadow_bits):
+    words = np.array([mode | shadow_bits << 2 for mode, *_ in units], np.uint32)
+    hidden = np.array([h for _, h, _, _ in units])
+    counts, highest = (np.array([u[i] for u in units], np.int32) for i in (2, 3))
+    expected = [naive.set_occlusion_mode(m, h, c, top, zoom) for m, h, c, top in units]
+    set_occlusion_modes(words, hidden, counts, highest, zoom)
+    assert list(zip(modes.occlusion_mode(words).tolist(), highest.tolist(), strict=True)) == expected
+    assert (words >> 2 == shadow_bits).all()
+    assert not hidden.any()
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("symmetric", [False, True])
+def test_occlusion_testing_asks_what_the_naive_twin_asks(seed, symmetric):
+    rng = np.random.default_rng(seed)
+    corners = random_corners(rng, 25, 0.3)
+    world = tracer.World(scene(corners))
+    camera = pinhole(Camera((0.5, 0.5, 4.0), (0.0, 0.0, -1.0), angle=30.0), 24, 18)
+    y, x = np.mgrid[:18, :24].reshape(2, -1)
+    directions = camera.corner + x[:, None] * camera.column + y[:, None] * camera.row
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    origins = np.broadcast_to(camera.origin, directions.shape)
+    ids = world.closest_hits(tracer.RayBatch(origins, directions)).primitive.reshape(18, 24)
+
+    alone = [tracer.World(scene(c[None])) for c in corners]
+    met = np.array([w.any_hits(tracer.RayBatch(origins, directions)) for w in alone]).reshape(-1, 18, 24)
+    expected, tests = naive.hidden_primitives(ids, lambda px, py, p: met[p, py, px], symmetric)
+    hidden = np.zeros(len(corners), np.bool_)
+    counted = sum(occlusion_testing(world.kd, camera, ids, symmetric, row, row + 6, hidden) for row in (0, 6, 12))
+    assert set(np.flatnonzero(hidden)) == expected
+    assert counted == tests

@@ -1,0 +1,121 @@
+"""The two queries, through trees and placement, against brute force."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tracer
+from tests.tracing import naive
+from tests.tracing.worlds import affine, moved, quadrics, random_corners, scene
+from tracer.geometry.kdtree.build import CANCELLED, build_tree
+from tracer.geometry.world import triangle_rows
+from tracer.scene.model import SPHERE, Cancelled
+
+
+def random_rays(rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]:
+    origins, targets = rng.normal(size=(n, 3)) + 0.5, rng.random((n, 3))
+    directions = targets - origins
+    directions[: n // 10, rng.integers(3)] = 0.0  # parallel to a plane
+    return origins.astype(np.float32), directions.astype(np.float32)
+
+
+def assert_same_answers(world, corners, origins, directions):
+    hits = world.closest_hits(tracer.RayBatch(origins, directions), threads=1)
+    blocked = world.any_hits(tracer.RayBatch(origins, directions), threads=1)
+    compared = 0
+    for i, (o, d) in enumerate(zip(origins.astype(float), directions.astype(float), strict=True)):
+        t, index = naive.closest_triangle(corners, o, d)
+        if naive.edge_distance(corners, o, d) < 1e-5:
+            continue  # rounding may decide either way
+        compared += 1
+        assert hits.t[i] == pytest.approx(t, rel=2e-4)
+        assert blocked[i] == (index >= 0)
+        if index >= 0:  # of coplanar triangles rounding picks one; it must itself be at that distance
+            alone, _ = naive.closest_triangle(corners[hits.primitive[i]][None], o, d)
+            assert alone == pytest.approx(t, rel=2e-4)
+    assert compared > len(origins) // 2
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("n, size", [(1, 0.5), (40, 0.3), (300, 0.05)])
+def test_queries_agree_with_brute_force(seed, n, size):
+    rng = np.random.default_rng(seed)
+    corners = random_corners(rng, n, size)
+    assert_same_answers(tracer.World(scene(corners)), corners, *random_rays(rng, 60))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_dynamic_objects_are_found_where_they_are_placed(seed):
+    rng = np.random.default_rng(100 + seed)
+    static, parts = random_corners(rng, 50, 0.1), [random_corners(rng, 30, 0.1) for _ in range(5)]
+    matrices = [np.eye(4) for _ in parts]
+    for m in matrices:
+        m[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0] * rng.uniform(0.3, 2.0)
+        m[:3, 3] = rng.normal(size=3) * 0.5
+    objects = tuple(moved(f"part {i}", p, m) for i, (p, m) in enumerate(zip(parts, matrices, strict=True)))
+    everything = [static] + [p @ m[:3, :3].T + m[:3, 3] for p, m in zip(parts, matrices, strict=True)]
+    assert_same_answers(tracer.World(scene(static, dynamic=objects)), np.concatenate(everything), *random_rays(rng, 80))
+
+
+def test_an_object_scaled_to_nothing_is_not_there():
+    gone = moved("gone", random_corners(np.random.default_rng(0), 20, 0.3), np.zeros((4, 4)))
+    world = tracer.World(scene(dynamic=(gone,)))
+    origins, directions = random_rays(np.random.default_rng(1), 50)
+    assert not world.any_hits(tracer.RayBatch(origins, directions)).any()
+
+
+def test_an_empty_world_is_missed():
+    world = tracer.World(scene())
+    assert world.closest_hits(tracer.RayBatch([[0, 0, 0]], [[0, 0, 1]])).primitive.tolist() == [-1]
+    assert not world.any_hits(tracer.RayBatch([[0, 0, 0]], [[0, 0, 1]]))[0]
+
+
+@pytest.mark.parametrize("make", [lambda n: np.zeros((n, 3, 3)), lambda n: np.tile(np.eye(3), (n, 1, 1))])
+def test_a_thousand_equal_triangles_still_make_a_tree(make):
+    world = tracer.World(scene(make(1000)))
+    hits = world.closest_hits(tracer.RayBatch([[2, 2, 2]], [[-1, -1, -1]]))
+    assert hits.primitive[0] in (-1, 0)  # the lowest number wins among equal distances
+
+
+def test_every_thread_count_gives_the_same_hits():
+    rng = np.random.default_rng(5)
+    world = tracer.World(scene(random_corners(rng, 2000, 0.02)))
+    rays = tracer.RayBatch(*random_rays(rng, 20000))
+    one, many = world.closest_hits(rays, 1), world.closest_hits(rays, 4)
+    assert all(np.array_equal(a, b) for a, b in zip(one, many, strict=True))
+    assert np.array_equal(world.any_hits(rays, 1), world.any_hits(rays, 3))
+
+
+def test_spheres_live_beside_triangles():
+    world = tracer.World(scene([[[-9, -9, -5], [9, -9, -5], [0, 9, -5]]], quadrics([(SPHERE, affine(), (1, 1))])))
+    hits = world.closest_hits(tracer.RayBatch([[0, 0, 5], [3, 0, 5]], [[0, 0, -1], [0, 0, -1]]))
+    assert hits.primitive.tolist() == [1, 0]
+    assert hits.t.tolist() == [4.0, 10.0]
+
+
+def test_a_cancelled_build_stops():
+    control = np.zeros(2, np.int64)
+    control[CANCELLED] = 1
+    corners = random_corners(np.random.default_rng(0), 1000, 0.1)
+    boxes = np.concatenate([corners.min(1), corners.max(1)], axis=1)
+    tree, _ = build_tree(boxes, triangle_rows(corners), control)
+    assert len(tree.items) == 0
+
+
+def test_progress_that_raises_cancels_a_large_build():
+    def stop(what: str, done: float) -> None:
+        raise Cancelled
+
+    with pytest.raises(Cancelled):
+        tracer.World(scene(random_corners(np.random.default_rng(0), 20000, 0.01)), progress=stop)
+
+
+def test_rays_of_the_wrong_shape_are_refused():
+    with pytest.raises(ValueError, match=r"\(n, 3\)"):
+        tracer.RayBatch([[0, 0]], [[0, 0]])
+
+
+def test_an_unknown_accelerator_is_named():
+    with pytest.raises(ValueError, match="octree"):
+        tracer.World(scene(), accelerator="octree")
