@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import tomllib
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -77,6 +78,21 @@ def test_every_dependency_has_a_range() -> None:
     wanted = data["project"]["dependencies"] + [r for g in data["dependency-groups"].values() for r in g]
     for requirement in map(Requirement, wanted):
         assert {">=", "<"} <= {s.operator for s in requirement.specifier}, requirement
+
+
+def test_a_wheel_carries_shaders_and_assets(tmp_path: Path) -> None:
+    """Where `viewer.resources` looks for them once installed."""
+    pytest.importorskip("hatchling", reason="hatchling builds the wheel; 'make test' brings it along")
+    command = [sys.executable, "-m", "hatchling", "build", "--target", "wheel", "--directory", str(tmp_path)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    with zipfile.ZipFile(next(tmp_path.glob("*.whl"))) as wheel:
+        inside = set(wheel.namelist())
+    for folder in ("shaders", "assets/scenes"):
+        files = [p.relative_to(ROOT).as_posix() for p in (ROOT / folder).rglob("*") if p.is_file()]
+        assert files and {f"viewer/data/{name}" for name in files} <= inside
+    assert {"tracer/__init__.py", "viewer/cli.py", "viewer/data/assets/icon.png"} <= inside
+    assert not any(name.startswith(("tests", "tools")) for name in inside)
 
 
 def test_the_change_log_knows_this_version() -> None:
