@@ -128,16 +128,18 @@ class Controller:
         self.history.add(frame, self.drawn_seconds)
         if self.selected is not None:
             self.selected = refreshed(self.selected, frame)
-        if self.session.playing and self.preferences.every_frame:
-            if traced.request.time == self.session.time:
-                self.session.advance_frame(self.preferences.loop)
-        elif self.preferences.keep_tracing and not self.moving:
+        if self.preferences.keep_tracing and not self.moving and not self.session.playing:
             self._serial += 1
         return frame
 
     def _pass_time(self, step: float) -> None:
-        if self.session.playing and not self.preferences.every_frame:
+        """Play: in real time, or on to the next frame once this one has been traced."""
+        if not self.session.playing:
+            return
+        if not self.preferences.every_frame:
             self.session.advance(step * self.preferences.playback_rate, self.preferences.loop)
+        elif self.traced is not None and self.traced.request.time == self.session.time:
+            self.session.advance_frame(self.preferences.loop)
 
     def _follow_glide(self, now: float) -> None:
         if self._glide is not None:

@@ -6,8 +6,8 @@ import time
 from dataclasses import replace
 
 import pytest
-from tests.viewer.conftest import FakeRenderer
 
+from tests.viewer.conftest import FakeRenderer
 from tracer.frame import Settings
 from tracer.scene.model import Camera
 from viewer.render_thread import RenderRequest, RenderThread, Traced

@@ -6,8 +6,8 @@ import json
 from dataclasses import replace
 
 import pytest
-from tests.viewer.conftest import make_scene
 
+from tests.viewer.conftest import make_scene
 from tracer.frame import Settings
 from tracer.scene.model import Camera
 from viewer.session import Session, Snapshot

@@ -1,0 +1,346 @@
+"""What a user does in the window, and what must come of it.  Each function is run by `tests.viewer.window`."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from pathlib import Path
+
+import glfw
+import numpy as np
+from imgui_bundle import glfw_utils, imgui
+from PIL import Image
+
+from tests.viewer.window import Driver
+from viewer.pictures import picture
+from viewer.views import View
+
+KEY = imgui.Key
+
+
+def views(d: Driver) -> None:
+    """Every view by its key, each the same as what the command line would draw; nothing is traced for it."""
+    d.settle()
+    traced = d.c.history.frames
+    d.c.preferences.shading = 0.35
+    for number, view in enumerate(View, start=1):
+        d.press(getattr(KEY, f"_{number}"))
+        assert d.c.session.view is view
+        d.frames(2)
+        shown = d.shown().astype(int)
+        expected = picture(d.c.frame, view, d.c.session.light).astype(int)
+        difference = np.abs(shown - expected)
+        assert difference.max() <= 2, f"{view}: off by {difference.max()} at {np.argwhere(difference > 2)[:3]}"
+    d.press(KEY._3)
+    d.press(KEY.l)
+    assert d.c.session.light == 1
+    d.press(KEY.l | KEY.mod_shift)
+    assert d.c.session.light == 0
+    assert d.c.history.frames == traced, "changing the view has traced"
+
+
+def culling(d: Driver) -> None:
+    """Tracing again culls; the key switches it off and on; resetting forgets."""
+    d.settle()
+    first = d.c.frame.statistics.shadow
+    assert first.due > 0 and first.culled == 0
+    d.press(KEY.t)
+    d.settle()
+    second = d.c.frame.statistics.shadow
+    assert second.culled + second.dynamic_only > 0
+    assert second.due == first.due
+    d.press(KEY.c)
+    d.settle()
+    assert d.c.frame.settings.method == "none" and d.c.frame.statistics.shadow.culled == 0
+    d.press(KEY.c)
+    d.settle()
+    d.press(KEY.backspace)
+    d.settle()
+    assert d.c.frame.statistics.shadow.culled == 0
+    d.context.item_click("//Culling/Symmetric occlusion test")
+    d.settle()
+    assert d.c.frame.settings.symmetric
+
+
+def flying(d: Driver) -> None:
+    """Keys and drags on the picture move the camera; typing and drags on panels do not."""
+    d.settle()
+    home = d.c.session.camera
+    d.hold(KEY.w, 0.3)
+    ahead = d.c.session.camera
+    assert np.dot(np.subtract(ahead.position, home.position), home.basis()[2]) > 0.0
+    assert ahead.basis()[2] @ home.basis()[2] > 0.999
+    d.settle()
+    assert (d.c.frame.width, d.c.frame.height) == d.c.size, "at rest the resolution is the window's"
+    assert d.c.traced.request.divisor == 1
+
+    before = d.c.session.camera
+    d.drag(d.picture_centre(), (80.0, 0.0))
+    assert d.c.session.camera.position == before.position
+    assert d.c.session.camera.basis()[2] @ before.basis()[0] > 0.05, "dragging right looks right"
+    d.drag(d.picture_centre(), (-80.0, 0.0), 1)
+
+    before = d.c.session.camera
+    panel = imgui.internal.find_window_by_name("Statistics")
+    d.drag((panel.pos.x + 60.0, panel.pos.y + panel.size.y - 20.0), (50.0, -30.0))
+    assert d.c.session.camera == before, "a drag on a panel moved the camera"
+
+    d.app.params.docking_params.focus_dockable_window("Camera")
+    d.frames(3)
+    d.context.item_click("//Camera/##bookmark")
+    d.context.key_chars("wasd")
+    d.frames(3)
+    assert d.ui.new_bookmark == "wasd"
+    assert d.c.session.camera == before, "typing moved the camera"
+    d.context.key_press(KEY.enter)
+    d.frames(2)
+    assert d.c.keeper.bookmarks[0]["name"] == "wasd"
+    d.context.mouse_move_to_pos(d.picture_centre())
+    d.context.mouse_click(0)
+    d.frames(2)
+    assert d.c.selected is not None and d.c.session.camera == before, "a click only inspects"
+
+    d.press(KEY.r)
+    assert d.c.session.follow
+    d.wait(lambda: d.c.session.camera == home, "the scene's own camera")
+    d.c.keeper.go_to_bookmark(0)
+    d.wait(lambda: not d.c.moving, "the glide to the bookmark")
+    assert math.dist(d.c.session.camera.position, before.position) < 1e-9
+    d.settle()
+
+
+def orbiting(d: Driver) -> None:
+    """An orbit keeps the distance to what was clicked; F goes near it; the wheel comes nearer."""
+    d.settle()
+    d.press(KEY.o)
+    assert d.c.preferences.navigation == "orbit"
+    d.drag(d.picture_centre(), (90.0, 40.0))
+    pivot, camera = d.ui.pivot, d.c.session.camera
+    assert pivot is not None and not d.c.session.follow
+    d.settle()
+    d.drag(d.picture_centre(), (0.0, 0.0))
+    distance = math.dist(camera.position, pivot)
+    d.context.mouse_move_to_pos(d.picture_centre())
+    d.frames(2)
+    d.context.mouse_wheel_y(3.0)
+    d.frames(3)
+    assert math.dist(d.c.session.camera.position, d.ui.pivot) < distance
+    d.settle()
+    d.press(KEY.f)
+    d.wait(lambda: not d.c.moving, "the glide of the focus")
+    view = d.c.session.camera.basis()[2]
+    to_pivot = np.subtract(d.ui.pivot, d.c.session.camera.position)
+    assert view @ to_pivot / np.linalg.norm(to_pivot) > 0.9999
+    d.settle()
+
+
+def playing(d: Driver) -> None:
+    """Play, pause, step and scrub; every frame is traced in full where that was asked for."""
+    d.settle()
+    d.press(KEY.space)
+    assert d.c.session.playing
+    d.wait(lambda: d.c.session.time > 0.3, "time to pass")
+    d.press(KEY.space)
+    assert not d.c.session.playing
+    d.settle()
+    assert d.c.frame.time == d.c.session.time
+    frame = d.c.session.frame
+    d.press(KEY.right_arrow)
+    assert d.c.session.frame == frame + 1
+    d.press(KEY.left_arrow)
+    d.press(KEY.home)
+    assert d.c.session.frame == 0
+    d.c.preferences.every_frame = True
+    d.c.preferences.loop = False
+    d.settle()
+    d.c.history.clear()
+    d.press(KEY.space)
+    d.wait(lambda: not d.c.session.playing, "the last frame")
+    d.settle()
+    assert d.c.session.frame == d.c.session.scene.frames - 1
+    assert d.c.history.frames >= d.c.session.scene.frames - 1
+    assert len(set(d.c.history.values("pixels"))) == 1, "all in full resolution"
+
+
+def capturing(d: Driver) -> None:
+    """Pictures with and without panels; dropping one brings everything back."""
+    pictures = d.folder / "pictures"
+    d.settle()
+    d.press(KEY._2)
+    d.hold(KEY.d, 0.2)
+    d.press(KEY.c)
+    d.settle()
+    d.c.preferences.screenshot_template = "{scene}-{view}-{frame:04d}.png"
+    d.press(KEY.f12)
+    d.wait(lambda: not d.c.keeper.busy, "the picture to be written")
+    d.press(KEY.f12 | KEY.mod_shift)
+    d.wait(lambda: not d.c.keeper.busy, "the window's picture to be written")
+    files = sorted(p.name for p in pictures.iterdir())
+    assert files == ["tiny-occlusion-0000-2.png", "tiny-occlusion-0000.png"]
+    with Image.open(pictures / files[1]) as alone, Image.open(pictures / files[0]) as window:
+        assert alone.size == (d.c.frame.width, d.c.frame.height)
+        assert window.size == tuple(glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui()))
+        assert np.array_equal(np.asarray(alone), d.shown())
+        data = json.loads(alone.text["shadowcull"])
+    assert data["statistics"]["shadow"]["due"] == d.c.frame.statistics.shadow.due
+    camera = d.c.session.camera
+    for key in (KEY.c, KEY._1, KEY.r):
+        d.press(key)
+    d.settle()
+    assert d.c.session.camera != camera
+    d.drop(pictures / files[1])
+    assert d.c.session.camera == camera
+    assert d.c.session.view is View.OCCLUSION and d.c.session.settings.method == "none"
+    d.c.preferences.screenshot_template = "{nonsense}"
+    d.press(KEY.f12)
+    assert d.c.message.error and "nonsense" in d.c.message.text
+    (d.folder / "file").write_text("")
+    d.c.preferences.screenshot_folder, d.c.preferences.screenshot_template = str(d.folder / "file"), "a.png"
+    d.press(KEY.f12)
+    d.wait(lambda: not d.c.keeper.busy, "the failure to write")
+    d.frames(2)
+    assert d.c.message.error and "cannot write" in d.c.message.text
+    d.settle()
+
+
+def dropping(d: Driver) -> None:
+    """Scenes open; whatever is none is one line, and the open scene stays."""
+    d.settle()
+    scene = d.c.session.scene
+    bad = d.folder / "bad.aff"
+    bad.write_text("l 1 2\nf 1 1\np 3\n0 0 zero\n")
+    text = d.folder / "notes.txt"
+    text.write_text("hello")
+    fake = d.folder / "fake.png"
+    fake.write_bytes(b"no picture")
+    for path in (bad, text, fake, d.folder / "gone.aff", d.folder):
+        d.c.message = None
+        d.drop(path)
+        d.wait(lambda: not d.c.opener.busy, "the load to fail")
+        d.frames(2)
+        assert d.c.message is not None and d.c.message.error, f"{path} was not refused"
+        assert path.name in d.c.message.text and "\n" not in d.c.message.text
+        assert d.c.session.scene is scene
+    lights = "\n".join(f"l {i} 5 3 0.1 0.1 0.1" for i in range(40))
+    many = d.folder / "many.aff"
+    many.write_text(Path(scene.path).read_text() + lights)
+    d.drop(many, text)
+    d.wait(lambda: d.c.session.scene is not scene, "the other scene")
+    d.settle()
+    assert len(d.c.session.scene.lights) == 42
+    d.c.set_view(View.SHADOW)
+    d.c.set_light(35)
+    d.frames(3)
+    dark = d.folder / "dark.nff"
+    dark.write_text(
+        "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 0.1\nresolution 8 8\nf 1 0 0 1 0 1 0 1\ns 0 0 0 1\n"
+    )
+    d.drop(dark)
+    d.wait(lambda: d.c.session.scene.path.name == "dark.nff", "the scene without lights")
+    d.settle()
+    d.press(KEY._3)
+    assert d.c.frame.primitive.max() >= 0
+
+
+def cancelling(d: Driver) -> None:
+    """A load that is cancelled leaves the open scene as it is."""
+    d.settle()
+    scene, frame = d.c.session.scene, d.c.frame
+    d.drop(d.folder / "big.aff")
+    assert d.c.opener.load_job is not None
+    d.press(KEY.escape)
+    d.wait(lambda: d.c.opener.load_job is None, "the load to stop", 20.0)
+    d.frames(3)
+    assert d.c.session.scene is scene and d.c.frame is frame
+    assert "cancelled" in d.c.message.text
+
+
+def resizing(d: Driver) -> None:
+    """The picture follows the window, keeps a fixed resolution's aspect, and rests while minimised."""
+    d.settle()
+    window = glfw_utils.glfw_window_hello_imgui()
+    for size in ((1300, 900), (640, 400), (200, 120), (1000, 700)):
+        glfw.set_window_size(window, *size)
+        d.frames(4)
+        d.settle()
+        if min(d.c.size) > 0:
+            assert (d.c.frame.width, d.c.frame.height) == d.c.size
+    d.c.preferences.fixed_resolution, d.c.preferences.fixed_width, d.c.preferences.fixed_height = True, 120, 90
+    d.settle()
+    assert (d.c.frame.width, d.c.frame.height) == (120, 90)
+    d.app._room_for_picture = lambda: (0, 0)  # as while minimised; without a window manager nothing minimises
+    d.frames(3)
+    traced = d.c.history.frames
+    d.press(KEY.t)
+    d.frames(5)
+    assert d.c.history.frames == traced, "a window that cannot be seen is traced for"
+    del d.app._room_for_picture
+    d.settle()
+    assert d.c.history.frames == traced + 1
+
+
+def closing_while_tracing(d: Driver) -> None:
+    """The window goes at once, whatever is being traced."""
+    d.settle()
+    d.c.change(samples=4000)
+    d.wait(lambda: d.c.render.running is not None and d.c.render.running.settings.samples == 4000, "a long trace")
+    _close(d)
+
+
+def closing_while_loading(d: Driver) -> None:
+    """The window goes at once, whatever is being loaded."""
+    d.wait(lambda: d.c.opener.warm_up_job is None, "the kernels")
+    d.drop(d.folder / "big.aff")
+    d.wait(lambda: d.c.opener.load_job is not None, "a load")
+    _close(d)
+
+
+def _close(d: Driver) -> None:
+    began = time.monotonic()
+    closed = d.c.close
+
+    def timed(*args: float) -> bool:
+        done = closed(*args)
+        assert done, "a thread would not stop"
+        assert time.monotonic() - began < 10.0, "closing took too long"
+        return done
+
+    d.c.close = timed
+    d.app._exit()
+
+
+def panels(d: Driver) -> None:
+    """Every panel, dialog and menu is shown once, as a new user would open them."""
+    d.settle()
+    d.press(KEY.b)
+    for label in ("Camera", "Rendering", "Saving", "Scene", "View"):
+        d.app.params.docking_params.focus_dockable_window(label)
+        d.frames(3)
+    d.press(KEY.f1)
+    assert d.ui.shortcuts_open
+    d.frames(3)
+    d.press(KEY.f1)
+    d.context.menu_click("//##MainMenuBar/Help/About Shadowcull")
+    d.frames(3)
+    assert d.ui.about_open
+    d.ui.about_open = False
+    d.press(KEY.o | KEY.mod_ctrl)
+    d.frames(4)
+    assert d.ui.browser.open
+    d.ui.browser.folder = d.folder
+    d.frames(2)
+    before = d.c.session.view
+    d.context.key_press(KEY._5)
+    d.frames(2)
+    assert d.c.session.view is before, "a key reached the window behind a dialog"
+    d.press(KEY.escape)
+    assert not d.ui.browser.open
+    d.context.menu_click("//##MainMenuBar/View/Depth")
+    d.frames(2)
+    assert d.c.session.view is View.DEPTH
+    d.c.preferences.keep_tracing = True
+    traced = d.c.history.frames
+    d.c.trace_again()
+    d.wait(lambda: d.c.history.frames >= traced + 3, "frames at rest")
+    d.c.preferences.keep_tracing = False
