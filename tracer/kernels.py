@@ -46,16 +46,24 @@ def cache_folder() -> Path:
         return Path(tempfile.mkdtemp(prefix="shadowcull-kernels-"))
 
 
+_OPTIONS = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+
+
 def kernel(function: Callable) -> Any:
-    """Compile `function` with numba: cached, free of the GIL, division by zero as in IEEE 754."""
+    """Compile a function that Python calls: cached, free of the GIL, division by zero as in IEEE 754."""
     config: Any = _config  # its names are made at run time
     saved, config.CACHE_DIR = config.CACHE_DIR, str(cache_folder())
     try:
-        return njit(cache=True, nogil=True, error_model="numpy")(function)
+        return njit(cache=True, **_OPTIONS)(function)
     finally:
         config.CACHE_DIR = saved
 
 
+def subkernel(function: Callable) -> Any:
+    """Compile a function that only kernels call (from Python it crashes): cached with them, it needs no way in."""
+    return njit(no_cpython_wrapper=True, **_OPTIONS)(function)
+
+
 def inlined(function: Callable) -> Any:
-    """A small kernel that disappears into its callers; it is compiled with them."""
-    return njit(nogil=True, error_model="numpy", forceinline=True)(function)
+    """A small subkernel that disappears into its callers."""
+    return njit(no_cpython_wrapper=True, forceinline=True, **_OPTIONS)(function)

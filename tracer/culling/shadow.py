@@ -31,7 +31,7 @@ from tracer.culling.modes import (
 )
 from tracer.geometry.queries import any_dynamic_hits, any_static_hits
 from tracer.geometry.rays import empty_rays
-from tracer.kernels import inlined, kernel
+from tracer.kernels import inlined, subkernel
 
 # Shadow counters; the first two are those that queries add to.
 STEPS, TESTS, RAYS, DUE, CULLED, DYNAMIC_ONLY, WRONG = range(7)
@@ -61,7 +61,7 @@ def lifted(position, geometric, offset, i):
     )
 
 
-@kernel
+@subkernel
 def _is_due(points, light, i):
     return (
         points.geometric[0, i] * (light[0] - points.position[0, i])
@@ -70,7 +70,7 @@ def _is_due(points, light, i):
     ) > np.float32(0)
 
 
-@kernel
+@subkernel
 def _rays_from_light(points, light, index, count):
     """Shadow rays from a light to the points listed in index: t = 1 is the point."""
     rays = empty_rays(count)
@@ -83,7 +83,7 @@ def _rays_from_light(points, light, index, count):
     return rays
 
 
-@kernel
+@subkernel
 def _choose_fates(points, light, number, knowledge, asked, known_lit, answer, counts):
     """Lists of points whose rays ask everything and of those that ask dynamic objects alone; their lengths."""
     asking, lit = 0, 0
@@ -109,7 +109,7 @@ def _choose_fates(points, light, number, knowledge, asked, known_lit, answer, co
     return asking, lit
 
 
-@kernel
+@subkernel
 def _ask_static(world, points, light, number, knowledge, asked, asking, open_, opened, answer, counts):
     """Ask static geometry, set shadow modes, and add the points where nothing blocks to open_; its new length."""
     blocked = np.empty(asking, np.bool_)
@@ -127,7 +127,7 @@ def _ask_static(world, points, light, number, knowledge, asked, asking, open_, o
     return opened
 
 
-@kernel
+@subkernel
 def _ask_dynamic(world, points, light, open_, opened, answer, counts):
     blocked = np.zeros(opened, np.bool_)
     if len(world.roots) > 1:
@@ -136,7 +136,7 @@ def _ask_dynamic(world, points, light, open_, opened, answer, counts):
         answer[open_[k]] = BLOCKED if blocked[k] else LIT
 
 
-@kernel
+@subkernel
 def _count_wrong(world, points, light, asked, asking, answer, counts):
     """Trace what was culled after all, uncounted, and count the answers that differ."""
     scratch = np.zeros(SHADOW_COUNTERS, np.int64)
@@ -156,7 +156,7 @@ def _count_wrong(world, points, light, asked, asking, answer, counts):
         counts[WRONG] += (static[k] or dynamic[k]) != (answer[index[k]] == BLOCKED)
 
 
-@kernel
+@subkernel
 def shadow_testing(world, points, light, number, knowledge, answer, counts):
     """Answer, for light `number` at light (3,), whether it reaches each point: NOT_DUE, BLOCKED or LIT."""
     n = len(points.unit)

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from tracer.geometry.rays import INFINITY, Ray
-from tracer.kernels import inlined, kernel
+from tracer.kernels import inlined, subkernel
 from tracer.scene.model import SPHERE
 
 ZERO = np.float32(0)
@@ -101,7 +101,7 @@ def _cone_root(a, half_b, c, z, dz, ray):
     return np.inf
 
 
-@kernel
+@subkernel
 def hit_quadric(ray, quadrics, i):
     """t of a ray on the i-th quadric, inf for a miss.  In float64: quadrics are few, and roots cancel."""
     q = 16 * i

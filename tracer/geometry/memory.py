@@ -40,8 +40,9 @@ def _without_counts(context: Any, builder: Any, kind: Any, value: Any) -> Any:
         array.parent = cgutils.get_null_value(array.parent.type)
         return array._getvalue()
     if isinstance(kind, types.BaseTuple):
-        for i in range(len(kind)):
-            item = _without_counts(context, builder, kind[i], builder.extract_value(value, i))
+        members: list[Any] = list(kind)  # type: ignore[call-overload]
+        for i, member in enumerate(members):
+            item = _without_counts(context, builder, member, builder.extract_value(value, i))
             value = builder.insert_value(value, item, i)
     return value
 

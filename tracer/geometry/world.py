@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tracer.geometry.kdtree import traverse
 from tracer.geometry.kdtree.build import CANCELLED, DONE, bounds_of, build_tree
 from tracer.geometry.kdtree.tree import LEAF, Trees
-from tracer.geometry.rays import Hits, Rays, empty_hits
+from tracer.geometry.rays import Hits, Rays
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import deformed
 from tracer.scene.model import Progress, Quadrics, Scene, SceneObject
@@ -200,7 +200,8 @@ class World:
     def closest_hits(self, rays: Rays, threads: int = 0) -> Hits:
         """Nearest hits of a batch (see `tracer.geometry.rays`)."""
         n = len(rays.t_min)
-        hits, counts = empty_hits(n), np.zeros((thread_count(threads), 2), np.int64)
+        hits = Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
+        counts = np.zeros((thread_count(threads), 2), np.int64)
 
         def work(chunk: int, worker: int) -> None:
             last = min(n, (chunk + 1) * CHUNK)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.culling.shadow import LIT
-from tracer.kernels import kernel
+from tracer.kernels import subkernel
 from tracer.shading.look import AMBIENT, DIFFUSE, EXPONENT, SPECULAR
 
 ZERO = np.float32(0)
 
 
-@kernel
+@subkernel
 def add_ambient(points, look, wave, color):
     """Add what every point of the batch has without any light; a texture scales it."""
     for i in range(len(points.unit)):
@@ -21,7 +21,7 @@ def add_ambient(points, look, wave, color):
             color[wave.pixel[i], c] += wave.weight[c, i] * light
 
 
-@kernel
+@subkernel
 def add_light(points, look, number, answer, wave, color):
     """Add light `number` where it reaches the point: diffuse N.L, and (R.V)^exponent (Phong 1975)."""
     light = look.lights[number]

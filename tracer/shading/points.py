@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.intersect import quadric_normal
-from tracer.kernels import inlined, kernel
+from tracer.kernels import inlined, subkernel
 from tracer.shading.look import texture_color
 
 OFFSET = np.float32(2e-5)  # of the largest coordinate at hand: some 300 float32 roundings
@@ -57,7 +57,7 @@ def _to_world(m, x, y, z):
     return m[0] * x + m[4] * y + m[8] * z, m[1] * x + m[5] * y + m[9] * z, m[2] * x + m[6] * y + m[10] * z
 
 
-@kernel
+@subkernel
 def _triangle_point(world, look, points, i, primitive, u, v):
     """Geometric and shading normal, in world space, and texture colour."""
     t, n, m = world.triangles[primitive], look.normals[primitive], world.to_object[world.object_of[primitive]]
@@ -76,7 +76,7 @@ def _triangle_point(world, look, points, i, primitive, u, v):
         points.texture[0, i], points.texture[1, i], points.texture[2, i] = red, green, blue
 
 
-@kernel
+@subkernel
 def _quadric_point(world, points, i, primitive):
     m = world.to_object[world.object_of[primitive]]
     p = points.position
@@ -89,7 +89,7 @@ def _quadric_point(world, points, i, primitive):
     _store_unit(points.normal, i, nx, ny, nz)
 
 
-@kernel
+@subkernel
 def _face_viewer(points, rays, i):
     """Turn both normals to the side the ray came from, and note whether that was the outside."""
     g, n, d = points.geometric, points.normal, rays.direction
@@ -102,7 +102,7 @@ def _face_viewer(points, rays, i):
             n[axis, i] = -n[axis, i]
 
 
-@kernel
+@subkernel
 def points_at(world, look, rays, hits):
     """The surface points of a batch in which every ray hits something."""
     n = len(hits.t)

@@ -18,7 +18,7 @@ from tracer.geometry.camera import primary_ray
 from tracer.geometry.memory import borrowed
 from tracer.geometry.queries import closest_hits
 from tracer.geometry.rays import MISS, Hits, Rays, empty_hits, empty_rays
-from tracer.kernels import inlined, kernel
+from tracer.kernels import inlined, kernel, subkernel
 from tracer.shading.look import IOR, SPECULAR, TRANSMISSION
 from tracer.shading.phong import add_ambient, add_light
 from tracer.shading.points import points_at
@@ -91,7 +91,7 @@ def trace_primary(world, camera, tile, buffers, counts):
         buffers.u[y, x], buffers.v[y, x] = hits.u[k], hits.v[k]
 
 
-@kernel
+@subkernel
 def _first_wave(camera, tile, buffers):
     """The tile's primary rays once more, with the hits that the buffers hold."""
     n, width = (tile[2] - tile[0]) * (tile[3] - tile[1]), buffers.primitive.shape[1]
@@ -122,7 +122,7 @@ def _copy_ray(source, i, target, k):
     target.pixel[k] = source.pixel[i]
 
 
-@kernel
+@subkernel
 def _shortened(wave, n):
     """The first n rays of a wave, in rows of that length."""
     if n == len(wave.pixel):
@@ -133,7 +133,7 @@ def _shortened(wave, n):
     return out
 
 
-@kernel
+@subkernel
 def _without_misses(wave, look, color):
     """The wave's rays that hit; the others bring home the background."""
     n = 0
@@ -179,7 +179,7 @@ def _send(wave, n, origin, direction, pixel, weight, scale):
     return n + 1
 
 
-@kernel
+@subkernel
 def _next_wave(points, look, wave):
     """Reflected rays, scaled by the specular colour, and refracted ones, scaled by the transmission."""
     out = _empty_wave(2 * len(wave.pixel))
@@ -204,7 +204,7 @@ def _next_wave(points, look, wave):
     return _shortened(out, n)
 
 
-@kernel
+@subkernel
 def _shade(world, look, wave, points, knowledge, first, buffers, counts):
     """Local light of a wave, with shadow testing for every light; `first` for the wave of primary rays."""
     add_ambient(points, look, wave, buffers.color)

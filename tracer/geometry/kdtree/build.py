@@ -15,7 +15,7 @@ import numpy as np
 
 from tracer.geometry.kdtree.tree import LEAF, MAX_DEPTH, Trees
 from tracer.geometry.memory import float_bits
-from tracer.kernels import kernel
+from tracer.kernels import kernel, subkernel
 
 TRAVERSAL_COST = 1.0
 INTERSECTION_COST = 1.4
@@ -25,7 +25,7 @@ SWEEP_BELOW = 48  # references; below it every plane is tried
 CANCELLED, DONE = 0, 1  # entries of `control`: set to stop the build; references placed in leaves so far
 
 
-@kernel
+@subkernel
 def _split_cost(box, axis, plane, lower, upper):
     """Expected cost of a ray in `box` (6,) when split, with so many references on either side."""
     b, c = (axis + 1) % 3, (axis + 2) % 3
@@ -38,7 +38,7 @@ def _split_cost(box, axis, plane, lower, upper):
     return cost * EMPTY_BONUS if lower == 0 or upper == 0 else cost
 
 
-@kernel
+@subkernel
 def _best_binned_split(boxes, first, last, box):
     """(cost, axis, plane) over evenly spaced planes; counts are exact, from where boxes start and end."""
     best_cost, best_axis, best_plane = np.inf, -1, 0.0
@@ -65,7 +65,7 @@ def _best_binned_split(boxes, first, last, box):
     return best_cost, best_axis, best_plane
 
 
-@kernel
+@subkernel
 def _insertion_sort(values, n):
     for i in range(1, n):
         x, j = values[i], i - 1
@@ -75,7 +75,7 @@ def _insertion_sort(values, n):
         values[j + 1] = x
 
 
-@kernel
+@subkernel
 def _best_swept_split(boxes, first, last, box):
     """(cost, axis, plane) over every face of the references' boxes; flat ones in a plane count below it."""
     best_cost, best_axis, best_plane = np.inf, -1, 0.0
@@ -113,7 +113,7 @@ def _best_swept_split(boxes, first, last, box):
     return best_cost, best_axis, best_plane
 
 
-@kernel
+@subkernel
 def _clip_below(polygon, n, axis, plane, sign, out):
     """Part of a convex polygon (n corners) where sign * (x[axis] - plane) <= 0 (Sutherland and Hodgman 1974)."""
     kept = 0
@@ -133,7 +133,7 @@ def _clip_below(polygon, n, axis, plane, sign, out):
     return kept
 
 
-@kernel
+@subkernel
 def _clip_triangle(triangles, i, box, polygon, other, result, row):
     """Bounds of a triangle's part inside box, into a row of result (n, 6) float32; False where none is left.
 
@@ -161,7 +161,7 @@ def _clip_triangle(triangles, i, box, polygon, other, result, row):
     return True
 
 
-@kernel
+@subkernel
 def _copy(prims, boxes, first, count, to_prims, to_boxes, to_first):
     """Copy `count` references."""
     for i in range(count):
@@ -170,7 +170,7 @@ def _copy(prims, boxes, first, count, to_prims, to_boxes, to_first):
             to_boxes[to_first + i, k] = boxes[first + i, k]
 
 
-@kernel
+@subkernel
 def _grown(array, used):
     """The same numbers (n,) int32 in twice the room."""
     larger = np.empty(2 * len(array), np.int32)
@@ -179,7 +179,7 @@ def _grown(array, used):
     return larger
 
 
-@kernel
+@subkernel
 def _partition(prims, boxes, first, last, box, axis, plane, triangles, side_prims, side_boxes, upper):
     """Copy what lies on one side of a plane, clipped to it, and return how many that are."""
     count = 0
@@ -203,7 +203,7 @@ def _partition(prims, boxes, first, last, box, axis, plane, triangles, side_prim
     return count
 
 
-@kernel
+@subkernel
 def _best_split(boxes, first, last, box):
     if last - first > SWEEP_BELOW:
         return _best_binned_split(boxes, first, last, box)

@@ -17,7 +17,7 @@ from tracer.geometry.intersect import ZERO, hit_box, hit_quadric, hit_triangle, 
 from tracer.geometry.kdtree.tree import STACK_SIZE, Stack, Trees, next_leaf, pointers_to, push
 from tracer.geometry.memory import local_float32, local_int32, pointer
 from tracer.geometry.rays import INFINITY, MISS, Ray, ray_at, ray_pointers
-from tracer.kernels import inlined, kernel
+from tracer.kernels import inlined, kernel, subkernel
 
 STEPS, TESTS = 0, 1  # what a query adds to its counts
 SLACK = np.float32(1e-5)  # relative; by so much an object's interval is wider than that of its leaf
@@ -103,7 +103,7 @@ def _between(ray, t_min, t_max):
     return Ray(ray.ox, ray.oy, ray.oz, ray.dx, ray.dy, ray.dz, t_min, t_max)
 
 
-@kernel
+@subkernel
 def _closest_in_tree(s, trees, o, ray, enter, leave, best):
     """Nearest hit in object o, if nearer than `best`; equal t goes to the lower number."""
     near, far = hit_box(_between(ray, enter, leave), s.boxes, o)
@@ -123,7 +123,7 @@ def _closest_in_tree(s, trees, o, ray, enter, leave, best):
     return best
 
 
-@kernel
+@subkernel
 def _any_in_tree(s, trees, o, ray, enter, leave):
     """Whether anything of object o is hit."""
     near, far = hit_box(_between(ray, enter, leave), s.boxes, o)
@@ -147,7 +147,7 @@ def _piece(leaf):
     return leaf.enter - SLACK * abs(leaf.enter), leaf.leave + SLACK * abs(leaf.leave)
 
 
-@kernel
+@subkernel
 def _closest_dynamic(s, ray, best):
     near, far = hit_box(ray, s.top_box, 0)
     if near > min(far, best.t):
@@ -165,7 +165,7 @@ def _closest_dynamic(s, ray, best):
     return best
 
 
-@kernel
+@subkernel
 def _any_dynamic(s, ray):
     near, far = hit_box(ray, s.top_box, 0)
     if near > far:
@@ -199,7 +199,7 @@ def closest_hits(world, rays, hits, first, last, counts):
         hits.primitive[i], hits.u[i], hits.v[i] = best.primitive, best.u, best.v
 
 
-@kernel
+@subkernel
 def any_static_hits(world, rays, blocked, first, last, counts):
     """blocked[i] for rays first to last - 1: whether static geometry lies in their interval."""
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
@@ -210,7 +210,7 @@ def any_static_hits(world, rays, blocked, first, last, counts):
         blocked[i] = _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max)
 
 
-@kernel
+@subkernel
 def any_dynamic_hits(world, rays, blocked, first, last, counts):
     """blocked[i] for rays first to last - 1: whether a dynamic object lies in their interval."""
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
@@ -233,7 +233,7 @@ def any_hits(world, rays, blocked, first, last, counts):
         blocked[i] = blocked[i] or _any_dynamic(s, ray_at(batch, i))
 
 
-@kernel
+@subkernel
 def hits_alone(world, ray, primitive):
     """Whether a ray in world space meets this primitive, nothing else asked."""
     o = world.object_of[primitive]
