@@ -46,6 +46,7 @@ def cache_folder() -> Path:
         return Path(tempfile.mkdtemp(prefix="shadowcull-kernels-"))
 
 
+_njit: Any = njit
 _OPTIONS = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 
@@ -54,16 +55,16 @@ def kernel(function: Callable) -> Any:
     config: Any = _config  # its names are made at run time
     saved, config.CACHE_DIR = config.CACHE_DIR, str(cache_folder())
     try:
-        return njit(cache=True, **_OPTIONS)(function)
+        return _njit(cache=True, **_OPTIONS)(function)
     finally:
         config.CACHE_DIR = saved
 
 
 def subkernel(function: Callable) -> Any:
     """Compile a function that only kernels call (from Python it crashes): cached with them, it needs no way in."""
-    return njit(no_cpython_wrapper=True, **_OPTIONS)(function)
+    return _njit(no_cpython_wrapper=True, **_OPTIONS)(function)
 
 
 def inlined(function: Callable) -> Any:
     """A small subkernel that disappears into its callers."""
-    return njit(no_cpython_wrapper=True, forceinline=True, **_OPTIONS)(function)
+    return _njit(no_cpython_wrapper=True, forceinline=True, **_OPTIONS)(function)
