@@ -82,7 +82,6 @@ class App:
         try:
             runner(self.params, immapp.AddOnsParams(with_implot=True))
         finally:
-            self.controller.wake = lambda: None
             self.controller.close()
             self.layout_file.keep()
         return 0
@@ -238,6 +237,7 @@ class App:
         hello_imgui.request_refresh()
 
     def _release(self) -> None:
+        self.controller.wake = lambda: None  # threads may still be at work when the window is gone
         if self.ui.display is not None:
             self.ui.display.release()
             self.ui.display = None

@@ -7,14 +7,19 @@ never waits.
 
 from __future__ import annotations
 
+import os
+import sys
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Generic, TypeVar
 
 from tracer.scene.model import Cancelled, Progress, SceneError
 
 Result = TypeVar("Result")
+
+NICENESS = 2
 
 
 class Job(Generic[Result]):
@@ -63,6 +68,7 @@ class Job(Generic[Result]):
         self._wake()
 
     def _run(self) -> None:
+        step_back()
         try:
             result = self._work(self._progress)
             if self._stop.is_set():
@@ -75,6 +81,13 @@ class Job(Generic[Result]):
         finally:
             self._finished.set()
             self._wake()
+
+
+def step_back() -> None:
+    """Let the window go before this thread, and the threads it starts, where cores are short (Linux only)."""
+    if sys.platform.startswith("linux"):
+        with suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), NICENESS)
 
 
 def one_line(error: BaseException) -> str:

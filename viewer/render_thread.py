@@ -17,7 +17,7 @@ from typing import Protocol
 
 from tracer.renderer import Frame, Settings
 from tracer.scene.model import Camera, Cancelled
-from viewer.jobs import one_line
+from viewer.jobs import one_line, step_back
 
 
 class Traces(Protocol):
@@ -137,6 +137,7 @@ class RenderThread:
         return not self._thread.is_alive()
 
     def _run(self) -> None:
+        step_back()
         while (work := self._next()) is not None:
             renderer, request, reset = work
             frame, error = None, None

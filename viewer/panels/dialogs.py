@@ -18,6 +18,8 @@ _OPEN = "Open a scene or a captured picture"
 
 def show(ui: Ui) -> None:
     """All of them; each shows itself only when it is wanted."""
+    if imgui.is_key_pressed(imgui.Key.escape):
+        ui.shortcuts_open = ui.about_open = False
     _progress(ui)
     _browser(ui)
     _shortcuts(ui)
@@ -171,18 +173,22 @@ def _shortcuts(ui: Ui) -> None:
             for menu in MENUS[2:]:
                 _keys(menu, [(key_label(c.key), c.name) for c in ui.commands if c.menu == menu and c.key])
             imgui.end_table()
-        _keys("On the picture", list(HELD_KEYS))
+        _keys("On the picture", list(HELD_KEYS), wide=True)
     imgui.end()
 
 
-def _keys(title: str, lines: list[tuple[str, str]]) -> None:
+def _keys(title: str, lines: list[tuple[str, str]], wide: bool = False) -> None:
     imgui.separator_text(title)
-    width = em(9.5) if title == "On the picture" else em(6.0)
+    if not imgui.begin_table(f"keys of {title}", 2):
+        return
+    imgui.table_setup_column("key", int(imgui.TableColumnFlags_.width_fixed), em(8.5 if wide else 5.5))
+    imgui.table_setup_column("meaning", int(imgui.TableColumnFlags_.width_stretch))
     for key, meaning in lines:
-        left = imgui.get_cursor_pos_x()
+        imgui.table_next_column()
         imgui.text_unformatted(key)
-        imgui.same_line(left + width)
-        imgui.text_colored(QUIET, meaning)
+        imgui.table_next_column()
+        paragraph(meaning, QUIET)
+    imgui.end_table()
 
 
 def _about(ui: Ui) -> None:

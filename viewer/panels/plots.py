@@ -16,11 +16,12 @@ _BLUE, _GREEN, _ORANGE, _SKY = (
     ImVec4(0.55, 0.78, 0.95, 1.0),
 )
 
+_LOGARITHMIC = "Milliseconds"
 _PLOTS = (
     ("Shadow rays", (("due", "due", _SKY), ("culled", "culled", _GREEN), ("dynamic only", "dynamic_only", _ORANGE))),
     ("Steps and tests", (("steps", "steps", _BLUE), ("of shadow rays", "shadow_steps", _SKY),
                          ("tests", "tests", _ORANGE))),
-    ("Milliseconds", (("traced", "traced_ms", _BLUE), ("drawn", "drawn_ms", _ORANGE))),
+    (_LOGARITHMIC, (("traced", "traced_ms", _BLUE), ("drawn", "drawn_ms", _ORANGE))),
 )  # fmt: skip
 _FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
 _AXIS = int(implot.AxisFlags_.no_highlight)
@@ -56,7 +57,7 @@ def show(ui: Ui) -> None:
 
 def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size: ImVec2) -> None:
     history = ui.controller.history
-    per_pixel = ui.per_pixel and title != "Milliseconds"
+    per_pixel = ui.per_pixel and title != _LOGARITHMIC
     if not implot.begin_plot(f"{title}{' per pixel' if per_pixel else ''}##{title}", size, _FLAGS):
         return
     curves = [(label, _values(ui, name, per_pixel), color) for label, name, color in series]
@@ -65,7 +66,12 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
     implot.setup_axes("", "", _AXIS, _AXIS)
     implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
     implot.setup_axis_format(implot.ImAxis_.y1, "%.4g")
-    implot.setup_axes_limits(history.first, last, 0.0, 1.12 * top if top > 0.0 else 1.0, int(imgui.Cond_.always))
+    if title == _LOGARITHMIC:  # full frames and those in motion differ a hundredfold
+        implot.setup_axis_scale(implot.ImAxis_.y1, int(implot.Scale_.log10))
+        lowest, highest = 1.0, 10.0 * max(top, 1.0)
+    else:
+        lowest, highest = 0.0, 1.12 * top if top > 0.0 else 1.0
+    implot.setup_axes_limits(history.first, last, lowest, highest, int(imgui.Cond_.always))
     implot.setup_legend(implot.Location_.south, int(_LEGEND.outside | _LEGEND.horizontal | _LEGEND.no_menus))
     for label, values, color in curves:
         implot.plot_line(label, values, 1.0, float(history.first), implot.Spec(line_color=color, line_weight=1.6))

@@ -119,5 +119,5 @@ def _warnings(ui: Ui) -> None:
     heading(f"Warnings ({len(scene.warnings)})")
     if imgui.begin_child("warnings", (0.0, min(len(scene.warnings), 6) * imgui.get_text_line_height_with_spacing())):
         for warning in scene.warnings:
-            clipped(warning, WARNING)
+            clipped(warning.replace(f"{scene.path.parent}/", ""), WARNING)
     imgui.end_child()
