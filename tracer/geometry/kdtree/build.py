@@ -18,7 +18,7 @@ from tracer.geometry.memory import float_bits
 from tracer.kernels import kernel, subkernel
 
 TRAVERSAL_COST = 1.0
-INTERSECTION_COST = 1.4
+INTERSECTION_COST = 0.8  # measured: below 1.4 a third fewer nodes, built faster, and frames no slower
 EMPTY_BONUS = 0.8  # a split that cuts off empty space costs this much of its estimate
 BINS = 32
 SWEEP_BELOW = 48  # references; below it every plane is tried
