@@ -116,6 +116,21 @@ def test_textures_repeat_and_stand_upright():
     assert column[2, 0] > 0.7 > 0.3 > column[2, 1]
 
 
+def test_a_distant_texture_shows_its_mean_instead_of_flickering():
+    """Black and white texels far smaller than a pixel are grey; seen closely they are black and white."""
+    checks = Texture(
+        "checks", np.kron([[0, 1], [1, 0]], np.full((32, 32), 255))[..., None].repeat(3, 2).astype(np.uint8)
+    )
+    world = scene(plane(), camera=ABOVE, materials=(Material(ambient=(1, 1, 1)),), textures=(checks,))
+    triangles = world.objects[0].triangles
+    triangles.texture[:] = 0
+    triangles.uvs[:] = triangles.corners[..., :2] * 20
+    renderer = tracer.Renderer(world, replace(SETTINGS, width=32, height=32))
+    far, near = renderer.render(), renderer.render(camera=Camera((0, 0, 0.1), (0, 0, -1), (0, 1, 0), 40.0))
+    assert far.color == pytest.approx(0.5, abs=0.02)
+    assert (np.isin(near.color, (0.0, 1.0))).mean() > 0.5
+
+
 def test_more_samples_smooth_an_edge_and_change_no_modes():
     half = [[[-20, -20, 0], [20, -20, 0], [20, 20, 0]]]
     world = scene(half, camera=ABOVE, background=(1, 1, 1), lights=[(0, 0, 20)])

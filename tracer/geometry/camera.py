@@ -15,12 +15,14 @@ from tracer.scene.model import Camera
 
 class Pinhole(NamedTuple):
     """A camera for a picture of a given size, all (3,) float32: its place, the direction through the
-    picture's upper left corner, and the steps from there to the next column and the next row."""
+    picture's upper left corner, and the steps from there to the next column and the next row; and spread,
+    the width of a pixel at distance 1."""
 
     origin: NDArray[np.float32]
     corner: NDArray[np.float32]
     column: NDArray[np.float32]
     row: NDArray[np.float32]
+    spread: np.float32
 
 
 def pinhole(camera: Camera, width: int, height: int, shift: tuple[float, float] = (0.5, 0.5)) -> Pinhole:
@@ -28,8 +30,8 @@ def pinhole(camera: Camera, width: int, height: int, shift: tuple[float, float] 
     right, up, forward = camera.basis()
     step = 2.0 * math.tan(math.radians(camera.angle) / 2.0) / height
     corner = forward + step * ((shift[0] - 0.5 * width) * right - (shift[1] - 0.5 * height) * up)
-    vectors = (np.asarray(camera.position, np.float64), corner, step * right, -step * up)
-    return Pinhole(*(v.astype(np.float32) for v in vectors))
+    vectors = np.stack([camera.position, corner, step * right, -step * up]).astype(np.float32)
+    return Pinhole(vectors[0], vectors[1], vectors[2], vectors[3], np.float32(step))
 
 
 @inlined

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tracer.geometry.intersect import quadric_normal
 from tracer.kernels import inlined, subkernel
-from tracer.shading.look import texture_color
+from tracer.shading.textures import texture_color
 
 OFFSET = np.float32(2e-5)  # of the largest coordinate at hand: some 300 float32 roundings
 
@@ -58,10 +58,12 @@ def _to_world(m, x, y, z):
 
 
 @subkernel
-def _triangle_point(world, look, points, i, primitive, u, v):
-    """Geometric and shading normal, in world space, and texture colour."""
+def _triangle_point(world, look, points, i, hits, rays, cone):
+    """Geometric and shading normal, in world space, and the texture's colour under a cone of rays of that width."""
+    primitive, u, v = hits.primitive[i], hits.u[i], hits.v[i]
     t, n, m = world.triangles[primitive], look.normals[primitive], world.to_object[world.object_of[primitive]]
-    gx, gy, gz = _to_world(m, t[4] * t[8] - t[5] * t[7], t[5] * t[6] - t[3] * t[8], t[3] * t[7] - t[4] * t[6])
+    cx, cy, cz = t[4] * t[8] - t[5] * t[7], t[5] * t[6] - t[3] * t[8], t[3] * t[7] - t[4] * t[6]
+    gx, gy, gz = _to_world(m, cx, cy, cz)
     _store_unit(points.geometric, i, gx, gy, gz)
     w = np.float32(1) - u - v
     nx, ny, nz = w * n[0] + u * n[3] + v * n[6], w * n[1] + u * n[4] + v * n[7], w * n[2] + u * n[5] + v * n[8]
@@ -72,7 +74,12 @@ def _triangle_point(world, look, points, i, primitive, u, v):
     if look.texture[primitive] >= 0:
         uv = look.uvs[primitive]
         s, r = w * uv[0] + u * uv[2] + v * uv[4], w * uv[1] + u * uv[3] + v * uv[5]
-        red, green, blue = texture_color(look, look.texture[primitive], s, r)
+        covered = abs((uv[2] - uv[0]) * (uv[5] - uv[1]) - (uv[4] - uv[0]) * (uv[3] - uv[1]))
+        g, d = points.geometric, rays.direction
+        cosine = abs(g[0, i] * d[0, i] + g[1, i] * d[1, i] + g[2, i] * d[2, i])
+        area = np.sqrt(cx * cx + cy * cy + cz * cz) * max(cosine, np.float32(1e-4))
+        footprint = cone * cone * covered / area if area > np.float32(0) else np.float32(0)
+        red, green, blue = texture_color(look, look.texture[primitive], s, r, footprint)
         points.texture[0, i], points.texture[1, i], points.texture[2, i] = red, green, blue
 
 
@@ -103,21 +110,24 @@ def _face_viewer(points, rays, i):
 
 
 @subkernel
-def points_at(world, look, rays, hits):
-    """The surface points of a batch in which every ray hits something."""
+def points_at(world, look, rays, hits, reach, spread):
+    """The surface points of a batch in which every ray hits something.
+
+    reach (n,) float32 is how far each ray's ancestors came; spread is the width of a pixel at distance 1.
+    """
     n = len(hits.t)
     points = _empty_points(n)
     for i in range(n):
-        reach = hits.t[i]
+        largest = hits.t[i]
         for axis in range(3):
             points.texture[axis, i] = np.float32(1)
             points.position[axis, i] = rays.origin[axis, i] + hits.t[i] * rays.direction[axis, i]
-            reach = max(reach, abs(points.position[axis, i]))
-        points.offset[i] = OFFSET * reach
+            largest = max(largest, abs(points.position[axis, i]))
+        points.offset[i] = OFFSET * largest
         primitive = hits.primitive[i]
         points.unit[i], points.material[i] = primitive, look.material[primitive]
         if primitive < len(world.triangles):
-            _triangle_point(world, look, points, i, primitive, hits.u[i], hits.v[i])
+            _triangle_point(world, look, points, i, hits, rays, spread * (reach[i] + hits.t[i]))
         else:
             _quadric_point(world, points, i, primitive)
         _face_viewer(points, rays, i)

@@ -46,17 +46,20 @@ class Buffers(NamedTuple):
 
 
 class Wave(NamedTuple):
-    """n rays, what they hit, the pixel (n,) int32 they count for and with which weight (3, n) float32."""
+    """n rays, what they hit, the pixel (n,) int32 they count for, with which weight (3, n) float32, and
+    reach (n,) float32, the length of the path from the eye to where they start."""
 
     rays: Rays
     hits: Hits
     pixel: NDArray[np.int32]
     weight: NDArray[np.float32]
+    reach: NDArray[np.float32]
 
 
 @inlined
 def _empty_wave(n):
-    return Wave(empty_rays(n), empty_hits(n), np.empty(n, np.int32), np.empty((3, n), np.float32))
+    weight, reach = np.empty((3, n), np.float32), np.empty(n, np.float32)
+    return Wave(empty_rays(n), empty_hits(n), np.empty(n, np.int32), weight, reach)
 
 
 @inlined
@@ -102,7 +105,7 @@ def _first_wave(camera, tile, buffers):
         _store_ray(wave.rays, k, (ray.ox, ray.oy, ray.oz), (ray.dx, ray.dy, ray.dz))
         wave.hits.t[k], wave.hits.primitive[k] = buffers.depth[y, x], buffers.primitive[y, x]
         wave.hits.u[k], wave.hits.v[k] = buffers.u[y, x], buffers.v[y, x]
-        wave.pixel[k] = y * width + x
+        wave.pixel[k], wave.reach[k] = y * width + x, np.float32(0)
         for axis in range(3):
             wave.weight[axis, k] = ONE
             buffers.color[wave.pixel[k], axis], buffers.normal[wave.pixel[k], axis] = np.float32(0), np.float32(0)
@@ -119,7 +122,7 @@ def _copy_ray(source, i, target, k):
     target.rays.t_min[k], target.rays.t_max[k] = source.rays.t_min[i], source.rays.t_max[i]
     target.hits.t[k], target.hits.primitive[k] = source.hits.t[i], source.hits.primitive[i]
     target.hits.u[k], target.hits.v[k] = source.hits.u[i], source.hits.v[i]
-    target.pixel[k] = source.pixel[i]
+    target.pixel[k], target.reach[k] = source.pixel[i], source.reach[i]
 
 
 @subkernel
@@ -167,14 +170,14 @@ def _refracted(d, n, eta):
 
 
 @inlined
-def _send(wave, n, origin, direction, pixel, weight, scale):
+def _send(wave, n, origin, direction, pixel, reach, weight, scale):
     """Add a ray to the next wave unless it would count too little; the wave's new length."""
     r, g, b = weight[0] * scale[0], weight[1] * scale[1], weight[2] * scale[2]
     if max(r, max(g, b)) < MIN_WEIGHT:
         return n
     length = np.sqrt(direction[0] ** 2 + direction[1] ** 2 + direction[2] ** 2)
     _store_ray(wave.rays, n, origin, (direction[0] / length, direction[1] / length, direction[2] / length))
-    wave.pixel[n] = pixel
+    wave.pixel[n], wave.reach[n] = pixel, reach
     wave.weight[0, n], wave.weight[1, n], wave.weight[2, n] = r, g, b
     return n + 1
 
@@ -191,16 +194,16 @@ def _next_wave(points, look, wave):
         weight = (wave.weight[0, i], wave.weight[1, i], wave.weight[2, i])
         above = lifted(points.position, points.geometric, points.offset, i)
         mirror = (material[SPECULAR], material[SPECULAR + 1], material[SPECULAR + 2])
-        through = material[TRANSMISSION]
+        through, reach = material[TRANSMISSION], wave.reach[i] + wave.hits.t[i]
         if through > np.float32(0):
             eta = ONE / material[IOR] if points.entering[i] else material[IOR]
             passes, direction = _refracted(d, normal, eta)
             if passes:
                 below = lifted(points.position, points.geometric, -points.offset, i)
-                n = _send(out, n, below, direction, wave.pixel[i], weight, (through, through, through))
+                n = _send(out, n, below, direction, wave.pixel[i], reach, weight, (through, through, through))
             else:  # total internal reflection takes the refracted ray's share
                 mirror = (mirror[0] + through, mirror[1] + through, mirror[2] + through)
-        n = _send(out, n, above, _reflected(d, normal), wave.pixel[i], weight, mirror)
+        n = _send(out, n, above, _reflected(d, normal), wave.pixel[i], reach, weight, mirror)
     return _shortened(out, n)
 
 
@@ -228,7 +231,7 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts):
     world, look, knowledge, buffers = borrowed(world), borrowed(look), borrowed(knowledge), borrowed(buffers)
     wave = _without_misses(_first_wave(camera, tile, buffers), look, buffers.color)
     for bounce in range(depth + 1):
-        points = points_at(world, look, wave.rays, wave.hits)
+        points = points_at(world, look, wave.rays, wave.hits, wave.reach, camera.spread)
         _shade(world, look, wave, points, knowledge, bounce == 0, buffers, counts)
         if bounce == depth:
             break
