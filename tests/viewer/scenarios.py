@@ -35,7 +35,7 @@ def views(d: Driver) -> None:
     d.press(KEY._3)
     d.press(KEY.l)
     assert d.c.session.light == 1
-    d.press(KEY.l | KEY.mod_shift)
+    d.press(int(KEY.l) | int(KEY.mod_shift))
     assert d.c.session.light == 0
     assert d.c.history.frames == traced, "changing the view has traced"
 
@@ -174,7 +174,7 @@ def capturing(d: Driver) -> None:
     d.c.preferences.screenshot_template = "{scene}-{view}-{frame:04d}.png"
     d.press(KEY.f12)
     d.wait(lambda: not d.c.keeper.busy, "the picture to be written")
-    d.press(KEY.f12 | KEY.mod_shift)
+    d.press(int(KEY.f12) | int(KEY.mod_shift))
     d.wait(lambda: not d.c.keeper.busy, "the window's picture to be written")
     files = sorted(p.name for p in pictures.iterdir())
     assert files == ["tiny-occlusion-0000-2.png", "tiny-occlusion-0000.png"]
@@ -325,7 +325,7 @@ def panels(d: Driver) -> None:
     d.frames(3)
     assert d.ui.about_open
     d.ui.about_open = False
-    d.press(KEY.o | KEY.mod_ctrl)
+    d.press(int(KEY.o) | int(KEY.mod_ctrl))
     d.frames(4)
     assert d.ui.browser.open
     d.ui.browser.folder = d.folder
