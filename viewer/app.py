@@ -100,7 +100,7 @@ class App:
 
     def widgets(self) -> None:
         """What is not a docked panel: keys, and what lies over the panels."""
-        commands.handle_keys(self.ui.commands)
+        commands.handle_keys(self.ui)
         picture.fly(self.ui)
         dialogs.show(self.ui)
 

@@ -197,12 +197,16 @@ def focus(ui: Ui) -> None:
     c.glide(navigation.focus(c.session.camera, ui.pivot, extent, c.world_up))
 
 
-def handle_keys(commands: list[Command]) -> None:
+def handle_keys(ui: Ui) -> None:
     """Run the commands whose keys were just pressed, unless the user is typing or a dialog is up."""
+    # A chord that is quickly pressed and let go may be spread over two frames: first Ctrl goes down, then the
+    # letter goes down and Ctrl up. So a modifier counts for one frame longer than it is held.
+    held, before = int(imgui.get_io().key_mods), ui.modifiers
+    ui.modifiers = held
     if imgui.get_io().want_text_input or imgui.is_popup_open("", _ANY_POPUP):
         return
-    for command in commands:
-        if command.key and _pressed(command) and command.enabled():
+    for command in ui.commands:
+        if command.key and _pressed(command, held or before) and command.enabled():
             command.run()
 
 
@@ -234,10 +238,9 @@ def key_label(key: str) -> str:
     return key.replace("RightArrow", "Right").replace("LeftArrow", "Left")
 
 
-def _pressed(command: Command) -> bool:
+def _pressed(command: Command, modifiers: int) -> bool:
     number = chord(command.key)
-    modifiers = number & int(imgui.Key.mod_mask_)
-    if int(imgui.get_io().key_mods) != modifiers:
+    if number & int(imgui.Key.mod_mask_) != modifiers:
         return False
     return imgui.is_key_pressed(imgui.Key(number & ~int(imgui.Key.mod_mask_)), repeat=command.repeats)
 

@@ -53,6 +53,9 @@ class Ui:
     picture_area: tuple[int, int] = (0, 0)
     picture_focused: bool = False
     pivot: tuple[float, float, float] | None = None
+    modifiers: int = 0
+    pressed: int = 0
+    pressed_at: tuple[float, float] = (0.0, 0.0)
     dragged: bool = False
     new_bookmark: str = ""
     dropped: list[Path] = field(default_factory=list)

@@ -18,7 +18,7 @@ from viewer.picking import point_at
 from viewer.ui import Ui
 
 CLICK_SLACK = 4.0
-BUTTONS = (imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle)
+BUTTONS = tuple(int(b) for b in (imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle))
 _ALL_BUTTONS = int(
     imgui.ButtonFlags_.mouse_button_left
     | imgui.ButtonFlags_.mouse_button_right
@@ -85,15 +85,17 @@ def _pointer(ui: Ui, corner: ImVec2, size: ImVec2) -> None:
         _wheel(ui, io.mouse_wheel)
     if imgui.is_item_activated():
         ui.dragged = False
+        ui.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
+        ui.pressed = next((b for b in BUTTONS if imgui.is_mouse_clicked(b)), BUTTONS[0])
         point = point_at(c.frame, u, v) if c.frame is not None else None
         if point is not None:
             ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
-    if imgui.is_item_active():
-        for button in BUTTONS:
-            if imgui.is_mouse_dragging(button, 0.0 if ui.dragged else CLICK_SLACK):
-                ui.dragged = True
-                _drag(ui, button, io.mouse_delta.x / size.y, io.mouse_delta.y / size.y)
-    if imgui.is_item_deactivated() and not ui.dragged:
+    released = imgui.is_item_deactivated()
+    if imgui.is_item_active() or released:  # a quick hand drags and lets go within one of our frames
+        ui.dragged |= math.dist(ui.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > CLICK_SLACK
+        if ui.dragged:
+            _drag(ui, ui.pressed, io.mouse_delta.x / size.y, io.mouse_delta.y / size.y)
+    if released and not ui.dragged:
         c.select((u, v))
 
 
@@ -105,7 +107,7 @@ def _drag(ui: Ui, button: int, dx: float, dy: float) -> None:
     camera, world = c.session.camera, c.world_up
     pivot = ui.pivot
     orbiting = c.preferences.navigation == "orbit" and pivot is not None
-    if button == imgui.MouseButton_.middle or (orbiting and button == imgui.MouseButton_.right):
+    if button == BUTTONS[2] or (orbiting and button == BUTTONS[1]):
         distance = math.dist(pivot, camera.position) if pivot is not None else 4.0 * c.pace
         c.move(navigation.pan(camera, dx, -dy, distance))
     elif orbiting and pivot is not None:

@@ -48,9 +48,10 @@ def show(ui: Ui) -> None:
     imgui.text_colored(QUIET, f"the last {len(history)} frames")
     room = imgui.get_content_region_avail()
     spacing = imgui.get_style().item_spacing.x
-    size = ImVec2((room.x - 2.0 * spacing) / 3.0, max(room.y, em(5.0)))
+    columns = 3 if room.x > em(42.0) else 1  # else one below the other, and the panel scrolls
+    size = ImVec2((room.x - (columns - 1) * spacing) / columns, max(room.y, em(8.0)))
     for number, (title, series) in enumerate(_PLOTS):
-        if number:
+        if number % columns:
             imgui.same_line()
         _plot(ui, title, series, size)
 
