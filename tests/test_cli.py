@@ -277,7 +277,7 @@ def test_an_output_that_cannot_be_written_is_known_before_tracing(
     [
         (["rendr", "x.aff"], "did you mean 'render'?"),
         (["inof"], "did you mean 'info'?"),
-        (["frobnicate"], "the commands are render, info"),
+        (["frobnicate"], "the commands are render, bench, info"),
         (["--frame", "3"], "unrecognized arguments"),
     ],
 )

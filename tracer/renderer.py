@@ -35,14 +35,21 @@ Cancel = Callable[[], bool] | None
 class Renderer:
     """Renders a scene frame by frame and remembers the modes between frames.
 
-    `settings` may be replaced at any time between frames.  Raises Cancelled if `progress` does
-    while trees are built, ValueError for settings out of range.
+    `settings` may be replaced at any time between frames.  Renderers of one scene may share a
+    `world`, as long as they take turns.  Raises Cancelled if `progress` does while trees are built,
+    ValueError for settings out of range.
     """
 
-    def __init__(self, scene: Scene, settings: Settings | None = None, progress: Progress | None = None) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        settings: Settings | None = None,
+        progress: Progress | None = None,
+        world: World | None = None,
+    ) -> None:
         self.scene = scene
         self.settings = (settings or Settings()).validated()
-        self.world = World(scene, scene.time_range[0], self.settings.accelerator, progress)
+        self.world = world or World(scene, scene.time_range[0], self.settings.accelerator, progress)
         self._look = make_look(scene, self.world.normals)
         self._memories: dict[tuple[int, int], Memory] = {}
 

@@ -2,6 +2,7 @@
 
     shadowcull [SCENE]          the viewer
     shadowcull render SCENE     one frame into files
+    shadowcull bench SCENE      the paper's table over a path of frames
     shadowcull info SCENE       what a scene holds
 
 The exit code is 0 only on success; every error is one line on standard error.  What needs GL is
@@ -30,6 +31,7 @@ _EXAMPLES = """\
 commands:
   shadowcull [SCENE]       open the viewer
   shadowcull render SCENE  trace one frame into a picture, its buffers, or both; needs no display
+  shadowcull bench SCENE   measure, over a path of frames, what culling saves
   shadowcull info SCENE    say what a scene holds
 
 examples:
@@ -57,6 +59,19 @@ primitive and cell (H,W int32, -1 for a miss), occlusion_mode (H,W uint8, 255 fo
 (H,W,lights uint8), and for each light and primary hit lit and due (H,W,lights bool).
 """
 
+_BENCH_EXAMPLES = """\
+examples:
+  shadowcull bench kitchen.aff --path-frames 100
+  shadowcull bench robot.aff --frames 100:200 --size 256x256 --verify
+  shadowcull bench default --methods paper --symmetric --json default.json --csv default.csv
+
+Savings are those of shadow rays against the method none, averaged over frames, as in the paper's
+Table 1. Ctrl-C ends the run and keeps the frames that are done.
+
+The JSON holds scene, size, frames, and for each method a list with an entry per frame of each figure;
+the CSV is the table.
+"""
+
 _INFO_EXAMPLES = """\
 examples:
   shadowcull info kitchen.aff
@@ -75,7 +90,7 @@ class _Parser(argparse.ArgumentParser):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line; returns the exit code."""
     arguments = list(sys.argv[1:] if arguments is None else arguments)
-    commands: dict[str, Callable[[list[str]], int]] = {"render": _render, "info": _info}
+    commands: dict[str, Callable[[list[str]], int]] = {"render": _render, "bench": _bench, "info": _info}
     try:
         if arguments and arguments[0] in commands:
             return commands[arguments[0]](arguments[1:])
@@ -194,11 +209,7 @@ def _render(arguments: list[str]) -> int:
     add("--camera", metavar="JSON", help="another camera: position, direction, up, angle; or a file with that")
     add("--warmup", type=_count(0, 100_000), default=0, metavar="N", help="trace the N frames before it first")
     add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
-    add("--accelerator", choices=("kdtree",), default="kdtree", help="the structure that rays go through")
-    add("--threads", type=_count(0, 1024), default=0, metavar="N", help="0, the default: one per core")
-    add("--depth", type=_count(0, 100), default=10, metavar="D", help="the most bounces (default: 10)")
-    add("--symmetric", action="store_true", help="occlusion tests in both directions between neighbouring pixels")
-    add("--zoom-factor", type=float, default=4.0, metavar="F", help="growth after which modes are learnt anew (4)")
+    _add_tracing_options(parser)
     add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
     options = parser.parse_args(arguments)
 
@@ -207,6 +218,41 @@ def _render(arguments: list[str]) -> int:
     options.camera = headless.camera_option(options.camera) if options.camera is not None else None
     headless.render(scene_path(options.scene), options)
     return 0
+
+
+def _bench(arguments: list[str]) -> int:
+    parser = _Parser(
+        prog="shadowcull bench",
+        description="Render a path of frames by several methods and print what each saves, as the paper's Table 1.",
+        epilog=_BENCH_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add = parser.add_argument
+    add("scene", nargs="?", metavar="SCENE", help=_scene_help())
+    add("--methods", type=lambda text: text.split(","), default=["paper"], metavar="M,...", help="none, paper")
+    add("--path-frames", type=_count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
+    add("--frames", metavar="A:B", help="only the frames A to B - 1 of the path")
+    add("--size", type=_size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
+    add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
+    add("--json", type=Path, metavar="FILE", help="every figure of every frame")
+    add("--csv", type=Path, metavar="FILE", help="the table")
+    _add_tracing_options(parser)
+    options = parser.parse_args(arguments)
+
+    from viewer import bench
+
+    bench.bench(scene_path(options.scene), options)
+    return 0
+
+
+def _add_tracing_options(parser: _Parser) -> None:
+    """What `render` and `bench` have in common."""
+    add = parser.add_argument
+    add("--accelerator", choices=("kdtree",), default="kdtree", help="the structure that rays go through")
+    add("--threads", type=_count(0, 1024), default=0, metavar="N", help="0, the default: one per core")
+    add("--depth", type=_count(0, 100), default=10, metavar="D", help="the most bounces (default: 10)")
+    add("--symmetric", action="store_true", help="occlusion tests in both directions between neighbouring pixels")
+    add("--zoom-factor", type=float, default=4.0, metavar="F", help="growth after which modes are learnt anew (4)")
 
 
 def _info(arguments: list[str]) -> int:

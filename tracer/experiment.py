@@ -1,0 +1,147 @@
+"""A path of frames by several methods: the paper's Table 1.
+
+Every method has a renderer, and so modes, of its own, and renders the same frames in turn.  What is
+compared is the work of shadow rays, frame by frame, against `none`; certificates, where a method
+makes any, count against it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from tracer.frame import METHODS, Settings
+from tracer.geometry.world import World
+from tracer.renderer import Renderer
+from tracer.scene.model import Cancelled, Progress, Scene
+from tracer.statistics import FrameStatistics
+
+REFERENCE = "none"
+
+_FIGURES: dict[str, Callable[[FrameStatistics], float]] = {
+    "shadow_rays_due": lambda s: s.shadow.due,
+    "shadow_rays_culled": lambda s: s.shadow.culled,
+    "shadow_rays_dynamic_only": lambda s: s.shadow.dynamic_only,
+    "shadow_traversal_steps": lambda s: s.shadow.traversal_steps,
+    "shadow_intersection_tests": lambda s: s.shadow.intersection_tests,
+    "occlusion_tests": lambda s: s.occlusion_tests,
+    "certificate_steps": lambda s: s.certificate_steps,
+    "certificate_tests": lambda s: s.certificate_tests,
+    "wrong": lambda s: s.shadow.wrong,
+    "frame_seconds": lambda s: s.seconds,
+}
+
+
+@dataclass
+class Results:
+    """What was measured: for each frame number in `frames`, an entry in each list of each method."""
+
+    scene: str
+    size: tuple[int, int]
+    frames: list[int] = field(default_factory=list)
+    methods: dict[str, dict[str, list[float]]] = field(default_factory=dict)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain lists and numbers, for JSON."""
+        return {"scene": self.scene, "size": list(self.size), "frames": self.frames, "methods": self.methods}
+
+    def reductions(self, method: str, work: str) -> np.ndarray:
+        """(frames,) part of the reference's `work` ("steps" or "tests") that a method saves, net of certificates."""
+        key = {"steps": "shadow_traversal_steps", "tests": "shadow_intersection_tests"}[work]
+        before = np.array(self.methods[REFERENCE][key], np.float64)
+        after = np.array(self.methods[method][key], np.float64) + self.methods[method][f"certificate_{work}"]
+        return np.divide(before - after, before, out=np.zeros_like(before), where=before > 0)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A line of the paper's Table 1; reductions are parts of 1, the frames those of the greatest."""
+
+    method: str
+    average_steps: float
+    most_steps: float
+    most_steps_frame: int
+    average_tests: float
+    most_tests: float
+    most_tests_frame: int
+    extra_tests_per_pixel: float
+    wrong: int
+    wrong_part: float
+    frame_seconds: float
+    """The median."""
+
+
+def table(results: Results) -> list[Row]:
+    """The paper's Table 1 of results; empty where no frame was finished."""
+    return [_row(results, method) for method in results.methods] if results.frames else []
+
+
+def _row(results: Results, method: str) -> Row:
+    steps, tests = (results.reductions(method, work) for work in ("steps", "tests"))
+    figures = {name: np.array(values, np.float64) for name, values in results.methods[method].items()}
+    pixels = results.size[0] * results.size[1]
+    return Row(
+        method=method,
+        average_steps=float(steps.mean()),
+        most_steps=float(steps.max()),
+        most_steps_frame=results.frames[int(steps.argmax())],
+        average_tests=float(tests.mean()),
+        most_tests=float(tests.max()),
+        most_tests_frame=results.frames[int(tests.argmax())],
+        extra_tests_per_pixel=float(figures["occlusion_tests"].mean() / pixels),
+        wrong=int(figures["wrong"].sum()),
+        wrong_part=float(figures["wrong"].sum() / max(1.0, figures["shadow_rays_due"].sum())),
+        frame_seconds=float(np.median(figures["frame_seconds"])),
+    )
+
+
+def path_times(scene: Scene, frames: int | None = None) -> list[float]:
+    """Times of the frames of a scene's path; resampled, ends included, where a number of frames is given."""
+    if frames is None:
+        return [scene.frame_time(i) for i in range(scene.frames)]
+    start, end = scene.time_range
+    return [float(t) for t in np.linspace(start, end, frames)] if frames > 1 else [start]
+
+
+def with_reference(methods: list[str]) -> list[str]:
+    """The methods, each once, the reference first; raises ValueError for one that does not exist."""
+    for method in methods:
+        if method not in METHODS:
+            raise ValueError(f"there is no method {method!r}; there are {', '.join(METHODS)}")
+    return list(dict.fromkeys([REFERENCE, *methods]))
+
+
+def run(
+    scene: Scene,
+    settings: Settings,
+    methods: list[str],
+    times: list[float],
+    numbers: range | None = None,
+    progress: Progress | None = None,
+    cancel: Callable[[], bool] | None = None,
+) -> Iterator[Results]:
+    """Render times[i] for each i of `numbers` (default: all) by every method; yields the results after each frame.
+
+    Always the same, growing object: stopping early keeps what is done.  A `cancel` that turns true
+    ends the iteration after the last whole frame.  Raises ValueError as `with_reference` does, and
+    Cancelled if `progress` raises it while trees are built.
+    """
+    numbers = range(len(times)) if numbers is None else numbers
+    names = with_reference(methods)
+    world = World(scene, times[0] if times else 0.0, settings.accelerator, progress)
+    renderers = {name: Renderer(scene, replace(settings, method=name), world=world) for name in names}
+    results = Results(str(scene.path), (settings.width, settings.height))
+    results.methods = {name: {figure: [] for figure in _FIGURES} for name in names}
+    for number in numbers:
+        try:
+            frames = {name: renderer.render(times[number], cancel=cancel) for name, renderer in renderers.items()}
+        except Cancelled:
+            return
+        results.frames.append(number)
+        for name, frame in frames.items():
+            for figure, of in _FIGURES.items():
+                results.methods[name][figure].append(of(frame.statistics))
+        yield results
