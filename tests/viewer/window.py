@@ -53,8 +53,15 @@ class Driver:
 
     def settle(self) -> None:
         """Until everything is loaded and traced, and has been drawn."""
+        quiet = 0
+
+        def rested() -> bool:  # the fine frame is asked for one frame after the motion ends: one quiet frame may lie
+            nonlocal quiet
+            quiet = quiet + 1 if self.c.frame is not None and not self.c.active else 0
+            return quiet >= 5
+
         self.frames(3)
-        self.wait(lambda: self.c.frame is not None and not self.c.active, "a picture at rest")
+        self.wait(rested, "a picture at rest")
         self.frames(3)
 
     def shown(self) -> np.ndarray:

@@ -17,7 +17,7 @@ def show(ui: Ui) -> None:
     """The panel."""
     c = ui.controller
     p = c.preferences
-    checkbox("Fixed", p.fixed_resolution, lambda on: setattr(p, "fixed_resolution", on), "else that of the window")
+    checkbox("Fixed size", p.fixed_resolution, lambda on: setattr(p, "fixed_resolution", on), "else that of the window")
     if p.fixed_resolution:
         imgui.same_line()
         imgui.set_next_item_width(-em(2.2))
@@ -50,7 +50,8 @@ def show(ui: Ui) -> None:
             changed, index = imgui.combo("##samples", now, [str(n) for n in samples])
             if changed:
                 c.change(samples=samples[index])
+            now = c.session.settings.threads
             row("Threads", "0: all cores; the picture and the numbers are the same for any")
-            changed, threads = imgui.slider_int("##threads", c.session.settings.threads, 0, os.cpu_count() or 1)
+            changed, threads = imgui.slider_int("##threads", now, 0, os.cpu_count() or 1, "%d" if now else "all cores")
             if changed:
                 c.change(threads=min(max(threads, 0), 1024))

@@ -4,7 +4,19 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from viewer.panels.widgets import QUIET, clipped, count, heading, paragraph, percent, properties, short, tooltip, value
+from viewer.panels.widgets import (
+    QUIET,
+    clipped,
+    count,
+    em,
+    heading,
+    paragraph,
+    percent,
+    properties,
+    short,
+    tooltip,
+    value,
+)
 from viewer.ui import Ui
 
 _PHASE_ORDER = ("place", "primary", "occlusion testing", "shading", "mode setting")
@@ -26,14 +38,14 @@ def show(ui: Ui) -> None:
     heading("Shadow rays")
     with properties("shadow") as shown:
         if shown:
-            value("Due", f"{count(shadow.due)}  ({shadow.due / pixels:.2f} per pixel)", "light on the viewer's side")
+            value("Due", f"{count(shadow.due)}  ({shadow.due / pixels:.2f} / pixel)", "light on the viewer's side")
             value("Culled", _share(shadow.culled, shadow.due), "known to be in shadow: not traced at all")
             value("Dynamic only", _share(shadow.dynamic_only, shadow.due), "asked only the objects that move")
             if shadow.candidates_only:
                 value("Candidates", _share(shadow.candidates_only, shadow.due), "asked only a list of primitives")
             if frame.settings.verify:
                 value("Wrong", _share(shadow.wrong, shadow.due), "culled, but a trace answers otherwise")
-            tests = f"{count(s.occlusion_tests)}  ({s.occlusion_tests / pixels:.3f} per pixel)"
+            tests = f"{count(s.occlusion_tests)}  ({s.occlusion_tests / pixels:.3f} / pixel)"
             value("Occlusion tests", tests, "against the neighbouring pixels' primitives")
     heading("Work")
     _work(ui)
@@ -60,8 +72,11 @@ def _work(ui: Ui) -> None:
     frame = ui.controller.frame
     assert frame is not None
     s = frame.statistics
-    if not imgui.begin_table("work", 4, int(imgui.TableFlags_.sizing_stretch_same | imgui.TableFlags_.row_bg)):
+    if not imgui.begin_table("work", 4, int(imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg)):
         return
+    imgui.table_setup_column("kind", int(imgui.TableColumnFlags_.width_fixed), em(4.8))
+    for title in ("rays", "steps", "tests"):
+        imgui.table_setup_column(title, int(imgui.TableColumnFlags_.width_stretch))
     for title in ("", "rays", "steps", "tests"):
         imgui.table_next_column()
         imgui.text_colored(QUIET, title)
