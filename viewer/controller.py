@@ -7,6 +7,7 @@ can drive it without a window.
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -22,7 +23,7 @@ from viewer import navigation
 from viewer.history import History
 from viewer.keeper import Keeper
 from viewer.opener import Opener
-from viewer.picking import Pick, pick, refreshed
+from viewer.picking import Pick, pick, refreshed, typical_depth
 from viewer.preferences import Preferences, save_preferences
 from viewer.render_thread import RenderRequest, RenderThread, Traced
 from viewer.resolution import ResolutionControl, divided
@@ -77,6 +78,7 @@ class Controller:
         self._serial = 0
         self._last_request: RenderRequest | None = None
         self._last_tick = time.monotonic()
+        self._seen = math.inf
 
     # --- the frame -------------------------------------------------------------------------------
 
@@ -126,6 +128,8 @@ class Controller:
         frame = traced.frame
         self.resolution.observe(frame.statistics.seconds, frame.width * frame.height)
         self.history.add(frame, self.drawn_seconds)
+        if math.isinf(self._seen):  # from the scene's first frame on, so that the speed does not change on the way
+            self._seen = typical_depth(frame)
         if self.selected is not None:
             self.selected = refreshed(self.selected, frame)
         if self.preferences.keep_tracing and not self.moving and not self.session.playing:
@@ -221,6 +225,7 @@ class Controller:
         self.render.use(renderer)
         self.history.clear()
         self.resolution.forget()
+        self._seen = math.inf
         self.traced = self.selected = self._glide = self._last_request = None
         self.preferences.remember_scene(Path(scene.path).absolute())
         self.save_preferences()
@@ -281,8 +286,8 @@ class Controller:
     @property
     def pace(self) -> float:
         """World units per second at speed 1."""
-        low, high = self.info.get("bounds") or ((0.0, 0.0, 0.0), (8.0, 8.0, 8.0))
-        return navigation.pace(low, high)
+        low, high = self.info.get("bounds") or ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        return navigation.pace(low, high, self._seen)
 
     def moved(self) -> None:
         """Note that the picture is changing under the user's hand: coarse frames for a moment."""

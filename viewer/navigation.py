@@ -24,10 +24,14 @@ RADIANS_PER_HEIGHT = math.radians(100.0)
 CROSSING_SECONDS = 8.0
 
 
-def pace(low: Sequence[float], high: Sequence[float]) -> float:
-    """World units per second with which a scene of these bounds is crossed in a few seconds."""
+def pace(low: Sequence[float], high: Sequence[float], seen: float = math.inf) -> float:
+    """World units per second with which a scene of these bounds is crossed in a few seconds.
+
+    `seen` is how far the scene's own camera typically sees: where that is much less (a room with a far horizon
+    around it), it sets the pace."""
     size = float(np.linalg.norm(np.subtract(high, low)))
-    return size / CROSSING_SECONDS if math.isfinite(size) and size > 0.0 else 1.0
+    size = min(size if size > 0.0 else math.inf, 2.0 * seen if seen > 0.0 else math.inf)
+    return size / CROSSING_SECONDS if math.isfinite(size) else 1.0
 
 
 def world_up(camera: Camera) -> Vector:

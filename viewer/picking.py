@@ -101,6 +101,12 @@ def extent_at(frame: Frame, u: float, v: float) -> float | None:
     return depth * math.tan(math.radians(frame.camera.angle) / 2.0) * float(pixels) / frame.height
 
 
+def typical_depth(frame: Frame) -> float:
+    """How far the camera sees, as a rule: the median distance of what is hit; inf where nothing is."""
+    depth = frame.depth[np.isfinite(frame.depth)]
+    return float(np.median(depth)) if len(depth) else math.inf
+
+
 def _triple(v: Vector | None) -> tuple[float, float, float] | None:
     return None if v is None else (float(v[0]), float(v[1]), float(v[2]))
 

@@ -107,3 +107,5 @@ def test_the_pace_follows_the_scenes_size():
     small, large = nav.pace((0, 0, 0), (1, 1, 1)), nav.pace((0, 0, 0), (100, 100, 100))
     assert large == pytest.approx(100 * small)
     assert nav.pace((0, 0, 0), (0, 0, 0)) == 1.0
+    room_in_a_plain = nav.pace((-1000, 0, -1000), (1000, 5, 1000), seen=4.0)
+    assert room_in_a_plain == pytest.approx(1.0)
