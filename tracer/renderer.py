@@ -29,6 +29,7 @@ from tracer.shading.whitted import COUNTERS, Buffers, shade_tile, trace_primary
 from tracer.statistics import gather
 
 TILE = 32
+MEMORIES = 16  # resolutions whose modes are kept, those used last
 Cancel = Callable[[], bool] | None
 
 
@@ -90,10 +91,10 @@ class Renderer:
     def _memory(self, settings: Settings, workers: int) -> Memory:
         """The modes at this resolution; made, or given room for more workers, where need be."""
         key = (settings.width, settings.height)
-        memory = self._memories.get(key)
-        if memory is None:
-            memory = Memory(self.world.object_of != 0, len(self.scene.lights), workers)
-            self._memories[key] = memory
+        memory = self._memories.pop(key, None) or Memory(self.world.object_of != 0, len(self.scene.lights), workers)
+        self._memories[key] = memory  # the newest last
+        if len(self._memories) > MEMORIES:
+            del self._memories[next(iter(self._memories))]
         if len(memory.gained) < workers:
             memory.gained = np.zeros((workers, len(memory.words)), memory.words.dtype)
         return memory

@@ -138,6 +138,18 @@ def test_modes_learnt_at_one_resolution_do_not_speak_at_another():
     assert renderer.render().statistics.shadow.culled > 0
 
 
+def test_of_many_resolutions_the_latest_are_remembered():
+    renderer = tracer.Renderer(shadow_scene(), SETTINGS)
+    renderer.render()
+    for width in range(8, 8 + 40):  # a window's edge is dragged
+        renderer.settings = replace(SETTINGS, width=width, height=8)
+        renderer.render()
+    assert renderer.render().statistics.shadow.dynamic_only > 0
+    assert len(renderer._memories) == 16
+    renderer.settings = SETTINGS
+    assert renderer.render().statistics.shadow.culled == 0
+
+
 def test_reset_forgets_everything():
     renderer = tracer.Renderer(shadow_scene(), SETTINGS)
     renderer.render()
