@@ -82,6 +82,7 @@ def warm_up(progress: Progress | None = None, lights: int = 1) -> None:
         # As many lights as make a word of that size, no more: each is traced.
         renderer = Renderer(_tiny_scene(1 if lights <= 15 else 16), Settings(width=4, height=4, threads=1))
         frame = renderer.begin(0.0)
+        frame.place_objects_and_lights()
         for name, phase in (
             ("ray traversal", frame.trace_primary_rays),
             ("occlusion testing", frame.test_occlusion),

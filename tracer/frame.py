@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling import modes
+from tracer.geometry.world import ACCELERATORS
 from tracer.scene.model import Camera
 from tracer.statistics import FrameStatistics
 
@@ -45,6 +46,7 @@ class Settings:
             (0 <= self.depth <= 100, "depth lies in 0 to 100"),
             (self.method in METHODS, f"method is one of {', '.join(METHODS)}, not {self.method!r}"),
             (math.isfinite(self.zoom_factor) and self.zoom_factor >= 1.0, "zoom_factor is a finite number from 1 up"),
+            (self.accelerator in ACCELERATORS, f"accelerator is one of {', '.join(ACCELERATORS)}"),
             (1 <= self.samples <= 4096, "samples lie in 1 to 4096"),
             (0 <= self.threads <= 1024, "threads lie in 0 to 1024"),
         )

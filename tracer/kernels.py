@@ -27,7 +27,11 @@ _KERNEL_FOLDERS = ("geometry", "culling", "shading")
 def _source_hash() -> str:
     digest = hashlib.sha256(numba.__version__.encode())
     root = Path(__file__).parent
-    for path in [Path(__file__), *sorted(p for f in _KERNEL_FOLDERS for p in (root / f).rglob("*.py"))]:
+    for path in [
+        Path(__file__),
+        root / "scene" / "model.py",
+        *sorted(p for f in _KERNEL_FOLDERS for p in (root / f).rglob("*.py")),
+    ]:
         digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
 

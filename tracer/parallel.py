@@ -40,14 +40,15 @@ def for_each_chunk(
             if cancel is not None and cancel():
                 stopped = True
                 return
-            work(chunk, worker)
+            try:
+                work(chunk, worker)
+            except BaseException:
+                stopped = True  # nobody need go on
+                raise
 
     others = [_pool(threads - 1).submit(run, worker) for worker in range(1, threads)] if threads > 1 else []
     try:
         run(0)
-    except BaseException:
-        stopped = True
-        raise
     finally:
         errors = [future.exception() for future in others]
     for error in errors:

@@ -61,10 +61,12 @@ class Renderer:
     def render(self, time: float = 0.0, camera: Camera | None = None, cancel: Cancel = None) -> Frame:
         """The frame at `time` seconds; the scene's own camera where none is given.
 
-        Raises Cancelled, with the modes as they were, once `cancel()` turns true.
+        Raises Cancelled, with nothing learnt from this frame, once `cancel()` turns true.
         """
         frame = self.begin(time, camera, cancel)
         try:
+            with frame.phase("place"):
+                frame.place_objects_and_lights()
             with frame.phase("primary"):
                 frame.trace_primary_rays()
             with frame.phase("occlusion testing"):
@@ -79,14 +81,8 @@ class Renderer:
         return frame.finished()
 
     def begin(self, time: float, camera: Camera | None = None, cancel: Cancel = None) -> UnfinishedFrame:
-        """A frame whose dynamic objects and lights are in place, and whose phases are still to come."""
-        settings = self.settings.validated()
-        frame = UnfinishedFrame(self, settings, camera or self.scene.camera_at(time), time, cancel)
-        with frame.phase("place"):
-            self.world.place(time)
-            self._look.lights[:] = light_positions(self.scene, time)
-            frame.memory.follow_lights(self._look.lights)
-        return frame
+        """A frame whose phases are still to come."""
+        return UnfinishedFrame(self, self.settings.validated(), camera or self.scene.camera_at(time), time, cancel)
 
     def _memory(self, settings: Settings, workers: int) -> Memory:
         """The modes at this resolution; made, or given room for more workers, where need be."""
@@ -148,24 +144,31 @@ class UnfinishedFrame:
 
         for_each_chunk(tile_work, len(self._tiles), self._workers, self._cancel)
 
+    def place_objects_and_lights(self) -> None:
+        """Where is everything that moves?  What is known of a light that moved is forgotten."""
+        renderer = self._renderer
+        renderer.world.place(self._time)
+        renderer._look.lights[:] = light_positions(renderer.scene, self._time)
+        self.memory.follow_lights(renderer._look.lights)
+
     def trace_primary_rays(self) -> None:
         """What does each pixel see?"""
         self._trace_primary(self._rays, self._buffers, self._counts)
 
     def _trace_primary(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
-        kd = self._renderer.world.kd
-        self._for_each_tile(lambda tile, worker: trace_primary(kd, rays, tile, buffers, counts[worker]))
+        placed = self._renderer.world.placed
+        self._for_each_tile(lambda tile, worker: trace_primary(placed, rays, tile, buffers, counts[worker]))
 
     def test_occlusion(self) -> None:
         """§2.3: which primitives does a neighbouring pixel show to be hidden?"""
         if self._settings.method == "none":
             return
-        kd, height = self._renderer.world.kd, self._settings.height
+        placed, height = self._renderer.world.placed, self._settings.height
 
         def work(chunk: int, worker: int) -> None:
             rows = chunk * TILE, min(height, (chunk + 1) * TILE)
             self._occlusion_tests[worker] += occlusion_testing(
-                kd, self._rays, self._buffers.primitive, self._settings.symmetric, *rows, self.memory.hidden
+                placed, self._rays, self._buffers.primitive, self._settings.symmetric, *rows, self.memory.hidden
             )
 
         for_each_chunk(work, -(-height // TILE), self._workers, self._cancel)
@@ -177,12 +180,12 @@ class UnfinishedFrame:
             self._average_samples()
 
     def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray, verify: bool) -> None:
-        kd, look, memory = self._renderer.world.kd, self._renderer._look, self.memory
+        placed, look, memory = self._renderer.world.placed, self._renderer._look, self.memory
         depth, cull = self._settings.depth, self._settings.method != "none"
 
         def work(tile: tuple[int, int, int, int], worker: int) -> None:
             knowledge = Knowledge(memory.words, memory.gained[worker], cull, verify)
-            shade_tile(kd, look, rays, tile, depth, knowledge, buffers, counts[worker])
+            shade_tile(placed, look, rays, tile, depth, knowledge, buffers, counts[worker])
 
         self._for_each_tile(work)
 

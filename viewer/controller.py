@@ -325,6 +325,7 @@ class Controller:
         """Stop, and go so many frames on (or back)."""
         self.session.playing = False
         self.session.go_to_frame(self.session.frame + frames)
+        self.moved()  # a key that is held down is motion
 
     # --- the end ---------------------------------------------------------------------------------
 

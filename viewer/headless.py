@@ -40,7 +40,6 @@ PICTURES = {
     ".ppm": "PPM",
 }
 MOST_PIXELS = 1 << 26  # 8192 x 8192; a frame's buffers then take some 4 GB
-MOST_WARM_UP = 100_000
 
 
 def info(path: Path, as_json: bool) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -86,7 +86,7 @@ class Keeper:
             "height": height,
         }
         # What the picture shows, which may be a moment older than what the user asks for by now.
-        snapshot = replace(session.snapshot(), time=frame.time, camera=frame.camera)
+        snapshot = replace(session.snapshot(), time=frame.time, camera=frame.camera, settings=asdict(frame.settings))
         size = (frame.width, frame.height)
         text = capture.metadata(snapshot, session.frame, size, frame.statistics.to_dict())
         folder = Path(preferences.screenshot_folder or default_screenshot_folder()).expanduser()

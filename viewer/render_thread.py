@@ -93,12 +93,6 @@ class RenderThread:
                 self._cancel = True
             self._changed.notify_all()
 
-    def cancel(self) -> None:
-        """Stop tracing and forget what waits."""
-        with self._changed:
-            self._waiting = None
-            self._cancel = True
-
     def reset_modes(self) -> None:
         """Forget all modes before the next frame."""
         with self._changed:

@@ -7,6 +7,7 @@ all of that as plain JSON: it is what a bookmark keeps and what a captured pictu
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
@@ -42,9 +43,12 @@ class Snapshot:
         if not isinstance(data, Mapping):
             raise ValueError("no saved state in it")
         try:
+            time = float(data["time"])
+            if not math.isfinite(time):
+                raise ValueError("its time is not a finite number")
             return Snapshot(
                 scene=str(data["scene"]),
-                time=float(data["time"]),
+                time=time,
                 camera=Camera.from_json(data["camera"]),
                 follow=bool(data.get("follow", False)),
                 settings=settings_from_json(data.get("settings", {})),

@@ -53,6 +53,7 @@ class Ui:
     picture_area: tuple[int, int] = (0, 0)
     picture_focused: bool = False
     pivot: tuple[float, float, float] | None = None
+    pivot_scene: object = None
     modifiers: int = 0
     pressed: int = 0
     pressed_at: tuple[float, float] = (0.0, 0.0)

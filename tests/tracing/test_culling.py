@@ -157,18 +157,20 @@ def test_reset_forgets_everything():
     assert renderer.render().statistics.shadow.culled == 0
 
 
-def test_a_cancelled_frame_leaves_the_modes_as_they_were():
+@pytest.mark.parametrize("questions", range(0, 12))
+def test_a_cancelled_frame_teaches_nothing(questions):
+    """Wherever it is cut short: 4 tiles of primary rays, 2 strips of occlusion testing, 4 tiles of shading."""
     renderer, untouched = (tracer.Renderer(shadow_scene(), SETTINGS) for _ in range(2))
     for r in (renderer, untouched):
         r.render()
-    asked = []
-
-    def after_some_tiles() -> bool:
-        asked.append(True)
-        return len(asked) > 6
-
-    with pytest.raises(tracer.Cancelled):
-        renderer.render(cancel=after_some_tiles)
+    asked = iter([False] * questions)
+    elsewhere = Camera((12.0, 0.0, 4.0), (-12.0, 0.0, -4.0), (0.0, 0.0, 1.0), 40.0)
+    if questions < 10:
+        with pytest.raises(tracer.Cancelled):
+            renderer.render(camera=elsewhere, cancel=lambda: next(asked, True))
+    else:
+        for r in (renderer, untouched):
+            r.render(camera=elsewhere, cancel=lambda: next(asked, False))
     a, b = renderer.render(), untouched.render()
     assert np.array_equal(a.modes, b.modes)
     assert a.statistics.shadow == b.statistics.shadow

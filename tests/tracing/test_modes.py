@@ -46,6 +46,8 @@ def test_or_makes_partial_shadow():
 def test_a_moved_light_is_forgotten_alone():
     word = np.uint32(OcclusionMode.FULLY_RENDERED | ShadowMode.FULL_SHADOW << 2 | ShadowMode.NON_SHADOW << 4)
     words = np.array([word, word & ~np.uint32(3) | np.uint32(OcclusionMode.DYNAMIC)])
+    modes.forget_lights(words, [35])
+    assert words[0] == word  # that light is not culled, and has nothing to be forgotten
     modes.forget_lights(words, [0, 35])
     assert modes.occlusion_mode(words).tolist() == [OcclusionMode.INIT, OcclusionMode.DYNAMIC]
     assert modes.shadow_mode(words, 0).tolist() == [0, 0]
@@ -88,6 +90,6 @@ def test_occlusion_testing_asks_what_the_naive_twin_asks(seed, symmetric):
     met = np.array([w.any_hits(tracer.RayBatch(origins, directions)) for w in alone]).reshape(-1, 18, 24)
     expected, tests = naive.hidden_primitives(ids, lambda px, py, p: met[p, py, px], symmetric)
     hidden = np.zeros(len(corners), np.bool_)
-    counted = sum(occlusion_testing(world.kd, camera, ids, symmetric, row, row + 6, hidden) for row in (0, 6, 12))
+    counted = sum(occlusion_testing(world.placed, camera, ids, symmetric, row, row + 6, hidden) for row in (0, 6, 12))
     assert set(np.flatnonzero(hidden)) == expected
     assert counted == tests

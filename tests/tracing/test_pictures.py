@@ -131,6 +131,17 @@ def test_a_distant_texture_shows_its_mean_instead_of_flickering():
     assert (np.isin(near.color, (0.0, 1.0))).mean() > 0.5
 
 
+@pytest.mark.parametrize("huge", [1e8, 1e20, 3e38, np.inf, np.nan])
+def test_texture_coordinates_beyond_all_measure_still_give_a_colour(huge):
+    texture = Texture("grey", np.full((4, 4, 3), 128, np.uint8))
+    world = scene(plane(), camera=ABOVE, materials=(Material(ambient=(1, 1, 1)),), textures=(texture,))
+    triangles = world.objects[0].triangles
+    triangles.texture[:] = 0
+    triangles.uvs[:, 1:] = huge
+    frame = tracer.Renderer(world, replace(SETTINGS, width=8, height=8)).render()
+    assert frame.color == pytest.approx(128 / 255)
+
+
 def test_more_samples_smooth_an_edge_and_change_no_modes():
     half = [[[-20, -20, 0], [20, -20, 0], [20, 20, 0]]]
     world = scene(half, camera=ABOVE, background=(1, 1, 1), lights=[(0, 0, 20)])

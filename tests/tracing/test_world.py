@@ -111,6 +111,20 @@ def test_progress_that_raises_cancels_a_large_build():
         tracer.World(scene(random_corners(np.random.default_rng(0), 20000, 0.01)), progress=stop)
 
 
+@pytest.mark.parametrize("n", [1, 5])
+@pytest.mark.parametrize("t_max", [np.inf, "array"])
+def test_batches_are_copies_that_can_be_written_to(n, t_max):
+    origins = np.zeros((n, 3), np.float32)
+    origins.flags.writeable = False
+    limits = np.ones(n, np.float32) if t_max == "array" else t_max
+    batch = tracer.RayBatch(origins, origins, t_max=limits)
+    for array in batch:
+        assert array.flags.writeable
+        assert array.flags.c_contiguous
+        assert not np.shares_memory(array, origins)
+        assert not np.shares_memory(array, np.asarray(limits))
+
+
 def test_rays_of_the_wrong_shape_are_refused():
     with pytest.raises(ValueError, match=r"\(n, 3\)"):
         tracer.RayBatch([[0, 0]], [[0, 0]])

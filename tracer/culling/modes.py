@@ -87,9 +87,9 @@ def merge_words(words, gained):
 
 def forget_lights(words: np.ndarray, lights: list[int]) -> None:
     """Drop the shadow modes of lights that moved; FULLY_RENDERED goes back to INIT, to be seen whole anew."""
-    keep = words.dtype.type(np.iinfo(words.dtype).max)
-    for light in lights:
-        if light < MAX_CULLED_LIGHTS:
-            keep &= ~words.dtype.type(3 << (2 + 2 * light))
-    words &= keep
+    with_modes = [light for light in lights if light < MAX_CULLED_LIGHTS]
+    if not with_modes:
+        return
+    for light in with_modes:
+        words &= ~words.dtype.type(3 << (2 + 2 * light))
     words[occlusion_mode(words) == FULLY_RENDERED] &= ~words.dtype.type(3)

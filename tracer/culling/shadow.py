@@ -53,11 +53,11 @@ class Knowledge(NamedTuple):
 
 @inlined
 def lifted(position, geometric, offset, i):
-    """Where a ray to or from the i-th surface point ends or starts: off the surface, on the viewer's side."""
+    """Where a ray to or from the i-th surface point ends or starts: so far off the surface, on the viewer's side."""
     return (
-        position[0, i] + offset[i] * geometric[0, i],
-        position[1, i] + offset[i] * geometric[1, i],
-        position[2, i] + offset[i] * geometric[2, i],
+        position[0, i] + offset * geometric[0, i],
+        position[1, i] + offset * geometric[1, i],
+        position[2, i] + offset * geometric[2, i],
     )
 
 
@@ -75,7 +75,7 @@ def _rays_from_light(points, light, index, count):
     """Shadow rays from a light to the points listed in index: t = 1 is the point."""
     rays = empty_rays(count)
     for k in range(count):
-        target = lifted(points.position, points.geometric, points.offset, index[k])
+        target = lifted(points.position, points.geometric, points.offset[index[k]], index[k])
         for axis in range(3):
             rays.origin[axis, k] = light[axis]
             rays.direction[axis, k] = target[axis] - light[axis]

@@ -49,14 +49,15 @@ class Hits(NamedTuple):
 def ray_batch(origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0, t_max: ArrayLike = np.inf) -> Rays:
     """Turn origins and directions (n, 3) into a batch; t_min and t_max may be one number or (n,).
 
-    Directions keep their length.  Raises ValueError where shapes do not fit.
+    Directions keep their length; the batch holds copies.  Raises ValueError where shapes do not fit.
     """
     o, d = np.asarray(origins, np.float32), np.asarray(directions, np.float32)
     if o.ndim != 2 or o.shape[1] != 3 or o.shape != d.shape:
         raise ValueError(f"origins and directions are (n, 3) each, not {o.shape} and {d.shape}")
     n = len(o)
-    lo, hi = (np.ascontiguousarray(np.broadcast_to(np.asarray(t, np.float32), (n,))) for t in (t_min, t_max))
-    return Rays(np.ascontiguousarray(o.T), np.ascontiguousarray(d.T), lo, hi)
+    # Copies throughout: a view that cannot be written to is another type, for which kernels would compile anew.
+    lo, hi = (np.array(np.broadcast_to(np.asarray(t, np.float32), (n,))) for t in (t_min, t_max))
+    return Rays(np.array(o.T, order="C"), np.array(d.T, order="C"), lo, hi)
 
 
 @inlined

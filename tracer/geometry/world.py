@@ -7,8 +7,8 @@ batches: `closest_hits` and `any_hits`.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor, wait
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,7 +77,7 @@ class World:
     """A scene's geometry for rays: `place` it for a time, then ask.
 
     Raises Cancelled if `progress` does while the static tree is being built, ValueError for an
-    accelerator that does not exist.  `kd` is what kernels are given; `normals` (t, 9) float32
+    accelerator that does not exist.  `placed` is what kernels are given; `normals` (t, 9) float32
     holds the corners' normals in the space of each triangle's object.
     """
 
@@ -102,10 +102,6 @@ class World:
         self._dynamic, self._roots = self._globalised(range(1, len(objects)))
         self.place(time)
 
-    @property
-    def has_dynamic(self) -> bool:
-        return len(self.scene.objects) > 1
-
     def _build(self, index: int, progress: Progress | None) -> Tree:
         """The tree of one object; its items count the object's own primitives."""
         scene, item = self.scene, self.scene.objects[index]
@@ -115,17 +111,15 @@ class World:
         control = np.zeros(2, np.int64)
         if progress is None or len(boxes) < 5000:
             return build_tree(boxes, rows, control)
-        result: list[Tree] = []
-        builder = threading.Thread(target=lambda: result.append(build_tree(boxes, rows, control)), daemon=True)
-        builder.start()
-        try:
-            while builder.is_alive():
-                progress("building the kd-tree", min(0.99, control[DONE] / (2.5 * len(boxes))))
-                builder.join(0.05)
-        finally:
-            control[CANCELLED] = builder.is_alive()
-            builder.join()
-        return result[0]
+        with ThreadPoolExecutor(1, thread_name_prefix="tree") as builder:
+            tree = builder.submit(build_tree, boxes, rows, control)
+            try:
+                while not tree.done():
+                    progress("building the kd-tree", min(0.99, control[DONE] / (2.5 * len(boxes))))
+                    wait([tree], 0.05)
+            finally:
+                control[CANCELLED] = 1
+        return tree.result()
 
     def _globalised(self, indices: Iterable[int]) -> tuple[Trees, NDArray[np.int32]]:
         """Trees of several objects back to back, their items numbers of the whole scene; and all objects' roots."""
@@ -181,7 +175,7 @@ class World:
         top_boxes = np.asarray(boxes, np.float32).reshape(-1, 6)
         top, top_box = build_tree(top_boxes, self._triangles[:0])
         top = Trees(top.words, top.planes, np.asarray(present, np.int32)[top.items])
-        self.kd = traverse.World(
+        self.placed = traverse.Placed(
             self._triangles,
             self._quadrics,
             self._static,
@@ -205,7 +199,7 @@ class World:
 
         def work(chunk: int, worker: int) -> None:
             last = min(n, (chunk + 1) * CHUNK)
-            traverse.closest_hits(self.kd, rays, hits, chunk * CHUNK, last, counts[worker])
+            traverse.closest_hits(self.placed, rays, hits, chunk * CHUNK, last, counts[worker])
 
         for_each_chunk(work, -(-n // CHUNK), len(counts))
         return hits
@@ -217,12 +211,12 @@ class World:
 
         def work(chunk: int, worker: int) -> None:
             last = min(n, (chunk + 1) * CHUNK)
-            traverse.any_hits(self.kd, rays, blocked, chunk * CHUNK, last, counts[worker])
+            traverse.any_hits(self.placed, rays, blocked, chunk * CHUNK, last, counts[worker])
 
         for_each_chunk(work, -(-n // CHUNK), len(counts))
         return blocked
 
     def bounds(self) -> NDArray[np.float32]:
         """Box (6,) around everything that is there now; inverted for an empty world."""
-        boxes = np.stack([self.kd.boxes[0], self.kd.top_box])
+        boxes = np.stack([self.placed.boxes[0], self.placed.top_box])
         return bounds_of(boxes[boxes[:, 0] <= boxes[:, 3]])

@@ -24,7 +24,6 @@ from tracer.scene.model import Camera, Light, Material, Progress, Scene, SceneEr
 from tracer.scene.pieces import Mesh, Piece, Place, Quadric
 from tracer.scene.textures import TextureTable
 
-LEAST_HITHER = 1e-4
 SECONDS_BETWEEN_REPORTS = 0.02
 
 

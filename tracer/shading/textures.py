@@ -41,6 +41,8 @@ def pack_textures(
 @inlined
 def _bilinear(texels, start, width, height, u, v):
     """(r, g, b) in 0 to 255 of one level, repeating; v = 0 is the bottom of the picture."""
+    if not (abs(u) < np.float32(1e9) and abs(v) < np.float32(1e9)):  # nothing is left behind the point, or NaN
+        u, v = np.float32(0), np.float32(0)
     x, y = (u - math.floor(u)) * width - 0.5, (1.0 - (v - math.floor(v))) * height - 0.5
     x0, y0 = math.floor(x), math.floor(y)
     fx, fy = np.float32(x - x0), np.float32(y - y0)
@@ -62,7 +64,8 @@ def texture_color(look, texture, u, v, footprint):
     first, count = look.texture_table[texture, 0], look.texture_table[texture, 1]
     covered = footprint * np.float32(look.texture_levels[first, 1] * look.texture_levels[first, 2])
     level = np.float32(0.5) * np.log2(covered) if covered > np.float32(1) else np.float32(0)
-    whole = min(int(level), count - 1)
+    level = min(level, np.float32(count - 1))  # before it becomes an integer: it may be infinite
+    whole = int(level)
     mix = level - np.float32(whole) if whole < count - 1 else np.float32(0)
     row = first + whole
     levels, scale = look.texture_levels, np.float32(1 / 255)

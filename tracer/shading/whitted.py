@@ -192,14 +192,14 @@ def _next_wave(points, look, wave):
         d = (wave.rays.direction[0, i], wave.rays.direction[1, i], wave.rays.direction[2, i])
         normal = (points.normal[0, i], points.normal[1, i], points.normal[2, i])
         weight = (wave.weight[0, i], wave.weight[1, i], wave.weight[2, i])
-        above = lifted(points.position, points.geometric, points.offset, i)
+        above = lifted(points.position, points.geometric, points.offset[i], i)
         mirror = (material[SPECULAR], material[SPECULAR + 1], material[SPECULAR + 2])
         through, reach = material[TRANSMISSION], wave.reach[i] + wave.hits.t[i]
         if through > np.float32(0):
             eta = ONE / material[IOR] if points.entering[i] else material[IOR]
             passes, direction = _refracted(d, normal, eta)
             if passes:
-                below = lifted(points.position, points.geometric, -points.offset, i)
+                below = lifted(points.position, points.geometric, -points.offset[i], i)
                 n = _send(out, n, below, direction, wave.pixel[i], reach, weight, (through, through, through))
             else:  # total internal reflection takes the refracted ray's share
                 mirror = (mirror[0] + through, mirror[1] + through, mirror[2] + through)

@@ -79,6 +79,8 @@ def _placeholder(ui: Ui, room: ImVec2) -> None:
 def _pointer(ui: Ui, corner: ImVec2, size: ImVec2) -> None:
     """Hovering, clicking and dragging on the picture, which is ImGui's last item."""
     c, io = ui.controller, imgui.get_io()
+    if ui.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
+        ui.pivot, ui.pivot_scene = None, c.session.scene
     u, v = (io.mouse_pos.x - corner.x) / size.x, (io.mouse_pos.y - corner.y) / size.y
     if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
         c.hovered = (u, v)

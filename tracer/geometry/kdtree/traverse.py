@@ -23,7 +23,7 @@ STEPS, TESTS = 0, 1  # what a query adds to its counts
 SLACK = np.float32(1e-5)  # relative; by so much an object's interval is wider than that of its leaf
 
 
-class World(NamedTuple):
+class Placed(NamedTuple):
     """What rays can meet, placed for one moment.
 
     triangles (t, 9) and quadrics (q, 16) float32 are in the space of their object: triangle i is
