@@ -2,8 +2,9 @@
 
 numba keys its cache by the file a kernel stands in, and so misses a change in a helper that the
 kernel calls.  The folder here is therefore named by a hash over *all* kernel sources: a changed
-source never meets stale machine code.  `SHADOWCULL_CACHE_DIR` overrides the user's cache folder;
-where neither can be written, a temporary folder serves for the life of the process.
+source never meets stale machine code.  It lies in `SHADOWCULL_CACHE_DIR`, else in .cache of a source
+tree, else in the user's cache folder; where that cannot be written, a temporary folder serves for
+the life of the process.
 """
 
 from __future__ import annotations
@@ -39,8 +40,13 @@ def _source_hash() -> str:
 @cache
 def cache_folder() -> Path:
     """The folder of this version's compiled kernels; made, and known to be writable."""
-    base = os.environ.get("SHADOWCULL_CACHE_DIR")
-    root = Path(base).expanduser() if base else Path(platformdirs.user_cache_dir("shadowcull")) / "kernels"
+    base, source_tree = os.environ.get("SHADOWCULL_CACHE_DIR"), Path(__file__).parents[1]
+    if base:
+        root = Path(base).expanduser()
+    elif (source_tree / "pyproject.toml").exists():
+        root = source_tree / ".cache" / "kernels"
+    else:
+        root = Path(platformdirs.user_cache_dir("shadowcull")) / "kernels"
     folder = root / _source_hash()
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -144,7 +144,8 @@ class App:
         )
 
     def _capture_picture(self) -> None:
-        if self.ui.capture_wanted is CaptureKind.PICTURE and self.ui.display is not None:
+        ready = not self.controller.becoming_finer  # else the picture is saved when it has come
+        if self.ui.capture_wanted is CaptureKind.PICTURE and self.ui.display is not None and ready:
             self.ui.capture_wanted = None
             self.controller.keeper.capture(self.ui.display.read() if self.controller.frame is not None else None)
         if self.ui.capture_wanted is CaptureKind.WINDOW:

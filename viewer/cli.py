@@ -48,7 +48,7 @@ examples:
   shadowcull render -o room.png
   shadowcull render kitchen.aff -o kitchen.png --size 1024x768 --samples 16
   shadowcull render kitchen.aff -o modes.png --frame 50 --warmup 20 --view shadow:2
-  shadowcull render robot.aff --frame 10 --warmup 10 --buffers robot.npz
+  shadowcull render Robot.aff --frame 10 --warmup 10 --buffers robot.npz
   shadowcull render bunny.ply -o bunny.png --camera '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
 
 The modes of primitives are learnt from frame to frame, so that culling acts only after some frames:
@@ -62,7 +62,7 @@ primitive and cell (H,W int32, -1 for a miss), occlusion_mode (H,W uint8, 255 fo
 _BENCH_EXAMPLES = """\
 examples:
   shadowcull bench kitchen.aff --path-frames 100
-  shadowcull bench robot.aff --frames 100:200 --size 256x256 --verify
+  shadowcull bench Robot.aff --frames 100:200 --size 256x256 --verify
   shadowcull bench default --methods paper --symmetric --json default.json --csv default.csv
 
 Savings are those of shadow rays against the method none, averaged over frames, as in the paper's

@@ -76,6 +76,7 @@ class Controller:
         self._glide: Glide | None = None
         self._moving_until = 0.0
         self._serial = 0
+        self._settled: RenderRequest | None = None
         self._last_request: RenderRequest | None = None
         self._last_tick = time.monotonic()
         self._seen = math.inf
@@ -132,9 +133,17 @@ class Controller:
             self._seen = typical_depth(frame)
         if self.selected is not None:
             self.selected = refreshed(self.selected, frame)
-        if self.preferences.keep_tracing and not self.moving and not self.session.playing:
-            self._serial += 1
+        if not self.moving and not self.session.playing:
+            self._settle(traced.request)
         return frame
+
+    def _settle(self, request: RenderRequest) -> None:
+        """At rest the first fine frame of a view teaches the modes; a second one shows what they save."""
+        view = replace(request, serial=0)
+        learns = request.divisor == 1 and request.settings.method != "none" and request.settings.samples == 1
+        if self.preferences.keep_tracing or (learns and view != self._settled):
+            self._settled = view
+            self._serial += 1
 
     def _pass_time(self, step: float) -> None:
         """Play: in real time, or on to the next frame once this one has been traced."""
@@ -157,6 +166,8 @@ class Controller:
         width, height = self.full_size
         if self.session.scene is None or width < 1 or height < 1:
             return
+        if self._jumped():
+            self.moved()  # a coarse picture of the new view first
         moving = self.moving
         coarse = moving and self.preferences.dynamic_resolution
         divisor = self.resolution.choose(width, height, self.preferences.target_fps) if coarse else 1
@@ -167,6 +178,26 @@ class Controller:
             return
         self._last_request = wanted
         self.render.submit(wanted)
+
+    def _jumped(self) -> bool:
+        """Whether, at rest, something else is to be seen than was last asked for."""
+        if self._last_request is None or self.session.playing or self.moving:
+            return False
+        asked = self._last_request
+        settings = replace(self.session.settings, width=asked.settings.width, height=asked.settings.height)
+        return (self.session.time, self.session.camera, settings) != (asked.time, asked.camera, asked.settings)
+
+    @property
+    def becoming_finer(self) -> bool:
+        """Whether the picture is a coarse one and a fine one of the same view is to come."""
+        return self.traced is not None and self.traced.request.divisor > 1 and not self.session.playing
+
+    @property
+    def outdated(self) -> bool:
+        """Whether the newest frame was traced with other settings than those now chosen."""
+        if self.frame is None:
+            return False
+        return replace(self.session.settings, width=self.frame.width, height=self.frame.height) != self.frame.settings
 
     def _same_picture(self, wanted: RenderRequest) -> bool:
         if self.traced is None or self.render.busy:
@@ -226,7 +257,7 @@ class Controller:
         self.history.clear()
         self.resolution.forget()
         self._seen = math.inf
-        self.traced = self.selected = self._glide = self._last_request = None
+        self.traced = self.selected = self._glide = self._last_request = self._settled = None
         self.preferences.remember_scene(Path(scene.path).absolute())
         self.save_preferences()
 
@@ -265,11 +296,13 @@ class Controller:
     def reset_modes(self) -> None:
         """Forget all that was learnt about shadows, and look again."""
         self.render.reset_modes()
-        self.trace_again()
+        self._settled = None
+        self._serial += 1
 
     def trace_again(self) -> None:
-        """Trace the same frame once more: the modes may have learnt from the last."""
-        self._serial += 1
+        """Trace the same frame once more: the modes may have learnt from the last.  One under way is let finish."""
+        if not self.render.busy:
+            self._serial += 1
 
     def _store_settings(self) -> None:
         s, p = self.session.settings, self.preferences

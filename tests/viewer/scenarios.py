@@ -192,6 +192,13 @@ def capturing(d: Driver) -> None:
     d.drop(pictures / files[1])
     assert d.c.session.camera == camera
     assert d.c.session.view is View.OCCLUSION and d.c.session.settings.method == "none"
+    d.c.preferences.screenshot_template = "moving.png"
+    d.hold(KEY.d, 0.3)
+    d.press(KEY.f12)
+    d.settle()
+    d.wait(lambda: (pictures / "moving.png").exists(), "the picture of a camera that has just come to rest")
+    with Image.open(pictures / "moving.png") as picture:
+        assert picture.size == (d.c.frame.width, d.c.frame.height), "the fine picture is waited for"
     d.c.preferences.screenshot_template = "{nonsense}"
     d.press(KEY.f12)
     assert d.c.message.error and "nonsense" in d.c.message.text

@@ -77,7 +77,8 @@ def _triangle_point(world, look, points, i, hits, rays, cone):
         covered = abs((uv[2] - uv[0]) * (uv[5] - uv[1]) - (uv[4] - uv[0]) * (uv[3] - uv[1]))
         g, d = points.geometric, rays.direction
         cosine = abs(g[0, i] * d[0, i] + g[1, i] * d[1, i] + g[2, i] * d[2, i])
-        area = np.sqrt(cx * cx + cy * cy + cz * cz) * max(cosine, np.float32(1e-4))
+        cosine = max(cosine, np.float32(1e-3))
+        area = np.sqrt(cx * cx + cy * cy + cz * cz) * cosine * np.sqrt(cosine)
         footprint = cone * cone * covered / area if area > np.float32(0) else np.float32(0)
         red, green, blue = texture_color(look, look.texture[primitive], s, r, footprint)
         points.texture[0, i], points.texture[1, i], points.texture[2, i] = red, green, blue

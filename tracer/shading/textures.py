@@ -2,7 +2,8 @@
 
 Each texture is kept at full size and at every half of it down to one texel (Williams 1983).  How
 large a pixel is on the surface, followed along the ray as a cone (Amanatides 1984), says which two
-levels to mix.  The cone's area counts, not its longer axis: a floor seen at a slant stays sharp.
+levels to mix.  What counts lies between the area of the cone's footprint, which leaves a floor seen at
+a slant sharp but flickering, and the square of its longer axis, which blurs it.
 """
 
 from __future__ import annotations
