@@ -39,7 +39,7 @@ _FORBIDDEN = '<>:"/\\|?*\0'
 _LONGEST_NAME = 200
 
 
-class CaptureError(Exception):
+class CaptureError(ValueError):
     """A picture cannot be saved or restored; the message is one line."""
 
 

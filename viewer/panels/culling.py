@@ -47,7 +47,7 @@ def _wrong(ui: Ui) -> None:
     imgui.same_line()
     if shadow.wrong:
         paragraph(f"{count(shadow.wrong)} wrong ({percent(shadow.wrong, shadow.due)})", ERROR)
-    elif c.frame.settings.method == "none":
+    elif not shadow.culled + shadow.dynamic_only:
         paragraph("nothing culled", QUIET)
     else:
         paragraph("none wrong", GOOD)

@@ -63,7 +63,7 @@ def _browser(ui: Ui) -> None:
     b = ui.browser
     if b.open and not imgui.is_popup_open(_OPEN):
         imgui.open_popup(_OPEN)
-        b.problem = ""
+        b.typed = b.problem = ""
     _centred(em(38.0))
     shown, stays = imgui.begin_popup_modal(_OPEN, b.open, int(imgui.WindowFlags_.no_resize))
     b.open = bool(stays)
@@ -73,7 +73,7 @@ def _browser(ui: Ui) -> None:
     listed = _listing(ui)
     chosen = chosen or listed
     if b.problem:
-        clipped(b.problem, ERROR)
+        paragraph(b.problem, ERROR)
     if imgui.button("Open", ImVec2(em(6.0), 0.0)):
         chosen = chosen or _typed(ui)
     imgui.same_line()

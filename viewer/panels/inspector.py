@@ -102,4 +102,4 @@ def _verdict(pick: Pick) -> str:
     free = sum(mode is ShadowMode.NON_SHADOW for mode in pick.shadows)
     if not full and not free:
         return "Seen as a whole, but no light is all seen or all hidden: nothing to cull."
-    return f"Culled for {full} light{'s' * (full != 1)}; only moving objects are asked for {free}."
+    return f"Lights in full shadow, culled: {full}. Lights in non-shadow, asked for moving objects alone: {free}."

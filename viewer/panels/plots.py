@@ -45,7 +45,7 @@ def show(ui: Ui) -> None:
         history.clear()
         return
     imgui.same_line()
-    imgui.text_colored(QUIET, f"the last {len(history)} frames")
+    imgui.text_colored(QUIET, f"the last {len(history)} frames" if len(history) > 1 else "one frame so far")
     room = imgui.get_content_region_avail()
     spacing = imgui.get_style().item_spacing.x
     columns = 3 if room.x > em(42.0) else 1  # else one below the other, and the panel scrolls
