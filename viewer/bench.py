@@ -17,35 +17,23 @@ from rich.table import Table
 
 from tracer import experiment
 from tracer.experiment import Results, Row
-from tracer.frame import Settings
-from tracer.scene.load import load_scene
-from tracer.scene.model import Cancelled, SceneError
+from tracer.scene.load import load_visible_scene
+from tracer.scene.model import Cancelled
 from viewer.console import print_table, working
-from viewer.headless import prepare_kernels
+from viewer.headless import prepare_kernels, tracing_settings
 from viewer.outputs import check_writable, write_whole
 
 
 def bench(path: Path, options: Namespace) -> None:
     """Run an experiment and print its table; raises SceneError, ValueError, OSError, or Cancelled before any frame."""
-    settings = Settings(
-        width=options.size[0],
-        height=options.size[1],
-        depth=options.depth,
-        symmetric=options.symmetric,
-        zoom_factor=options.zoom_factor,
-        verify=options.verify,
-        threads=options.threads,
-        accelerator=options.accelerator,
-    ).validated()
+    settings = tracing_settings(options)
     methods = experiment.with_reference(options.methods)
     for output in (options.json, options.csv):
         if output is not None:
             check_writable(output)
     results = None
     with working() as work:
-        scene = load_scene(path, work.progress)
-        if scene.primitive_count == 0:
-            raise SceneError(f"{path}: nothing to see in it: no triangles, spheres or cones")
+        scene = load_visible_scene(path, work.progress)
         times = experiment.path_times(scene, options.path_frames)
         numbers = frame_range(options.frames, len(times))
         prepare_kernels(work, len(scene.lights))

@@ -17,7 +17,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.modes import MAX_CULLED_LIGHTS, OcclusionMode
+from tracer.culling.modes import OcclusionMode, has_shadow_mode
 from viewer.resources import shader_source
 from viewer.views import (
     BACKGROUND,
@@ -165,7 +165,7 @@ class Display:
     def _set_uniforms(self, program: Any, look: Look) -> None:
         assert self._frame is not None
         dynamic = OCCLUSION_COLORS[OcclusionMode.DYNAMIC]
-        covered = look.light < min(MAX_CULLED_LIGHTS, (8 * self._frame.modes.itemsize - 2) // 2)
+        covered = has_shadow_mode(self._frame.modes, look.light)
         values: dict[str, Any] = {
             "table_width": TABLE_WIDTH,
             "background": BACKGROUND,

@@ -21,8 +21,8 @@ from tracer.compilation import warm_up
 from tracer.frame import Frame, Settings
 from tracer.kernels import cache_folder
 from tracer.renderer import Renderer
-from tracer.scene.load import load_scene, scene_info
-from tracer.scene.model import Camera, Scene, SceneError
+from tracer.scene.load import load_scene, load_visible_scene, scene_info
+from tracer.scene.model import Camera, Scene
 from viewer import capture
 from viewer.console import Work, print_table, say, statistics_table, working
 from viewer.outputs import check_writable, write_whole
@@ -53,12 +53,10 @@ def info(path: Path, as_json: bool) -> None:
 def render(path: Path, options: Namespace) -> None:
     """Trace one frame and write it; raises SceneError, ValueError and OSError in one line, or Cancelled."""
     view, light = options.view
-    settings = _settings(options)
+    settings = replace(tracing_settings(options), method=options.method)
     _check_outputs(options.output, options.buffers)
     with working() as work:
-        scene = load_scene(path, work.progress)
-        if scene.primitive_count == 0:
-            raise SceneError(f"{path}: nothing to see in it: no triangles, spheres or cones")
+        scene = load_visible_scene(path, work.progress)
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
         if view is View.SHADOW and light >= len(scene.lights):
@@ -105,23 +103,21 @@ def prepare_kernels(work: Work, lights: int) -> None:
     warm_up(work.progress, lights)
 
 
-def _settings(options: Namespace) -> Settings:
+def tracing_settings(options: Namespace) -> Settings:
+    """Settings that commands have in common, of one ray a pixel; raises ValueError in one line."""
     width, height = options.size
     if width * height > MOST_PIXELS:
         raise ValueError(f"--size {width}x{height}: more than {MOST_PIXELS:,} pixels")
-    settings = Settings(
+    return Settings(
         width=width,
         height=height,
         depth=options.depth,
-        method=options.method,
         symmetric=options.symmetric,
         zoom_factor=options.zoom_factor,
         verify=options.verify,
-        samples=options.samples,
         threads=options.threads,
         accelerator=options.accelerator,
     ).validated()
-    return replace(settings, samples=1)  # frames that only teach modes need one ray a pixel
 
 
 def _check_outputs(output: Path | None, npz: Path | None) -> None:

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from tracer.compilation import warm_up
 from tracer.renderer import Renderer, Settings
-from tracer.scene.load import load_scene
-from tracer.scene.model import Progress, Scene, SceneError
+from tracer.scene.load import load_visible_scene
+from tracer.scene.model import Progress, Scene
 from viewer import resources
 
 SCENE_SUFFIXES = (".aff", ".nff", ".obj", ".ply", ".stl", ".gltf", ".glb")
@@ -50,9 +50,7 @@ def open_scene(path: Path, settings: Settings, ready: Callable[[], bool], progre
 
     Raises SceneError or Cancelled; runs on a thread of its own."""
     started = time.perf_counter()
-    scene = load_scene(path, progress)
-    if scene.primitive_count == 0:
-        raise SceneError(f"{path}: nothing to see in it: no triangles, spheres or cones")
+    scene = load_visible_scene(path, progress)
     while not ready():
         progress(f"{path.name}: waiting for the kernels", 1.0)
         time.sleep(0.02)

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tracer.culling.modes import MAX_CULLED_LIGHTS, OcclusionMode, ShadowMode
+from tracer.culling import modes
+from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.renderer import Frame
 from tracer.scene.model import CONE, Material, Scene
 from viewer.navigation import Vector, ray
@@ -74,9 +75,9 @@ def kind_of(scene: Scene, primitive: int) -> str:
 
 def shadow_mode_of(frame: Frame, primitive: int, light: int) -> ShadowMode | None:
     """A primitive's shadow mode for a light; None where culling does not cover the light."""
-    if light >= MAX_CULLED_LIGHTS or 2 + 2 * light >= 8 * frame.modes.itemsize:
+    if not modes.has_shadow_mode(frame.modes, light):
         return None
-    return ShadowMode((int(frame.modes[primitive]) >> (2 + 2 * light)) & 3)
+    return ShadowMode(int(modes.shadow_mode(frame.modes[primitive], light)))
 
 
 def point_at(frame: Frame, u: float, v: float) -> Vector | None:

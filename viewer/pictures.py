@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.modes import MAX_CULLED_LIGHTS, OcclusionMode
+from tracer.culling import modes
+from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame
 from viewer.views import BACKGROUND, GREY, OCCLUSION_COLORS, SHADOW_COLORS, View, color_map, depth_range
 
@@ -66,18 +67,17 @@ def _per_pixel(frame: Frame, table: NDArray) -> NDArray:
 
 def _occlusion(frame: Frame) -> NDArray:
     palette = np.asarray([OCCLUSION_COLORS[mode] for mode in OcclusionMode], np.float32)
-    return palette[(frame.modes & 3).astype(np.int64)]
+    return palette[modes.occlusion_mode(frame.modes)]
 
 
 def _shadow(frame: Frame, light: int) -> NDArray:
     """By shadow mode; what moves has none and is shown as moving, a light that culling does not cover as unknown."""
     palette = np.asarray([*SHADOW_COLORS.values(), OCCLUSION_COLORS[OcclusionMode.DYNAMIC]], np.float32)
-    position = 2 + 2 * light
-    if light < MAX_CULLED_LIGHTS and position < 8 * frame.modes.itemsize:
-        mode = ((frame.modes >> frame.modes.dtype.type(position)) & 3).astype(np.int64)
+    if modes.has_shadow_mode(frame.modes, light):
+        mode = modes.shadow_mode(frame.modes, light)
     else:
-        mode = np.zeros(len(frame.modes), np.int64)
-    mode[(frame.modes & 3) == OcclusionMode.DYNAMIC] = len(palette) - 1
+        mode = np.zeros(len(frame.modes), np.uint8)
+    mode[modes.occlusion_mode(frame.modes) == OcclusionMode.DYNAMIC] = len(palette) - 1
     return palette[mode]
 
 

@@ -14,7 +14,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.modes import MAX_CULLED_LIGHTS, OcclusionMode, ShadowMode
+from tracer.culling import modes
+from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.renderer import Frame
 
 Color = tuple[float, float, float]
@@ -132,7 +133,7 @@ class LegendRow:
 
 def occlusion_legend(frame: Frame) -> list[LegendRow]:
     """Primitives and primary pixels in each occlusion mode."""
-    classes = (frame.modes & 3).astype(np.int64)
+    classes = modes.occlusion_mode(frame.modes)
     rows = [(mode.name, OCCLUSION_COLORS[mode], OCCLUSION_MEANING[mode]) for mode in OcclusionMode]
     return _rows(frame, classes, rows)
 
@@ -141,16 +142,16 @@ def shadow_legend(frame: Frame, light: int) -> list[LegendRow]:
     """Primitives and primary pixels in each shadow mode of a light; those that move are counted apart.
 
     Empty for a light that culling does not cover."""
-    if not 0 <= light < MAX_CULLED_LIGHTS or 2 + 2 * light >= 8 * frame.modes.itemsize:
+    if not modes.has_shadow_mode(frame.modes, light):
         return []
-    classes = ((frame.modes >> frame.modes.dtype.type(2 + 2 * light)) & 3).astype(np.int64)
-    classes[(frame.modes & 3) == OcclusionMode.DYNAMIC] = len(ShadowMode)
+    classes = modes.shadow_mode(frame.modes, light)
+    classes[modes.occlusion_mode(frame.modes) == OcclusionMode.DYNAMIC] = len(ShadowMode)
     rows = [(mode.name, SHADOW_COLORS[mode], SHADOW_MEANING[mode]) for mode in ShadowMode]
     rows.append(("DYNAMIC", OCCLUSION_COLORS[OcclusionMode.DYNAMIC], OCCLUSION_MEANING[OcclusionMode.DYNAMIC]))
     return _rows(frame, classes, rows)
 
 
-def _rows(frame: Frame, classes: NDArray[np.int64], rows: list[tuple[str, Color, str]]) -> list[LegendRow]:
+def _rows(frame: Frame, classes: NDArray[np.uint8], rows: list[tuple[str, Color, str]]) -> list[LegendRow]:
     primitives = np.bincount(classes, minlength=len(rows))
     pixels = np.bincount(classes, weights=frame.pixel_count, minlength=len(rows)).astype(np.int64)
     total, seen = max(int(primitives.sum()), 1), max(int(pixels.sum()), 1)

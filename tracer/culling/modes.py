@@ -46,6 +46,11 @@ def word_type(lights: int) -> type[np.unsignedinteger]:
     return np.uint32 if lights <= 15 else np.uint64
 
 
+def has_shadow_mode(words: np.ndarray, light: int) -> bool:
+    """Whether these words hold modes of a light; those that do not are traced without culling."""
+    return 0 <= light < MAX_CULLED_LIGHTS and 2 + 2 * light < 8 * words.itemsize
+
+
 def occlusion_mode(word):
     """Occlusion mode of a word or of an array of them, as uint8."""
     return (np.asarray(word) & np.asarray(word).dtype.type(3)).astype(np.uint8)

@@ -46,6 +46,14 @@ def load_scene(path: str | Path, progress: Progress | None = None) -> Scene:
     return scene
 
 
+def load_visible_scene(path: str | Path, progress: Progress | None = None) -> Scene:
+    """As `load_scene`, but a scene with nothing to see in it is a SceneError too."""
+    scene = load_scene(path, progress)
+    if scene.primitive_count == 0:
+        raise SceneError(f"{path}: nothing to see in it: no triangles, spheres or cones")
+    return scene
+
+
 def scene_info(scene: Scene) -> dict[str, Any]:
     """What `shadowcull info --json` prints, in plain lists and numbers.
 
