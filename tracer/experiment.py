@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tracer.frame import METHODS, Settings
+from tracer.frame import METHODS, Frame, Settings
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled, Progress, Scene
@@ -122,22 +122,29 @@ def run(
     numbers: range | None = None,
     progress: Progress | None = None,
     cancel: Callable[[], bool] | None = None,
+    world: World | None = None,
+    on_frame: Callable[[int, str, Frame], None] | None = None,
 ) -> Iterator[Results]:
     """Render times[i] for each i of `numbers` (default: all) by every method; yields the results after each frame.
 
     Always the same, growing object: stopping early keeps what is done.  A `cancel` that turns true
-    ends the iteration after the last whole frame.  Raises ValueError as `with_reference` does, and
+    ends the iteration after the last whole frame.  `world` is one that nobody else uses meanwhile;
+    `on_frame` is shown each picture with its number and method.  Raises ValueError as `with_reference` does, and
     Cancelled if `progress` raises it while trees are built.
     """
     numbers = range(len(times)) if numbers is None else numbers
     names = with_reference(methods)
-    world = World(scene, times[0] if times else 0.0, settings.accelerator, progress)
+    world = world or World(scene, times[0] if times else 0.0, settings.accelerator, progress)
     renderers = {name: Renderer(scene, replace(settings, method=name), world=world) for name in names}
     results = Results(str(scene.path), (settings.width, settings.height))
     results.methods = {name: {figure: [] for figure in _FIGURES} for name in names}
     for number in numbers:
+        frames = {}
         try:
-            frames = {name: renderer.render(times[number], cancel=cancel) for name, renderer in renderers.items()}
+            for name, renderer in renderers.items():
+                frames[name] = renderer.render(times[number], cancel=cancel)
+                if on_frame is not None:
+                    on_frame(number, name, frames[name])
         except Cancelled:
             return
         results.frames.append(number)

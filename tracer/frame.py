@@ -22,8 +22,9 @@ class Settings:
     """How to render.  Sizes in pixels; depth is the most bounces; threads 0 means all cores.
 
     `method` is "none" or "paper"; `symmetric` and `zoom_factor` belong to the latter (§2.3, §2.6).
-    `verify` traces each culled answer too and counts the wrong ones.  `samples` rays a pixel are
-    averaged; all modes and statistics are those of the first, through the pixel's centre.
+    `verify` traces each culled answer too, counts the wrong ones, and fills Frame.reference and
+    Frame.wrong.  `samples` rays a pixel are averaged; all modes and statistics are those of the
+    first, through the pixel's centre.
     `record_lights` fills Frame.due and Frame.lit.
     """
 
@@ -65,6 +66,9 @@ class Frame:
     the shading normal towards the viewer.  modes (p,) uint32 or uint64 are the packed words as this
     frame leaves them; pixel_count and highest_count (p,) int32.  due and lit (h, w, lights) bool
     where they were asked for: whether each shadow ray of the primary hit is due, and its answer.
+    Where verified, reference like color is the picture with every shadow answer right, which is that
+    of method "none" bit for bit, and wrong (h, w) int32 the number of wrong answers that count for
+    each pixel, at all bounces and of all samples.
     """
 
     time: float
@@ -80,6 +84,8 @@ class Frame:
     lights: int
     due: NDArray[np.bool_] | None = None
     lit: NDArray[np.bool_] | None = None
+    reference: NDArray[np.float32] | None = None
+    wrong: NDArray[np.int32] | None = None
     statistics: FrameStatistics = field(default_factory=FrameStatistics)
 
     @property

@@ -124,6 +124,7 @@ class UnfinishedFrame:
         width, height = self._settings.width, self._settings.height
         lights = len(self._renderer.scene.lights)
         rows = width * height if self._settings.record_lights else 0
+        verified = width * height if self._settings.verify else 0
         return Buffers(
             color=np.zeros((width * height, 3), np.float32),
             normal=np.zeros((width * height, 3), np.float32),
@@ -133,6 +134,8 @@ class UnfinishedFrame:
             v=np.empty((height, width), np.float32),
             due=np.zeros((rows, lights), np.bool_),
             lit=np.zeros((rows, lights), np.bool_),
+            reference=np.zeros((verified, 3), np.float32),
+            wrong=np.zeros(verified, np.int32),
         )
 
     def _for_each_tile(self, work: Callable[[tuple[int, int, int, int], int], None]) -> None:
@@ -175,13 +178,13 @@ class UnfinishedFrame:
 
     def shade(self) -> None:
         """§2.4, §2.5: Whitted shading, with shadow testing and shadow-mode setting."""
-        self._shade(self._rays, self._buffers, self._counts, self._settings.verify)
+        self._shade(self._rays, self._buffers, self._counts)
         if self._settings.samples > 1:
             self._average_samples()
 
-    def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray, verify: bool) -> None:
+    def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
         placed, look, memory = self._renderer.world.placed, self._renderer._look, self.memory
-        depth, cull = self._settings.depth, self._settings.method != "none"
+        depth, cull, verify = self._settings.depth, self._settings.method != "none", self._settings.verify
 
         def work(tile: tuple[int, int, int, int], worker: int) -> None:
             knowledge = Knowledge(memory.words, memory.gained[worker], cull, verify)
@@ -199,9 +202,12 @@ class UnfinishedFrame:
             rays = pinhole(self._camera, self._settings.width, self._settings.height, shift)
             buffers, counts = self._empty_buffers(), np.zeros_like(self._counts)
             self._trace_primary(rays, buffers, counts)
-            self._shade(rays, buffers, counts, False)
-            self._buffers.color[:] += buffers.color
+            self._shade(rays, buffers, counts)
+            for sum_, sample in ((self._buffers.color, buffers.color), (self._buffers.reference, buffers.reference)):
+                sum_ += sample
+            self._buffers.wrong[:] += buffers.wrong
         self._buffers.color[:] /= np.float32(samples)
+        self._buffers.reference[:] /= np.float32(samples)
         self.memory.gained[:] = gained
 
     def set_modes(self) -> None:
@@ -237,5 +243,7 @@ class UnfinishedFrame:
             lights=lights,
             due=buffers.due.reshape(*shape, lights) if recorded else None,
             lit=buffers.lit.reshape(*shape, lights) if recorded else None,
+            reference=buffers.reference.reshape(*shape, 3) if self._settings.verify else None,
+            wrong=buffers.wrong.reshape(shape) if self._settings.verify else None,
             statistics=statistics,
         )

@@ -137,15 +137,15 @@ def _ask_dynamic(world, points, light, open_, opened, answer, counts):
 
 
 @subkernel
-def _count_wrong(world, points, light, asked, asking, answer, counts):
-    """Trace what was culled after all, uncounted, and count the answers that differ."""
+def _verify(world, points, light, asked, asking, truth, counts):
+    """Trace what was culled after all, its steps uncounted, correct the answers in truth, and count the wrong ones."""
     scratch = np.zeros(SHADOW_COUNTERS, np.int64)
-    was_asked = np.zeros(len(answer), np.bool_)
+    was_asked = np.zeros(len(truth), np.bool_)
     was_asked[asked[:asking]] = True
-    index = np.empty(len(answer), np.int32)
+    index = np.empty(len(truth), np.int32)
     culled = 0
-    for i in range(len(answer)):
-        if answer[i] != NOT_DUE and not was_asked[i]:
+    for i in range(len(truth)):
+        if truth[i] != NOT_DUE and not was_asked[i]:
             index[culled] = i
             culled += 1
     rays = _rays_from_light(points, light, index, culled)
@@ -153,17 +153,24 @@ def _count_wrong(world, points, light, asked, asking, answer, counts):
     any_static_hits(world, rays, static, 0, culled, scratch)
     any_dynamic_hits(world, rays, dynamic, 0, culled, scratch)
     for k in range(culled):
-        counts[WRONG] += (static[k] or dynamic[k]) != (answer[index[k]] == BLOCKED)
+        traced = BLOCKED if static[k] or dynamic[k] else LIT
+        counts[WRONG] += traced != truth[index[k]]
+        truth[index[k]] = traced
 
 
 @subkernel
-def shadow_testing(world, points, light, number, knowledge, answer, counts):
-    """Answer, for light `number` at light (3,), whether it reaches each point: NOT_DUE, BLOCKED or LIT."""
+def shadow_testing(world, points, light, number, knowledge, answer, truth, counts):
+    """Answer, for light `number` at light (3,), whether it reaches each point: NOT_DUE, BLOCKED or LIT.
+
+    Where knowledge asks to verify, truth gets the answers as tracing every ray gives them.
+    """
     n = len(points.unit)
     asked, open_ = np.empty(n, np.int32), np.empty(n, np.int32)
     asking, opened = _choose_fates(points, light, number, knowledge, asked, open_, answer, counts)
     counts[RAYS] += asking + (opened if len(world.roots) > 1 else 0)
     opened = _ask_static(world, points, light, number, knowledge, asked, asking, open_, opened, answer, counts)
     _ask_dynamic(world, points, light, open_, opened, answer, counts)
-    if knowledge.verify and knowledge.cull:
-        _count_wrong(world, points, light, asked, asking, answer, counts)
+    if knowledge.verify:
+        truth[:] = answer
+        if knowledge.cull:
+            _verify(world, points, light, asked, asking, truth, counts)

@@ -33,7 +33,8 @@ COUNTERS = SHADOW + SHADOW_COUNTERS
 
 class Buffers(NamedTuple):
     """One picture: color and normal (height * width, 3), depth, u and v (height, width) float32,
-    primitive (height, width) int32; due and lit (height * width, lights) bool, or without rows."""
+    primitive (height, width) int32; due and lit (height * width, lights) bool, or without rows;
+    reference like color and wrong (height * width,) int32, or without rows where nothing is verified."""
 
     color: NDArray[np.float32]
     normal: NDArray[np.float32]
@@ -43,6 +44,8 @@ class Buffers(NamedTuple):
     v: NDArray[np.float32]
     due: NDArray[np.bool_]
     lit: NDArray[np.bool_]
+    reference: NDArray[np.float32]
+    wrong: NDArray[np.int32]
 
 
 class Wave(NamedTuple):
@@ -137,13 +140,16 @@ def _shortened(wave, n):
 
 
 @subkernel
-def _without_misses(wave, look, color):
+def _without_misses(wave, look, buffers):
     """The wave's rays that hit; the others bring home the background."""
     n = 0
     for i in range(len(wave.pixel)):
         if wave.hits.primitive[i] == MISS:
             for c in range(3):
-                color[wave.pixel[i], c] += wave.weight[c, i] * look.background[c]
+                light = wave.weight[c, i] * look.background[c]
+                buffers.color[wave.pixel[i], c] += light
+                if len(buffers.reference) > 0:
+                    buffers.reference[wave.pixel[i], c] += light
             continue
         if n < i:
             _copy_ray(wave, i, wave, n)
@@ -211,10 +217,16 @@ def _next_wave(points, look, wave):
 def _shade(world, look, wave, points, knowledge, first, buffers, counts):
     """Local light of a wave, with shadow testing for every light; `first` for the wave of primary rays."""
     add_ambient(points, look, wave, buffers.color)
-    answer = np.empty(len(wave.pixel), np.uint8)
+    answer, truth = np.empty(len(wave.pixel), np.uint8), np.empty(len(wave.pixel), np.uint8)
+    if knowledge.verify:
+        add_ambient(points, look, wave, buffers.reference)
     for number in range(len(look.lights)):
-        shadow_testing(world, points, look.lights[number], number, knowledge, answer, counts[SHADOW:])
+        shadow_testing(world, points, look.lights[number], number, knowledge, answer, truth, counts[SHADOW:])
         add_light(points, look, number, answer, wave, buffers.color)
+        if knowledge.verify:
+            add_light(points, look, number, truth, wave, buffers.reference)
+            for i in range(len(answer)):
+                buffers.wrong[wave.pixel[i]] += answer[i] != truth[i]
         if first and len(buffers.due) > 0:
             for i in range(len(answer)):
                 buffers.due[wave.pixel[i], number] = answer[i] != NOT_DUE
@@ -229,7 +241,7 @@ def _shade(world, look, wave, points, knowledge, first, buffers, counts):
 def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts):
     """Shade a tile whose primary hits the buffers hold, with at most `depth` bounces."""
     world, look, knowledge, buffers = borrowed(world), borrowed(look), borrowed(knowledge), borrowed(buffers)
-    wave = _without_misses(_first_wave(camera, tile, buffers), look, buffers.color)
+    wave = _without_misses(_first_wave(camera, tile, buffers), look, buffers)
     for bounce in range(depth + 1):
         points = points_at(world, look, wave.rays, wave.hits, wave.reach, camera.spread)
         _shade(world, look, wave, points, knowledge, bounce == 0, buffers, counts)
@@ -241,6 +253,6 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts):
             break
         closest_hits(world, wave.rays, wave.hits, 0, n, counts[SECONDARY:])
         counts[SECONDARY + RAYS] += n
-        wave = _without_misses(wave, look, buffers.color)
+        wave = _without_misses(wave, look, buffers)
         if len(wave.pixel) == 0:
             break
