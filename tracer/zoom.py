@@ -1,0 +1,239 @@
+"""The zoom test: does a shadow that can only be seen from near appear when one comes near?  (§2.6, Figure 4)
+
+A primitive that was seen whole from afar is culled by what its few pixels met then.  A camera goes
+straight towards it, so that it covers more and more pixels; once they are more than `zoom_factor`
+times its highest count it is examined anew, and what was wrong until then should vanish.  The same
+way is gone once for each factor, every time with modes that start afresh.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from tracer.culling.modes import OcclusionMode, ShadowMode, has_shadow_mode, occlusion_mode, shadow_mode
+from tracer.frame import Frame, Settings
+from tracer.geometry.world import World
+from tracer.renderer import Renderer
+from tracer.scene.model import Camera, Cancelled, Scene
+
+STILL_FRAMES = 3
+"""Frames at the start, before the camera moves, for the modes to settle."""
+
+NEAREST = 1e-3
+"""Least part of the distance at the start to end at: nearer, the pixels of float32 coordinates are no longer even."""
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Aim:
+    """Where a zoom test starts: a camera, at `time` seconds, that looks at `target`, a point of `primitive`."""
+
+    primitive: int
+    time: float
+    camera: Camera
+    target: Vector
+
+    @property
+    def distance(self) -> float:
+        return math.dist(self.camera.position, self.target)
+
+    def after(self, steps: int, ratio: float) -> Camera:
+        """The camera after so many steps, each to `ratio` (0 to 1) of the distance before."""
+        way = np.subtract(self.camera.position, self.target) * ratio**steps
+        return replace(self.camera, position=_triple(np.add(self.target, way)))
+
+
+@dataclass(frozen=True)
+class Change:
+    """A mode that is another than a frame before: the occlusion mode, or with `light` a light's shadow mode."""
+
+    light: int | None
+    before: str
+    after: str
+
+
+@dataclass(frozen=True)
+class Step:
+    """A frame of the way.  `shadows` are the shadow modes by light, None for lights without one; modes are as the
+    frame leaves them, `changes` what they were before it.  `wrong` counts the pixels that a wrong shadow answer
+    touches, `wrong_of_primitive` those among them that show the primitive; rays are those of the whole frame."""
+
+    number: int
+    distance: float
+    camera: dict[str, Any]
+    pixels: int
+    highest: int
+    occlusion: str
+    shadows: list[str | None]
+    changes: list[Change]
+    wrong_of_primitive: int
+    wrong: int
+    due: int
+    culled: int
+    dynamic_only: int
+
+
+@dataclass
+class Approach:
+    """The way gone with one zoom factor."""
+
+    factor: float
+    steps: list[Step] = field(default_factory=list)
+
+    @property
+    def examined_anew(self) -> list[int]:
+        """Numbers of the steps at whose end the primitive, once fully rendered, is to be examined anew."""
+        went_back = Change(None, OcclusionMode.FULLY_RENDERED.name, OcclusionMode.INIT.name)
+        return [step.number for step in self.steps if went_back in step.changes]
+
+    @property
+    def wrong_steps(self) -> list[int]:
+        """Numbers of the steps that show the primitive with wrong pixels."""
+        return [step.number for step in self.steps if step.wrong_of_primitive]
+
+    @property
+    def most_wrong(self) -> int:
+        """The most wrong pixels of the primitive in one step."""
+        return max((step.wrong_of_primitive for step in self.steps), default=0)
+
+
+@dataclass
+class Results:
+    """What was seen on the way, once per factor, in the order in which the factors were asked for."""
+
+    scene: str
+    size: tuple[int, int]
+    primitive: int
+    time: float
+    target: Vector
+    ratio: float
+    still_frames: int = STILL_FRAMES
+    approaches: list[Approach] = field(default_factory=list)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain lists and numbers, for JSON."""
+        return asdict(self) | {"size": list(self.size), "target": list(self.target)}
+
+
+def aim(frame: Frame, primitive: int) -> Aim:
+    """Point a frame's camera at a primitive that the frame shows, which must not lie behind anything on the way.
+
+    A camera that looks at it already goes straight on.  Any other turns to the middle of what is to be
+    seen of it: the visible point nearest to the mean of all.  Raises ValueError where the frame does
+    not show the primitive.
+    """
+    rows, columns = np.nonzero(frame.primitive == primitive)
+    if primitive < 0 or not len(rows):
+        raise ValueError(f"primitive {primitive} is not to be seen from here; choose one that the picture shows")
+    camera = frame.camera
+    right, up, forward = camera.basis()
+    pixel = 2.0 * math.tan(math.radians(camera.angle) / 2.0) / frame.height
+    x, y = (columns + 0.5 - 0.5 * frame.width) * pixel, (0.5 * frame.height - rows - 0.5) * pixel
+    rays = forward + x[:, None] * right + y[:, None] * up
+    ahead = frame.depth[rows, columns] / np.linalg.norm(rays, axis=1)  # along the view, not along the ray
+    middle = np.flatnonzero((rows == frame.height // 2) & (columns == frame.width // 2))
+    if len(middle):
+        return Aim(primitive, frame.time, camera, _triple(camera.position + forward * ahead[middle[0]]))
+    points = camera.position + rays * ahead[:, None]
+    target = points[np.argmin(np.linalg.norm(points - points.mean(0), axis=1))]
+    return Aim(primitive, frame.time, replace(camera, direction=_triple(target - camera.position)), _triple(target))
+
+
+def primitive_at(frame: Frame, x: int, y: int) -> int:
+    """The primitive that a pixel shows; raises ValueError for one outside the picture or that shows none."""
+    if not (0 <= x < frame.width and 0 <= y < frame.height):
+        raise ValueError(f"pixel {x},{y}: the picture has {frame.width} x {frame.height} pixels, counted from 0")
+    primitive = int(frame.primitive[y, x])
+    if primitive < 0:
+        raise ValueError(f"pixel {x},{y} shows no primitive, only background")
+    return primitive
+
+
+def run(
+    scene: Scene,
+    settings: Settings,
+    start: Aim,
+    factors: Sequence[float] = (4.0, 16.0),
+    steps: int = 30,
+    ratio: float = 0.94,
+    cancel: Callable[[], bool] | None = None,
+    world: World | None = None,
+    on_frame: Callable[[float, int, Frame], None] | None = None,
+) -> Iterator[Results]:
+    """Go towards a primitive in so many steps, once with each zoom factor; yields the results after each frame.
+
+    Always the same, growing object: stopping early keeps what is done.  Each step ends at `ratio` of
+    the distance before it, so that the camera comes near but never arrives; STILL_FRAMES of the start
+    come first.  The method is "paper", and every culled answer is verified, whatever `settings` say.
+    A `cancel` that turns true ends the iteration after the last whole frame.  `world` is one that
+    nobody else uses meanwhile; `on_frame` is shown each picture with its factor and number.  Raises
+    ValueError for a primitive that moves, which is never culled, and for numbers out of range.
+    """
+    if scene.object_of(start.primitive):
+        raise ValueError(f"primitive {start.primitive} belongs to an object that moves, and those are never culled")
+    if not 0.0 < ratio < 1.0 or steps < 1:
+        raise ValueError("a zoom test goes at least one step, each to between 0 and 1 of the distance before")
+    if ratio**steps < NEAREST:
+        raise ValueError(
+            f"{steps} steps of {ratio:g} end nearer than {NEAREST:g} of the distance; go fewer or smaller ones"
+        )
+    tests = [replace(settings, method="paper", verify=True, samples=1, zoom_factor=f).validated() for f in factors]
+    world = world or World(scene, start.time, settings.accelerator)
+    size = (settings.width, settings.height)
+    results = Results(str(scene.path), size, start.primitive, start.time, start.target, ratio)
+    for test in tests:
+        renderer = Renderer(scene, test, world=world)
+        approach = Approach(test.zoom_factor)
+        results.approaches.append(approach)
+        for number in range(STILL_FRAMES + steps):
+            camera = start.after(max(0, number - STILL_FRAMES + 1), ratio)
+            try:
+                frame = renderer.render(start.time, camera, cancel)
+            except Cancelled:
+                return
+            if on_frame is not None:
+                on_frame(test.zoom_factor, number, frame)
+            approach.steps.append(_step(frame, start, number, approach.steps))
+            yield results
+
+
+def _step(frame: Frame, start: Aim, number: int, before: list[Step]) -> Step:
+    assert frame.wrong is not None
+    word, wrong, shadow = frame.modes[start.primitive], frame.wrong > 0, frame.statistics.shadow
+    occlusion = OcclusionMode(int(occlusion_mode(word))).name
+    shadows = [
+        ShadowMode(int(shadow_mode(word, light))).name if has_shadow_mode(frame.modes, light) else None
+        for light in range(frame.lights)
+    ]
+    now = [occlusion, *shadows]
+    then = [before[-1].occlusion, *before[-1].shadows] if before else ["INIT" if mode else None for mode in now]
+    changes = [
+        Change(index - 1 if index else None, str(old), str(new))
+        for index, (old, new) in enumerate(zip(then, now, strict=True))
+        if old != new
+    ]
+    return Step(
+        number=number,
+        distance=math.dist(frame.camera.position, start.target),
+        camera=frame.camera.to_json(),
+        pixels=int(frame.pixel_count[start.primitive]),
+        highest=int(frame.highest_count[start.primitive]),
+        occlusion=occlusion,
+        shadows=shadows,
+        changes=changes,
+        wrong_of_primitive=int(np.count_nonzero(wrong & (frame.primitive == start.primitive))),
+        wrong=int(np.count_nonzero(wrong)),
+        due=shadow.due,
+        culled=shadow.culled,
+        dynamic_only=shadow.dynamic_only,
+    )
+
+
+def _triple(v: np.ndarray) -> Vector:
+    return float(v[0]), float(v[1]), float(v[2])
