@@ -16,7 +16,7 @@ export SHADOWCULL_CACHE_DIR := $(CURDIR)/.cache/kernels
 export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run test bench lint format lock clean distclean help
+.PHONY: run test golden bench lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -25,6 +25,10 @@ run:  ## open the viewer; without a display, render the default scene to a file 
 test:  ## run the tests; without a display, on a virtual one (ARGS="-k culling")
 	@tools/environment.sh dev
 	@$(RUN) tools/with_screen.py $(RUN) -m pytest $(ARGS)
+
+golden:  ## render the golden pictures of the tests anew, and say what changed
+	@tools/environment.sh dev
+	@$(RUN) -m tests.golden.pictures
 
 bench:  ## time frames with and without culling (ARGS="--frames 10 SCENE ...")
 	@tools/environment.sh dev

@@ -1,0 +1,157 @@
+"""The golden pictures: what the embedded scenes looked like when somebody last looked.
+
+    make golden     renders them anew, says what changed, and keeps what is the same
+
+Each is a frame after a few before it, so that culling has something to go by, in the views of colour,
+occlusion modes and shadow modes.  Two processors may differ in the last bit of a ray, and then, where
+an edge or a shadow passes right through a pixel's centre, in that pixel, and in rare cases in the mode
+of a primitive.  A picture is therefore the same as its golden one if no more than `Golden.stray` pixels
+differ by more than one level of 255 in any channel, and the mean of every channel by at most half a
+level.  Corners moved by one float32 rounding each stay within half of that; a light moved by 1 cm does
+not (tests/test_golden.py shows both).
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from tracer.frame import Frame, Settings
+from tracer.geometry.world import World
+from tracer.renderer import Renderer
+from tracer.scene.load import load_scene
+from tracer.scene.model import Scene
+from viewer.pictures import picture
+from viewer.resources import embedded_scenes
+from viewer.views import View
+
+FOLDER = Path(__file__).resolve().parent
+SETTINGS = Settings(width=160, height=120)
+MEAN = 0.5  # levels by which the mean of a channel may differ
+AMPLIFIED = 8  # times, in a picture of differences
+
+
+@dataclass(frozen=True)
+class Golden:
+    """A frame of an embedded scene, after the frames from `first` on; `stray` pixels may differ."""
+
+    name: str
+    scene: str
+    first: int
+    last: int
+    lights: tuple[int, ...]
+    stray: int
+
+    def frame(self, scene: Scene, settings: Settings = SETTINGS, world: World | None = None) -> Frame:
+        """The frame, rendered with modes learnt in the frames before it; world as in `Renderer`."""
+        renderer = Renderer(scene, settings, world=world)
+        for number in range(self.first, self.last + 1):
+            frame = renderer.render(scene.frame_time(number))
+        return frame
+
+    def views(self, frame: Frame) -> Iterator[tuple[str, NDArray[np.uint8]]]:
+        """Name of the file, without its ending, and picture (height, width, 3) of each view."""
+        yield f"{self.name}-color", picture(frame, View.COLOR)
+        yield f"{self.name}-occlusion", picture(frame, View.OCCLUSION)
+        for light in self.lights:
+            yield f"{self.name}-shadow-{light}", picture(frame, View.SHADOW, light)
+
+
+GOLDEN = (
+    Golden("default", "default", 20, 28, (0, 3), stray=57),  # 0.3 % of the pixels
+    Golden("figure3", "figure3", 0, 1, (0, 1), stray=2),
+    Golden("figure4-before-zooming", "figure4", 0, 20, (0,), stray=2),  # its shadow is not known of
+    Golden("figure4", "figure4", 0, 40, (0,), stray=2),
+)
+
+
+@dataclass(frozen=True)
+class Difference:
+    """How a picture differs from the golden one: pixels off by more than one level, the most that any
+    channel is off, and the most that the mean of a channel is off, in levels of 255."""
+
+    pixels: int
+    most: int
+    mean: float
+
+    @staticmethod
+    def between(golden: NDArray[np.uint8], made: NDArray[np.uint8]) -> Difference:
+        """Of two pictures (height, width, 3); raises ValueError where their sizes differ."""
+        if golden.shape != made.shape:
+            raise ValueError(f"the golden picture is {golden.shape[1]} x {golden.shape[0]} pixels, this one is not")
+        off = made.astype(np.int32) - golden
+        pixels = int((np.abs(off).max(axis=2) > 1).sum())
+        return Difference(pixels, int(np.abs(off).max()), float(np.abs(off.mean(axis=(0, 1))).max()))
+
+    def tolerated(self, stray: int) -> bool:
+        """Whether last bits may be all that it is."""
+        return self.pixels <= stray and self.mean <= MEAN
+
+    def __str__(self) -> str:
+        return f"{self.pixels} pixels differ by more than one level, by up to {self.most}; the mean by {self.mean:.3f}"
+
+
+def golden_picture(name: str) -> NDArray[np.uint8] | None:
+    """The golden picture (height, width, 3) of that name, if there is one."""
+    path = FOLDER / f"{name}.png"
+    return np.asarray(Image.open(path).convert("RGB")) if path.exists() else None
+
+
+def fault(name: str, made: NDArray[np.uint8], stray: int, folder: Path) -> str | None:
+    """What is wrong with a picture, if anything is.  Then it, and its differences from the golden one,
+    amplified, are written to the folder."""
+    golden = golden_picture(name)
+    if golden is None:
+        return f"there is no golden picture {name}; make golden makes it"
+    difference = Difference.between(golden, made)
+    if difference.tolerated(stray):
+        return None
+    folder.mkdir(parents=True, exist_ok=True)
+    new, amplified = folder / f"{name}.png", folder / f"{name}-difference.png"
+    Image.fromarray(made).save(new)
+    off = np.abs(made.astype(np.int32) - golden) * AMPLIFIED
+    Image.fromarray(np.minimum(off, 255).astype(np.uint8)).save(amplified)
+    return (
+        f"{name}: {difference} (stray pixels allowed: {stray})\n"
+        f"  golden     {FOLDER / name}.png\n  now        {new}\n  difference {amplified}, {AMPLIFIED} times\n"
+        "  If this is how it must look from now on: make golden, look at every picture, commit them."
+    )
+
+
+def _renew(name: str, made: NDArray[np.uint8], stray: int) -> str:
+    """Write a golden picture unless it is there and the same; what was done."""
+    golden, path = golden_picture(name), FOLDER / f"{name}.png"
+    if golden is None or golden.shape != made.shape:
+        Image.fromarray(made).save(path, optimize=True)
+        return "new" if golden is None else "new, of another size"
+    difference = Difference.between(golden, made)
+    if np.array_equal(golden, made):
+        return "the same"
+    if difference.tolerated(stray):
+        return f"kept; within the tolerance: {difference}"
+    Image.fromarray(made).save(path, optimize=True)
+    return f"CHANGED: {difference}"
+
+
+def main() -> int:
+    """Renew the golden pictures, and say what changed."""
+    scenes, written = embedded_scenes(), set()
+    for golden in GOLDEN:
+        for name, made in golden.views(golden.frame(load_scene(scenes[golden.scene]))):
+            print(f"{name}.png: {_renew(name, made, golden.stray)}")
+            written.add(f"{name}.png")
+    for path in sorted(FOLDER.glob("*.png")):
+        if path.name not in written:
+            path.unlink()
+            print(f"{path.name}: removed; no scene makes it any longer")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
