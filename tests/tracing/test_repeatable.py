@@ -1,0 +1,64 @@
+"""The same bits for every number of threads and on every run: whole frames of the BART scenes."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tracer
+
+
+def contents(frame: tracer.Frame) -> dict[str, Any]:
+    """Everything a frame holds but how long it took and on how many threads."""
+    held = {f.name: getattr(frame, f.name) for f in fields(frame) if f.name not in ("settings", "statistics")}
+    counted = frame.statistics.to_dict()
+    del counted["seconds"], counted["phases"]
+    return held | {"occlusion_mode": frame.occlusion_mode, "shadow_mode": frame.shadow_mode, "counters": counted}
+
+
+def assert_same(expected: tracer.Frame, frame: tracer.Frame, where: str) -> None:
+    a, b = contents(expected), contents(frame)
+    for name, value in a.items():
+        if isinstance(value, np.ndarray):
+            assert value.dtype == b[name].dtype and value.shape == b[name].shape, f"{name} {where}"
+            assert value.tobytes() == b[name].tobytes(), f"{name} {where}"
+        else:
+            assert value == b[name], f"{name} {where}"
+
+
+def render(world: tracer.World, settings: tracer.Settings, first: int, count: int) -> list[tracer.Frame]:
+    scene = world.scene
+    renderer = tracer.Renderer(scene, settings, world=world)
+    return [renderer.render(scene.frame_time(number)) for number in range(first, first + count)]
+
+
+@pytest.mark.parametrize(
+    "name, first, count, size, symmetric",
+    [
+        pytest.param("kitchen/kitchen.aff", 395, 10, 320, False, marks=pytest.mark.slow),
+        ("robot/Robot.aff", 0, 3, 96, True),
+        ("museum/museum5.aff", 0, 3, 96, True),
+    ],
+)
+def test_frames_are_the_same_for_any_number_of_threads_and_on_every_run(
+    bart: Path, name: str, first: int, count: int, size: int, symmetric: bool
+):
+    """Along the scene's own path: pictures, reference pictures, modes, counts and counters, bit for bit."""
+    world = tracer.World(tracer.load_scene(bart / name))
+    anew = tracer.World(tracer.load_scene(bart / name))
+    runs = {}
+    for run, on, threads in (("1 thread", world, 1), ("2", world, 2), ("4", world, 4), ("2, loaded anew", anew, 2)):
+        settings = tracer.Settings(size, size, 10, "paper", symmetric, verify=True, threads=threads, record_lights=True)
+        runs[run] = render(on, settings, first, count)
+    expected = runs.pop("1 thread")
+    for run, frames in runs.items():
+        for number, (one, other) in enumerate(zip(expected, frames, strict=True), first):
+            assert_same(one, other, f"of frame {number} on {run} threads")
+    # Frames that differ from each other, of which culling left out something.
+    assert all((a.primitive != b.primitive).any() for a, b in pairwise(expected))
+    assert all(frame.statistics.shadow.culled > 0 for frame in expected[1:])
