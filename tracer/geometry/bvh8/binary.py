@@ -1,0 +1,273 @@
+"""From triangles and boxes to a binary tree, by the surface area heuristic over bins (Wald 2007).
+
+A node's items lie together.  To split, they are put in 16 bins an axis by the centres of their
+boxes, the cheapest of the 45 planes between bins is taken, and they are copied, lower side first,
+to the same places of a second array; the children are copied back, and so on.  What a side costs is
+counted in blocks of 8 triangles, because that is what a leaf holds and a ray tests at once.
+
+An item is eight float32: lower corner, upper corner *negated* (so that a box grows by one vector
+minimum), its number and its weight, both as int32.  A node is eight too: its box in the same way,
+then either WEIGHT 0 and the number of its upper child, or a leaf's count and first item.  The
+lower child follows its parent.  A tree over n items takes at most 2 n - 1 places, those of every
+subtree are set aside in advance, and so any number of threads builds the same tree.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.geometry.bvh8.tree import WIDTH
+from tracer.kernels import inlined, kernel, subkernel
+from tracer.simd import (
+    address_of,
+    f32x8,
+    load_f32,
+    load_f32x8,
+    load_i32,
+    load_i64,
+    local_memory,
+    maximum,
+    minimum,
+    store,
+)
+
+BINS = 16
+HUGE = np.float32(3e38)
+TINY_EXTENT = np.float32(1e-30)  # centres closer together than this cannot be told apart
+COSTS_SIZE, BINS_SIZE, WEIGHTS_SIZE = 4 * BINS, 96 * BINS, 24 * BINS  # bytes
+ITEM = 32  # bytes of an item, a bin and a node
+UPPER, NUMBER, WEIGHT = 12, 24, 28  # bytes into an item; a node has its upper child or first item at NUMBER
+CANCELLED, DONE = 0, 1  # entries of `control`: set to stop the build; items placed in leaves so far
+FIRST, LAST, NODE, DEPTH, SIDE = 0, 1, 2, 3, 4  # of a task: a range of items, its node, and the array they lie in
+
+
+class Items(NamedTuple):
+    """What a binary tree is built in.
+
+    items (2, n + 1, 8) float32, twice the same places; order (n,) int32, numbers of items as leaves
+    hold them; nodes (2 n, 8) float32.
+    """
+
+    items: NDArray[np.float32]
+    order: NDArray[np.int32]
+    nodes: NDArray[np.float32]
+
+
+def make_items(count: int) -> Items:
+    return Items(
+        np.empty((2, count + 1, 8), np.float32), np.empty(count, np.int32), np.empty((2 * count, 8), np.float32)
+    )
+
+
+@inlined
+def _put_item(item, x0, y0, z0, x1, y1, z1, number, weight):
+    store(item, x0)
+    store(item + 4, y0)
+    store(item + 8, z0)
+    store(item + UPPER, -x1)
+    store(item + UPPER + 4, -y1)
+    store(item + UPPER + 8, -z1)
+    store(item + NUMBER, np.int32(number))
+    store(item + WEIGHT, np.int32(weight))
+
+
+@kernel
+def put_triangles(items, rows, first, last):
+    """Triangles first to last - 1 of rows (t, 9), corner and two edges, become the items of those numbers."""
+    for i in range(first, last):
+        x, y, z = rows[i, 0], rows[i, 1], rows[i, 2]
+        x1, y1, z1 = x + rows[i, 3], y + rows[i, 4], z + rows[i, 5]
+        x2, y2, z2 = x + rows[i, 6], y + rows[i, 7], z + rows[i, 8]
+        _put_item(
+            address_of(items.items) + ITEM * i,
+            min(x, min(x1, x2)),
+            min(y, min(y1, y2)),
+            min(z, min(z1, z2)),
+            max(x, max(x1, x2)),
+            max(y, max(y1, y2)),
+            max(z, max(z1, z2)),
+            i,
+            1,
+        )
+
+
+@kernel
+def put_boxes(items, boxes, first):
+    """Boxes (n, 6) become items from `first` on, each of which will have a leaf to itself."""
+    for i in range(len(boxes)):
+        _put_item(
+            address_of(items.items) + ITEM * (first + i),
+            boxes[i, 0],
+            boxes[i, 1],
+            boxes[i, 2],
+            boxes[i, 3],
+            boxes[i, 4],
+            boxes[i, 5],
+            first + i,
+            WIDTH,
+        )
+
+
+@subkernel
+def half_area(box):
+    """Half the surface of a box given as in an item, in float64."""
+    x = np.float64(load_f32(box)) + load_f32(box + UPPER)
+    y = np.float64(load_f32(box + 4)) + load_f32(box + UPPER + 4)
+    z = np.float64(load_f32(box + 8)) + load_f32(box + UPPER + 8)
+    return x * y + y * z + z * x
+
+
+@subkernel
+def _measure(first, last, node, low, high):
+    """Weight of the items between two addresses.
+
+    Their box goes to a node, the bounds of their centres, doubled, to low and high.
+    """
+    box, lower, upper, weight = f32x8(HUGE), f32x8(HUGE), f32x8(-HUGE), 0
+    for item in range(first, last, ITEM):
+        bounds = load_f32x8(item)
+        centre = bounds - load_f32x8(item + UPPER)  # lower + upper; beyond the first three lanes nothing of use
+        box = minimum(bounds, box)
+        lower, upper = minimum(centre, lower), maximum(centre, upper)
+        weight += load_i32(item + WEIGHT)
+    store(node, box)
+    store(low, lower)
+    store(high, upper)
+    return weight
+
+
+@inlined
+def _bin(item, axis, low, scale):
+    """Which bin an item belongs to; low is the axis's least centre, doubled."""
+    centre = load_f32(item + 4 * axis) - load_f32(item + 4 * axis + UPPER)
+    return min(int((centre - low) * scale), BINS - 1)
+
+
+@subkernel
+def _fill_bins(first, last, low, scale, bins, weights):
+    """Boxes and weights of all bins (3, BINS)."""
+    for i in range(3 * BINS):
+        store(bins + ITEM * i, f32x8(HUGE))
+        store(weights + 8 * i, 0)
+    for item in range(first, last, ITEM):
+        bounds, weight = load_f32x8(item), load_i32(item + WEIGHT)
+        for axis in range(3):
+            i = BINS * axis + _bin(item, axis, load_f32(low + 4 * axis), load_f32(scale + 4 * axis))
+            store(bins + ITEM * i, minimum(bounds, load_f32x8(bins + ITEM * i)))
+            store(weights + 8 * i, load_i64(weights + 8 * i) + weight)
+
+
+@inlined
+def _blocks(weight):
+    return (weight + (WIDTH - 1)) // WIDTH
+
+
+@subkernel
+def _best_plane(bins, weights):
+    """(axis, bin): the cheapest split is above that bin of that axis; axis -1 where all centres are one."""
+    best, best_axis, best_bin = np.inf, -1, 0
+    upper_costs, side = local_memory(COSTS_SIZE), local_memory(ITEM)
+    for axis in range(3):
+        row, row_weights = bins + ITEM * BINS * axis, weights + 8 * BINS * axis
+        box, upper = f32x8(HUGE), 0
+        for i in range(BINS - 1, 0, -1):
+            box, upper = minimum(load_f32x8(row + ITEM * i), box), upper + load_i64(row_weights + 8 * i)
+            store(side, box)
+            store(upper_costs + 4 * i, np.float32(half_area(side) * _blocks(upper) if upper > 0 else np.inf))
+        box, lower = f32x8(HUGE), 0
+        for i in range(BINS - 1):
+            box, lower = minimum(load_f32x8(row + ITEM * i), box), lower + load_i64(row_weights + 8 * i)
+            if lower > 0:
+                store(side, box)
+                cost = half_area(side) * _blocks(lower) + load_f32(upper_costs + 4 * (i + 1))
+                if cost < best:
+                    best, best_axis, best_bin = cost, axis, i
+    return best_axis, best_bin
+
+
+@subkernel
+def _partition(first, last, axis, plane, low, scale, target):
+    """Copy the items between two addresses to `target`, those of bins above `plane` to its end; how many are not."""
+    lower, upper = target, target + last - first - ITEM
+    origin, factor = load_f32(low + 4 * axis), load_f32(scale + 4 * axis)
+    for item in range(first, last, ITEM):
+        above = _bin(item, axis, origin, factor) > plane
+        store(upper if above else lower, load_f32x8(item))
+        lower += 0 if above else ITEM
+        upper -= ITEM if above else 0
+    return (lower - target) // ITEM
+
+
+@subkernel
+def _halve(first, last, target):
+    """Copy the items as they are, to be split in the middle, between blocks where there are several."""
+    for item in range(first, last, ITEM):
+        store(target + item - first, load_f32x8(item))
+    count = (last - first) // ITEM
+    half = (count + 1) // 2
+    return half if count <= WIDTH else _blocks(half) * WIDTH
+
+
+@subkernel
+def _levels(count):
+    """How often so many items must be halved until each is alone."""
+    levels = 0
+    while count > 1 << levels:
+        levels += 1
+    return levels
+
+
+@subkernel
+def _split(first, last, low, high, target, halving):
+    """Sort items to both sides of a plane; how many are on the lower one."""
+    scale, bins, weights = local_memory(ITEM), local_memory(BINS_SIZE), local_memory(WEIGHTS_SIZE)
+    for axis in range(3):
+        extent = load_f32(high + 4 * axis) - load_f32(low + 4 * axis)
+        store(scale + 4 * axis, np.float32(BINS) / extent if extent > TINY_EXTENT else np.float32(0))
+    if not halving:
+        _fill_bins(first, last, low, scale, bins, weights)
+        axis, plane = _best_plane(bins, weights)
+        if axis >= 0:
+            return _partition(first, last, axis, plane, low, scale, target)
+    return _halve(first, last, target)
+
+
+@subkernel
+def _put_task(todo, i, first, last, node, depth, side):
+    todo[i, FIRST], todo[i, LAST], todo[i, NODE], todo[i, DEPTH], todo[i, SIDE] = first, last, node, depth, side
+
+
+@kernel
+def grow(items, todo, pending, splits, max_depth, control):
+    """Build subtrees from the top of the stack `todo` (max_depth + 2, 5) int64; how many are left on it.
+
+    Stops after so many splits, or when control[CANCELLED] is set.
+    """
+    nodes, order = address_of(items.nodes), address_of(items.order)
+    sides = (address_of(items.items), address_of(items.items) + ITEM * items.items.shape[1])
+    low, high = local_memory(ITEM), local_memory(ITEM)
+    while pending > 0 and splits > 0 and control[CANCELLED] == 0:
+        pending -= 1
+        first, last, number = todo[pending, FIRST], todo[pending, LAST], todo[pending, NODE]
+        depth, side = todo[pending, DEPTH], todo[pending, SIDE]
+        source, node = sides[side], nodes + ITEM * number
+        start, end = source + ITEM * first, source + ITEM * last
+        if _measure(start, end, node, low, high) <= WIDTH:
+            for i in range(first, last):
+                store(order + 4 * i, load_i32(source + ITEM * i + NUMBER))
+            store(node + NUMBER, np.int32(first))
+            store(node + WEIGHT, np.int32(last - first))
+            continue
+        halving = depth + _levels(last - first) >= max_depth
+        middle = first + _split(start, end, low, high, sides[1 - side] + ITEM * first, halving)
+        upper = number + 2 * (middle - first)
+        store(node + NUMBER, np.int32(upper))
+        store(node + WEIGHT, np.int32(0))
+        _put_task(todo, pending, middle, last, upper, depth + 1, 1 - side)
+        _put_task(todo, pending + 1, first, middle, number + 1, depth + 1, 1 - side)
+        pending += 2
+        splits -= 1
+    return pending

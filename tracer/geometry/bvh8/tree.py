@@ -1,0 +1,67 @@
+"""The 8-wide tree as the traversal sees it: nodes of 256 aligned bytes, leaves of one block of 8 triangles.
+
+A node holds the boxes of its eight children as structure of arrays, so that a handful of vector
+operations test them all, and one code per child: an inner node's number, a block's, or a quadric's.
+Empty slots have far degenerate boxes, that any slab test misses, and lead to block 0, which is empty.
+(Wald, Benthin, Boulos 2008; Dammertz, Hanika, Keller 2008.)
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+WIDTH = 8  # children of a node, and triangles of a block
+NODE_SIZE, BLOCK_SIZE = 64, 96  # float32 numbers
+QUADRIC = 1 << 30  # in a leaf's code: k < QUADRIC is block k, else quadric k - QUADRIC
+EMPTY = np.float32(3e37)  # every coordinate of the box of an empty slot
+NO_PRIMITIVE = 0x7FFFFFFF  # in the unused lanes of a block
+PADDING = 2e-6  # by this much of a tree's largest coordinate stored boxes are larger than what is in them
+MAX_DEPTH = 64  # nodes between a root and a leaf, both trees of a dynamic world included
+
+# Where a node or a block has these; boxes are lower x of all children, then lower y and so on.
+CHILDREN = 48
+PRIMITIVES, BOX, COUNT = 72, 80, 86
+
+
+class Tree(NamedTuple):
+    """One tree, its root node 0.
+
+    nodes (n, NODE_SIZE) and blocks (m, BLOCK_SIZE) float32, C-contiguous and aligned to 64 bytes.
+    In a node the boxes of the children (6, 8), and from CHILDREN their codes, int32: c >= 0 is node
+    c, c < 0 the leaf ~c (see QUADRIC).  In a block corners and edges (9, 8), from PRIMITIVES the
+    triangles' numbers, int32, from BOX the box (6,) that its parent holds too, at COUNT how many
+    there are, int32.
+    """
+
+    nodes: NDArray[np.float32]
+    blocks: NDArray[np.float32]
+
+
+class Placed8(NamedTuple):
+    """What rays can meet, placed for one moment.
+
+    triangles (t, 9) and quadrics (q, 16) float32 are in the space of their object, to which to_object
+    (objects, 12) float32 leads from the world: triangle i is primitive i, quadric j primitive t + j, and
+    object_of (t + q,) int32 tells whose they are; object 0 is static.  Both trees are in world space,
+    and so are the maps of world_quadrics (q, 16) float32; has_dynamic tells whether `dynamic` is more
+    than empty.
+    """
+
+    triangles: NDArray[np.float32]
+    quadrics: NDArray[np.float32]
+    to_object: NDArray[np.float32]
+    object_of: NDArray[np.int32]
+    world_quadrics: NDArray[np.float32]
+    static: Tree
+    dynamic: Tree
+    has_dynamic: bool
+
+
+def aligned(rows: int, size: int) -> NDArray[np.float32]:
+    """Uninitialised (rows, size) float32 whose memory begins at a multiple of 64 bytes."""
+    memory = np.empty(4 * rows * size + 64, np.uint8)
+    start = -memory.ctypes.data % 64
+    return memory[start : start + 4 * rows * size].view(np.float32).reshape(rows, size)
