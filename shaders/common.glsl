@@ -10,6 +10,10 @@ uniform vec3 background;
 uniform float shading;                // how much of the picture's light and shade shows under flat colours, 0 to 1
 uniform bool outlines;                // draw the borders between primitives
 uniform int selected;                 // primitive drawn with a bright border, -1 for none
+uniform usampler2D mark_buffer;       // of verified frames: NONE, RING around wrong pixels, WRONG
+uniform bool marked;                  // draw the rings
+uniform vec3 wrong_color;
+const int RING = 1, WRONG = 2;
 
 out vec4 result;
 
@@ -18,6 +22,8 @@ ivec2 pixel() { return ivec2(gl_FragCoord.xy); }
 int primitive_at(ivec2 p) {
     return texelFetch(primitive_buffer, clamp(p, ivec2(0), textureSize(primitive_buffer, 0) - 1), 0).r;
 }
+
+int mark_at(ivec2 p) { return int(texelFetch(mark_buffer, p, 0).r); }
 
 ivec2 table_entry(int primitive) { return ivec2(primitive % table_width, primitive / table_width); }
 
@@ -52,9 +58,8 @@ bool on_selected_border() {
     return around > 0 && around < 9;
 }
 
-// Every view ends here: borders on top, opaque.
-void finish(vec3 color) {
-    if (outlines && on_border(primitive_at(pixel()))) color *= 0.35;
-    if (on_selected_border()) color = vec3(1.0);
-    result = vec4(color, 1.0);
-}
+// Every view ends here: what is selected on top, opaque.
+void finish_over(vec3 color) { result = vec4(on_selected_border() ? vec3(1.0) : color, 1.0); }
+
+// The same with the borders between primitives, where they are asked for.
+void finish(vec3 color) { finish_over(outlines && on_border(primitive_at(pixel())) ? color * 0.35 : color); }

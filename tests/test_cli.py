@@ -146,6 +146,47 @@ def test_buffers_have_the_promised_names_shapes_and_types(
     assert not (arrays["lit"] & ~arrays["due"]).any()
 
 
+def test_verified_buffers_say_what_is_wrong(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """Figure 4 in frame 20, where culling misses a shadow."""
+    output, unculled = tmp_path / "paper.npz", tmp_path / "none.npz"
+    where = ("--size", "128x128", "--threads", 1, "--frame", 20)
+    code, out, _ = run(capfd, "render", "figure4", "--buffers", output, "--warmup", 20, "--verify", *where)
+    assert code == 0
+    assert run(capfd, "render", "figure4", "--buffers", unculled, "--method", "none", *where)[0] == 0
+    with np.load(output) as npz, np.load(unculled) as none:
+        arrays = dict(npz)
+        np.testing.assert_array_equal(arrays["reference"], none["color"])
+        assert "reference" not in none and "wrong" not in none
+    assert (arrays["wrong"].shape, arrays["wrong"].dtype.name) == ((128, 128), "int32")
+    differs = (arrays["color"] != arrays["reference"]).any(axis=-1)
+    np.testing.assert_array_equal(arrays["wrong"] > 0, differs)
+    row = next(line for line in out.splitlines() if "wrong answers" in line)
+    assert int(row.split()[-2].replace(",", "")) == arrays["wrong"].sum() > 0
+
+
+def test_views_of_what_is_wrong_verify_by_themselves(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    drawn = {}
+    for view in ("difference", "wipe:0", "wipe:1", "wipe:.25", "color"):
+        output = tmp_path / "view.png"
+        where = ("--size", "128x128", "--threads", 1, "--frame", 20, "--warmup", 20)
+        code, out, _ = run(capfd, "render", "figure4", "-o", output, "--view", view, *where)
+        assert code == 0 and ("wrong answers" in out) == (view != "color")
+        with Image.open(output) as image:
+            drawn[view] = np.asarray(image)
+            kept = json.loads(image.text[capture.CHUNK])["state"]
+        assert kept["settings"]["verify"] is False
+        assert kept["view"] == view.partition(":")[0]
+    assert kept["wipe"] == 0.5
+    wrong = (drawn["difference"] == (255, 0, 255)).all(axis=-1)
+    right = (drawn["difference"] == 0).all(axis=-1)
+    assert wrong.any() and right.any()
+    ring = (drawn["wipe:1"] == (255, 0, 255)).all(axis=-1)
+    np.testing.assert_array_equal(drawn["wipe:1"][~ring], drawn["color"][~ring])
+    assert (drawn["wipe:0"][wrong] != drawn["color"][wrong]).any(axis=-1).all()
+    np.testing.assert_array_equal(drawn["wipe:.25"][:, :32], drawn["wipe:1"][:, :32])
+    np.testing.assert_array_equal(drawn["wipe:.25"][:, 33:], drawn["wipe:0"][:, 33:])
+
+
 def test_warm_up_makes_culling_act(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
     """The first frame has no history; the third culls."""
     culled = []
@@ -221,6 +262,9 @@ def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None
         (["-o", "OUT/x.png", "--view", "heat"], "'heat' is no view"),
         (["-o", "OUT/x.png", "--view", "shadow:7"], "lights are 0 to 1"),
         (["-o", "OUT/x.png", "--view", "depth:1"], "is no view"),
+        (["-o", "OUT/x.png", "--view", "difference:1"], "is no view"),
+        (["-o", "OUT/x.png", "--view", "wipe:half"], "is no view; the views are color, occlusion, shadow:LIGHT"),
+        (["-o", "OUT/x.png", "--view", "wipe:1.5"], "the line of a wipe lies at 0 to 1"),
         (["-o", "OUT/x.png", "--camera", "{"], "--camera: not JSON"),
         (["-o", "OUT/x.png", "--camera", "{}"], "--camera: a camera's position"),
         (["-o", "OUT/x.png", "--camera", "nowhere.json"], "neither JSON nor a file"),

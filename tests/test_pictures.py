@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +12,18 @@ from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from viewer.pictures import SHADING, picture
-from viewer.views import BACKGROUND, GREY, OCCLUSION_COLORS, SHADOW_COLORS, View
+from viewer.resources import embedded_scenes
+from viewer.views import (
+    BACKGROUND,
+    GREY,
+    OCCLUSION_COLORS,
+    RING_DIMMING,
+    SHADOW_COLORS,
+    WIPE_LINE,
+    WRONG,
+    View,
+    difference_legend,
+)
 
 SCENE = """\
 b 0.2 0.3 0.4
@@ -39,6 +49,32 @@ def frame(tmp_path_factory: pytest.TempPathFactory) -> Frame:
     return [renderer.render(time) for time in (1.0, 2.0, 3.0)][-1]
 
 
+@pytest.fixture(scope="module")
+def wrong_frame(frame: Frame) -> Frame:
+    """The same with wrong answers put into it: a pixel alone, two in corners, and a block; their colours differ."""
+    wrong = np.zeros((frame.height, frame.width), np.int32)
+    wrong[20, 30] = 1
+    wrong[0, 0] = wrong[-1, -1] = 2
+    wrong[40:46, 60:75] = 3
+    reference = frame.color.copy()
+    reference[wrong > 0] = 1.0 - reference[wrong > 0]
+    return replace(frame, settings=replace(frame.settings, verify=True), wrong=wrong, reference=reference)
+
+
+@pytest.fixture(scope="module")
+def figure4() -> list[Frame]:
+    """The paper's Figure 4 as it goes wrong and mends itself: frames 0, 10, 20 and 27, verified."""
+    scene = load_scene(embedded_scenes()["figure4"])
+    renderer = Renderer(scene, Settings(width=128, height=128, threads=1))
+    frames = []
+    for number in range(28):
+        verify = number in (0, 10, 20, 27)
+        renderer.settings = replace(renderer.settings, verify=verify)
+        frame = renderer.render(scene.frame_time(number))
+        frames += [frame] if verify else []
+    return frames
+
+
 def to_bytes(color: tuple[float, ...]) -> np.ndarray:
     return np.round(np.asarray(color) * 255.0).astype(np.uint8)
 
@@ -48,7 +84,7 @@ def test_colours_are_clamped_and_otherwise_untouched(frame: Frame) -> None:
     np.testing.assert_array_equal(picture(frame), expected)
 
 
-@pytest.mark.parametrize("view", [v for v in View if v is not View.COLOR])
+@pytest.mark.parametrize("view", [v for v in View if v is not View.COLOR and not v.needs_verify])
 def test_what_is_missed_has_the_background(frame: Frame, view: View) -> None:
     missed = frame.primitive < 0
     assert missed.any()
@@ -94,19 +130,76 @@ def test_a_light_that_is_not_there(frame: Frame) -> None:
         picture(frame, View.SHADOW, 2)
 
 
+def test_what_is_wrong_has_the_one_colour_and_all_else_is_black(wrong_frame: Frame) -> None:
+    drawn = picture(wrong_frame, View.DIFFERENCE, marked=False)
+    wrong = wrong_frame.wrong > 0
+    assert (drawn[wrong] == to_bytes(WRONG)).all()
+    assert not drawn[~wrong].any()
+
+
+def test_a_lone_wrong_pixel_is_ringed(wrong_frame: Frame) -> None:
+    drawn = picture(wrong_frame, View.DIFFERENCE)
+    ring = (drawn == to_bytes(tuple(RING_DIMMING * channel for channel in WRONG))).all(axis=-1)
+    wrong = (drawn == to_bytes(WRONG)).all(axis=-1)
+    np.testing.assert_array_equal(wrong, wrong_frame.wrong > 0)
+    assert not drawn[~(ring | wrong)].any()
+    for across in (ring[20, :30], ring[20, 31:50], ring[:20, 30], ring[21:40, 30]):
+        assert across.sum() == 1, "one ring on every side"
+    assert not ring[38:48, 58:77].any() and ring[36, 60:75].all(), "one ring around the block, none in it"
+
+
+def test_where_all_is_right_all_is_black(frame: Frame) -> None:
+    right = replace(frame, wrong=np.zeros_like(frame.primitive), reference=frame.color)
+    assert not picture(right, View.DIFFERENCE).any()
+    pixels = picture(right, View.WIPE)
+    column = frame.width // 2
+    assert (pixels[:, column] == to_bytes(WIPE_LINE)).all()
+    np.testing.assert_array_equal(np.delete(pixels, column, 1), np.delete(picture(frame), column, 1))
+
+
+@pytest.mark.parametrize(("wipe", "column"), [(0.0, 0), (0.3, 28), (1.0, 96)])
+def test_a_wipe_shows_both_pictures(wrong_frame: Frame, wipe: float, column: int) -> None:
+    pixels = picture(wrong_frame, View.WIPE, marked=False, wipe=wipe)
+    right = picture(replace(wrong_frame, color=wrong_frame.reference))
+    np.testing.assert_array_equal(pixels[:, :column], picture(wrong_frame)[:, :column])
+    np.testing.assert_array_equal(pixels[:, column + 1 :], right[:, column + 1 :])
+    marked = picture(wrong_frame, View.WIPE, wipe=wipe)
+    ring = (marked == to_bytes(WRONG)).all(axis=-1)
+    assert ring.any() and not (ring & (wrong_frame.wrong > 0)).any()
+    np.testing.assert_array_equal(marked[~ring], pixels[~ring])
+
+
+@pytest.mark.parametrize("view", [View.DIFFERENCE, View.WIPE])
+def test_a_frame_that_was_not_verified_is_refused(frame: Frame, view: View) -> None:
+    with pytest.raises(ValueError, match="not verified"):
+        picture(frame, view)
+
+
+def test_a_shadow_that_culling_misses_is_drawn(figure4: list[Frame]) -> None:
+    """Figure 4: right, then a missing shadow in frame 20, right again once the triangle has been judged anew."""
+    drawn = [picture(frame, View.DIFFERENCE, marked=False).any(axis=-1) for frame in figure4]
+    assert [bool(pixels.any()) for pixels in drawn] == [False, False, True, False]
+    wrong = figure4[2]
+    np.testing.assert_array_equal(drawn[2], (wrong.color != wrong.reference).any(axis=-1))
+    legend = difference_legend(wrong)
+    assert legend.pixels == drawn[2].sum() == legend.answers == wrong.statistics.shadow.wrong
+    assert legend.due == wrong.statistics.shadow.due and legend.largest > 0.1
+
+
 @pytest.mark.gui
 @pytest.mark.parametrize("view", list(View))
-def test_shaders_draw_the_same(frame: Frame, view: View, tmp_path: Path) -> None:
+@pytest.mark.parametrize("marked", [True, False])
+def test_shaders_draw_the_same(wrong_frame: Frame, view: View, marked: bool) -> None:
     moderngl = pytest.importorskip("moderngl")
     from viewer.display import Display, Look
 
     context = moderngl.create_context(standalone=True, require=330)
     with context:
         display = Display()
-        display.upload(frame)
-        display.draw(Look(view=view, light=1, shading=SHADING))
+        display.upload(wrong_frame)
+        display.draw(Look(view=view, light=1, shading=SHADING, marked=marked, wipe=0.4))
         on_gpu = display.read()[..., :3].astype(int)
         display.release()
     context.release()
-    here = picture(frame, view, 1).astype(int)
+    here = picture(wrong_frame, view, 1, marked=marked, wipe=0.4).astype(int)
     assert np.abs(on_gpu - here).max() <= 1

@@ -134,17 +134,21 @@ class App:
         p = c.preferences
         display.draw(
             Look(
-                view=c.session.view,
+                view=c.drawn_view,
                 light=c.session.light,
                 shading=p.shading,
                 outlines=p.outlines,
                 selected=c.selected.primitive if c.selected is not None else -1,
                 smooth=p.smooth_upscaling,
+                marked=p.mark_wrong,
+                wipe=c.session.wipe,
+                line=not c.becoming_finer,
             )
         )
 
     def _capture_picture(self) -> None:
-        ready = not self.controller.becoming_finer  # else the picture is saved when it has come
+        c = self.controller
+        ready = c.drawn_view is c.session.view and not c.becoming_finer  # else the picture is saved when it has come
         if self.ui.capture_wanted is CaptureKind.PICTURE and self.ui.display is not None and ready:
             self.ui.capture_wanted = None
             self.controller.keeper.capture(self.ui.display.read() if self.controller.frame is not None else None)

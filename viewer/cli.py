@@ -48,6 +48,7 @@ examples:
   shadowcull render -o room.png
   shadowcull render kitchen.aff -o kitchen.png --size 1024x768 --samples 16
   shadowcull render kitchen.aff -o modes.png --frame 50 --warmup 20 --view shadow:2
+  shadowcull render kitchen.aff -o wrong.png --frame 50 --warmup 20 --view difference
   shadowcull render Robot.aff --frame 10 --warmup 10 --buffers robot.npz
   shadowcull render bunny.ply -o bunny.png --camera '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
 
@@ -56,7 +57,13 @@ The modes of primitives are learnt from frame to frame, so that culling acts onl
 
 The .npz holds color (H,W,3 float32), depth (H,W float32, distance along the unit ray, inf for a miss),
 primitive and cell (H,W int32, -1 for a miss), occlusion_mode (H,W uint8, 255 for a miss), shadow_mode
-(H,W,lights uint8), and for each light and primary hit lit and due (H,W,lights bool).
+(H,W,lights uint8), and for each light and primary hit lit and due (H,W,lights bool); with --verify also
+reference (H,W,3 float32), the colour with every shadow answer right, and wrong (H,W int32), the number of
+wrong shadow answers of each pixel.
+
+--view difference and --view wipe verify by themselves: the first shows the pixels with wrong shadow answers,
+the second the picture left of a line and what it should be right of it; wipe:0.3 puts the line at 30 % of
+the width.
 """
 
 _BENCH_EXAMPLES = """\
@@ -204,7 +211,8 @@ def _render(arguments: list[str]) -> int:
         type=_view_option,
         default="color",
         metavar="V",
-        help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal or pixel-count (default: color)",
+        help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference or "
+        "wipe:PART (default: color)",
     )
     add("--camera", metavar="JSON", help="another camera: position, direction, up, angle; or a file with that")
     add("--warmup", type=_count(0, 100_000), default=0, metavar="N", help="trace the N frames before it first")
@@ -307,12 +315,17 @@ def _count(least: int, most: int) -> Callable[[str], int]:
 
 
 def _view_option(text: str) -> tuple:
-    """A view and the light it speaks of."""
+    """A view, the light it speaks of, and the place of a wipe's line."""
     from viewer.views import View
 
-    name, colon, light = text.partition(":")
+    name, colon, detail = text.partition(":")
     name = _VIEW_NAMES.get(name, name)
-    known = ", ".join(f"{v}:LIGHT" if v is View.SHADOW else v.value for v in View)
-    if name not in set(View) or (colon and (name != View.SHADOW or not light.isdecimal())):
+    details = {View.SHADOW: r"\d{1,9}", View.WIPE: r"0|1|[01]?\.\d{1,9}"}
+    known = ", ".join({View.SHADOW: "shadow:LIGHT", View.WIPE: "wipe:PART"}.get(v, v.value) for v in View)
+    if name not in set(View) or (colon and not re.fullmatch(details.get(View(name), r"(?!)"), detail, re.ASCII)):
         raise argparse.ArgumentTypeError(f"{text!r} is no view; the views are {known}")
-    return View(name), int(light or 0)
+    view = View(name)
+    wipe = float(detail) if view is View.WIPE and detail else 0.5
+    if wipe > 1.0:
+        raise argparse.ArgumentTypeError(f"{text!r}: the line of a wipe lies at 0 to 1 of the width")
+    return view, int(detail) if view is View.SHADOW and detail else 0, wipe

@@ -86,8 +86,8 @@ def print_table(table: Table) -> None:
     Console(width=console.width if console.is_terminal else 100).print(table)
 
 
-def statistics_table(statistics: FrameStatistics, title: str) -> Table:
-    """The counters of a frame, primary, secondary and shadow rays apart."""
+def statistics_table(statistics: FrameStatistics, title: str, verified: bool = False) -> Table:
+    """The counters of a frame, primary, secondary and shadow rays apart; wrong answers where it was verified."""
     table = Table(title=title, title_justify="left", title_style="bold")
     table.add_column("")
     for name in ("primary", "secondary", "shadow"):
@@ -101,6 +101,8 @@ def statistics_table(statistics: FrameStatistics, title: str) -> Table:
     table.add_row("shadow rays due", "", "", f"{shadow.due:,}")
     table.add_row("  culled", f"{shadow.culled / due:.1%}", "", f"{shadow.culled:,}")
     table.add_row("  dynamic objects alone", f"{shadow.dynamic_only / due:.1%}", "", f"{shadow.dynamic_only:,}")
+    if verified:
+        table.add_row("  wrong answers", f"{shadow.wrong / due:.3%}", "", f"{shadow.wrong:,}")
     table.add_row("occlusion tests", f"{statistics.occlusion_tests:,}", "", "", end_section=True)
     for name, seconds in statistics.phases.items():
         table.add_row(name, f"{1000.0 * seconds:,.1f} ms", "", "")

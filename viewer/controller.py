@@ -78,6 +78,7 @@ class Controller:
         self._serial = 0
         self._settled: RenderRequest | None = None
         self._last_request: RenderRequest | None = None
+        self._chosen: Settings | None = None
         self._last_tick = time.monotonic()
         self._seen = math.inf
 
@@ -139,7 +140,7 @@ class Controller:
 
     def _settle(self, request: RenderRequest) -> None:
         """At rest the first fine frame of a view teaches the modes; a second one shows what they save."""
-        view = replace(request, serial=0)
+        view = replace(request, settings=replace(request.settings, verify=False), interactive=False, serial=0)
         learns = request.divisor == 1 and request.settings.method != "none" and request.settings.samples == 1
         if self.preferences.keep_tracing or (learns and view != self._settled):
             self._settled = view
@@ -172,19 +173,35 @@ class Controller:
         coarse = moving and self.preferences.dynamic_resolution
         divisor = self.resolution.choose(width, height, self.preferences.target_fps) if coarse else 1
         width, height = divided(width, height, divisor)
-        settings = replace(self.session.settings, width=width, height=height)
+        settings = replace(self.tracing_settings, width=width, height=height)
         wanted = RenderRequest(self.session.time, self.session.camera, settings, moving, divisor, self._serial)
-        if wanted == self._last_request or self._same_picture(wanted):
+        if self._answered(wanted):
             return
-        self._last_request = wanted
+        self._last_request, self._chosen = wanted, self.session.settings
         self.render.submit(wanted)
 
+    @property
+    def tracing_settings(self) -> Settings:
+        """What the user has set, and verified where the view needs that."""
+        s = self.session
+        return replace(s.settings, verify=s.settings.verify or s.view.needs_verify)
+
+    def _answered(self, wanted: RenderRequest) -> bool:
+        """Whether a frame has been asked for, or is there.  One that was verified for a view serves the next view."""
+        if wanted == self._last_request or self._same_picture(wanted):
+            return True
+        if self.session.settings != self._chosen:
+            return False
+        verified = replace(wanted, settings=replace(wanted.settings, verify=True))
+        return verified == self._last_request or self._same_picture(verified)
+
     def _jumped(self) -> bool:
-        """Whether, at rest, something else is to be seen than was last asked for."""
+        """Whether, at rest, something else is to be seen than was last asked for; to verify is to see the same."""
         if self._last_request is None or self.session.playing or self.moving:
             return False
         asked = self._last_request
-        settings = replace(self.session.settings, width=asked.settings.width, height=asked.settings.height)
+        width, height, verify = asked.settings.width, asked.settings.height, asked.settings.verify
+        settings = replace(self.session.settings, width=width, height=height, verify=verify)
         return (self.session.time, self.session.camera, settings) != (asked.time, asked.camera, asked.settings)
 
     @property
@@ -194,10 +211,12 @@ class Controller:
 
     @property
     def outdated(self) -> bool:
-        """Whether the newest frame was traced with other settings than those now chosen."""
+        """Whether the newest frame was traced with other settings than those now chosen, or lacks to be verified."""
         if self.frame is None:
             return False
-        return replace(self.session.settings, width=self.frame.width, height=self.frame.height) != self.frame.settings
+        had, wanted = self.frame.settings, self.tracing_settings
+        verify = had.verify or wanted.verify
+        return replace(wanted, width=had.width, height=had.height, verify=verify) != had
 
     def _same_picture(self, wanted: RenderRequest) -> bool:
         if self.traced is None or self.render.busy:
@@ -220,9 +239,17 @@ class Controller:
         return self.frame.width * divisor, self.frame.height * divisor
 
     @property
+    def drawn_view(self) -> View:
+        """The view to draw the newest frame in: the picture while one that needs a verified frame waits for it."""
+        unverified = self.frame is not None and self.frame.wrong is None
+        return View.COLOR if self.session.view.needs_verify and unverified else self.session.view
+
+    @property
     def view_title(self) -> str:
         """The view, and the light where it shows one."""
         view = self.session.view
+        if view is not self.drawn_view:
+            return f"{view.label}: verifying ..."
         return f"{view.label}, light {self.session.light}" if view is View.SHADOW else view.label
 
     # --- messages and selection ------------------------------------------------------------------

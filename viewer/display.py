@@ -23,24 +23,34 @@ from viewer.views import (
     BACKGROUND,
     GREY,
     OCCLUSION_COLORS,
+    RING_DIMMING,
     SHADOW_COLORS,
+    WIPE_LINE,
+    WRONG,
     View,
     color_map,
     depth_range,
+    wipe_column,
+    wrong_marks,
 )
 
 if TYPE_CHECKING:
     from tracer.renderer import Frame
 
 TABLE_WIDTH = 2048
+_PICTURES = (View.COLOR, View.WIPE)
 _UNITS = (
     "color_buffer", "primitive_buffer", "mode_table", "count_table", "depth_buffer", "normal_buffer", "color_map",
+    "reference_buffer", "mark_buffer",
 )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Look:
-    """How to draw a frame: everything that changes the picture without tracing."""
+    """How to draw a frame: everything that changes the picture without tracing.
+
+    `marked` draws rings around wrong pixels, `wipe` is the place of the line, 0 to 1 from the left,
+    and `line` whether it is drawn."""
 
     view: View = View.COLOR
     light: int = 0
@@ -48,6 +58,9 @@ class Look:
     outlines: bool = False
     selected: int = -1
     smooth: bool = True
+    marked: bool = True
+    wipe: float = 0.5
+    line: bool = True
 
 
 class Display:
@@ -59,6 +72,7 @@ class Display:
         self._frame: Frame | None = None
         self._drawn: tuple[int, Look] | None = None
         self._serial = 0
+        self._verified_serial = 0
         self._textures: dict[str, Any] = {}
         self._passes: dict[View, tuple[Any, Any]] = {}
         self._target: Any = None
@@ -90,11 +104,15 @@ class Display:
         self._serial += 1
 
     def draw(self, look: Look) -> None:
-        """Draw the view of the frame into the target, unless it is there already."""
+        """Draw the view of the frame into the target, unless it is there already.
+
+        Raises ValueError for a view of verified frames where the frame is none."""
         if self._frame is None or self._drawn == (self._serial, look):
             return
         window = self.context.detect_framebuffer()
         self._ensure_target()
+        if look.view.needs_verify:
+            self._upload_verified()
         program, triangle = self._pass(look.view)
         self._set_uniforms(program, look)
         for unit, name in enumerate(_UNITS):
@@ -103,7 +121,7 @@ class Display:
         self._target.use()
         self.context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         triangle.render(moderngl.TRIANGLES, vertices=3)
-        filtering = moderngl.LINEAR if look.smooth and look.view is View.COLOR else moderngl.NEAREST
+        filtering = moderngl.LINEAR if look.smooth and look.view in _PICTURES else moderngl.NEAREST
         self._target.color_attachments[0].filter = (filtering, filtering)
         window.use()
         self._drawn = (self._serial, look)
@@ -130,6 +148,16 @@ class Display:
         self._passes.clear()
         self._textures.clear()
         self._frame = None
+
+    def _upload_verified(self) -> None:
+        """Bring to the GPU what only the views of verified frames need, once for each frame."""
+        assert self._frame is not None
+        if self._verified_serial != self._serial:
+            marks = wrong_marks(self._frame)
+            assert self._frame.reference is not None
+            self._write("reference_buffer", self.size, 3, "f4", self._frame.reference)
+            self._write("mark_buffer", self.size, 1, "u1", marks)
+            self._verified_serial = self._serial
 
     def _write(self, name: str, size: tuple[int, int], components: int, dtype: str, data: NDArray) -> None:
         texture = self._textures.get(name)
@@ -176,6 +204,12 @@ class Display:
             "range": self.depth_range,
             "zoom_factor": self._frame.settings.zoom_factor,
             "unknown": GREY,
+            "wrong_color": WRONG,
+            "ring_color": tuple(RING_DIMMING * channel for channel in WRONG),
+            "marked": look.marked,
+            "column": wipe_column(self._frame.width, look.wipe),
+            "line": look.line,
+            "line_color": WIPE_LINE,
             "palette": list(OCCLUSION_COLORS.values())
             if look.view is View.OCCLUSION
             else [*SHADOW_COLORS.values(), dynamic],

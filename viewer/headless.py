@@ -52,7 +52,7 @@ def info(path: Path, as_json: bool) -> None:
 
 def render(path: Path, options: Namespace) -> None:
     """Trace one frame and write it; raises SceneError, ValueError and OSError in one line, or Cancelled."""
-    view, light = options.view
+    view, light, _ = options.view
     settings = replace(tracing_settings(options), method=options.method)
     _check_outputs(options.output, options.buffers)
     with working() as work:
@@ -63,10 +63,12 @@ def render(path: Path, options: Namespace) -> None:
             raise ValueError(f"--view shadow:{light}: {lights_in_words(len(scene.lights))}")
         time = _time(scene, options.frame, options.time)
         prepare_kernels(work, len(scene.lights))
-        renderer = Renderer(scene, settings, work.progress)
+        renderer = Renderer(scene, replace(settings, verify=False), work.progress)
         _render_before(renderer, time, options, work)
         work.progress(f"tracing {settings.width} x {settings.height}", 0.0)
-        renderer.settings = replace(settings, samples=options.samples, record_lights=options.buffers is not None)
+        verify = settings.verify or view.needs_verify
+        wanted = replace(settings, samples=options.samples, verify=verify, record_lights=options.buffers is not None)
+        renderer.settings = wanted
         frame = renderer.render(time, options.camera, work.cancelled)
         work.progress("writing", 1.0)
         if options.output is not None:
@@ -75,16 +77,18 @@ def render(path: Path, options: Namespace) -> None:
             arrays: dict[str, Any] = buffers(frame)
             write_whole(options.buffers, lambda file: np.savez(file, **arrays))
     title = f"{path.name}, {time:.3f} s, {frame.width} x {frame.height}, method {settings.method}"
-    print_table(statistics_table(frame.statistics, title))
+    print_table(statistics_table(frame.statistics, title, verify))
     for written in (options.output, options.buffers):
         if written is not None:
             print(written)
 
 
 def buffers(frame: Frame) -> dict[str, np.ndarray]:
-    """The arrays of `--buffers`, by name; the frame must have been rendered with `record_lights`."""
+    """The arrays of `--buffers`, by name; the frame must have been rendered with `record_lights`.
+
+    A verified frame has `reference` and `wrong` as well."""
     assert frame.lit is not None and frame.due is not None
-    return {
+    arrays: dict[str, np.ndarray] = {
         "color": frame.color,
         "depth": frame.depth,
         "primitive": frame.primitive,
@@ -94,6 +98,9 @@ def buffers(frame: Frame) -> dict[str, np.ndarray]:
         "lit": frame.lit,
         "due": frame.due,
     }
+    if frame.reference is not None and frame.wrong is not None:
+        arrays |= {"reference": frame.reference, "wrong": frame.wrong}
+    return arrays
 
 
 def prepare_kernels(work: Work, lights: int) -> None:
@@ -174,9 +181,10 @@ def _render_before(renderer: Renderer, time: float, options: Namespace, work: Wo
 
 def _write_picture(path: Path, scene: Scene, frame: Frame, options: Namespace) -> None:
     """The frame in the view asked for; a PNG remembers, as the window's captures do, how it was made."""
-    view, light = options.view
-    image = Image.fromarray(picture(frame, view, light))
-    session = Session(scene, frame.time, options.camera, settings=frame.settings, view=view, light=light)
+    view, light, wipe = options.view
+    image = Image.fromarray(picture(frame, view, light, wipe=wipe))
+    settings = replace(frame.settings, verify=options.verify)  # what was chosen; a view verifies by itself
+    session = Session(scene, frame.time, options.camera, settings=settings, view=view, light=light, wipe=wipe)
     notes = PngImagePlugin.PngInfo()
     size = (frame.width, frame.height)
     text = capture.metadata(session.snapshot(), session.frame, size, frame.statistics.to_dict())

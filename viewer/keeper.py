@@ -86,7 +86,8 @@ class Keeper:
             "height": height,
         }
         # What the picture shows, which may be a moment older than what the user asks for by now.
-        snapshot = replace(session.snapshot(), time=frame.time, camera=frame.camera, settings=asdict(frame.settings))
+        settings = replace(frame.settings, verify=session.settings.verify)  # a view may have verified by itself
+        snapshot = replace(session.snapshot(), time=frame.time, camera=frame.camera, settings=asdict(settings))
         size = (frame.width, frame.height)
         text = capture.metadata(snapshot, session.frame, size, frame.statistics.to_dict())
         folder = Path(preferences.screenshot_folder or default_screenshot_folder()).expanduser()

@@ -10,13 +10,16 @@ import numpy as np
 from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.renderer import Frame
-from tracer.scene.model import CONE, Material, Scene
+from tracer.scene.model import CONE, Camera, Material, Scene
 from viewer.navigation import Vector, ray
 
 
 @dataclass(frozen=True)
 class Pick:
-    """One pixel of a frame.  `primitive` is -1 where the ray left the scene; then only x and y mean anything."""
+    """One pixel of a frame.  `primitive` is -1 where the ray left the scene; then only x and y mean anything.
+
+    `wrong` is the number of the pixel's wrong shadow answers, None where that is not known; `seen` is the frame's
+    time, camera, width and height."""
 
     x: int
     y: int
@@ -32,6 +35,8 @@ class Pick:
     depth: float = math.inf
     point: tuple[float, float, float] | None = None
     normal: tuple[float, float, float] | None = None
+    wrong: int | None = None
+    seen: tuple[float, Camera, int, int] | None = None
 
 
 def pixel_at(frame: Frame, u: float, v: float) -> tuple[int, int]:
@@ -61,7 +66,17 @@ def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
         depth=float(frame.depth[y, x]),
         point=_triple(point_at(frame, u, v)),
         normal=_triple(frame.normal[y, x]),
+        wrong=_wrong_at(frame, x, y),
+        seen=_seen(frame),
     )
+
+
+def _wrong_at(frame: Frame, x: int, y: int) -> int | None:
+    return None if frame.wrong is None else int(frame.wrong[y, x])
+
+
+def _seen(frame: Frame) -> tuple[float, Camera, int, int]:
+    return frame.time, frame.camera, frame.width, frame.height
 
 
 def kind_of(scene: Scene, primitive: int) -> str:
@@ -113,7 +128,9 @@ def _triple(v: Vector | None) -> tuple[float, float, float] | None:
 
 
 def refreshed(old: Pick, frame: Frame) -> Pick:
-    """The same primitive's modes and counts as a newer frame knows them; where it was clicked stays."""
+    """The same primitive's modes and counts as a newer frame knows them; where it was clicked stays.
+
+    Wrong answers are those of the pixel, and known only while it shows the same."""
     if old.primitive < 0 or old.primitive >= len(frame.modes):
         return old
     return replace(
@@ -122,4 +139,5 @@ def refreshed(old: Pick, frame: Frame) -> Pick:
         shadows=tuple(shadow_mode_of(frame, old.primitive, light) for light in range(len(old.shadows))),
         pixels=int(frame.pixel_count[old.primitive]),
         highest=int(frame.highest_count[old.primitive]),
+        wrong=_wrong_at(frame, old.x, old.y) if old.seen == _seen(frame) else None,
     )

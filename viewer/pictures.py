@@ -13,7 +13,21 @@ from numpy.typing import NDArray
 from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame
-from viewer.views import BACKGROUND, GREY, OCCLUSION_COLORS, SHADOW_COLORS, View, color_map, depth_range
+from viewer.views import (
+    BACKGROUND,
+    GREY,
+    OCCLUSION_COLORS,
+    RING_DIMMING,
+    SHADOW_COLORS,
+    WIPE_LINE,
+    WRONG,
+    Mark,
+    View,
+    color_map,
+    depth_range,
+    wipe_column,
+    wrong_marks,
+)
 
 SHADING = 0.35
 """How much of the picture's light and shade shows under flat colours, as in the window."""
@@ -21,15 +35,28 @@ SHADING = 0.35
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 
-def picture(frame: Frame, view: View = View.COLOR, light: int = 0, shading: float = SHADING) -> NDArray[np.uint8]:
+def picture(
+    frame: Frame,
+    view: View = View.COLOR,
+    light: int = 0,
+    shading: float = SHADING,
+    marked: bool = True,
+    wipe: float = 0.5,
+) -> NDArray[np.uint8]:
     """(height, width, 3) uint8, row 0 at the top: a frame in one of its views.
 
-    `light` is the light that the shadow view speaks of; raises ValueError where there is none of that number.
+    `light` is the light that the shadow view speaks of, `marked` draws rings around wrong pixels, and
+    `wipe` is the place of the wipe's line, 0 to 1 from the left.  Raises ValueError where there is no
+    such light, or where the frame was not verified and the view is of verified ones.
     """
     if view is View.SHADOW and not 0 <= light < frame.lights:
         raise ValueError(f"no light {light}: {lights_in_words(frame.lights)}")
     if view is View.COLOR:
         colors = np.clip(frame.color, 0.0, 1.0)
+    elif view is View.DIFFERENCE:
+        colors = _difference(frame, marked)
+    elif view is View.WIPE:
+        colors = _wipe(frame, marked, wipe)
     elif view is View.DEPTH:
         colors = _on_background(frame, _depth(frame))
     elif view is View.NORMAL:
@@ -107,6 +134,25 @@ def _depth(frame: Frame) -> NDArray:
     near, far = depth_range(frame)
     depth = np.where(np.isfinite(frame.depth), frame.depth, far)
     return _mapped(1.0 - np.clip((depth - near) / (far - near), 0.0, 1.0))
+
+
+def _difference(frame: Frame, marked: bool) -> NDArray:
+    """Wrong pixels in their colour on black, and rings around them."""
+    ring = RING_DIMMING if marked else 0.0
+    brightness = np.zeros(len(Mark), np.float32)
+    brightness[[Mark.RING, Mark.WRONG]] = ring, 1.0
+    return brightness[wrong_marks(frame)][..., None] * np.asarray(WRONG, np.float32)
+
+
+def _wipe(frame: Frame, marked: bool, wipe: float) -> NDArray:
+    """Left of a line the traced picture, right of it the one in which every shadow answer is right."""
+    marks, column = wrong_marks(frame), wipe_column(frame.width, wipe)
+    assert frame.reference is not None
+    colors = np.concatenate([frame.color[:, :column], frame.reference[:, column:]], axis=1)
+    if marked:
+        colors[marks == Mark.RING] = WRONG
+    colors[:, column : column + 1] = WIPE_LINE
+    return colors
 
 
 def _mapped(t: NDArray) -> NDArray:

@@ -63,6 +63,7 @@ class Preferences:
     view: str = "color"
     shading: float = 0.35
     outlines: bool = False
+    mark_wrong: bool = True
     screenshot_folder: str = ""
     screenshot_template: str = DEFAULT_TEMPLATE
     recent: list[str] = field(default_factory=list)

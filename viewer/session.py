@@ -32,6 +32,7 @@ class Snapshot:
     settings: dict[str, Any]
     view: View
     light: int
+    wipe: float = 0.5
 
     def to_json(self) -> dict[str, Any]:
         data = asdict(self)
@@ -43,7 +44,7 @@ class Snapshot:
         if not isinstance(data, Mapping):
             raise ValueError("no saved state in it")
         try:
-            time = float(data["time"])
+            time, wipe = float(data["time"]), float(data.get("wipe", 0.5))
             if not math.isfinite(time):
                 raise ValueError("its time is not a finite number")
             return Snapshot(
@@ -54,6 +55,7 @@ class Snapshot:
                 settings=settings_from_json(data.get("settings", {})),
                 view=View(data.get("view", View.COLOR)),
                 light=max(0, int(data.get("light", 0))),
+                wipe=wipe if 0.0 <= wipe <= 1.0 else 0.5,
             )
         except KeyError as error:
             raise ValueError(f"its saved state lacks {error}") from None
@@ -87,6 +89,7 @@ class Session:
     settings: Settings = field(default_factory=Settings)
     view: View = View.COLOR
     light: int = 0
+    wipe: float = 0.5
     selected: tuple[float, float] | None = None
 
     @property
@@ -163,6 +166,7 @@ class Session:
             settings=asdict(self.settings),
             view=self.view,
             light=self.light,
+            wipe=self.wipe,
         )
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -176,3 +180,4 @@ class Session:
         self.settings = replace(self.settings, **{k: v for k, v in snapshot.settings.items() if k not in _NOT_RESTORED})
         self.view = snapshot.view
         self.light = min(snapshot.light, max(len(self.scene.lights) - 1, 0))
+        self.wipe = snapshot.wipe

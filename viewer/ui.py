@@ -40,7 +40,8 @@ class FileBrowser:
 
 @dataclass
 class Ui:
-    """See the module.  `picture_area` is the size, in framebuffer pixels, that the picture may fill."""
+    """See the module.  `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says
+    that the pointer holds the line of the wipe."""
 
     controller: Controller
     display: Display | None = None
@@ -58,6 +59,7 @@ class Ui:
     pressed: int = 0
     pressed_at: tuple[float, float] = (0.0, 0.0)
     dragged: bool = False
+    wiping: bool = False
     new_bookmark: str = ""
     dropped: list[Path] = field(default_factory=list)
     renderer_name: str = ""

@@ -8,8 +8,9 @@ colour-blindness, and in greys.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from enum import StrEnum
+from enum import IntEnum, StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,10 +32,17 @@ class View(StrEnum):
     DEPTH = "depth"
     NORMAL = "normal"
     PIXEL_COUNT = "pixel-count"
+    DIFFERENCE = "difference"
+    WIPE = "wipe"
 
     @property
     def label(self) -> str:
         return _TITLES[self]
+
+    @property
+    def needs_verify(self) -> bool:
+        """Whether it can be drawn of verified frames alone."""
+        return self in (View.DIFFERENCE, View.WIPE)
 
     @property
     def explanation(self) -> str:
@@ -49,6 +57,8 @@ _TITLES = {
     View.DEPTH: "Depth",
     View.NORMAL: "Normals",
     View.PIXEL_COUNT: "Pixel count",
+    View.DIFFERENCE: "Difference",
+    View.WIPE: "Wipe",
 }
 
 _EXPLANATIONS = {
@@ -59,6 +69,8 @@ _EXPLANATIONS = {
     View.DEPTH: "Distance from the camera along the ray.",
     View.NORMAL: "The shading normal: x, y, z as red, green, blue.",
     View.PIXEL_COUNT: "Pixels a primitive covers now, against the most it covered while fully rendered.",
+    View.DIFFERENCE: "Pixels for which a culled shadow ray was answered wrongly; black where every answer is right.",
+    View.WIPE: "Left of the line the traced picture, right of it that with every shadow answer right. Drag the line.",
 }
 
 
@@ -97,6 +109,14 @@ SHADOW_MEANING = {
     ShadowMode.NON_SHADOW: "no shadow ray was blocked: only moving objects are asked once fully rendered",
     ShadowMode.PARTIAL_SHADOW: "some were blocked: always traced",
 }
+
+WRONG = _hex("FF00FF")
+"""A pixel with a wrong shadow answer: a colour of no other view, as pure as no shaded one gets."""
+
+RING_DIMMING = 0.5
+"""Brightness of the rings around such pixels on black, against that of the pixels."""
+
+WIPE_LINE = _hex("F2F4F7")
 
 # Viridis (even to the eye, in greys and to the colour-blind) as a polynomial of degree 6, constant term first.
 _VIRIDIS = np.array(
@@ -170,3 +190,72 @@ def depth_range(frame: Frame) -> tuple[float, float]:
         return 0.0, 1.0
     low, high = np.percentile(sample, (1.0, 99.0))
     return float(low), float(max(high, low * (1.0 + 1e-6) + 1e-12))
+
+
+class Mark(IntEnum):
+    """What the difference view draws at a pixel."""
+
+    NONE = 0
+    RING = 1
+    WRONG = 2
+
+
+def wrong_marks(frame: Frame) -> NDArray[np.uint8]:
+    """(h, w) Mark: the pixels with wrong answers of a verified frame, and a ring around each, or around each crowd.
+
+    The rings grow with the picture, so that a lone pixel is found in any."""
+    wrong = _verified(frame.wrong) > 0
+    if not wrong.any():
+        return np.zeros(wrong.shape, np.uint8)
+    side = max(frame.width, frame.height)
+    radius, thickness = max(3, round(side / 200)), max(1, round(side / 1500))
+    ring = _within(wrong, radius + thickness) & ~_within(wrong, radius)
+    return np.where(wrong, np.uint8(Mark.WRONG), ring.astype(np.uint8))
+
+
+def _within(pixels: NDArray[np.bool_], radius: int) -> NDArray[np.bool_]:
+    """Where one of some pixels is at most `radius` pixels away."""
+    wide = [pixels]  # by how far to the left and right
+    for k in range(1, radius + 1):
+        wider = wide[-1].copy()
+        wider[:, k:] |= pixels[:, :-k]
+        wider[:, :-k] |= pixels[:, k:]
+        wide.append(wider)
+    near = wide[radius].copy()
+    for k in range(1, radius + 1):
+        row = wide[math.isqrt(radius * (radius + 1) - k * k)]
+        near[k:] |= row[:-k]
+        near[:-k] |= row[k:]
+    return near
+
+
+def wipe_column(width: int, wipe: float) -> int:
+    """The column of pixels that the line of the wipe covers; `width`, that is none, for a wipe of 1."""
+    return min(max(int(wipe * width), 0), width)
+
+
+@dataclass(frozen=True)
+class DifferenceLegend:
+    """How wrong a verified frame is: wrong answers of the rays that `due` counts, pixels with any, and the largest
+    difference of a channel of the colour shown, from 0 to 1."""
+
+    answers: int
+    due: int
+    pixels: int
+    pixel_share: float
+    largest: float
+
+
+def difference_legend(frame: Frame) -> DifferenceLegend:
+    """Counts of a verified frame."""
+    wrong, reference = _verified(frame.wrong), _verified(frame.reference)
+    pixels = int(np.count_nonzero(wrong))
+    apart = np.abs(np.clip(frame.color[wrong > 0], 0.0, 1.0) - np.clip(reference[wrong > 0], 0.0, 1.0))
+    shadow = frame.statistics.shadow
+    return DifferenceLegend(shadow.wrong, shadow.due, pixels, pixels / wrong.size, float(apart.max(initial=0.0)))
+
+
+def _verified(buffer: NDArray | None) -> NDArray:
+    if buffer is None:
+        raise ValueError("the frame was not verified")
+    return buffer

@@ -21,6 +21,7 @@ from tracer.scene.model import (
     Triangles,
     empty_quadrics,
 )
+from tracer.statistics import FrameStatistics
 
 TINY_SCENE = """
 b 0.3 0.4 0.5
@@ -88,7 +89,9 @@ def make_scene(lights: int = 3, frames: int = 11, path: str = "scene.aff") -> Sc
 
 
 def make_frame(settings: Settings | None = None, time: float = 0.0, camera: Camera | None = None) -> Frame:
-    """A frame whose columns are the scene's seven primitives and one miss; two units away, facing us."""
+    """A frame whose columns are the scene's seven primitives and one miss; two units away, facing us.
+
+    Where it is to be verified, one answer is wrong at pixel 3, 2 and two at 5, 6, which are 0.1 too dark."""
     settings = settings or Settings(width=16, height=8)
     width, height = settings.width, settings.height
     primitive = np.broadcast_to((np.arange(width) * 8 // width).astype(np.int32), (height, width)).copy()
@@ -99,11 +102,17 @@ def make_frame(settings: Settings | None = None, time: float = 0.0, camera: Came
     modes = [0, 1, 2 | 1 << 2 | 2 << 4, 2 | 2 << 2 | 3 << 4 | 1 << 6, 3, 3, 2 | 3 << 2]
     normal = np.zeros((height, width, 3), np.float32)
     normal[hit] = (0, 0, 1)
+    color = np.full((height, width, 3), 0.5, np.float32)
+    wrong = np.zeros((height, width), np.int32)
+    wrong[2:3, 3:4], wrong[6:7, 5:6] = 1, 2
+    statistics = FrameStatistics()
+    statistics.shadow.due, statistics.shadow.culled = 4 * width * height, width * height
+    statistics.shadow.wrong = int(wrong.sum()) if settings.verify else 0
     return Frame(
         time=time,
         camera=camera or Camera((0.0, 1.0, 5.0), (0.0, 0.0, -1.0)),
         settings=settings,
-        color=np.full((height, width, 3), 0.5, np.float32),
+        color=color,
         depth=np.where(hit, np.float32(2.0), np.float32(np.inf)),
         primitive=primitive,
         normal=normal,
@@ -111,6 +120,9 @@ def make_frame(settings: Settings | None = None, time: float = 0.0, camera: Came
         pixel_count=counts,
         highest_count=np.where(np.arange(7) == 3, counts * 2, 0).astype(np.int32),
         lights=3,
+        reference=np.where(wrong[..., None] > 0, np.float32(0.6), color) if settings.verify else None,
+        wrong=wrong if settings.verify else None,
+        statistics=statistics,
     )
 
 

@@ -19,7 +19,7 @@ def session_somewhere() -> Session:
     session.open(make_scene())
     session.time = 4.0
     session.move(Camera((1.0, 2.0, 3.0), (0.0, 0.6, -0.8), (0.0, 0.8, 0.6), 33.0))
-    session.view, session.light = View.SHADOW, 2
+    session.view, session.light, session.wipe = View.SHADOW, 2, 0.25
     return session
 
 
@@ -31,7 +31,15 @@ def test_a_snapshot_survives_json_and_brings_everything_back():
     second.restore(Snapshot.from_json(json.loads(text)))
     assert second.camera == first.camera
     assert (second.time, second.view, second.light, second.follow) == (4.0, View.SHADOW, 2, False)
+    assert second.wipe == 0.25
     assert second.settings == replace(first.settings, width=99)
+
+
+@pytest.mark.parametrize(("kept", "wipe"), [({}, 0.5), ({"wipe": 7}, 0.5), ({"wipe": float("nan")}, 0.5)])
+def test_a_wipe_that_lies_nowhere_is_in_the_middle(kept, wipe):
+    data = session_somewhere().snapshot().to_json()
+    del data["wipe"]
+    assert Snapshot.from_json(data | kept).wipe == wipe
 
 
 def test_following_is_restored_as_following():

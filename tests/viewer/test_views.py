@@ -11,6 +11,7 @@ import pytest
 
 from tests.viewer.conftest import make_frame, make_scene
 from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.frame import Settings
 from viewer import views
 from viewer.history import SERIES, History
 from viewer.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
@@ -53,6 +54,52 @@ def dichromat(color: views.Color) -> np.ndarray:
     return np.power(np.clip(back, 0.0, 1.0), 1 / 2.2)
 
 
+def luminance(color: views.Color) -> float:
+    """Relative luminance (WCAG 2)."""
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color]
+    return float(np.dot(linear, (0.2126, 0.7152, 0.0722)))
+
+
+def test_the_colour_of_wrong_answers_is_unmistakable():
+    """Bright on black, and far from every colour of every other view, for the colour-blind too."""
+    assert (luminance(views.WRONG) + 0.05) / 0.05 > 4.5
+    assert np.linalg.norm(dichromat(views.WRONG)) > 0.8
+    others = [*views.OCCLUSION_COLORS.values(), *views.SHADOW_COLORS.values(), views.BACKGROUND, views.GREY]
+    for other in [*others, views.WIPE_LINE, *views.color_map()]:
+        assert np.linalg.norm(np.subtract(views.WRONG, other)) > 0.5
+        assert np.linalg.norm(dichromat(views.WRONG) - dichromat(other)) > 0.15
+
+
+def test_the_difference_legend_counts_what_is_wrong():
+    legend = views.difference_legend(make_frame(Settings(width=16, height=8, verify=True)))
+    assert (legend.answers, legend.due, legend.pixels) == (3, 4 * 128, 2)
+    assert legend.pixel_share == pytest.approx(2 / 128) and legend.largest == pytest.approx(0.1)
+    with pytest.raises(ValueError, match="not verified"):
+        views.difference_legend(make_frame())
+
+
+@pytest.mark.parametrize(("size", "radius", "thickness"), [((64, 48), 3, 1), ((1500, 40), 8, 1), ((30, 4000), 20, 3)])
+def test_rings_lie_at_one_distance_and_grow_with_the_picture(size, radius, thickness):
+    frame = make_frame(Settings(width=size[0], height=size[1], verify=True))
+    marks = views.wrong_marks(frame)
+    points = np.argwhere(frame.wrong > 0)
+    rows, columns = np.indices(marks.shape)
+    distance = np.min([np.hypot(rows - y, columns - x) for y, x in points], axis=0)
+    np.testing.assert_array_equal(marks == views.Mark.WRONG, distance == 0)
+    ring = marks == views.Mark.RING
+    assert ring.any() and (distance[ring] > radius).all()
+    np.testing.assert_array_equal(ring, (distance > radius + 0.5) & (distance < radius + thickness + 0.5))
+
+
+def test_no_rings_where_nothing_is_wrong():
+    frame = make_frame(Settings(width=16, height=8, verify=True))
+    assert not views.wrong_marks(replace(frame, wrong=np.zeros_like(frame.wrong))).any()
+
+
+def test_the_line_of_a_wipe_reaches_both_edges():
+    assert [views.wipe_column(10, wipe) for wipe in (-1.0, 0.0, 0.05, 0.5, 0.99, 1.0, 2.0)] == [0, 0, 0, 5, 9, 10, 10]
+
+
 @pytest.mark.parametrize("palette", [views.OCCLUSION_COLORS, views.SHADOW_COLORS])
 def test_mode_colours_can_be_told_apart_without_red_green_vision(palette):
     for a, b in itertools.combinations(palette.values(), 2):
@@ -92,6 +139,18 @@ def test_a_kept_pick_follows_its_primitives_modes():
     later.modes[3] = 1
     assert refreshed(found, later).occlusion is OcclusionMode.PARTIALLY_OCCLUDED
     assert refreshed(found, later).point == found.point
+
+
+def test_a_pick_counts_the_pixels_wrong_answers_as_long_as_it_shows_the_same():
+    verified = make_frame(Settings(width=16, height=8, verify=True))
+    found = pick(verified, make_scene(), 5.5 / 16, 6.5 / 8)
+    assert found.wrong == 2
+    assert pick(verified, make_scene(), 0.5 / 16, 6.5 / 8).wrong == 0
+    unverified = refreshed(found, make_frame())
+    assert unverified.wrong is None
+    assert refreshed(unverified, verified).wrong == 2
+    assert refreshed(found, make_frame(Settings(width=32, height=8, verify=True))).wrong is None
+    assert refreshed(found, make_frame(verified.settings, time=1.0)).wrong is None
 
 
 def test_points_outside_the_picture_are_clamped_and_misses_have_none():

@@ -13,8 +13,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 pytestmark = pytest.mark.gui
 
-SCENARIOS = ("views", "culling", "flying", "orbiting", "playing", "capturing", "dropping", "cancelling", "resizing",
-             "closing_while_tracing", "closing_while_loading", "panels")  # fmt: skip
+SCENARIOS = ("views", "difference", "wiping", "culling", "flying", "orbiting", "playing", "capturing", "dropping",
+             "cancelling", "resizing", "closing_while_tracing", "closing_while_loading", "panels")  # fmt: skip
 
 
 @pytest.mark.parametrize("name", SCENARIOS)

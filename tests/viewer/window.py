@@ -87,6 +87,11 @@ class Driver:
         window = imgui.internal.find_window_by_name("Picture")
         return window.pos.x + 0.5 * window.size.x, window.pos.y + 0.45 * window.size.y
 
+    def picture_edges(self) -> tuple[float, float, float, float]:
+        """Left, top, right and bottom of the picture inside its window."""
+        area = self.context.item_info("//Picture/picture").rect_full
+        return area.min.x, area.min.y, area.max.x, area.max.y
+
     def drag(self, start: tuple[float, float], by: tuple[float, float], button: int = 0) -> None:
         self.context.mouse_move_to_pos(start)
         self.frames(2)

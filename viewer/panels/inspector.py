@@ -49,6 +49,9 @@ def _details(ui: Ui, pick: Pick) -> None:
     with properties("pixel", 5.8) as shown:
         if shown:
             value("At", f"{pick.x}, {pick.y}")
+            if pick.wrong is not None:
+                tip = "shadow answers of this pixel that a trace contradicts, at all bounces and of all lights"
+                value("Wrong answers", count(pick.wrong), tip)
             value("Depth", f"{pick.depth:.5g}")
             if pick.point is not None:
                 value("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))

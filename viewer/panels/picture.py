@@ -12,8 +12,8 @@ import math
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer import navigation
-from viewer.panels import timeline
-from viewer.panels.widgets import QUIET, em, paragraph
+from viewer.panels import timeline, wipe
+from viewer.panels.widgets import ERROR, QUIET, count, em, paragraph
 from viewer.picking import point_at
 from viewer.ui import Ui
 
@@ -61,6 +61,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     end = ImVec2(corner.x + size.x, corner.y + size.y)
     imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), corner, end)
     _pointer(ui, corner, size)
+    wipe.show(ui, corner, end)
     _overlay(ui, corner, end)
 
 
@@ -85,6 +86,8 @@ def _pointer(ui: Ui, corner: ImVec2, size: ImVec2) -> None:
     if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
         c.hovered = (u, v)
         _wheel(ui, io.mouse_wheel)
+    if wipe.handle(ui, corner, size):
+        return
     if imgui.is_item_activated():
         ui.dragged = False
         ui.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
@@ -162,7 +165,10 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     text = f"{c.view_title}   {frame.width} x {frame.height}"
     if request.divisor > 1:
         text += f"   1/{request.divisor}"
-    size = imgui.calc_text_size(text)
+    shadow, counter = frame.statistics.shadow, ""
+    if c.drawn_view.needs_verify:
+        counter = f"   {count(shadow.wrong)} wrong of {count(shadow.due)} answers"
+    size = imgui.calc_text_size(text + counter)
     if end.x - corner.x < size.x + em(2.0):
         return
     pad = em(0.35)
@@ -171,3 +177,6 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     draw = imgui.get_window_draw_list()
     draw.add_rect_filled(corner, lower, back, em(0.3))
     draw.add_text(ImVec2(corner.x + 1.5 * pad, corner.y + pad), front, text)
+    if counter:
+        color = imgui.get_color_u32(ERROR) if shadow.wrong else front
+        draw.add_text(ImVec2(corner.x + 1.5 * pad + imgui.calc_text_size(text).x, corner.y + pad), color, counter)

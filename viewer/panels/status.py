@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import hello_imgui, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.panels.widgets import ERROR, QUIET, clipped, em
+from viewer.panels.widgets import ERROR, QUIET, clipped, count, em
 from viewer.ui import Ui
 
 
@@ -37,4 +37,5 @@ def _summary(ui: Ui) -> str:
     drawn = f"{hello_imgui.frame_rate():.0f} fps"
     if frame is None:
         return drawn
-    return f"{frame.width} x {frame.height}   {1e3 * frame.statistics.seconds:.0f} ms traced   {drawn}"
+    wrong = f"{count(frame.statistics.shadow.wrong)} wrong   " if frame.settings.verify else ""
+    return f"{wrong}{frame.width} x {frame.height}   {1e3 * frame.statistics.seconds:.0f} ms traced   {drawn}"

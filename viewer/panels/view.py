@@ -8,20 +8,34 @@ from numpy.typing import NDArray
 
 from tracer.renderer import Frame
 from viewer.panels.widgets import (
+    GOOD,
     QUIET,
     WARNING,
     checkbox,
     count,
     em,
     paragraph,
+    percent,
     properties,
     row,
     tooltip,
+    value,
 )
 from viewer.ui import Ui
-from viewer.views import GREY, LegendRow, View, color_map, occlusion_legend, shadow_legend
+from viewer.views import (
+    GREY,
+    WRONG,
+    DifferenceLegend,
+    LegendRow,
+    View,
+    color_map,
+    difference_legend,
+    occlusion_legend,
+    shadow_legend,
+)
 
 _GRADIENT_STEPS = 24
+_FLAT = (View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT)
 
 
 def show(ui: Ui) -> None:
@@ -30,7 +44,7 @@ def show(ui: Ui) -> None:
     views = list(View)
     with properties("view", 5.0) as shown:
         if shown:
-            row("View", "keys 1 to 7")
+            row("View", "keys 1 to 9")
             chosen = views.index(c.session.view)
             changed, index = imgui.combo("##view", chosen, [f"{v.label}" for v in views])
             if changed:
@@ -41,11 +55,19 @@ def show(ui: Ui) -> None:
                 changed, light = imgui.combo("##light", c.session.light, names)
                 if changed:
                     c.set_light(light)
-            if c.session.view not in (View.COLOR, View.NORMAL, View.DEPTH):
+            if c.session.view is View.WIPE:
+                row("Line", "where it is; or drag it in the picture")
+                changed, at = imgui.slider_float("##wipe", 100.0 * c.session.wipe, 0.0, 100.0, "%.0f %%")
+                c.session.wipe = min(max(at / 100.0, 0.0), 1.0) if changed else c.session.wipe
+            if c.session.view in _FLAT:
                 row("Shading", "how much of the picture's light and shade shows under the colours")
                 _, c.preferences.shading = imgui.slider_float("##shading", c.preferences.shading, 0.0, 1.0, "%.2f")
     p = c.preferences
     checkbox("Outlines", p.outlines, lambda on: setattr(p, "outlines", on), "borders between primitives (B)")
+    if c.session.view.needs_verify:
+        imgui.same_line(0.0, em(1.0))
+        tip = "rings around pixels with wrong shadow answers, so that a lone one is found (M)"
+        checkbox("Mark wrong pixels", p.mark_wrong, lambda on: setattr(p, "mark_wrong", on), tip)
     if c.frame is not None:
         _legend(ui, c.frame)
 
@@ -72,7 +94,48 @@ def _legend(ui: Ui, frame: Frame) -> None:
         _gradient(f"1/{zoom:.3g}", f"{zoom:.3g} x", "as many")
         _swatch(GREY)
         imgui.text_unformatted("never fully rendered")
+    elif view.needs_verify:
+        _difference(ui, frame)
+        tip += " While it is chosen each culled ray is traced as well, so that frames take longer."
     paragraph(tip, QUIET)
+
+
+def _difference(ui: Ui, frame: Frame) -> None:
+    """What is wrong in the frame, or why nothing is."""
+    if frame.wrong is None:
+        paragraph("No frame has been verified yet; one is being traced ...", QUIET)
+        return
+    found: DifferenceLegend = ui.cached("difference", frame, 0, lambda: difference_legend(frame))
+    shadow = frame.statistics.shadow
+    if frame.settings.method == "none":
+        paragraph("Culling is off (C): every shadow ray is traced, so nothing can be wrong.", WARNING)
+    elif not shadow.culled + shadow.dynamic_only:
+        paragraph("No shadow ray of this frame was culled, so none can be wrong. Move, or trace again (T).", WARNING)
+    elif found.pixels:
+        _wrong_swatch(ui)
+    else:
+        paragraph("Nothing is wrong: every culled shadow ray was answered as a trace answers it.", GOOD)
+    with properties("difference", 8.5) as shown:
+        if shown:
+            tip = "culled shadow rays whose answer a trace contradicts, of all that were due"
+            if frame.settings.samples > 1:
+                tip += "; of the first sample of each pixel, while wrong pixels are those of all"
+            value("Wrong answers", f"{count(found.answers)}  ({percent(found.answers, found.due)} of due)", tip)
+            share = percent(found.pixels, frame.width * frame.height)
+            value("Wrong pixels", f"{count(found.pixels)}  ({share})", "with a wrong answer of any light at any bounce")
+            tip = "between a wrong pixel's colour and the right one; an answer deep in reflections may change nothing"
+            value("Largest difference", f"{255.0 * found.largest:.0f} of 255", tip)
+
+
+def _wrong_swatch(ui: Ui) -> None:
+    """What the one colour of both views means: the pixels themselves, or the rings around them."""
+    marked = ui.controller.preferences.mark_wrong
+    if ui.controller.session.view is View.DIFFERENCE:
+        _swatch(WRONG)
+        imgui.text_unformatted("a wrong shadow answer" + (", in a ring" if marked else ""))
+    elif marked:
+        _swatch(WRONG)
+        imgui.text_unformatted("around wrong shadow answers")
 
 
 def _table(rows: list[LegendRow]) -> None:

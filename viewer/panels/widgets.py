@@ -131,4 +131,8 @@ def short(number: float) -> str:
 
 
 def percent(part: float, whole: float) -> str:
-    return f"{100.0 * part / whole:.1f} %" if whole else "-"
+    """A share with one decimal; one too small for that with two digits, so that it does not look like none."""
+    if not whole:
+        return "-"
+    share = 100.0 * part / whole
+    return f"{share:.2g} %" if 0.0 < share < 0.05 else f"{share:.1f} %"

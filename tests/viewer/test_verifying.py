@@ -1,0 +1,105 @@
+"""Views of what is wrong have frames verified for as long as they are chosen, and change no setting of the user's."""
+
+from __future__ import annotations
+
+import json
+import time
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.viewer.conftest import FakeRenderer, make_scene
+from viewer.controller import Controller
+from viewer.preferences import Preferences
+from viewer.session import Snapshot
+from viewer.views import View
+
+SIZE = (16, 8)
+
+
+class Desk:
+    """A controller at work on a renderer that traces nothing."""
+
+    def __init__(self, controller: Controller) -> None:
+        self.c, self.renderer = controller, FakeRenderer()
+        controller.show(make_scene(), self.renderer)
+        self.rest()
+        controller.trace_again()  # those until now came while the window had just been opened, which is motion
+        assert self.rest() == [False, False]
+
+    def rest(self) -> list[bool]:
+        """Tick until all has been traced; for each frame asked for meanwhile, whether it was to be verified."""
+        before, quiet, end = len(self.renderer.asked), 0, time.monotonic() + 20.0
+        while quiet < 10:
+            assert time.monotonic() < end, "it does not come to rest"
+            self.c.tick(SIZE)
+            quiet = 0 if self.c.active else quiet + 1
+            time.sleep(0.002)
+        return [settings.verify for _, settings in self.renderer.asked[before:]]
+
+
+@pytest.fixture
+def desk():
+    controller = Controller(Preferences(dynamic_resolution=False))
+    yield Desk(controller)
+    assert controller.close()
+
+
+@pytest.mark.parametrize("view", [View.DIFFERENCE, View.WIPE])
+def test_a_view_of_what_is_wrong_verifies_once_and_other_views_trace_nothing(desk: Desk, view: View):
+    desk.c.set_view(view)
+    assert desk.c.drawn_view is View.COLOR and desk.c.outdated, "nothing has been verified yet"
+    assert "verifying" in desk.c.view_title
+    assert desk.rest() == [True]
+    assert desk.c.frame.wrong is not None and desk.c.drawn_view is view and not desk.c.outdated
+    for other in (View.COLOR, View.WIPE, View.DIFFERENCE, View.DEPTH):
+        desk.c.set_view(other)
+        assert not desk.c.outdated
+        assert desk.rest() == []
+    assert not desk.c.session.settings.verify and not desk.c.preferences.verify
+
+
+def test_only_frames_of_such_a_view_are_verified(desk: Desk):
+    desk.c.set_view(View.DIFFERENCE)
+    assert set(desk.rest()) == {True}
+    desk.c.step(1)
+    assert set(desk.rest()) == {True}
+    desk.c.set_view(View.COLOR)
+    assert desk.rest() == []
+    desk.c.step(1)
+    assert set(desk.rest()) == {False}
+
+
+def test_the_users_own_setting_counts_in_every_view(desk: Desk):
+    desk.c.change(verify=True)
+    assert desk.rest() == [True]
+    desk.c.set_view(View.DIFFERENCE)
+    desk.c.change(verify=False)
+    assert desk.rest() == [], "verified it is already"
+    desk.c.set_view(View.COLOR)
+    desk.c.change(verify=True)
+    desk.c.change(verify=False)
+    desk.c.trace_again()
+    assert desk.rest() == [False]
+
+
+def test_switched_off_by_the_user_it_is_traced_without(desk: Desk):
+    desk.c.change(verify=True)
+    desk.rest()
+    desk.c.change(verify=False)
+    assert desk.rest() == [False]
+
+
+def test_a_capture_keeps_the_users_setting_and_the_line(desk: Desk, tmp_path):
+    desk.c.set_view(View.WIPE)
+    desk.c.session.wipe = 0.25
+    desk.rest()
+    desk.c.preferences.screenshot_folder, desk.c.preferences.screenshot_template = str(tmp_path), "wipe.png"
+    desk.c.keeper.capture(np.zeros((8, 16, 3), np.uint8))
+    assert desk.c.keeper.saving[0].join(10.0)
+    with Image.open(tmp_path / "wipe.png") as image:
+        kept = json.loads(image.text["shadowcull"])
+    assert kept["statistics"]["shadow"]["wrong"] == 3
+    snapshot = Snapshot.from_json(kept["state"])
+    assert (snapshot.view, snapshot.wipe, snapshot.settings["verify"]) == (View.WIPE, 0.25, False)
