@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
+from tests.tracing.random_worlds import quickly
 from tests.tracing.worlds import affine, quadrics, scene
 from tracer.scene.model import CONE, SPHERE
 
@@ -30,7 +31,7 @@ def test_the_interval_of_t_is_open(t_min, t_max, found):
     assert world.any_hits(rays, 1)[0] == found
 
 
-@settings(max_examples=60, deadline=None)
+@quickly(60)
 @given(
     st.lists(st.floats(-3, 3), min_size=3, max_size=3),
     st.floats(0.01, 5),

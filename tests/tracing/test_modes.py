@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
 from tests.tracing import naive
+from tests.tracing.random_worlds import quickly
 from tests.tracing.worlds import random_corners, scene
 from tracer.culling import modes
+from tracer.culling.memory import Memory
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.culling.occlusion import occlusion_testing, set_occlusion_modes
 from tracer.geometry.camera import pinhole
 from tracer.scene.model import Camera
 
 
-@settings(max_examples=100, deadline=None)
+@quickly(100)
 @given(st.integers(1, 31), st.data())
 def test_a_word_keeps_every_mode_apart(lights, data):
     word = modes.word_type(lights)
@@ -54,7 +56,7 @@ def test_a_moved_light_is_forgotten_alone():
     assert modes.shadow_mode(words, 1).tolist() == [2, 2]
 
 
-@settings(max_examples=200, deadline=None)
+@quickly(200)
 @given(
     st.lists(
         st.tuples(st.integers(0, 3), st.booleans(), st.integers(0, 40), st.integers(0, 10)), min_size=1, max_size=20
@@ -71,6 +73,38 @@ def test_occlusion_modes_are_set_by_the_papers_rules(units, zoom, shadow_bits):
     assert list(zip(modes.occlusion_mode(words).tolist(), highest.tolist(), strict=True)) == expected
     assert (words >> 2 == shadow_bits).all()
     assert not hidden.any()
+
+
+UNITS = 4
+
+
+@quickly(100)
+@given(st.sampled_from([1, 15, 16, 31, 40]), st.lists(st.booleans(), min_size=UNITS, max_size=UNITS), st.data())
+def test_words_over_many_frames_are_what_the_naive_twin_says(lights, dynamic, data):
+    """Lights move, units are hidden or not and cover more or fewer pixels, and workers learn side by side."""
+    memory, twin = Memory(np.array(dynamic), lights, workers=3), naive.Modes(dynamic, lights)
+    positions = np.zeros((lights, 3), np.float32)
+    light, unit = st.integers(0, lights - 1), st.integers(0, UNITS - 1)
+    memory.follow_lights(positions)
+    for _ in range(data.draw(st.integers(1, 8))):
+        for moved in data.draw(st.sets(light, max_size=2)):
+            positions[moved, 0] += 1.0
+            twin.forget(moved)
+        memory.follow_lights(positions)
+        rays = data.draw(st.lists(st.tuples(unit, light, st.sampled_from([1, 2])), max_size=12))
+        for worker, (u, number, mode) in enumerate(rays):
+            if number < modes.MAX_CULLED_LIGHTS and not dynamic[u]:  # as the shadow test has it
+                memory.gained[worker % 3, u] |= memory.words.dtype.type(mode << (2 + 2 * number))
+        counts = data.draw(st.lists(st.integers(0, 30), min_size=UNITS, max_size=UNITS))
+        hidden, zoom = data.draw(st.sets(unit)), data.draw(st.sampled_from([1.0, 2.5, 4.0]))
+        memory.hidden[list(hidden)] = True
+        memory.pixel_count[:] = counts
+        modes.merge_words(memory.words, memory.gained)
+        set_occlusion_modes(memory.words, memory.hidden, memory.pixel_count, memory.highest_count, np.float64(zoom))
+        twin.end_frame(hidden, counts, rays, zoom)
+        assert memory.words.tolist() == twin.words()
+        assert memory.highest_count.tolist() == twin.highest
+        assert not memory.hidden.any() and not memory.gained.any()
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import tracer
 from tests.tracing import naive
+from tests.tracing.random_worlds import END, quickly, scenes
 from tests.tracing.worlds import affine, moved, quadrics, random_corners, scene
 from tracer.geometry.kdtree.build import CANCELLED, build_tree
 from tracer.geometry.world import triangle_rows
@@ -56,6 +61,34 @@ def test_dynamic_objects_are_found_where_they_are_placed(seed):
     objects = tuple(moved(f"part {i}", p, m) for i, (p, m) in enumerate(zip(parts, matrices, strict=True)))
     everything = [static] + [p @ m[:3, :3].T + m[:3, 3] for p, m in zip(parts, matrices, strict=True)]
     assert_same_answers(tracer.World(scene(static, dynamic=objects)), np.concatenate(everything), *random_rays(rng, 80))
+
+
+def test_queries_agree_with_float64_in_random_scenes():
+    """Triangles, spheres and cones, static, moving, vanishing and deforming."""
+    compared: Counter[str] = Counter()
+
+    @quickly(40)
+    @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
+    def check(made: tracer.Scene, time: float, seed: int) -> None:
+        world = tracer.World(made, time)
+        origins, directions = random_rays(np.random.default_rng(seed), 20)
+        rays = tracer.RayBatch(origins, directions)
+        hits, blocked = world.closest_hits(rays, threads=1), world.any_hits(rays, threads=1)
+        for i, (o, d) in enumerate(zip(origins.astype(float), directions.astype(float), strict=True)):
+            t, margin = naive.meet_all(made, time, o, d)
+            if margin < 1e-4:
+                continue  # rounding may decide either way
+            nearest = t.min(initial=np.inf)
+            assert blocked[i] == np.isfinite(nearest)
+            assert hits.t[i] == pytest.approx(nearest, rel=5e-4)
+            assert (hits.primitive[i] >= 0) == blocked[i]
+            assert not blocked[i] or t[hits.primitive[i]] == pytest.approx(nearest, rel=5e-4)
+            if blocked[i]:
+                kind = "triangle" if hits.primitive[i] < made.triangle_count else "quadric"
+                compared[f"dynamic {kind}" if made.object_of(hits.primitive[i]) else kind] += 1
+
+    check()
+    assert len(compared) == 4 and min(compared.values()) >= 10, compared
 
 
 def test_an_object_scaled_to_nothing_is_not_there():

@@ -1,0 +1,70 @@
+"""The way of each ray through the trees, step by step and test by test, against the naive twin."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import tracer
+from tests.tracing import brute
+from tests.tracing.naive_tree import Line, Traversal
+from tests.tracing.random_worlds import END, quickly, scenes
+from tests.tracing.worlds import random_corners, scene
+from tracer.geometry.kdtree import traverse
+from tracer.geometry.rays import Hits, Rays
+
+
+def random_rays(rng: np.random.Generator, n: int) -> Rays:
+    """Rays through the unit cube, some parallel to its sides, some from within, some that end."""
+    origins, targets = rng.normal(size=(n, 3)) + 0.5, rng.random((n, 3))
+    directions = targets - origins
+    directions[: n // 8, rng.integers(3)] = 0.0
+    origins[n // 8 : n // 4] = rng.random((n // 4 - n // 8, 3))
+    t_max = np.where(rng.random(n) < 0.5, np.inf, rng.uniform(0.2, 1.5, n))
+    return tracer.RayBatch(origins, directions, 1e-5, t_max)
+
+
+def assert_same_way(world: tracer.World, rays: Rays, there: np.ndarray) -> np.ndarray:
+    """Answers, steps and tests of both queries, ray by ray; returns the sums (queries, steps and tests)."""
+    n, placed = len(rays.t_min), world.placed
+    met = brute.meet_all(world, rays, there)
+    hits = Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
+    blocked, sums = np.zeros(n, np.bool_), np.zeros((2, 2), np.int64)
+    for i in range(n):
+        counts = np.zeros((2, 2), np.int64)
+        traverse.closest_hits(placed, rays, hits, i, i + 1, counts[0])
+        traverse.any_hits(placed, rays, blocked, i, i + 1, counts[1])
+        line = Line(tuple(rays.origin[:, i]), tuple(rays.direction[:, i]))
+        near, whatever = (Traversal(placed, line, rays.t_min[i], rays.t_max[i], met.t[i]) for _ in range(2))
+        assert (hits.t[i], hits.primitive[i]) == near.closest() == (met.t[i].min(initial=np.inf), met.closest()[i])
+        assert blocked[i] == whatever.any() == np.isfinite(met.t[i]).any()
+        assert counts.tolist() == [[near.steps, near.tests], [whatever.steps, whatever.tests]]
+        sums += counts
+    return sums
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("n, size", [(20, 0.3), (400, 0.05)])
+def test_rays_go_the_naive_twins_way_through_triangles(seed: int, n: int, size: float):
+    rng = np.random.default_rng(seed)
+    world = tracer.World(scene(random_corners(rng, n, size)))
+    (steps, tests), (any_steps, any_tests) = assert_same_way(world, random_rays(rng, 60), np.ones(n, np.bool_))
+    assert steps > any_steps > 0
+    assert tests > any_tests > 0
+
+
+def test_rays_go_the_naive_twins_way_through_random_scenes():
+    sums = np.zeros((2, 2), np.int64)
+
+    @quickly(60)
+    @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
+    def check(made: tracer.Scene, time: float, seed: int) -> None:
+        nonlocal sums
+        world = tracer.World(made, time)
+        there = brute.primitives_there(made, time)
+        sums += assert_same_way(world, random_rays(np.random.default_rng(seed), 25), there)
+
+    check()
+    assert (sums[0] > sums[1]).all() and (sums > 0).all()

@@ -1,0 +1,88 @@
+"""Whole frames of random scenes, one after the other, against the naive twin of a frame."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import tracer
+from tests.tracing.naive_frame import NaiveFrame, NaiveRenderer
+from tests.tracing.random_worlds import Walk, quickly, walks
+from tests.tracing.test_verify import assert_verified
+
+
+def assert_same(frame: tracer.Frame, twin: NaiveFrame) -> None:
+    """Primitives, answers, words, counts and counters exactly; colours as near as float32 goes."""
+    assert np.array_equal(frame.primitive, twin.primitive)
+    shadow, statistics = frame.statistics.shadow, frame.statistics
+    counted = {name: getattr(shadow, name) for name in ("rays", "due", "culled", "dynamic_only", "wrong")}
+    counted |= {"primary": statistics.primary.rays, "secondary": statistics.secondary.rays}
+    counted |= {"occlusion_tests": statistics.occlusion_tests}
+    assert counted == {name: twin.counts[name] for name in counted}
+    for name in ("due", "lit", "wrong"):
+        assert np.array_equal(getattr(frame, name), getattr(twin, name)), name
+    assert frame.modes.tolist() == twin.words
+    assert frame.pixel_count.tolist() == twin.pixel_count
+    assert frame.highest_count.tolist() == twin.highest_count
+    assert np.allclose(frame.color, twin.color, rtol=2e-3, atol=2e-4)
+    assert np.allclose(frame.reference, twin.reference, rtol=2e-3, atol=2e-4)
+
+
+SHADOW_TESTED = {"rays", "due", "primary", "secondary"}
+CULLED = {"culled", "dynamic_only", "wrong", "occlusion_tests"}
+
+
+@pytest.mark.parametrize(
+    "lights, method, examples, counted",
+    [
+        (0, "paper", 4, {"primary", "secondary", "occlusion_tests"}),
+        (1, "paper", 10, SHADOW_TESTED | CULLED),
+        (3, "paper", 15, SHADOW_TESTED | CULLED),
+        (17, "paper", 6, SHADOW_TESTED | CULLED),  # words of 64 bits
+        (33, "paper", 4, SHADOW_TESTED | CULLED),  # lights past what they hold
+        (3, "none", 4, SHADOW_TESTED),
+    ],
+)
+def test_frames_of_random_scenes_are_what_the_naive_twin_says(
+    lights: int, method: str, examples: int, counted: set[str]
+):
+    """Moving cameras, lights and objects; modes from frame to frame."""
+    seen: Counter[str] = Counter()
+
+    @quickly(examples)
+    @given(walks(lights), st.booleans(), st.sampled_from([1.0, 2.0, 4.0]), st.integers(0, 3))
+    def check(walk: Walk, symmetric: bool, zoom_factor: float, depth: int) -> None:
+        height = 14 if lights < 10 else 8
+        settings = tracer.Settings(
+            34, height, depth, method, symmetric, zoom_factor, verify=True, threads=2, record_lights=True
+        )
+        renderer, twin = tracer.Renderer(walk.scene, settings), NaiveRenderer(walk.scene, settings)
+        for time, camera in walk.frames:
+            frame, expected = renderer.render(time, camera), twin.render(time, camera)
+            assert_same(frame, expected)
+            seen.update(expected.counts)
+
+    check()
+    assert set(+seen) == counted  # none of them was never anything but 0
+
+
+def test_the_reference_of_random_scenes_is_the_picture_without_culling():
+    wrong = 0
+
+    @quickly(15)
+    @given(walks(), st.integers(0, 4))
+    def check(walk: Walk, depth: int) -> None:
+        nonlocal wrong
+        settings = {"width": 48, "height": 40, "depth": depth, "threads": 2, "verify": True}
+        paper, none = (tracer.Renderer(walk.scene, tracer.Settings(method=m, **settings)) for m in ("paper", "none"))
+        for time, camera in walk.frames:
+            frame = paper.render(time, camera)
+            assert_verified(frame, none.render(time, camera))
+            wrong += int(frame.wrong.sum())
+
+    check()
+    assert wrong > 0, "nothing was wrong: this shows nothing"
