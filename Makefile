@@ -10,10 +10,11 @@ PYTHON ?=
 ARGS ?=
 RUN := .venv/bin/python
 
-# Compiled kernels, and Mesa's compiled shaders, stay in the project's folder.
+# Compiled kernels, Mesa's compiled shaders and matplotlib's list of fonts stay in the project's folder.
 export PYTHON
 export SHADOWCULL_CACHE_DIR := $(CURDIR)/.cache/kernels
 export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
+export MPLCONFIGDIR := $(CURDIR)/.cache/matplotlib
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
 .PHONY: run test golden bench lint format lock clean distclean help

@@ -4,42 +4,91 @@ from __future__ import annotations
 
 import csv
 import json
+import os
+import pty
+import re
+import select
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from viewer import figures
 from viewer.bench import frame_range
 from viewer.cli import main
+from viewer.console import Work
+
+ROOT = Path(__file__).resolve().parent.parent
+SMALL = ["bench", "figure4", "--path-frames", "6", "--size", "48x32"]
+
+
+def bench(folder: Path, *options: str) -> dict:
+    """The JSON of a small run."""
+    path = folder / "figures.json"
+    assert main([*SMALL, *options, "--json", str(path)]) == 0
+    return json.loads(path.read_text())
 
 
 def test_bench_writes_an_entry_per_frame_and_prints_the_table(tmp_path: Path, capsys):
-    figures, lines = tmp_path / "figures.json", tmp_path / "table.csv"
-    command = ["bench", "figure4", "--path-frames", "6", "--frames", "1:5", "--size", "48x32", "--verify"]
-    assert main([*command, "--methods", "none,paper", "--json", str(figures), "--csv", str(lines)]) == 0
-    results = json.loads(figures.read_text())
-    assert set(results) == {"scene", "size", "frames", "methods"}
+    lines, plot = tmp_path / "table.csv", tmp_path / "plot.svg"
+    more = ["--frames", "1:5", "--verify", "--methods", "none, paper"]
+    results = bench(tmp_path, *more, "--csv", str(lines), "--plot", str(plot))
+    assert list(results) == ["scene", "size", "frames", "methods"]
     assert results["size"] == [48, 32]
     assert results["frames"] == [1, 2, 3, 4]
+    assert list(results["methods"]) == ["none", "paper"]
     assert all(len(values) == 4 for method in results["methods"].values() for values in method.values())
     none, paper = results["methods"]["none"], results["methods"]["paper"]
-    assert set(none) == {
-        "shadow_rays_due",
-        "shadow_rays_culled",
-        "shadow_rays_dynamic_only",
-        "shadow_traversal_steps",
-        "shadow_intersection_tests",
-        "occlusion_tests",
-        "certificate_steps",
-        "certificate_tests",
-        "wrong",
-        "frame_seconds",
-    }
+    for method in (none, paper):
+        assert list(method) == [
+            "shadow_rays_due",
+            "shadow_rays_culled",
+            "shadow_rays_dynamic_only",
+            "shadow_traversal_steps",
+            "shadow_intersection_tests",
+            "occlusion_tests",
+            "certificate_steps",
+            "certificate_tests",
+            "wrong",
+            "frame_seconds",
+        ]
     assert sum(paper["shadow_traversal_steps"]) < sum(none["shadow_traversal_steps"])
     rows = list(csv.DictReader(lines.open()))
     assert [row["method"] for row in rows] == ["none", "paper"]
-    saved = [1 - p / n for n, p in zip(none["shadow_traversal_steps"], paper["shadow_traversal_steps"], strict=True)]
-    assert float(rows[1]["average_steps"]) == pytest.approx(sum(saved) / 4)
-    assert f"{sum(saved) / 4:.1%}" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    for work, name in (("steps", "traversal_steps"), ("tests", "intersection_tests")):
+        saved = [1 - p / n for n, p in zip(none[f"shadow_{name}"], paper[f"shadow_{name}"], strict=True)]
+        frame = 1 + saved.index(max(saved))
+        assert float(rows[1][f"average_{work}"]) == pytest.approx(sum(saved) / 4)
+        assert float(rows[1][f"most_{work}"]) == pytest.approx(max(saved))
+        assert int(rows[1][f"most_{work}_frame"]) == frame
+        assert re.search(rf"{name.replace('_', ' ')} saved, average .* {sum(saved) / 4:.1%} ", out)
+        assert f" {max(saved):.1%} ({frame}) " in out
+    extra = sum(paper["occlusion_tests"]) / (4 * 48 * 32)
+    assert re.search(rf"extra occlusion tests per pixel .* 0\.000 .* {extra:.3f} ", out)
+    wrong, due = sum(paper["wrong"]), sum(paper["shadow_rays_due"])
+    assert f" {wrong:,} ({wrong / due:.3%}) " in out
+    assert re.search(r"time of a frame, median .* ms .* ms ", out)
+    assert "figure4.aff, 4 frames, 48 x 32" in out
+    assert plot.read_text().startswith("<?xml")
+
+
+def test_wrong_answers_are_told_only_where_they_were_counted(tmp_path: Path, capsys):
+    bench(tmp_path)
+    out = capsys.readouterr().out
+    assert "wrong answers (of rays due)" not in out and "--verify counts wrong answers" in out
+
+
+def test_options_of_the_paper_reach_it(tmp_path: Path):
+    """Tests in both directions are more of them; modes that are soon learnt anew save less than those kept."""
+    usual, symmetric = (bench(tmp_path, *more)["methods"] for more in ([], ["--symmetric"]))
+    assert sum(symmetric["paper"]["occlusion_tests"]) > sum(usual["paper"]["occlusion_tests"])
+    assert not any(symmetric["none"]["occlusion_tests"])
+    soon, never = (bench(tmp_path, "--zoom-factor", factor)["methods"]["paper"] for factor in ("1", "1e9"))
+    assert sum(soon["shadow_traversal_steps"]) > sum(never["shadow_traversal_steps"])
 
 
 @pytest.mark.parametrize(
@@ -50,15 +99,151 @@ def test_frames_are_a_range_of_the_path(text, numbers):
 
 
 @pytest.mark.parametrize(
-    "wrong",
+    ("wrong", "said"),
     [
-        ["--frames", "5:2"],
-        ["--frames", "0:99"],
-        ["--frames", "three"],
-        ["--methods", "telepathy"],
-        ["--zoom-factor", "0"],
+        (["--frames", "5:2"], "give A:B"),
+        (["--frames", "0:99"], "of the 6 there are"),
+        (["--frames", "three"], "give A:B"),
+        (["--methods", "telepathy"], "there is no method 'telepathy'"),
+        (["--methods", ""], "there is no method ''"),
+        (["--zoom-factor", "0"], "zoom_factor"),
     ],
 )
-def test_mistakes_are_one_line(wrong, capsys):
-    assert main(["bench", "figure4", "--path-frames", "6", "--size", "16x16", *wrong]) != 0
-    assert len(capsys.readouterr().err.strip().splitlines()) == 1
+def test_mistakes_are_one_line(wrong, said, capsys):
+    assert main([*SMALL, *wrong]) == 1
+    _mistake(capsys, said)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (["--plot", "OUT/plot.gif"], "plot.gif: unknown kind of plot; give one of .png .svg .pdf"),
+        (["--plot", "OUT/plot"], "unknown kind of plot"),
+        (["--plot", "OUT/none/plot.png"], "there is no folder"),
+        (["--json", "OUT"], "a folder"),
+        (["--csv", "OUT/same", "--json", "OUT/same"], "a file of its own"),
+        (["--methods", "none", "--plot", "OUT/plot.png"], "nothing to compare with none"),
+    ],
+)
+def test_files_that_cannot_be_are_known_before_any_work(wrong, said, tmp_path: Path, capsys, monkeypatch):
+    def work(*_: object) -> None:
+        raise AssertionError("nothing may be read or traced")
+
+    monkeypatch.setattr("viewer.bench.load_visible_scene", work)
+    assert main([*SMALL, *(word.replace("OUT", str(tmp_path)) for word in wrong)]) == 1
+    _mistake(capsys, said)
+    assert not list(tmp_path.iterdir())
+
+
+def _mistake(capsys, said: str) -> None:
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("shadowcull: error: ") and err.count("\n") == 1 and said in err
+
+
+def test_a_file_that_fails_takes_nothing_else_along(tmp_path: Path, capsys, monkeypatch):
+    def full(*_: object) -> None:
+        raise OSError("plot.png: not written: No space left on device")
+
+    monkeypatch.setattr(figures, "save", full)
+    paths = [tmp_path / name for name in ("plot.png", "figures.json", "table.csv")]
+    assert main([*SMALL, "--plot", str(paths[0]), "--json", str(paths[1]), "--csv", str(paths[2])]) == 1
+    out, err = capsys.readouterr()
+    assert "traversal steps saved" in out
+    assert err == "shadowcull: error: plot.png: not written: No space left on device\n"
+    assert [path.exists() for path in paths] == [False, True, True]
+
+
+@pytest.mark.parametrize("steps", [4, 5])
+def test_a_cancelled_run_keeps_its_whole_frames(steps: int, tmp_path: Path, capsys, monkeypatch):
+    """Also where Ctrl-C comes just as a frame is done; the part of the next one that was traced is left out."""
+
+    def press(work: Work, label: str, done: int, total: int) -> None:
+        work.stopped = done >= steps
+
+    monkeypatch.setattr(Work, "count", press)
+    paths = [tmp_path / name for name in ("figures.json", "table.csv", "plot.pdf")]
+    assert main([*SMALL, "--json", str(paths[0]), "--csv", str(paths[1]), "--plot", str(paths[2])]) == 130
+    out, err = capsys.readouterr()
+    assert "figure4.aff, 2 frames" in out
+    assert err == "shadowcull: cancelled after 2 of 6 frames; the table is of these\n"
+    assert json.loads(paths[0].read_text())["frames"] == [0, 1]
+    assert all(path.stat().st_size > 0 for path in paths)
+
+
+def test_cancelled_before_any_frame_is_done_there_is_nothing_to_keep(tmp_path: Path, capsys, monkeypatch):
+    monkeypatch.setattr(Work, "count", lambda work, *_: setattr(work, "stopped", True))
+    assert main([*SMALL, "--json", str(tmp_path / "figures.json")]) == 130
+    assert capsys.readouterr() == ("", "shadowcull: cancelled\n")
+    assert not list(tmp_path.iterdir())
+
+
+# --- on a terminal ---------------------------------------------------------------------------------
+
+
+class Terminal:
+    """A command on a terminal of its own: what it says, and keys for it."""
+
+    def __init__(self, *arguments: str) -> None:
+        self._end, inside = pty.openpty()
+        command = [sys.executable, "-m", "viewer", *arguments]
+        environment = os.environ | {"TERM": "xterm", "COLUMNS": "80"}
+        self._process = subprocess.Popen(
+            command, cwd=ROOT, env=environment, stdin=inside, stdout=inside, stderr=inside, start_new_session=True
+        )
+        os.close(inside)
+        self.said = ""
+
+    def lines(self, seconds: float = 120.0) -> Iterator[str]:
+        """All that is said so far, each time there is more of it, until the command ends."""
+        until = time.monotonic() + seconds
+        while select.select([self._end], [], [], max(0.0, until - time.monotonic()))[0]:
+            try:
+                read = os.read(self._end, 65536)
+            except OSError:  # what Linux says where the other side is closed
+                return
+            if not read:
+                return
+            self.said += re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", read.decode(errors="replace"))
+            yield self.said
+        raise AssertionError(f"it says no more and does not end: {self.said[-300:]}")
+
+    def interrupt(self) -> None:
+        self._process.send_signal(2)
+
+    def end(self) -> int:
+        os.close(self._end)
+        return self._process.wait(timeout=60)
+
+
+def test_progress_shows_frame_methods_time_gone_and_time_left():
+    terminal = Terminal("bench", "default", "--frames", "0:8", "--size", "96x96")
+    *_, said = terminal.lines()
+    assert terminal.end() == 0
+    shown = re.findall(r"frame (\d) of 8, none, paper \S+ (\d:\d\d:\d\d) (\d:\d\d:\d\d) left", said)
+    assert len({frame for frame, _, _ in shown}) > 2
+    assert [frame for frame, _, _ in shown] == sorted(frame for frame, _, _ in shown)
+    assert shown[-1][1] > "0:00:00"
+    assert "average" in said[said.rindex(" left") :]
+
+
+def test_ctrl_c_keeps_what_is_done(tmp_path: Path):
+    path = tmp_path / "figures.json"
+    terminal = Terminal("bench", "default", "--path-frames", "100000", "--size", "64x64", "--json", str(path))
+    pressed = False
+    for said in terminal.lines():
+        if not pressed and re.search(r"frame ([3-9]|\d{2,}) of 100000", said):
+            pressed = True
+            terminal.interrupt()
+    assert terminal.end() == 130
+    told = re.search(r"cancelled after (\d+) of 100000 frames; the table is of these", terminal.said)
+    assert told and len(json.loads(path.read_text())["frames"]) == int(told[1]) >= 2
+    assert f"default.aff, {told[1]} frames" in terminal.said
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_matplotlib_is_loaded_only_for_a_plot():
+    """So that the window and the other commands start no slower."""
+    code = "import sys, viewer.cli, viewer.bench, viewer.headless, tracer; print('matplotlib' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert done.stdout == "False\n", done.stderr

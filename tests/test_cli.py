@@ -330,7 +330,7 @@ def test_a_mistyped_command(capfd: pytest.CaptureFixture[str], arguments: list[s
 
 
 def test_help_shows_examples(capfd: pytest.CaptureFixture[str]) -> None:
-    for arguments in (["--help"], ["render", "--help"], ["info", "-h"]):
+    for arguments in (["--help"], ["render", "--help"], ["bench", "--help"], ["info", "-h"]):
         code, out, err = run(capfd, *arguments)
         assert (code, err) == (0, "")
         assert "examples:\n  shadowcull" in out

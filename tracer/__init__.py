@@ -6,6 +6,7 @@ frame = renderer.render(time=5.0)
 frame.statistics.shadow.traversal_steps
 """
 
+from tracer import experiment
 from tracer.frame import Frame, Settings
 from tracer.geometry.rays import ray_batch as RayBatch
 from tracer.geometry.world import World
@@ -23,6 +24,7 @@ __all__ = [
     "SceneError",
     "Settings",
     "World",
+    "experiment",
     "load_scene",
     "scene_info",
 ]

@@ -9,54 +9,110 @@ import csv
 import io
 import json
 from argparse import Namespace
+from collections.abc import Callable
 from dataclasses import astuple, fields
 from pathlib import Path
-from typing import BinaryIO
 
 from rich.table import Table
 
 from tracer import experiment
-from tracer.experiment import Results, Row
+from tracer.experiment import REFERENCE, Results, Row
+from tracer.frame import Frame, Settings
+from tracer.geometry.world import World
 from tracer.scene.load import load_visible_scene
-from tracer.scene.model import Cancelled
-from viewer.console import print_table, working
+from tracer.scene.model import Cancelled, Scene
+from viewer.console import Work, print_table, working
 from viewer.headless import prepare_kernels, tracing_settings
-from viewer.outputs import check_writable, write_whole
+from viewer.outputs import check_writable, write_text
 
 
-def bench(path: Path, options: Namespace) -> None:
-    """Run an experiment and print its table; raises SceneError, ValueError, OSError, or Cancelled before any frame."""
+def bench(path: Path, options: Namespace) -> bool:
+    """Run an experiment, print its table and write its files; returns whether it was not stopped before its end.
+
+    Raises SceneError, ValueError and OSError, each in one line, or Cancelled where no frame was finished.
+    """
     settings = tracing_settings(options)
     methods = experiment.with_reference(options.methods)
-    for output in (options.json, options.csv):
-        if output is not None:
-            check_writable(output)
-    results = None
+    writers = _writers(options, methods)
     with working() as work:
         scene = load_visible_scene(path, work.progress)
+        for warning in scene.warnings:
+            work.note(f"warning: {warning}")
         times = experiment.path_times(scene, options.path_frames)
         numbers = frame_range(options.frames, len(times))
         prepare_kernels(work, len(scene.lights))
-        for results in experiment.run(scene, settings, methods, times, numbers, work.progress, work.cancelled):
-            done = len(results.frames)
-            if done < len(numbers):
-                work.progress(f"frame {done + 1} of {len(numbers)}, by {', '.join(methods)}", done / len(numbers))
+        results = _run(scene, settings, methods, times, numbers, work)
+        finished = len(results.frames) == len(numbers)
+        if not finished:
+            work.note(f"cancelled after {len(results.frames)} of {len(numbers)} frames; the table is of these")
+        failures = _write(results, writers)
+    print_table(_table(results, options.verify))
+    if failures:
+        raise OSError("; ".join(failures))
+    return finished
+
+
+def _run(
+    scene: Scene, settings: Settings, methods: list[str], times: list[float], numbers: range, work: Work
+) -> Results:
+    """The results of all frames, or of those done when `work` was cancelled; raises Cancelled where there are none."""
+    world = World(scene, times[0], settings.accelerator, work.progress)
+    total, done = len(numbers) * len(methods), 0
+
+    def show() -> None:
+        frame = min(done // len(methods), len(numbers) - 1) + 1
+        work.count(f"frame {frame} of {len(numbers)}, {', '.join(methods)}", done, total)
+
+    def on_frame(number: int, method: str, frame: Frame) -> None:
+        nonlocal done
+        done += 1
+        show()
+
+    show()
+    results = None
+    for grown in experiment.run(
+        scene, settings, methods, times, numbers, cancel=work.cancelled, world=world, on_frame=on_frame
+    ):
+        results = grown
     if results is None:
         raise Cancelled("cancelled")
-    if len(results.frames) < len(numbers):
-        work.note(f"cancelled after {len(results.frames)} of {len(numbers)} frames; the table is of these")
-    print_table(_table(results, options.verify))
+    return results
+
+
+_Writer = Callable[[Results], None]
+
+
+def _writers(options: Namespace, methods: list[str]) -> list[_Writer]:
+    """What writes each file that was asked for; raises ValueError and OSError for one that cannot be."""
+    outputs = [path for path in (options.json, options.csv, options.plot) if path is not None]
+    if len({path.resolve() for path in outputs}) < len(outputs):
+        raise ValueError("--json, --csv and --plot: give each a file of its own")
+    writers: list[_Writer] = []
     if options.json is not None:
-        _write_text(options.json, json.dumps(results.to_dict()))
+        writers.append(lambda results: write_text(options.json, json.dumps(results.to_dict())))
     if options.csv is not None:
-        _write_text(options.csv, _csv(results))
+        writers.append(lambda results: write_text(options.csv, csv_text(results)))
+    if options.plot is not None:
+        from viewer import figures  # loads matplotlib
+
+        figures.check_ending(options.plot)
+        if methods == [REFERENCE]:
+            raise ValueError(f"--plot: nothing to compare with {REFERENCE}; give another of --methods")
+        writers.append(lambda results: figures.save(figures.savings_figure(results, options.verify), options.plot))
+    for path in outputs:
+        check_writable(path)
+    return writers
 
 
-def _write_text(path: Path, text: str) -> None:
-    def write(file: BinaryIO) -> None:
-        file.write(text.encode())
-
-    write_whole(path, write)
+def _write(results: Results, writers: list[_Writer]) -> list[str]:
+    """Write all files, and return why some could not be: no failure takes the other files along."""
+    failures = []
+    for write in writers:
+        try:
+            write(results)
+        except OSError as error:
+            failures.append(str(error))
+    return failures
 
 
 def frame_range(text: str | None, count: int) -> range:
@@ -74,34 +130,40 @@ def frame_range(text: str | None, count: int) -> range:
 
 
 def _table(results: Results, verified: bool) -> Table:
+    """A column per method, so that it fits terminals of 80 columns."""
     width, height = results.size
-    title = f"{Path(results.scene).name}, {len(results.frames)} frames, {width} x {height}: work of shadow rays saved"
-    table = Table(title=title, title_justify="left", title_style="bold")
-    table.add_column("method")
-    for heading in ("steps", "most (frame)", "tests", "most (frame)", "extra/pixel", "wrong", "frame"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.caption = "saved on average and at most; extra occlusion tests; median time of a frame"
-    if verified:
-        table.caption += ", verifying included"
-    for row in experiment.table(results):
-        table.add_row(*_cells(row, verified))
+    title = f"{Path(results.scene).name}, {len(results.frames)} frames, {width} x {height}: work of shadow rays"
+    table = Table(title=title, title_justify="left", title_style="bold", caption_justify="left")
+    rows = experiment.table(results)
+    table.add_column("")
+    for row in rows:
+        table.add_column(row.method, justify="right")
+    for heading, cell in LINES:
+        if verified or heading != WRONG:
+            table.add_row(heading, *(cell(row) for row in rows))
+    table.caption = "times include verifying" if verified else "--verify counts wrong answers"
     return table
 
 
-def _cells(row: Row, verified: bool) -> list[str]:
-    return [
-        row.method,
-        f"{row.average_steps:.1%}",
-        f"{row.most_steps:.1%} ({row.most_steps_frame})",
-        f"{row.average_tests:.1%}",
-        f"{row.most_tests:.1%} ({row.most_tests_frame})",
-        f"{row.extra_tests_per_pixel:.3f}",
-        f"{row.wrong:,} ({row.wrong_part:.3%})" if verified else "?",
-        f"{1000.0 * row.frame_seconds:,.0f} ms",
-    ]
+def _saved(text: str) -> Callable[[Row], str]:
+    """A cell of what a method saves, for the reference empty."""
+    return lambda row: text.format(row) if row.method != REFERENCE else ""
 
 
-def _csv(results: Results) -> str:
+WRONG = "wrong answers (of rays due)"
+LINES: tuple[tuple[str, Callable[[Row], str]], ...] = (
+    ("traversal steps saved, average", _saved("{0.average_steps:.1%}")),
+    ("  most (frame)", _saved("{0.most_steps:.1%} ({0.most_steps_frame})")),
+    ("intersection tests saved, average", _saved("{0.average_tests:.1%}")),
+    ("  most (frame)", _saved("{0.most_tests:.1%} ({0.most_tests_frame})")),
+    ("extra occlusion tests per pixel", lambda row: f"{row.extra_tests_per_pixel:.3f}"),
+    (WRONG, lambda row: f"{row.wrong:,} ({row.wrong_part:.3%})"),
+    ("time of a frame, median", lambda row: f"{1000.0 * row.frame_seconds:,.0f} ms"),
+)
+"""The table's lines: what each is called, and what it says of a method; WRONG means nothing unless verified."""
+
+
+def csv_text(results: Results) -> str:
     """The table as CSV, parts of 1 and seconds as they are."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

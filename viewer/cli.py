@@ -70,13 +70,16 @@ _BENCH_EXAMPLES = """\
 examples:
   shadowcull bench kitchen.aff --path-frames 100
   shadowcull bench Robot.aff --frames 100:200 --size 256x256 --verify
-  shadowcull bench default --methods paper --symmetric --json default.json --csv default.csv
+  shadowcull bench default --methods none,paper --symmetric --json default.json --csv default.csv
+  shadowcull bench kitchen.aff --path-frames 100 --verify --plot kitchen.svg
 
 Savings are those of shadow rays against the method none, averaged over frames, as in the paper's
-Table 1. Ctrl-C ends the run and keeps the frames that are done.
+Table 1. Ctrl-C ends the run and keeps the frames that are done: the table and the files are of these,
+and the exit code is 130; a second one ends it at once.
 
 The JSON holds scene, size, frames, and for each method a list with an entry per frame of each figure;
-the CSV is the table.
+the CSV is the table. The plot shows what is saved frame by frame, with the average and the most, and
+with --verify the wrong answers.
 """
 
 _INFO_EXAMPLES = """\
@@ -237,20 +240,26 @@ def _bench(arguments: list[str]) -> int:
     )
     add = parser.add_argument
     add("scene", nargs="?", metavar="SCENE", help=_scene_help())
-    add("--methods", type=lambda text: text.split(","), default=["paper"], metavar="M,...", help="none, paper")
+    add(
+        "--methods",
+        type=lambda text: [name.strip() for name in text.split(",")],
+        default=["paper"],
+        metavar="M,...",
+        help="none, paper; none is always among them (default: paper)",
+    )
     add("--path-frames", type=_count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
     add("--frames", metavar="A:B", help="only the frames A to B - 1 of the path")
     add("--size", type=_size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
     add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
     add("--json", type=Path, metavar="FILE", help="every figure of every frame")
     add("--csv", type=Path, metavar="FILE", help="the table")
+    add("--plot", type=Path, metavar="FILE", help="savings per frame, drawn for a slide: a .png, .svg or .pdf")
     _add_tracing_options(parser)
     options = parser.parse_args(arguments)
 
     from viewer import bench
 
-    bench.bench(scene_path(options.scene), options)
-    return 0
+    return 0 if bench.bench(scene_path(options.scene), options) else INTERRUPTED
 
 
 def _add_tracing_options(parser: _Parser) -> None:

@@ -9,13 +9,17 @@ from __future__ import annotations
 
 import signal
 import sys
-from collections.abc import Iterator
+import time
+from bisect import bisect_left
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from datetime import timedelta
 from types import FrameType
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, ProgressColumn, Task, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
+from rich.text import Text
 
 from tracer.scene.model import Cancelled
 from tracer.statistics import FrameStatistics
@@ -30,11 +34,48 @@ def say(line: str) -> None:
     print(f"shadowcull: {one_line(line)}", file=sys.stderr, flush=True)
 
 
+class TimeLeft:
+    """How long steps of uneven length will still take.
+
+    Along a path neighbours are alike: where n steps remain, the last n that were done tell, but no fewer than FEWEST.
+    """
+
+    FEWEST = 8
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._total = 0
+        self._done: list[int] = []
+        self._at: list[float] = []
+
+    def mark(self, done: int, total: int) -> None:
+        """So many steps of `total` are done now."""
+        self._total = total
+        self._at.append(self._clock())
+        self._done.append(done)
+
+    def seconds(self) -> float | None:
+        """What is left, counting the step under way as one like the others; None before the first step is done."""
+        if not self._done or self._done[-1] == self._done[0]:
+            return None
+        done, left = self._done[-1], self._total - self._done[-1]
+        first = bisect_left(self._done, done - max(left, self.FEWEST))
+        pace = (self._at[-1] - self._at[first]) / (done - self._done[first])
+        return left * pace - min(self._clock() - self._at[-1], pace) if left else 0.0
+
+
+class _TimeLeftColumn(ProgressColumn):
+    def render(self, task: Task) -> Text:
+        left = task.fields["left"].seconds() if "left" in task.fields else None
+        return Text("" if left is None else f"{timedelta(seconds=round(left))} left", "progress.remaining")
+
+
 class Work:
     """A long piece of work: `progress` is handed to the tracer, `cancelled` to its renderer."""
 
     def __init__(self) -> None:
         self.stopped = False
+        self._left = TimeLeft()
         self._bar: Progress | None = None
         self._task: TaskID | None = None
 
@@ -42,10 +83,20 @@ class Work:
         """A `Progress` of the tracer; raises Cancelled once Ctrl-C was pressed."""
         if self.stopped:
             raise Cancelled("cancelled")
+        self._left = TimeLeft()
+        self._show(label, fraction)
+
+    def count(self, label: str, done: int, total: int) -> None:
+        """So many of `total` like steps are done: shows the time left too, and leaves stopping to `cancelled`."""
+        self._left.mark(done, total)
+        self._show(label, done / total)
+
+    def _show(self, label: str, fraction: float) -> None:
         if self._bar is not None:
             if self._task is None:
                 self._task = self._bar.add_task(label, total=1.0)
-            self._bar.update(self._task, description=one_line(label), completed=min(max(fraction, 0.0), 1.0))
+            completed = min(max(fraction, 0.0), 1.0 - 1e-9)  # a task that was once finished keeps the time of it
+            self._bar.update(self._task, description=one_line(label), completed=completed, left=self._left)
 
     def cancelled(self) -> bool:
         return self.stopped
@@ -73,7 +124,12 @@ def working() -> Iterator[Work]:
         if not console.is_terminal:
             yield work
             return
-        columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+        columns = (
+            TextColumn("{task.description}", markup=False),
+            BarColumn(bar_width=24),
+            TimeElapsedColumn(),
+            _TimeLeftColumn(),
+        )
         with Progress(*columns, console=console, transient=True) as work._bar:
             yield work
     finally:

@@ -64,8 +64,8 @@ def render(path: Path, options: Namespace) -> None:
         time = _time(scene, options.frame, options.time)
         prepare_kernels(work, len(scene.lights))
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)
-        _render_before(renderer, time, options, work)
-        work.progress(f"tracing {settings.width} x {settings.height}", 0.0)
+        before = _render_before(renderer, time, options, work)
+        work.count(f"tracing {settings.width} x {settings.height}", before, before + options.samples)
         verify = settings.verify or view.needs_verify
         wanted = replace(settings, samples=options.samples, verify=verify, record_lights=options.buffers is not None)
         renderer.settings = wanted
@@ -170,13 +170,15 @@ def _times_before(scene: Scene, time: float, count: int) -> list[float]:
     return [time - step * (available - i) for i in range(first, available)]
 
 
-def _render_before(renderer: Renderer, time: float, options: Namespace, work: Work) -> None:
+def _render_before(renderer: Renderer, time: float, options: Namespace, work: Work) -> int:
+    """Render the frames of `--warmup`; returns how many there are."""
     times = _times_before(renderer.scene, time, options.warmup)
     if len(times) < options.warmup:
         work.note(f"--warmup {options.warmup}: only {len(times)} frames come before this one")
     for done, earlier in enumerate(times):
-        work.progress(f"warming up, frame {done + 1} of {len(times)}", done / len(times))
+        work.count(f"warming up, frame {done + 1} of {len(times)}", done, len(times) + options.samples)
         renderer.render(earlier, options.camera, work.cancelled)
+    return len(times)
 
 
 def _write_picture(path: Path, scene: Scene, frame: Frame, options: Namespace) -> None:

@@ -39,5 +39,14 @@ def write_whole(path: Path, write: Callable[[BinaryIO], None]) -> None:
         temporary.unlink(missing_ok=True)
 
 
+def write_text(path: Path, text: str) -> None:
+    """As `write_whole`, in UTF-8."""
+
+    def write(file: BinaryIO) -> None:
+        file.write(text.encode())
+
+    write_whole(path, write)
+
+
 def _temporary(path: Path) -> Path:
     return path.with_name(f".{path.name[:100]}.{os.getpid()}.part")
