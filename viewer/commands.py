@@ -26,6 +26,7 @@ HELD_KEYS = (
     ("Left or right drag", "look around (fly); orbit around what was clicked, or pan (orbit)"),
     ("Middle drag", "pan"),
     ("Wheel", "flying speed (fly); nearer and farther (orbit)"),
+    ("Drag the wipe's line", "compare the picture with the right one"),
     ("Click", "inspect a pixel"),
 )
 

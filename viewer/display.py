@@ -3,7 +3,8 @@
 A frame's buffers become textures once, when it arrives; a view is one pass of a small shader over
 them into an RGBA target, which ImGui then shows as an image.  Modes and counts travel as one entry
 per primitive, laid out in rows of a 2D texture, and the shader looks them up by the primitive's
-number.  So changing the view, the light or the selection never traces and never uploads anything.
+number.  So changing the view, the light or the selection never traces and never uploads anything;
+only what the views of verified frames need is brought there when the first of them is drawn.
 
 All of it runs before the widgets of a frame, and leaves the window's framebuffer bound as it was.
 """

@@ -14,6 +14,7 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
 from viewer import views
 from viewer.history import SERIES, History
+from viewer.panels.widgets import percent
 from viewer.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
 from viewer.resolution import ResolutionControl, divided
 
@@ -89,6 +90,14 @@ def test_rings_lie_at_one_distance_and_grow_with_the_picture(size, radius, thick
     ring = marks == views.Mark.RING
     assert ring.any() and (distance[ring] > radius).all()
     np.testing.assert_array_equal(ring, (distance > radius + 0.5) & (distance < radius + thickness + 0.5))
+
+
+@pytest.mark.parametrize(
+    ("part", "whole", "said"),
+    [(0, 5, "0.0 %"), (5, 0, "-"), (1, 8, "12.5 %"), (1, 2000, "0.1 %"), (1, 9000, "0.011 %"), (3, 317e6, "9.5e-07 %")],
+)
+def test_a_small_share_does_not_look_like_none(part, whole, said):
+    assert percent(part, whole) == said
 
 
 def test_no_rings_where_nothing_is_wrong():

@@ -42,6 +42,9 @@ def _details(ui: Ui, pick: Pick) -> None:
             if pick.material is not None:
                 value("Material", pick.material.name, _describe(pick))
             value("Pixels", f"{count(pick.pixels)} now, {count(pick.highest)} at most", "that this primitive covers")
+            if pick.wrong is not None:
+                answers = f"{count(pick.wrong)} shadow {'answer' if pick.wrong == 1 else 'answers'}"
+                value("Wrong here", answers, "of this pixel, of any light at any bounce: what is mirrored counts too")
     heading("Modes")
     _modes(ui, pick)
     paragraph(_verdict(pick), QUIET)
@@ -49,9 +52,6 @@ def _details(ui: Ui, pick: Pick) -> None:
     with properties("pixel", 5.8) as shown:
         if shown:
             value("At", f"{pick.x}, {pick.y}")
-            if pick.wrong is not None:
-                tip = "shadow answers of this pixel that a trace contradicts, at all bounces and of all lights"
-                value("Wrong answers", count(pick.wrong), tip)
             value("Depth", f"{pick.depth:.5g}")
             if pick.point is not None:
                 value("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
