@@ -1,0 +1,111 @@
+"""Vectors of the processor as values in kernels.
+
+numba leaves loops to LLVM's vectorisers, which give up on most that matter.  Here a vector is a type
+of its own: `f32x16` holds sixteen float32, lives in registers, and is added, compared and selected
+like a number; a comparison gives a mask.  What is written is what runs, and reads like arithmetic:
+
+    t = (load_f32x16(planes) - origin) * inverse          # a scalar stands for all lanes
+    store(distances, select(t < nearest, t, nearest))
+
+- `vectors`: the types, arithmetic, comparison, masks, selection, reduction;
+- `addresses`: memory as integers, loading and storing;
+- `bits`: counting and finding bits, and numbers as their bits.
+
+Lanes never touch each other, but in reductions.  `fma` rounds once where the processor can, else
+twice; either way a lane computes exactly what a scalar does with the same operations.  LLVM splits
+vectors that are wider than the processor's, so that everything runs everywhere.
+"""
+
+from tracer.simd.addresses import (
+    address_of,
+    load_f32,
+    load_f32x8,
+    load_f32x16,
+    load_i32,
+    load_i32x8,
+    load_i32x16,
+    load_i64,
+    load_mask16,
+    local_memory,
+    store,
+    store_mask,
+    store_where,
+)
+from tracer.simd.bits import as_f32, as_i32, leading_zeros, lowest_bit, ones
+from tracer.simd.functions import power
+from tracer.simd.vectors import (
+    F32x8,
+    F32x16,
+    I32x8,
+    I32x16,
+    Mask,
+    Vector,
+    all_lanes,
+    any_lane,
+    bits_of,
+    f32x8,
+    f32x16,
+    fma,
+    i32x8,
+    i32x16,
+    lane_of,
+    lane_numbers_x16,
+    largest,
+    mask8,
+    mask16,
+    maximum,
+    minimum,
+    select,
+    smallest,
+    square_root,
+    to_f32,
+    to_i32,
+)
+
+__all__ = [
+    "F32x8",
+    "F32x16",
+    "I32x8",
+    "I32x16",
+    "Mask",
+    "Vector",
+    "address_of",
+    "all_lanes",
+    "any_lane",
+    "as_f32",
+    "as_i32",
+    "bits_of",
+    "f32x8",
+    "f32x16",
+    "fma",
+    "i32x8",
+    "i32x16",
+    "lane_numbers_x16",
+    "lane_of",
+    "largest",
+    "leading_zeros",
+    "load_f32",
+    "load_f32x8",
+    "load_f32x16",
+    "load_i32",
+    "load_i32x8",
+    "load_i32x16",
+    "load_i64",
+    "load_mask16",
+    "local_memory",
+    "lowest_bit",
+    "mask8",
+    "mask16",
+    "maximum",
+    "minimum",
+    "ones",
+    "power",
+    "select",
+    "smallest",
+    "square_root",
+    "store",
+    "store_mask",
+    "store_where",
+    "to_f32",
+    "to_i32",
+]

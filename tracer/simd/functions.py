@@ -1,0 +1,51 @@
+"""Functions of whole vectors, from the operations."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from tracer.simd.bits import as_f32, as_i32
+from tracer.simd.vectors import f32x16, fma, maximum, minimum, select, to_f32, to_i32
+
+ONE, HALF = np.float32(1), np.float32(0.5)
+ROOT_HALF = np.float32(0.70710678)
+
+
+@njit(forceinline=True, nogil=True, error_model="numpy", no_cpython_wrapper=True)
+def _log2(x):
+    """Logarithm to base 2 of sixteen normal, positive float32; to some 2e-7 of max(1, itself)."""
+    bits = as_i32(x)
+    exponent = to_f32((bits >> np.int32(23)) - np.int32(127))
+    m = as_f32((bits & np.int32(0x7FFFFF)) | np.int32(0x3F800000))
+    high = m > np.float32(1.41421356)
+    m, exponent = select(high, m * HALF, m), select(high, exponent + ONE, exponent)
+    s = (m - ONE) / (m + ONE)  # then ln m = 2 artanh s
+    q = s * s
+    series = fma(
+        q, fma(q, fma(q, fma(q, np.float32(1 / 9), np.float32(1 / 7)), np.float32(0.2)), np.float32(1 / 3)), ONE
+    )
+    return fma(s * np.float32(2.885390082), series, exponent)
+
+
+@njit(forceinline=True, nogil=True, error_model="numpy", no_cpython_wrapper=True)
+def _exp2(x):
+    """2 to the power of sixteen float32; 0 from -126 down, 2^127 at most."""
+    x = minimum(x, np.float32(127))
+    small = x <= np.float32(-126)
+    x = maximum(x, np.float32(-126))
+    whole = to_i32(x + select(x < np.float32(0), -HALF, HALF))
+    f = (x - to_f32(whole)) * np.float32(0.69314718)
+    series = fma(f, fma(f, fma(f, fma(f, fma(f, np.float32(1 / 720), np.float32(1 / 120)), np.float32(1 / 24)),
+                               np.float32(1 / 6)), HALF), ONE)  # fmt: skip
+    series = fma(f, series, ONE)
+    return select(small, np.float32(0), series * as_f32((whole + np.int32(127)) << np.int32(23)))
+
+
+@njit(forceinline=True, nogil=True, error_model="numpy", no_cpython_wrapper=True)
+def power(x, y):
+    """x to the power of y, sixteen float32 each, x >= 0 and y >= 0; 0 for what is below 2^-126, 1 where y is 0."""
+    tiny = np.float32(1.1754944e-38)
+    result = _exp2(maximum(y * _log2(maximum(x, tiny)), np.float32(-127)))
+    result = select(x < tiny, np.float32(0), result)
+    return select(y == np.float32(0), ONE, result)
