@@ -10,12 +10,11 @@ from typing import Any
 
 from llvmlite import ir
 from numba.core import cgutils, types
-from numba.extending import intrinsic
 
-from tracer.simd.vectors import F32x8, F32x16, I32x8, I32x16, Mask, Vector
+from tracer.simd.vectors import F32x8, F32x16, I32x8, I32x16, Mask, Vector, operation
 
 
-@intrinsic
+@operation
 def address_of(typingctx, array):
     """Address of the first element of a contiguous array."""
     if not isinstance(array, types.Array) or array.layout != "C":
@@ -28,7 +27,7 @@ def address_of(typingctx, array):
     return types.int64(array), codegen
 
 
-@intrinsic
+@operation
 def local_memory(typingctx, size):
     """Address of so many bytes (a literal number) that last until the calling kernel returns, aligned to 64."""
     if not isinstance(size, types.IntegerLiteral):
@@ -49,13 +48,13 @@ def _pointer(context: Any, builder: Any, address: Any, kind: types.Type) -> Any:
 
 
 def _loading(kind: types.Type) -> Any:
-    @intrinsic
+    @operation
     def load(typingctx, address):
         """What lies at an address."""
 
         def codegen(context, builder, sig, args):
             value = builder.load(_pointer(context, builder, args[0], kind))
-            value.align = 4 if isinstance(kind, Vector) else kind.bitwidth // 8
+            value.align = 4 if isinstance(kind, Vector) else kind.bitwidth // 8  # type: ignore[attr-defined]
             return value
 
         return kind(types.int64), codegen
@@ -68,7 +67,7 @@ load_f32x8, load_f32x16, load_i32x8, load_i32x16, load_f32, load_i32, load_i64 =
 )
 
 
-@intrinsic
+@operation
 def store(typingctx, address, value):
     """Write a vector, a float32, an int32 or an int64 to an address."""
     if not isinstance(value, (Vector, types.Float, types.Integer)):
@@ -77,13 +76,13 @@ def store(typingctx, address, value):
 
     def codegen(context, builder, sig, args):
         written = builder.store(args[1], _pointer(context, builder, args[0], kind))
-        written.align = 4 if isinstance(kind, Vector) else kind.bitwidth // 8
+        written.align = 4 if isinstance(kind, Vector) else kind.bitwidth // 8  # type: ignore[attr-defined]
         return context.get_dummy_value()
 
     return types.void(types.int64, kind), codegen
 
 
-@intrinsic
+@operation
 def store_where(typingctx, address, value, mask):
     """Write those lanes of a vector whose mask is true; the others' memory is not touched."""
     if not isinstance(value, Vector) or not isinstance(mask, Mask):
@@ -102,7 +101,7 @@ def store_where(typingctx, address, value, mask):
 
 
 def _truths(lanes: int) -> Any:
-    @intrinsic
+    @operation
     def load(typingctx, address):
         """A mask from as many bools in memory."""
 
@@ -120,7 +119,7 @@ def _truths(lanes: int) -> Any:
 load_mask16 = _truths(16)
 
 
-@intrinsic
+@operation
 def store_mask(typingctx, address, mask):
     """Write a mask as so many bools."""
     if not isinstance(mask, Mask):

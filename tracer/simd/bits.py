@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from llvmlite import ir
 from numba.core import types
-from numba.extending import intrinsic
 
-from tracer.simd.vectors import F32x8, F32x16, I32x8, I32x16
+from tracer.simd.vectors import F32x8, F32x16, I32x8, I32x16, operation
 
 _AS_INTEGERS = {F32x8: I32x8, F32x16: I32x16, types.float32: types.int32}
 _AS_FLOATS = {integer: floating for floating, integer in _AS_INTEGERS.items()}
 
 
-@intrinsic
+@operation
 def lowest_bit(typingctx, bits):
     """Number of the lowest set bit of an int64; 64 where none is set."""
     return types.int64(types.int64), lambda context, builder, sig, args: builder.cttz(
@@ -20,7 +19,7 @@ def lowest_bit(typingctx, bits):
     )
 
 
-@intrinsic
+@operation
 def leading_zeros(typingctx, bits):
     """How many unset bits lie above the highest set one of an int64."""
     return types.int64(types.int64), lambda context, builder, sig, args: builder.ctlz(
@@ -28,13 +27,13 @@ def leading_zeros(typingctx, bits):
     )
 
 
-@intrinsic
+@operation
 def ones(typingctx, bits):
     """How many bits of an int64 are set."""
     return types.int64(types.int64), lambda context, builder, sig, args: builder.ctpop(args[0])
 
 
-@intrinsic
+@operation
 def as_i32(typingctx, value):
     """The bits of float32 as int32, one or a vector of them."""
     if value not in _AS_INTEGERS:
@@ -46,7 +45,7 @@ def as_i32(typingctx, value):
     return _AS_INTEGERS[value](value), codegen
 
 
-@intrinsic
+@operation
 def as_f32(typingctx, value):
     """int32 taken as the bits of float32, one (given by any integer) or a vector of them."""
     if isinstance(value, types.Integer):

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from tracer.kernels import inlined
 from tracer.simd.bits import as_f32, as_i32
-from tracer.simd.vectors import f32x16, fma, maximum, minimum, select, to_f32, to_i32
+from tracer.simd.vectors import fma, maximum, minimum, select, to_f32, to_i32
 
 ONE, HALF = np.float32(1), np.float32(0.5)
 ROOT_HALF = np.float32(0.70710678)
 
 
-@njit(forceinline=True, nogil=True, error_model="numpy", no_cpython_wrapper=True)
+@inlined
 def _log2(x):
     """Logarithm to base 2 of sixteen normal, positive float32; to some 2e-7 of max(1, itself)."""
     bits = as_i32(x)
@@ -28,7 +28,7 @@ def _log2(x):
     return fma(s * np.float32(2.885390082), series, exponent)
 
 
-@njit(forceinline=True, nogil=True, error_model="numpy", no_cpython_wrapper=True)
+@inlined
 def _exp2(x):
     """2 to the power of sixteen float32; 0 from -126 down, 2^127 at most."""
     x = minimum(x, np.float32(127))
@@ -42,7 +42,7 @@ def _exp2(x):
     return select(small, np.float32(0), series * as_f32((whole + np.int32(127)) << np.int32(23)))
 
 
-@njit(forceinline=True, nogil=True, error_model="numpy", no_cpython_wrapper=True)
+@inlined
 def power(x, y):
     """x to the power of y, sixteen float32 each, x >= 0 and y >= 0; 0 for what is below 2^-126, 1 where y is 0."""
     tiny = np.float32(1.1754944e-38)

@@ -12,6 +12,8 @@ from numba.core.typeconv import Conversion
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, lower_cast, models, register_model
 
+operation: Any = intrinsic  # untyped: called without the typing context
+
 
 class Vector(types.Type):
     """So many lanes of float32 or int32."""
@@ -156,7 +158,7 @@ _define_on_masks(operator.invert, lambda builder, a: builder.not_(a), 1)
 
 
 def _splatting(kind: Vector) -> Any:
-    @intrinsic
+    @operation
     def make(typingctx: Any, value: Any) -> Any:
         """A vector whose lanes all hold this number."""
         return kind(kind), lambda context, builder, sig, args: args[0]
@@ -168,7 +170,7 @@ f32x8, f32x16, i32x8, i32x16 = (_splatting(kind) for kind in (F32x8, F32x16, I32
 
 
 def _masking(lanes: int) -> Any:
-    @intrinsic
+    @operation
     def make(typingctx: Any, bits: Any) -> Any:
         """The mask of an integer's lowest bits, lane 0 the lowest."""
 
@@ -183,14 +185,14 @@ def _masking(lanes: int) -> Any:
 mask8, mask16 = _masking(8), _masking(16)
 
 
-@intrinsic
+@operation
 def lane_numbers_x16(typingctx):
     """0, 1, ... 15 as int32."""
     kind = ir.VectorType(ir.IntType(32), 16)
     return I32x16(), lambda context, builder, sig, args: ir.Constant(kind, list(range(16)))
 
 
-@intrinsic
+@operation
 def bits_of(typingctx, mask):
     """A mask as an int64, lane 0 the lowest bit."""
 
@@ -200,7 +202,7 @@ def bits_of(typingctx, mask):
     return (types.int64(mask), codegen) if isinstance(mask, Mask) else None
 
 
-@intrinsic
+@operation
 def any_lane(typingctx, mask):
     """Whether any lane is true."""
 
@@ -211,7 +213,7 @@ def any_lane(typingctx, mask):
     return (types.boolean(mask), codegen) if isinstance(mask, Mask) else None
 
 
-@intrinsic
+@operation
 def all_lanes(typingctx, mask):
     """Whether every lane is true."""
 
@@ -222,7 +224,7 @@ def all_lanes(typingctx, mask):
     return (types.boolean(mask), codegen) if isinstance(mask, Mask) else None
 
 
-@intrinsic
+@operation
 def select(typingctx, mask, a, b):
     """a in the lanes where the mask is true, else b."""
     if not isinstance(mask, Mask):
@@ -237,7 +239,7 @@ def select(typingctx, mask, a, b):
 
 
 def _choosing(symbol: str, what: str) -> Any:
-    @intrinsic
+    @operation
     def choose(typingctx, a, b):
         kind = _common((a, b)) or (types.float32 if isinstance(a, types.Float) and isinstance(b, types.Float) else None)
         if kind is None:
@@ -257,7 +259,7 @@ def _choosing(symbol: str, what: str) -> Any:
 minimum, maximum = _choosing("<", "smaller"), _choosing(">", "larger")
 
 
-@intrinsic
+@operation
 def fma(typingctx, a, b, c):
     """a * b + c of vectors or float32: rounded once where the processor can, else twice, never by a library call."""
     kind = _common((a, b, c)) or (types.float32 if all(isinstance(x, types.Float) for x in (a, b, c)) else None)
@@ -276,7 +278,7 @@ def _declared(builder: Any, name: str, kind: Any, count: int) -> Any:
     return cgutils.get_or_insert_function(builder.module, ir.FunctionType(kind, [kind] * count), f"{name}.{suffix}")
 
 
-@intrinsic
+@operation
 def square_root(typingctx, a):
     """Square root of a vector of float32, or of one."""
     kind = a if isinstance(a, Vector) else types.float32
@@ -288,7 +290,7 @@ def square_root(typingctx, a):
 
 
 def _reducing(symbol: str, what: str) -> Any:
-    @intrinsic
+    @operation
     def reduce(typingctx, a):
         if not isinstance(a, Vector):
             return None
@@ -316,7 +318,7 @@ def _reducing(symbol: str, what: str) -> Any:
 smallest, largest = _reducing("<", "smallest"), _reducing(">", "largest")
 
 
-@intrinsic
+@operation
 def lane_of(typingctx, a, lane):
     """One lane of a vector."""
     if not isinstance(a, Vector):
@@ -324,14 +326,14 @@ def lane_of(typingctx, a, lane):
     return a.element(a, types.int64), lambda context, builder, sig, args: builder.extract_element(*args)
 
 
-@intrinsic
+@operation
 def to_f32(typingctx, a):
     """A vector of int32 as float32, rounded to the nearest."""
     kind = Vector(types.float32, a.lanes)
     return kind(a), lambda context, builder, sig, args: builder.sitofp(args[0], context.get_data_type(kind))
 
 
-@intrinsic
+@operation
 def to_i32(typingctx, a):
     """A vector of float32 as int32, rounded towards zero; no meaning where it does not fit."""
     kind = Vector(types.int32, a.lanes)
