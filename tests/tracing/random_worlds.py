@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
-from hypothesis import settings
+from hypothesis import Phase, settings
 from hypothesis import strategies as st
 
 import tracer
@@ -35,9 +35,10 @@ MATERIALS = (
 )
 
 
-def quickly(examples: int) -> Callable:
-    """Hypothesis, the same examples in every run."""
-    return settings(max_examples=examples, deadline=None, derandomize=True, database=None)
+def quickly(examples: int, shrink: bool = False) -> Callable:
+    """Hypothesis, the same examples in every run.  To shrink a scene that fails takes minutes, and is not asked for."""
+    phases = set(Phase) - (set() if shrink else {Phase.shrink, Phase.explain})
+    return settings(max_examples=examples, deadline=None, derandomize=True, database=None, phases=phases)
 
 
 @dataclass(frozen=True)

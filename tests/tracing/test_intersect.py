@@ -31,7 +31,7 @@ def test_the_interval_of_t_is_open(t_min, t_max, found):
     assert world.any_hits(rays, 1)[0] == found
 
 
-@quickly(60)
+@quickly(60, shrink=True)
 @given(
     st.lists(st.floats(-3, 3), min_size=3, max_size=3),
     st.floats(0.01, 5),

@@ -19,7 +19,7 @@ from tracer.geometry.camera import pinhole
 from tracer.scene.model import Camera
 
 
-@quickly(100)
+@quickly(100, shrink=True)
 @given(st.integers(1, 31), st.data())
 def test_a_word_keeps_every_mode_apart(lights, data):
     word = modes.word_type(lights)
@@ -56,7 +56,7 @@ def test_a_moved_light_is_forgotten_alone():
     assert modes.shadow_mode(words, 1).tolist() == [2, 2]
 
 
-@quickly(200)
+@quickly(200, shrink=True)
 @given(
     st.lists(
         st.tuples(st.integers(0, 3), st.booleans(), st.integers(0, 40), st.integers(0, 10)), min_size=1, max_size=20
@@ -78,7 +78,7 @@ def test_occlusion_modes_are_set_by_the_papers_rules(units, zoom, shadow_bits):
 UNITS = 4
 
 
-@quickly(100)
+@quickly(100, shrink=True)
 @given(st.sampled_from([1, 15, 16, 31, 40]), st.lists(st.booleans(), min_size=UNITS, max_size=UNITS), st.data())
 def test_words_over_many_frames_are_what_the_naive_twin_says(lights, dynamic, data):
     """Lights move, units are hidden or not and cover more or fewer pixels, and workers learn side by side."""
