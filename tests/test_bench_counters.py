@@ -1,0 +1,74 @@
+"""What counters cost: the counters are really out, of nothing else but them, and the comparison is watched."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+
+import pytest
+
+from tests.bench.counters import EDITS, ROOT, WITH, WITHOUT, copy_without_counters, faults, measure
+from tracer.frame import Settings
+from tracer.kernels import cache_folder
+from viewer.resources import embedded_scenes
+
+TRAVERSE, TREE = "tracer/geometry/kdtree/traverse.py", "tracer/geometry/kdtree/tree.py"
+
+
+def test_the_lines_that_count_are_taken_out_and_nothing_else(tmp_path: Path) -> None:
+    copy = copy_without_counters(ROOT, tmp_path)
+    changed = {}
+    for path in sorted((ROOT / "tracer").rglob("*.py")):
+        name = path.relative_to(ROOT).as_posix()
+        before, after = path.read_text().splitlines(), (copy / name).read_text().splitlines()
+        compile("\n".join(after), name, "exec")
+        if before != after:
+            changed[name] = [line for line in difflib.ndiff(before, after) if line[:2] in ("- ", "+ ")]
+    assert set(changed) == {TRAVERSE, TREE}
+    assert len(changed[TRAVERSE]) == 6 and all("s.counts[" in line for line in changed[TRAVERSE])
+    assert len(changed[TREE]) == 5 and all("steps" in line for line in changed[TREE] if line[0] == "-")
+
+
+@pytest.mark.parametrize("edit", EDITS, ids=lambda edit: edit.text.strip())
+def test_sources_that_count_otherwise_are_refused(tmp_path: Path, edit) -> None:
+    for file in (TRAVERSE, TREE):
+        (tmp_path / "sources" / file).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "sources" / file).write_text((ROOT / file).read_text())
+    altered = tmp_path / "sources" / edit.file
+    altered.write_text(altered.read_text().replace(edit.text, edit.text.replace("s", "z"), 1))
+    with pytest.raises(ValueError, match=Path(edit.file).name):
+        copy_without_counters(tmp_path / "sources", tmp_path / "copy")
+
+
+def test_another_way_of_counting_is_refused(tmp_path: Path) -> None:
+    for file in (TRAVERSE, TREE):
+        (tmp_path / "sources" / file).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "sources" / file).write_text((ROOT / file).read_text())
+    (tmp_path / "sources" / "tracer" / "more.py").write_text("def f(counts):\n    counts[TESTS] += 2\n")
+    with pytest.raises(ValueError, match="more.py"):
+        copy_without_counters(tmp_path / "sources", tmp_path / "copy")
+
+
+def test_two_equal_tracers_render_the_same_and_are_found_out() -> None:
+    """Both with counters, as if nothing had been taken out."""
+    trees = {name: (ROOT, cache_folder().parent) for name in (WITH, WITHOUT)}
+    result = measure(trees, embedded_scenes()["figure4"], Settings(32, 32, 2, threads=1), frames=3, start=30)
+    counted, uncounted = (result["results"][name] for name in (WITH, WITHOUT))
+    assert result["frames"] == [30, 33]
+    assert len(counted) == len(uncounted) == 3
+    assert [r["digest"] for r in counted] == [r["digest"] for r in uncounted]
+    assert len({r["digest"] for r in counted}) == 3
+    assert all(0 < r["statistics"]["seconds"] <= r["seconds"] for r in counted)
+    assert len(result["faults"]) == 3 and all("were counted" in fault for fault in result["faults"])
+
+
+def test_another_picture_is_a_fault() -> None:
+    work = {"traversal_steps": 1, "intersection_tests": 1}
+    none = dict.fromkeys(work, 0)
+    counted = {"digest": "a", "statistics": {"primary": work, "secondary": none, "shadow": none}}
+    uncounted = {"digest": "a", "statistics": dict.fromkeys(("primary", "secondary", "shadow"), none)}
+    assert faults({WITH: [counted], WITHOUT: [uncounted]}, 7) == []
+    (fault,) = faults({WITH: [counted], WITHOUT: [uncounted | {"digest": "b"}]}, 7)
+    assert fault.startswith("frame 7:")
+    assert faults({WITH: [uncounted], WITHOUT: [uncounted]}, 7)
+    assert faults({WITH: [], WITHOUT: []}, 7)
