@@ -66,7 +66,7 @@ class Step:
 
     number: int
     distance: float
-    camera: dict[str, Any]
+    camera: Camera
     pixels: int
     highest: int
     occlusion: str
@@ -221,7 +221,7 @@ def _step(frame: Frame, start: Aim, number: int, before: list[Step]) -> Step:
     return Step(
         number=number,
         distance=math.dist(frame.camera.position, start.target),
-        camera=frame.camera.to_json(),
+        camera=frame.camera,
         pixels=int(frame.pixel_count[start.primitive]),
         highest=int(frame.highest_count[start.primitive]),
         occlusion=occlusion,

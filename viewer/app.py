@@ -29,6 +29,7 @@ from viewer.panels import (
     camera,
     culling,
     dialogs,
+    experiment,
     inspector,
     picture,
     plots,
@@ -38,6 +39,7 @@ from viewer.panels import (
     statistics,
     status,
     view,
+    zoom,
 )
 from viewer.preferences import config_folder, load_preferences
 from viewer.resources import default_scene
@@ -56,6 +58,8 @@ PANELS: dict[str, tuple[str, Callable[[Ui], None]]] = {
     "Culling": ("RightMiddle", culling.show),
     "Inspector": ("RightBottom", inspector.show),
     "Plots": ("Bottom", plots.show),
+    "Experiment": ("Bottom", experiment.show),
+    "Zoom test": ("Bottom", zoom.show),
 }
 
 
@@ -72,6 +76,7 @@ class App:
         self.params = self._params()
         self.ui.request_exit = self._exit
         self.ui.reset_layout = self._reset_layout
+        self.ui.show_panel = self.params.docking_params.focus_dockable_window
         self._frame_began = time.perf_counter()
         self._capture_this_frame = False
         if problem:
@@ -134,7 +139,7 @@ class App:
         p = c.preferences
         display.draw(
             Look(
-                view=c.drawn_view,
+                view=c.tracing.drawn_view,
                 light=c.session.light,
                 shading=p.shading,
                 outlines=p.outlines,
@@ -142,13 +147,14 @@ class App:
                 smooth=p.smooth_upscaling,
                 marked=p.mark_wrong,
                 wipe=c.session.wipe,
-                line=not c.becoming_finer,
+                line=not c.tracing.becoming_finer,
             )
         )
 
     def _capture_picture(self) -> None:
         c = self.controller
-        ready = c.drawn_view is c.session.view and not c.becoming_finer  # else the picture is saved when it has come
+        shown = c.tracing.drawn_view is c.session.view
+        ready = shown and not c.tracing.becoming_finer  # else the picture is saved when it has come
         if self.ui.capture_wanted is CaptureKind.PICTURE and self.ui.display is not None and ready:
             self.ui.capture_wanted = None
             self.controller.keeper.capture(self.ui.display.read() if self.controller.frame is not None else None)

@@ -11,6 +11,7 @@ import json
 from argparse import Namespace
 from collections.abc import Callable
 from dataclasses import astuple, fields
+from functools import partial
 from pathlib import Path
 
 from rich.table import Table
@@ -23,7 +24,7 @@ from tracer.scene.load import load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from viewer.console import Work, print_table, working
 from viewer.headless import prepare_kernels, tracing_settings
-from viewer.outputs import check_writable, write_text
+from viewer.outputs import check_outputs, write_each, write_text
 
 
 def bench(path: Path, options: Namespace) -> bool:
@@ -45,7 +46,7 @@ def bench(path: Path, options: Namespace) -> bool:
         finished = len(results.frames) == len(numbers)
         if not finished:
             work.note(f"cancelled after {len(results.frames)} of {len(numbers)} frames; the table is of these")
-        failures = _write(results, writers)
+        failures = write_each(partial(write, results) for write in writers)
     print_table(_table(results, options.verify))
     if failures:
         raise OSError("; ".join(failures))
@@ -84,9 +85,6 @@ _Writer = Callable[[Results], None]
 
 def _writers(options: Namespace, methods: list[str]) -> list[_Writer]:
     """What writes each file that was asked for; raises ValueError and OSError for one that cannot be."""
-    outputs = [path for path in (options.json, options.csv, options.plot) if path is not None]
-    if len({path.resolve() for path in outputs}) < len(outputs):
-        raise ValueError("--json, --csv and --plot: give each a file of its own")
     writers: list[_Writer] = []
     if options.json is not None:
         writers.append(lambda results: write_text(options.json, json.dumps(results.to_dict())))
@@ -99,20 +97,8 @@ def _writers(options: Namespace, methods: list[str]) -> list[_Writer]:
         if methods == [REFERENCE]:
             raise ValueError(f"--plot: nothing to compare with {REFERENCE}; give another of --methods")
         writers.append(lambda results: figures.save(figures.savings_figure(results, options.verify), options.plot))
-    for path in outputs:
-        check_writable(path)
+    check_outputs({"--json": options.json, "--csv": options.csv, "--plot": options.plot})
     return writers
-
-
-def _write(results: Results, writers: list[_Writer]) -> list[str]:
-    """Write all files, and return why some could not be: no failure takes the other files along."""
-    failures = []
-    for write in writers:
-        try:
-            write(results)
-        except OSError as error:
-            failures.append(str(error))
-    return failures
 
 
 def frame_range(text: str | None, count: int) -> range:

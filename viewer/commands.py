@@ -17,7 +17,7 @@ from viewer.picking import extent_at, point_at
 from viewer.ui import CaptureKind, Ui
 from viewer.views import View
 
-MENUS = ("File", "View", "Camera", "Time", "Culling", "Help")
+MENUS = ("File", "View", "Camera", "Time", "Culling", "Run", "Help")
 
 HELD_KEYS = (
     ("W  A  S  D", "fly forward, left, back, right"),
@@ -51,7 +51,7 @@ class Command:
 
 def build(ui: Ui) -> list[Command]:
     """All commands, in the order of the menus."""
-    return [*_file(ui), *_view(ui), *_camera(ui), *_time(ui), *_culling(ui), *_help(ui)]
+    return [*_file(ui), *_view(ui), *_camera(ui), *_time(ui), *_culling(ui), *_run(ui), *_help(ui)]
 
 
 def _file(ui: Ui) -> list[Command]:
@@ -69,7 +69,6 @@ def _file(ui: Ui) -> list[Command]:
     return [
         Command("Open...", "File", browse, "Ctrl+O"),
         Command("Reload", "File", c.opener.reload, "F5", enabled=lambda: c.session.scene is not None),
-        Command("Stop loading", "File", c.opener.cancel, "Escape", enabled=lambda: c.opener.load_job is not None),
         Command("Save picture", "File", want(CaptureKind.PICTURE), "F12", separated=True),
         Command("Save picture with panels", "File", want(CaptureKind.WINDOW), "Shift+F12"),
         Command("Quit", "File", lambda: ui.request_exit(), "Ctrl+Q", separated=True),
@@ -167,6 +166,32 @@ def _culling(ui: Ui) -> list[Command]:
         Command("Trace again", "Culling", c.trace_again, "T"),
         Command("Keep tracing at rest", "Culling", toggle_tracing, "K", checked=lambda: p.keep_tracing),
     ]  # fmt: skip
+
+
+def _run(ui: Ui) -> list[Command]:
+    c = ui.controller
+    runner = c.runner
+
+    def start(panel: str, begin: Callable[[], None]) -> Callable[[], None]:
+        def run() -> None:
+            ui.show_panel(panel)
+            begin()
+
+        return run
+
+    def stop() -> None:
+        if c.opener.load_job is not None:
+            c.opener.cancel()
+        else:
+            runner.stop()
+
+    idle = lambda: c.session.scene is not None and runner.current is None  # noqa: E731
+    busy = lambda: c.opener.load_job is not None or runner.current is not None  # noqa: E731
+    return [
+        Command("Experiment", "Run", start("Experiment", runner.start_experiment), enabled=idle),
+        Command("Zoom test", "Run", start("Zoom test", runner.start_zoom_test), enabled=idle),
+        Command("Stop", "Run", stop, "Escape", enabled=busy, separated=True),
+    ]
 
 
 def _help(ui: Ui) -> list[Command]:

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from tracer.renderer import Frame, Renderer, Settings
+from tracer.renderer import Frame, Renderer
 from tracer.scene.load import scene_info
 from tracer.scene.model import Camera, Scene
 from viewer import navigation
@@ -25,9 +25,10 @@ from viewer.keeper import Keeper
 from viewer.opener import Opener
 from viewer.picking import Pick, pick, refreshed, typical_depth
 from viewer.preferences import Preferences, save_preferences
-from viewer.render_thread import RenderRequest, RenderThread, Traced
-from viewer.resolution import ResolutionControl, divided
+from viewer.render_thread import RenderThread, Traced
+from viewer.runner import Runner
 from viewer.session import Session, Snapshot
+from viewer.tracing import Tracing
 from viewer.views import View
 
 AT_REST_AFTER = 0.25
@@ -59,26 +60,22 @@ class Controller:
 
     def __init__(self, preferences: Preferences, wake: Callable[[], None] = lambda: None) -> None:
         self.preferences = preferences
-        self.session = Session(settings=_settings_from(preferences), view=_view_from(preferences))
+        self.session = Session(settings=preferences.settings(), view=preferences.chosen_view())
         self.wake = wake
         self.render = RenderThread(lambda: self.wake())
-        self.resolution = ResolutionControl()
         self.history = History()
-        self.traced: Traced | None = None
         self.info: dict[str, Any] = {}
         self.selected: Pick | None = None
         self.hovered: tuple[float, float] | None = None
         self.message: Message | None = None
         self.opener = Opener(self)
         self.keeper = Keeper(self)
+        self.runner = Runner(self)
+        self.tracing = Tracing(self)
         self.drawn_seconds = 0.0
         self.size = (0, 0)
         self._glide: Glide | None = None
         self._moving_until = 0.0
-        self._serial = 0
-        self._settled: RenderRequest | None = None
-        self._last_request: RenderRequest | None = None
-        self._chosen: Settings | None = None
         self._last_tick = time.monotonic()
         self._seen = math.inf
 
@@ -98,13 +95,18 @@ class Controller:
         frame = self._take_frame()
         self._pass_time(step)
         self._follow_glide(now)
-        self._request(now)
+        self.tracing.ask()
         return frame
 
     @property
     def frame(self) -> Frame | None:
         """The newest traced frame."""
-        return self.traced.frame if self.traced is not None else None
+        return self.tracing.frame
+
+    @property
+    def traced(self) -> Traced | None:
+        """The newest traced frame with the request it answers."""
+        return self.tracing.traced
 
     @property
     def moving(self) -> bool:
@@ -115,7 +117,7 @@ class Controller:
     @property
     def active(self) -> bool:
         """Whether the window must not doze."""
-        working = self.render.busy or self.opener.busy or self.keeper.busy
+        working = self.render.busy or self.opener.busy or self.keeper.busy or self.runner.current is not None
         return working or self.moving or self.session.playing
 
     def _take_frame(self) -> Frame | None:
@@ -123,28 +125,19 @@ class Controller:
         if error:
             self.say(error, error=True)
             self.session.playing = False
-        traced = self.render.take()
-        if traced is None:
+        of_run = self.runner.follow()
+        if of_run is not None:
+            self.tracing.show(of_run)
+        frame = of_run.frame if of_run is not None else self.tracing.take()
+        if frame is None:
             return None
-        self.traced = traced
-        frame = traced.frame
-        self.resolution.observe(frame.statistics.seconds, frame.width * frame.height)
-        self.history.add(frame, self.drawn_seconds)
+        if of_run is None:
+            self.history.add(frame, self.drawn_seconds)
         if math.isinf(self._seen):  # from the scene's first frame on, so that the speed does not change on the way
             self._seen = typical_depth(frame)
         if self.selected is not None:
             self.selected = refreshed(self.selected, frame)
-        if not self.moving and not self.session.playing:
-            self._settle(traced.request)
         return frame
-
-    def _settle(self, request: RenderRequest) -> None:
-        """At rest the first fine frame of a view teaches the modes; a second one shows what they save."""
-        view = replace(request, settings=replace(request.settings, verify=False), interactive=False, serial=0)
-        learns = request.divisor == 1 and request.settings.method != "none" and request.settings.samples == 1
-        if self.preferences.keep_tracing or (learns and view != self._settled):
-            self._settled = view
-            self._serial += 1
 
     def _pass_time(self, step: float) -> None:
         """Play: in real time, or on to the next frame once this one has been traced."""
@@ -161,96 +154,6 @@ class Controller:
             self.session.move(navigation.blend(self._glide.start, self._glide.end, t))
             if t >= 1.0:
                 self._glide = None
-
-    def _request(self, now: float) -> None:
-        """Ask for what should be seen now, unless it has been asked for, or is there."""
-        width, height = self.full_size
-        if self.session.scene is None or width < 1 or height < 1:
-            return
-        if self._jumped():
-            self.moved()  # a coarse picture of the new view first
-        moving = self.moving
-        coarse = moving and self.preferences.dynamic_resolution
-        divisor = self.resolution.choose(width, height, self.preferences.target_fps) if coarse else 1
-        width, height = divided(width, height, divisor)
-        settings = replace(self.tracing_settings, width=width, height=height)
-        wanted = RenderRequest(self.session.time, self.session.camera, settings, moving, divisor, self._serial)
-        if self._answered(wanted):
-            return
-        self._last_request, self._chosen = wanted, self.session.settings
-        self.render.submit(wanted)
-
-    @property
-    def tracing_settings(self) -> Settings:
-        """What the user has set, and verified where the view needs that."""
-        s = self.session
-        return replace(s.settings, verify=s.settings.verify or s.view.needs_verify)
-
-    def _answered(self, wanted: RenderRequest) -> bool:
-        """Whether a frame has been asked for, or is there.  One that was verified for a view serves the next view."""
-        if wanted == self._last_request or self._same_picture(wanted):
-            return True
-        if self.session.settings != self._chosen:
-            return False
-        verified = replace(wanted, settings=replace(wanted.settings, verify=True))
-        return verified == self._last_request or self._same_picture(verified)
-
-    def _jumped(self) -> bool:
-        """Whether, at rest, something else is to be seen than was last asked for; to verify is to see the same."""
-        if self._last_request is None or self.session.playing or self.moving:
-            return False
-        asked = self._last_request
-        width, height, verify = asked.settings.width, asked.settings.height, asked.settings.verify
-        settings = replace(self.session.settings, width=width, height=height, verify=verify)
-        return (self.session.time, self.session.camera, settings) != (asked.time, asked.camera, asked.settings)
-
-    @property
-    def becoming_finer(self) -> bool:
-        """Whether the picture is a coarse one and a fine one of the same view is to come."""
-        return self.traced is not None and self.traced.request.divisor > 1 and not self.session.playing
-
-    @property
-    def outdated(self) -> bool:
-        """Whether the newest frame was traced with other settings than those now chosen, or lacks to be verified."""
-        if self.frame is None:
-            return False
-        had, wanted = self.frame.settings, self.tracing_settings
-        verify = had.verify or wanted.verify
-        return replace(wanted, width=had.width, height=had.height, verify=verify) != had
-
-    def _same_picture(self, wanted: RenderRequest) -> bool:
-        if self.traced is None or self.render.busy:
-            return False
-        return replace(self.traced.request, interactive=wanted.interactive) == wanted
-
-    @property
-    def full_size(self) -> tuple[int, int]:
-        """The resolution at rest: the window's, or the fixed one (0, 0 while there is nowhere to show it)."""
-        if self.preferences.fixed_resolution and min(self.size) > 0:
-            return self.preferences.fixed_width, self.preferences.fixed_height
-        return self.size
-
-    @property
-    def traced_full_size(self) -> tuple[int, int]:
-        """The size whose aspect the newest frame has: its own, or what it is a coarser version of."""
-        if self.frame is None:
-            return 1, 1
-        divisor = self.traced.request.divisor if self.traced is not None else 1
-        return self.frame.width * divisor, self.frame.height * divisor
-
-    @property
-    def drawn_view(self) -> View:
-        """The view to draw the newest frame in: the picture while one that needs a verified frame waits for it."""
-        unverified = self.frame is not None and self.frame.wrong is None
-        return View.COLOR if self.session.view.needs_verify and unverified else self.session.view
-
-    @property
-    def view_title(self) -> str:
-        """The view, and the light where it shows one."""
-        view = self.session.view
-        if view is not self.drawn_view:
-            return f"{view.label}: verifying ..."
-        return f"{view.label}, light {self.session.light}" if view is View.SHADOW else view.label
 
     # --- messages and selection ------------------------------------------------------------------
 
@@ -278,27 +181,31 @@ class Controller:
 
     def show(self, scene: Scene, renderer: Renderer) -> None:
         """Look at another scene: what was learnt and drawn of the old one is gone, settings and view stay."""
+        self.runner.stop()
         self.session.open(scene)
         self.info = scene_info(scene)
         self.render.use(renderer)
         self.history.clear()
-        self.resolution.forget()
+        self.tracing.forget()
         self._seen = math.inf
-        self.traced = self.selected = self._glide = self._last_request = self._settled = None
+        self.selected = self._glide = None
         self.preferences.remember_scene(Path(scene.path).absolute())
         self.save_preferences()
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot of the open scene."""
+        self.runner.stop()
         self._glide = None
         self.session.restore(snapshot)
-        self._store_settings()
+        self.preferences.keep(self.session.settings)
         self.preferences.view = self.session.view.value
 
     # --- settings --------------------------------------------------------------------------------
 
     def change(self, **changes: Any) -> None:
         """Change fields of `tracer.Settings`; a value that is no good is one line and changes nothing."""
+        if self.runner.refuses():
+            return
         try:
             settings = replace(self.session.settings, **changes)
             settings.validated()
@@ -306,7 +213,7 @@ class Controller:
             self.say(str(error), error=True)
             return
         self.session.settings = settings
-        self._store_settings()
+        self.preferences.keep(settings)
 
     def set_view(self, view: View) -> None:
         self.session.view = view
@@ -322,19 +229,14 @@ class Controller:
 
     def reset_modes(self) -> None:
         """Forget all that was learnt about shadows, and look again."""
-        self.render.reset_modes()
-        self._settled = None
-        self._serial += 1
+        if not self.runner.refuses():
+            self.render.reset_modes()
+            self.tracing.again(modes_are_lost=True)
 
     def trace_again(self) -> None:
         """Trace the same frame once more: the modes may have learnt from the last.  One under way is let finish."""
         if not self.render.busy:
-            self._serial += 1
-
-    def _store_settings(self) -> None:
-        s, p = self.session.settings, self.preferences
-        p.culling, p.symmetric, p.zoom_factor = s.method != "none", s.symmetric, s.zoom_factor
-        p.depth, p.samples, p.threads, p.verify = s.depth, s.samples, s.threads, s.verify
+            self.tracing.again()
 
     # --- camera and time -------------------------------------------------------------------------
 
@@ -355,16 +257,22 @@ class Controller:
 
     def move(self, camera: Camera) -> None:
         """Take the camera in hand and put it there."""
+        if self.runner.refuses():
+            return
         self._glide = None
         self.session.move(camera)
         self.moved()
 
     def glide(self, camera: Camera, start: Camera | None = None) -> None:
         """Move the camera there in a moment's time."""
+        if self.runner.refuses():
+            return
         self._glide = Glide(start or self.session.camera, camera, time.monotonic())
 
     def follow_path(self, follow: bool) -> None:
         """Put the camera on the scene's own path, or take it off where it is."""
+        if self.runner.refuses():
+            return
         self._glide = None
         self.session.free_camera = None if follow else self.session.camera
 
@@ -373,6 +281,8 @@ class Controller:
         self.follow_path(True)
 
     def toggle_play(self) -> None:
+        if self.runner.refuses():
+            return
         if not self.session.animated:
             self.say("this scene has no animation")
             return
@@ -383,6 +293,8 @@ class Controller:
 
     def step(self, frames: int) -> None:
         """Stop, and go so many frames on (or back)."""
+        if self.runner.refuses():
+            return
         self.session.playing = False
         self.session.go_to_frame(self.session.frame + frames)
         self.moved()  # a key that is held down is motion
@@ -398,23 +310,9 @@ class Controller:
         """Stop everything, finish writing pictures and save the preferences; false if something would not stop."""
         deadline = time.monotonic() + timeout
         jobs = [*self.opener.cancel_all(), *self.keeper.saving]
+        self.runner.stop()
         stopped = self.render.close(timeout)
         for job in jobs:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))
         self.save_preferences()
         return stopped
-
-
-def _settings_from(p: Preferences) -> Settings:
-    method = "paper" if p.culling else "none"
-    common = {"symmetric": p.symmetric, "zoom_factor": p.zoom_factor, "depth": p.depth, "samples": p.samples}
-    settings = replace(Settings(), method=method, threads=p.threads, verify=p.verify, **common)  # type: ignore[arg-type]
-    try:
-        settings.validated()
-    except ValueError:
-        return Settings()
-    return settings
-
-
-def _view_from(p: Preferences) -> View:
-    return View(p.view) if p.view in set(View) else View.COLOR

@@ -61,7 +61,7 @@ def render(path: Path, options: Namespace) -> None:
             work.note(f"warning: {warning}")
         if view is View.SHADOW and light >= len(scene.lights):
             raise ValueError(f"--view shadow:{light}: {lights_in_words(len(scene.lights))}")
-        time = _time(scene, options.frame, options.time)
+        time = moment(scene, options.frame, options.time)
         prepare_kernels(work, len(scene.lights))
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)
         before = _render_before(renderer, time, options, work)
@@ -139,7 +139,8 @@ def _check_outputs(output: Path | None, npz: Path | None) -> None:
             check_writable(path)
 
 
-def _time(scene: Scene, frame: int | None, time: float | None) -> float:
+def moment(scene: Scene, frame: int | None, time: float | None) -> float:
+    """The time of `--frame` or `--time`, of the first frame where neither is given; raises ValueError in one line."""
     start, end = scene.time_range
     if time is not None:
         if not (math.isfinite(time) and start <= time <= end):

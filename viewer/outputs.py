@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import BinaryIO
 
@@ -24,6 +24,26 @@ def check_writable(path: Path) -> None:
         probe.unlink()
     except OSError as error:
         raise OSError(f"{path}: the folder {folder} cannot be written to: {error.strerror or error}") from None
+
+
+def check_outputs(outputs: dict[str, Path | None]) -> None:
+    """Raise ValueError or OSError where the files of these options cannot all be written; None is not wanted."""
+    wanted = {option: path for option, path in outputs.items() if path is not None}
+    if len({path.resolve() for path in wanted.values()}) < len(wanted):
+        raise ValueError(f"{', '.join(outputs)}: give each a file of its own")
+    for path in wanted.values():
+        check_writable(path)
+
+
+def write_each(writers: Iterable[Callable[[], None]]) -> list[str]:
+    """Write all files, and return why some could not be: no failure takes the other files along."""
+    failures = []
+    for write in writers:
+        try:
+            write()
+        except OSError as error:
+            failures.append(str(error))
+    return failures
 
 
 def write_whole(path: Path, write: Callable[[BinaryIO], None]) -> None:

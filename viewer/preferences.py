@@ -18,6 +18,9 @@ from typing import Any
 
 import platformdirs
 
+from tracer.frame import Settings
+from viewer.views import View
+
 SETTINGS_FILE = "settings.json"
 RECENT_SCENES = 10
 DEFAULT_TEMPLATE = "{scene}-{view}-{frame:04d}-{date}-{time}.png"
@@ -68,6 +71,24 @@ class Preferences:
     screenshot_template: str = DEFAULT_TEMPLATE
     recent: list[str] = field(default_factory=list)
     bookmarks: dict[str, list[dict]] = field(default_factory=dict)
+
+    def settings(self) -> Settings:
+        """Settings to trace with; the defaults where these do not go together."""
+        method = "paper" if self.culling else "none"
+        names = ("symmetric", "zoom_factor", "depth", "samples", "threads", "verify")
+        try:
+            return Settings(method=method, **{name: getattr(self, name) for name in names}).validated()
+        except ValueError:
+            return Settings()
+
+    def keep(self, settings: Settings) -> None:
+        """Remember what was chosen to trace with."""
+        s = settings
+        self.culling, self.symmetric, self.zoom_factor = s.method != "none", s.symmetric, s.zoom_factor
+        self.depth, self.samples, self.threads, self.verify = s.depth, s.samples, s.threads, s.verify
+
+    def chosen_view(self) -> View:
+        return View(self.view) if self.view in set(View) else View.COLOR
 
     def remember_scene(self, path: Path) -> None:
         """Put a scene at the head of the recent ones."""

@@ -6,6 +6,9 @@ under way is cut short when it has become worthless (another scene, other settin
 resolution of a view that was left), but a quick, coarse one is let finish: while the camera
 moves, the next request comes before the last picture is ready, and cancelling each would show
 none at all.
+
+An experiment is a `Task`: it has the thread, and with it the scene's world, to itself until it is
+done; the newest request of that time waits for its end.
 """
 
 from __future__ import annotations
@@ -58,6 +61,12 @@ class Traced:
     frame: Frame
 
 
+class Task(Protocol):
+    """Long work with the renderer's world.  It ends soon after `cancelled()` turns true, and raises nothing."""
+
+    def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None: ...
+
+
 class RenderThread:
     """Owns the renderer: nobody else calls it while this lives."""
 
@@ -67,6 +76,8 @@ class RenderThread:
         self._renderer: Traces | None = None
         self._waiting: RenderRequest | None = None
         self._running: RenderRequest | None = None
+        self._task: Task | None = None
+        self._performing = False
         self._cancel = False
         self._reset = False
         self._closing = False
@@ -93,11 +104,20 @@ class RenderThread:
                 self._cancel = True
             self._changed.notify_all()
 
+    def perform(self, task: Task) -> None:
+        """Do this instead of frames, from now on until it is done; what is under way is cut short, or dropped."""
+        with self._changed:
+            if self._closing:
+                return
+            self._task, self._waiting = task, None
+            self._cancel = True
+            self._changed.notify_all()
+
     def reset_modes(self) -> None:
         """Forget all modes before the next frame."""
         with self._changed:
             self._reset = True
-            self._cancel = True
+            self._cancel = self._cancel or not self._performing  # a task has modes of its own
 
     def take(self) -> Traced | None:
         """The newest finished frame, once."""
@@ -114,7 +134,9 @@ class RenderThread:
     @property
     def busy(self) -> bool:
         with self._changed:
-            return self._running is not None or (self._waiting is not None and self._renderer is not None)
+            if self._running is not None or self._performing:
+                return True
+            return self._renderer is not None and (self._waiting is not None or self._task is not None)
 
     @property
     def running(self) -> RenderRequest | None:
@@ -132,31 +154,44 @@ class RenderThread:
 
     def _run(self) -> None:
         step_back()
-        while (work := self._next()) is not None:
-            renderer, request, reset = work
-            frame, error = None, None
-            try:
-                if reset:
-                    renderer.reset_modes()
-                renderer.settings = request.settings
-                frame = renderer.render(request.time, request.camera, lambda: self._cancel)
-            except Cancelled:
-                pass
-            except Exception as problem:
-                error = f"frame not traced: {one_line(problem)}"
-            self._deliver(renderer, request, frame, error)
+        while (turn := self._next()) is not None:
+            renderer, work, reset = turn
+            if isinstance(work, RenderRequest):
+                self._trace(renderer, work, reset)
+                continue
+            work.work(renderer, lambda: self._cancel)
+            with self._changed:
+                self._performing = False
+            self._wake()
 
-    def _next(self) -> tuple[Traces, RenderRequest, bool] | None:
+    def _next(self) -> tuple[Traces, RenderRequest | Task, bool] | None:
         with self._changed:
-            while not self._closing and (self._waiting is None or self._renderer is None):
+            while not self._closing and (self._renderer is None or (self._task is None and self._waiting is None)):
                 self._changed.wait()
             if self._closing:
                 return None
-            renderer, request, reset = self._renderer, self._waiting, self._reset
-            assert renderer is not None and request is not None
-            self._running, self._waiting = request, None
-            self._cancel = self._reset = False
+            renderer, task, request, reset = self._renderer, self._task, self._waiting, self._reset
+            assert renderer is not None
+            self._cancel = False
+            if task is not None:
+                self._performing, self._task = True, None
+                return renderer, task, False
+            assert request is not None
+            self._running, self._waiting, self._reset = request, None, False
             return renderer, request, reset
+
+    def _trace(self, renderer: Traces, request: RenderRequest, reset: bool) -> None:
+        frame, error = None, None
+        try:
+            if reset:
+                renderer.reset_modes()
+            renderer.settings = request.settings
+            frame = renderer.render(request.time, request.camera, lambda: self._cancel)
+        except Cancelled:
+            pass
+        except Exception as problem:
+            error = f"frame not traced: {one_line(problem)}"
+        self._deliver(renderer, request, frame, error)
 
     def _deliver(self, renderer: Traces, request: RenderRequest, frame: Frame | None, error: str | None) -> None:
         with self._changed:

@@ -11,7 +11,6 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tracer.renderer import Frame
 from viewer.capture import FIELDS
 from viewer.controller import Controller
 from viewer.preferences import default_screenshot_folder
@@ -65,13 +64,15 @@ class Ui:
     renderer_name: str = ""
     request_exit: Callable[[], None] = lambda: None
     reset_layout: Callable[[], None] = lambda: None
-    _cache: dict[str, tuple[Frame, int, Any]] = field(default_factory=dict)
+    show_panel: Callable[[str], Any] = lambda label: None
+    zoom_all_steps: bool = False
+    _cache: dict[str, tuple[object, int, Any]] = field(default_factory=dict)
 
-    def cached(self, name: str, frame: Frame, light: int, compute: Callable[[], Any]) -> Any:
-        """What was computed for this frame and light, computed now if it is new."""
+    def cached(self, name: str, of: object, light: int, compute: Callable[[], Any]) -> Any:
+        """What was computed of this object (a frame, results) for this light, computed now if it is new."""
         known = self._cache.get(name)
-        if known is None or known[0] is not frame or known[1] != light:
-            known = self._cache[name] = (frame, light, compute())
+        if known is None or known[0] is not of or known[1] != light:
+            known = self._cache[name] = (of, light, compute())
         return known[2]
 
     def light_name(self, light: int) -> str:

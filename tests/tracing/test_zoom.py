@@ -60,7 +60,7 @@ def test_a_step_records_what_the_frame_says(figure4: zoom.Results):
     world = tracer.load_scene(FIGURE_4)
     renderer = tracer.Renderer(world, replace(SETTINGS, verify=True))
     for step in figure4.approaches[0].steps:
-        frame = renderer.render(camera=Camera.from_json(step.camera))
+        frame = renderer.render(camera=step.camera)
         assert (step.pixels, step.highest) == (frame.pixel_count[0], frame.highest_count[0])
         assert step.pixels == np.count_nonzero(frame.primitive == 0)
         assert step.occlusion == ("INIT", "PARTIALLY_OCCLUDED", "FULLY_RENDERED", "DYNAMIC")[frame.modes[0] & 3]
@@ -77,8 +77,7 @@ def test_the_camera_comes_nearer_by_the_same_part_and_looks_at_the_target(figure
     assert distances[: zoom.STILL_FRAMES] == pytest.approx(20.0, rel=1e-6)
     assert distances[zoom.STILL_FRAMES :] / distances[zoom.STILL_FRAMES - 1 : -1] == pytest.approx(0.94)
     for step in steps:
-        camera = Camera.from_json(step.camera)
-        at = np.asarray(camera.position) + step.distance * camera.basis()[2]
+        at = np.asarray(step.camera.position) + step.distance * step.camera.basis()[2]
         assert at == pytest.approx(np.asarray(figure4.target), abs=1e-9)
 
 

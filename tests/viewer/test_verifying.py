@@ -49,13 +49,13 @@ def desk():
 @pytest.mark.parametrize("view", [View.DIFFERENCE, View.WIPE])
 def test_a_view_of_what_is_wrong_verifies_once_and_other_views_trace_nothing(desk: Desk, view: View):
     desk.c.set_view(view)
-    assert desk.c.drawn_view is View.COLOR and desk.c.outdated, "nothing has been verified yet"
-    assert "verifying" in desk.c.view_title
+    assert desk.c.tracing.drawn_view is View.COLOR and desk.c.tracing.outdated, "nothing has been verified yet"
+    assert "verifying" in desk.c.tracing.title
     assert desk.rest() == [True]
-    assert desk.c.frame.wrong is not None and desk.c.drawn_view is view and not desk.c.outdated
+    assert desk.c.frame.wrong is not None and desk.c.tracing.drawn_view is view and not desk.c.tracing.outdated
     for other in (View.COLOR, View.WIPE, View.DIFFERENCE, View.DEPTH):
         desk.c.set_view(other)
-        assert not desk.c.outdated
+        assert not desk.c.tracing.outdated
         assert desk.rest() == []
     assert not desk.c.session.settings.verify and not desk.c.preferences.verify
 

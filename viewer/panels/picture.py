@@ -51,7 +51,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     if frame is None or texture is None:
         _placeholder(ui, room)
         return
-    width, height = c.traced_full_size
+    width, height = c.tracing.traced_full_size
     factor = min(room.x / width, room.y / height)
     size = ImVec2(max(1.0, width * factor), max(1.0, height * factor))
     at = imgui.get_cursor_pos()
@@ -162,11 +162,11 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     frame, request = c.frame, c.traced.request if c.traced is not None else None
     if frame is None or request is None:
         return
-    text = f"{c.view_title}   {frame.width} x {frame.height}"
+    text = f"{c.tracing.title}   {frame.width} x {frame.height}"
     if request.divisor > 1:
         text += f"   1/{request.divisor}"
     shadow, counter = frame.statistics.shadow, ""
-    if c.drawn_view.needs_verify:
+    if c.tracing.drawn_view.needs_verify:
         counter = f"   {count(shadow.wrong)} wrong of {count(shadow.due)} answers"
     size = imgui.calc_text_size(text + counter)
     if end.x - corner.x < size.x + em(2.0):

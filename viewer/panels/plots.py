@@ -23,9 +23,10 @@ _PLOTS = (
                          ("tests", "tests", _ORANGE))),
     (_LOGARITHMIC, (("traced", "traced_ms", _BLUE), ("drawn", "drawn_ms", _ORANGE))),
 )  # fmt: skip
-_FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
-_AXIS = int(implot.AxisFlags_.no_highlight)
-_LEGEND = implot.LegendFlags_
+FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
+AXIS = int(implot.AxisFlags_.no_highlight)
+LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
+COLORS = (_BLUE, _ORANGE, _GREEN, _SKY)
 
 
 def show(ui: Ui) -> None:
@@ -59,12 +60,12 @@ def show(ui: Ui) -> None:
 def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size: ImVec2) -> None:
     history = ui.controller.history
     per_pixel = ui.per_pixel and title != _LOGARITHMIC
-    if not implot.begin_plot(f"{title}{' per pixel' if per_pixel else ''}##{title}", size, _FLAGS):
+    if not implot.begin_plot(f"{title}{' per pixel' if per_pixel else ''}##{title}", size, FLAGS):
         return
     curves = [(label, _values(ui, name, per_pixel), color) for label, name, color in series]
     last = history.first + max(len(history) - 1, 10)
     top = max(float(values.max()) for _, values, _ in curves)
-    implot.setup_axes("", "", _AXIS, _AXIS)
+    implot.setup_axes("", "", AXIS, AXIS)
     implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
     implot.setup_axis_format(implot.ImAxis_.y1, "%.4g")
     if title == _LOGARITHMIC:  # full frames and those in motion differ a hundredfold
@@ -73,7 +74,7 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
     else:
         lowest, highest = 0.0, 1.12 * top if top > 0.0 else 1.0
     implot.setup_axes_limits(history.first, last, lowest, highest, int(imgui.Cond_.always))
-    implot.setup_legend(implot.Location_.south, int(_LEGEND.outside | _LEGEND.horizontal | _LEGEND.no_menus))
+    implot.setup_legend(implot.Location_.south, LEGEND)
     for label, values, color in curves:
         implot.plot_line(label, values, 1.0, float(history.first), implot.Spec(line_color=color, line_weight=1.6))
     implot.end_plot()

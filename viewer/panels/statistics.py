@@ -34,7 +34,7 @@ def show(ui: Ui) -> None:
     divisor = c.traced.request.divisor
     coarse = f" (1/{divisor} of the window)" if divisor > 1 else ""
     clipped(f"for {frame.width} x {frame.height} pixels{coarse}, {'culling' if _culls(frame) else 'no culling'}")
-    if c.outdated:
+    if c.tracing.outdated:
         paragraph("with the settings before; tracing ...", QUIET)
     shadow = s.shadow
     heading("Shadow rays")

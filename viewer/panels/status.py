@@ -23,6 +23,8 @@ def show(ui: Ui) -> None:
             clipped(f"{icon}  {message.text}", ERROR if message.error else None)
             if message.error and imgui.is_item_clicked():
                 c.message = None
+        elif c.runner.current is not None:
+            imgui.text_colored(QUIET, f"{c.runner.current.name}: {c.runner.current.label} ...  Escape stops it")
         elif c.render.busy:
             imgui.text_colored(QUIET, "tracing ...")
         else:

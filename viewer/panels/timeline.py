@@ -39,9 +39,7 @@ def show(ui: Ui) -> None:
     last = session.scene.frames - 1
     changed, frame = imgui.slider_int("##frame", session.frame, 0, last, f"frame %d of {last}")
     if changed:
-        session.playing = False
-        session.go_to_frame(frame)
-        c.moved()
+        c.step(frame - session.frame)
     tooltip("drag to scrub; Ctrl+click to type a frame")
     imgui.same_line()
     imgui.align_text_to_frame_padding()

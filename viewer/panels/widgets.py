@@ -65,10 +65,11 @@ def clipped(text: str, color: ImVec4 | None = None) -> None:
             fits = imgui.calc_text_size(text[:middle] + "...").x <= room
             low, high = (middle, high) if fits else (low, middle - 1)
         shown = text[:low] + "..."
-    if color is None:
-        imgui.text_unformatted(shown)
-    else:
-        imgui.text_colored(color, shown.replace("%", "%%"))
+    if color is not None:
+        imgui.push_style_color(imgui.Col_.text, color)
+    imgui.text_unformatted(shown)
+    if color is not None:
+        imgui.pop_style_color()
     if shown != text:
         tooltip(text)
 

@@ -19,7 +19,7 @@ _DARK, _LIGHT, _HELD = (
 def handle(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
     """Let the pointer drag the line across the picture, which is ImGui's last item; whether the line holds it."""
     c = ui.controller
-    if c.drawn_view is not View.WIPE:
+    if c.tracing.drawn_view is not View.WIPE:
         ui.wiping = False
         return False
     if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left) and _near(ui, corner, size):
@@ -40,7 +40,7 @@ def _near(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """The line, its handle, and the names of both sides at the picture's lower edge."""
     c = ui.controller
-    if c.drawn_view is not View.WIPE or c.frame is None:
+    if c.tracing.drawn_view is not View.WIPE or c.frame is None:
         return
     x = corner.x + c.session.wipe * (end.x - corner.x)
     dark, light, held = (imgui.get_color_u32(color) for color in (_DARK, _LIGHT, _HELD))

@@ -1,0 +1,62 @@
+"""Words of a command line as values; each raises argparse.ArgumentTypeError, in one line, on other words."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Callable
+
+_VIEW_NAMES = {"colour": "color", "primitives": "primitive", "normals": "normal", "count": "pixel-count"}
+
+
+def size(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d{1,6})[xX×](\d{1,6})", text.strip())
+    if not match or not int(match[1]) or not int(match[2]):
+        raise argparse.ArgumentTypeError(f"{text!r} is no size; give one like 640x480")
+    return int(match[1]), int(match[2])
+
+
+def count(least: int, most: int) -> Callable[[str], int]:
+    def parse(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"{text!r} is no whole number") from None
+        if not least <= value <= most:
+            raise argparse.ArgumentTypeError(f"{value} is not in {least} to {most}")
+        return value
+
+    return parse
+
+
+def pixel(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d{1,6}) *, *(\d{1,6})", text.strip(), re.ASCII)
+    if not match:
+        raise argparse.ArgumentTypeError(f"{text!r} is no pixel; give one like 320,200, counted from the upper left")
+    return int(match[1]), int(match[2])
+
+
+def factors(text: str) -> list[float]:
+    from viewer.zoom import parse_factors
+
+    try:
+        return parse_factors(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def view(text: str) -> tuple:
+    """A view, the light it speaks of, and the place of a wipe's line."""
+    from viewer.views import View
+
+    name, colon, detail = text.partition(":")
+    name = _VIEW_NAMES.get(name, name)
+    details = {View.SHADOW: r"\d{1,9}", View.WIPE: r"0|1|[01]?\.\d{1,9}"}
+    known = ", ".join({View.SHADOW: "shadow:LIGHT", View.WIPE: "wipe:PART"}.get(v, v.value) for v in View)
+    if name not in set(View) or (colon and not re.fullmatch(details.get(View(name), r"(?!)"), detail, re.ASCII)):
+        raise argparse.ArgumentTypeError(f"{text!r} is no view; the views are {known}")
+    view = View(name)
+    wipe = float(detail) if view is View.WIPE and detail else 0.5
+    if wipe > 1.0:
+        raise argparse.ArgumentTypeError(f"{text!r}: the line of a wipe lies at 0 to 1 of the width")
+    return view, int(detail) if view is View.SHADOW and detail else 0, wipe

@@ -1,0 +1,80 @@
+"""What the commands' `--help` tells below their options."""
+
+COMMANDS = """\
+commands:
+  shadowcull [SCENE]       open the viewer
+  shadowcull render SCENE  trace one frame into a picture, its buffers, or both; needs no display
+  shadowcull bench SCENE   measure, over a path of frames, what culling saves
+  shadowcull zoom SCENE    go towards a primitive, and see whether its shadows keep up
+  shadowcull info SCENE    say what a scene holds
+
+examples:
+  shadowcull
+  shadowcull kitchen.aff
+  shadowcull render kitchen.aff -o kitchen.png --frame 50 --warmup 10 --view occlusion
+  shadowcull info kitchen.aff --json
+
+Each command has its own --help.
+"""
+
+RENDER = """\
+examples:
+  shadowcull render -o room.png
+  shadowcull render kitchen.aff -o kitchen.png --size 1024x768 --samples 16
+  shadowcull render kitchen.aff -o modes.png --frame 50 --warmup 20 --view shadow:2
+  shadowcull render kitchen.aff -o wrong.png --frame 50 --warmup 20 --view difference
+  shadowcull render Robot.aff --frame 10 --warmup 10 --buffers robot.npz
+  shadowcull render bunny.ply -o bunny.png --camera '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
+
+The modes of primitives are learnt from frame to frame, so that culling acts only after some frames:
+--warmup N traces the N frames before the one that is wanted first.
+
+The .npz holds color (H,W,3 float32), depth (H,W float32, distance along the unit ray, inf for a miss),
+primitive and cell (H,W int32, -1 for a miss), occlusion_mode (H,W uint8, 255 for a miss), shadow_mode
+(H,W,lights uint8), and for each light and primary hit lit and due (H,W,lights bool); with --verify also
+reference (H,W,3 float32), the colour with every shadow answer right, and wrong (H,W int32), the number of
+wrong shadow answers of each pixel.
+
+--view difference and --view wipe verify by themselves: the first shows the pixels with wrong shadow answers,
+the second the picture left of a line and what it should be right of it; wipe:0.3 puts the line at 30 % of
+the width.
+"""
+
+BENCH = """\
+examples:
+  shadowcull bench kitchen.aff --path-frames 100
+  shadowcull bench Robot.aff --frames 100:200 --size 256x256 --verify
+  shadowcull bench default --methods none,paper --symmetric --json default.json --csv default.csv
+  shadowcull bench kitchen.aff --path-frames 100 --verify --plot kitchen.svg
+
+Savings are those of shadow rays against the method none, averaged over frames, as in the paper's
+Table 1. Ctrl-C ends the run and keeps the frames that are done: the table and the files are of these,
+and the exit code is 130; a second one ends it at once.
+
+The JSON holds scene, size, frames, and for each method a list with an entry per frame of each figure;
+the CSV is the table. The plot shows what is saved frame by frame, with the average and the most, and
+with --verify the wrong answers.
+"""
+
+ZOOM = """\
+examples:
+  shadowcull zoom figure4 --primitive 0 --size 128x128 --factors 4,64 --plot figure4.png
+  shadowcull zoom kitchen.aff --frame 100 --pixel 253,198 --size 256x256
+  shadowcull zoom kitchen.aff --frame 100 --primitive 1229 --factors 4,1000 --json zoom.json --csv zoom.csv
+
+A primitive that was seen whole from afar is culled by what its few pixels met then, until it covers more
+than the zoom factor times its highest pixel count; then it is examined anew. The camera goes straight
+towards it, from its place at that time: where it looks at the primitive already straight ahead, else
+turned to the middle of what is to be seen of it. The first frames are still, for the modes to settle.
+Every culled shadow ray is verified, and a pixel with a wrong answer is a wrong pixel. Ctrl-C ends the test
+and keeps the frames that are done; the exit code is 130 then.
+
+The tables show the steps where something happens, and what comes of each factor; the JSON and the CSV hold
+every step, the plot draws them.
+"""
+
+INFO = """\
+examples:
+  shadowcull info kitchen.aff
+  shadowcull info default --json
+"""

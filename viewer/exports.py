@@ -1,0 +1,72 @@
+"""Results of runs as files: every figure as JSON, the table as CSV, the plot as a picture.
+
+They are what the commands `bench` and `zoom` write, under a name that tells what and when, and never
+over a file that is there.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+
+from tracer import experiment, zoom
+from viewer.bench import csv_text as experiment_csv
+from viewer.outputs import write_text
+from viewer.zoom import csv_text as zoom_csv
+
+ENDINGS = (".json", ".csv", ".png")
+
+_drawing = threading.Lock()  # matplotlib's settings are global while a figure is drawn
+
+
+def write_experiment(results: experiment.Results, verified: bool, path: Path) -> None:
+    """Into a file of one of ENDINGS; raises OSError, and ValueError where there is nothing to plot."""
+    if path.suffix == ".json":
+        write_text(path, json.dumps(results.to_dict()))
+    elif path.suffix == ".csv":
+        write_text(path, experiment_csv(results))
+    else:
+        from viewer import figures  # loads matplotlib
+
+        with _drawing:
+            figures.save(figures.savings_figure(results, verified), path)
+
+
+def write_zoom_test(results: zoom.Results, path: Path) -> None:
+    """Into a file of one of ENDINGS; raises OSError."""
+    if path.suffix == ".json":
+        write_text(path, json.dumps(results.to_dict()))
+    elif path.suffix == ".csv":
+        write_text(path, zoom_csv(results))
+    else:
+        from viewer import figures  # loads matplotlib
+
+        with _drawing:
+            figures.save(figures.zoom_figure(results), path)
+
+
+def save(folder: Path, name: str, ending: str, write: Callable[[Path], None], now: datetime | None = None) -> Path:
+    """Let `write` make a new file, `name` with date, time and ending, in a folder that is made if need be; its path.
+
+    A name that is taken gets a number.  Raises OSError in one line, and what `write` raises.
+    """
+    stem = f"{name}-{now or datetime.now():%Y-%m-%d-%H-%M-%S}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OSError(f"nothing saved: cannot write to {folder}: {error.strerror or error}") from None
+    names = (f"{stem}{f'-{number}' if number > 1 else ''}{ending}" for number in range(1, 1000))
+    path = next(folder / name for name in names if not (folder / name).exists())
+    write(path)
+    return path
+
+
+def duration(seconds: float) -> str:
+    """A time as people say it: 4 s, 2:05 min, 1:10 h."""
+    if seconds < 59.5:
+        return f"{seconds:.0f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}:{rest:02d} min" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d} h"

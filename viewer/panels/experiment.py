@@ -1,0 +1,167 @@
+"""The paper's Table 1 in the window: a path of frames by several methods, played as it is traced."""
+
+from __future__ import annotations
+
+import numpy as np
+from imgui_bundle import ImVec2, imgui, implot
+
+from tracer import experiment
+from tracer.experiment import REFERENCE, Results, Row
+from tracer.frame import METHODS
+from viewer.bench import LINES, WRONG
+from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND
+from viewer.panels.runs import export_buttons, side_by_side, size_field, start_or_progress
+from viewer.panels.widgets import ERROR, QUIET, checkbox, clipped, em, paragraph, properties, row, tooltip
+from viewer.runs import Experiment
+from viewer.ui import Ui
+
+_WORKS = (("steps", "steps"), ("tests", "tests"))
+_SHORT = ("steps saved", "  most (frame)", "tests saved", "  most (frame)", "extra / pixel", "wrong", "time of a frame")
+_HEADING, _REFERENCE, _METHOD = 6.8, 4.0, 7.4  # widths of the table's columns in ems
+
+
+def show(ui: Ui) -> None:
+    """The panel: what to measure, the savings frame by frame, and the table."""
+    run = ui.controller.runner.experiment
+    results = run.results if run is not None else None
+    columns = len(run.methods) if run is not None else 2
+    side_by_side(
+        lambda: _controls(ui, run),
+        lambda size: _plot(ui, run, results, size),
+        lambda: _table(ui, run, results),
+        em(_HEADING + _REFERENCE + _METHOD * (columns - 1) + 1.2),
+    )
+
+
+def _controls(ui: Ui, run: Experiment | None) -> None:
+    runner = ui.controller.runner
+    under_way = run is not None and runner.current is run
+    if run is not None and under_way:
+        _shown_method(run)
+    else:
+        _plan(ui)
+    tip = "trace the frames of the whole path by each method and compare their work, as shadowcull bench does"
+    start_or_progress(ui, run, runner.start_experiment, tip)
+    export_buttons(ui, run)
+
+
+def _plan(ui: Ui) -> None:
+    plan = ui.controller.runner.experiment_plan
+    with properties("plan", 4.6) as shown:
+        if not shown:
+            return
+        row("Methods", f"each is compared with {REFERENCE}, which traces every shadow ray")
+        for method in METHODS:
+            imgui.begin_disabled(method == REFERENCE)
+            changed, _ = imgui.checkbox(method, method == REFERENCE or method in plan.methods)
+            imgui.end_disabled()
+            if changed:
+                plan.methods ^= {method}
+            imgui.same_line()
+        imgui.new_line()
+        row("Frames", "over the whole path of the scene")
+        changed, frames = imgui.input_int("##frames", plan.frames)
+        if changed:
+            plan.frames = min(max(frames, 1), 100_000)
+        row("Size")
+        plan.size = size_field(plan.size)
+        row("Bounces", "of reflected and refracted rays, at most")
+        changed, depth = imgui.slider_int("##depth", plan.depth, 0, 20)
+        if changed:
+            plan.depth = min(max(depth, 0), 100)
+        row("Verify", "trace every culled shadow ray as well, and count wrong answers; this takes longer")
+        checkbox("##verify", plan.verify, lambda on: setattr(plan, "verify", on))
+
+
+def _shown_method(run: Experiment) -> None:
+    """Whose frames are the picture."""
+    imgui.text_colored(QUIET, "show")
+    for method in run.methods:
+        imgui.same_line()
+        if imgui.radio_button(method, run.shown == method):
+            run.shown = method
+    width, height = run.settings.width, run.settings.height
+    imgui.text_colored(QUIET, f"{width} x {height}, {run.settings.depth} bounces")
+
+
+def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2) -> None:
+    """Savings of each method but the reference, and its wrong answers, over the frames of the path."""
+    if run is None or results is None:
+        if imgui.begin_child("nothing", size):
+            paragraph("What culling saves of the work of shadow rays, frame by frame, and the paper's Table 1.", QUIET)
+        imgui.end_child()
+        return
+    wrong = run.settings.verify and any(any(figures["wrong"]) for figures in results.methods.values())
+    if not implot.begin_plot(f"{run.scene.path.name}: saved, %##saved", size, FLAGS):
+        return
+    frames = np.array(results.frames, np.float64)
+    savings = ui.cached("savings", results, 0, lambda: _savings(results))
+    top = max([float(values.max()) for _, values in savings] or [0.0])
+    bottom = min([float(values.min()) for _, values in savings] or [0.0])
+    implot.setup_axes("", "", AXIS, AXIS)
+    implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
+    implot.setup_axis_format(implot.ImAxis_.y1, "%.0f")
+    once = int(imgui.Cond_.always if ui.controller.runner.current is run else imgui.Cond_.once)
+    implot.setup_axes_limits(-0.5, len(run.times) - 0.5, min(1.1 * bottom, 0.0), max(1.12 * top, 1.0), once)
+    if wrong:
+        implot.setup_axis(implot.ImAxis_.y2, "", AXIS | int(implot.AxisFlags_.aux_default))
+        most = max(max(figures["wrong"]) for figures in results.methods.values())
+        implot.setup_axis_limits(implot.ImAxis_.y2, 0.0, 3.0 * most, once)
+        implot.setup_axis_format(implot.ImAxis_.y2, "%.0f")
+    implot.setup_legend(implot.Location_.south, LEGEND)
+    if wrong:
+        _plot_wrong(results, frames)
+    for number, (name, values) in enumerate(savings):
+        implot.plot_line(name, frames, values, implot.Spec(line_color=COLORS[number % len(COLORS)], line_weight=1.6))
+    implot.end_plot()
+
+
+def _savings(results: Results) -> list[tuple[str, np.ndarray]]:
+    methods = [method for method in results.methods if method != REFERENCE]
+    many = len(methods) > 1
+    return [
+        (f"{method}: {label}" if many else label, 100.0 * results.reductions(method, work))
+        for method in methods
+        for work, label in _WORKS
+    ]
+
+
+def _plot_wrong(results: Results, frames: np.ndarray) -> None:
+    implot.set_axes(implot.ImAxis_.x1, implot.ImAxis_.y2)
+    for method, figures in results.methods.items():
+        if method != REFERENCE:
+            values = np.array(figures["wrong"], np.float64)
+            spec = implot.Spec(line_color=ERROR, fill_color=ERROR, fill_alpha=0.55)
+            implot.plot_bars(f"wrong##{method}", frames, values, 0.8, spec)
+    implot.set_axes(implot.ImAxis_.x1, implot.ImAxis_.y1)
+
+
+def _table(ui: Ui, run: Experiment | None, results: Results | None) -> None:
+    """A line for each figure of the paper's Table 1, a column for each method."""
+    if run is None or results is None:
+        return
+    rows: list[Row] = ui.cached("table 1", results, 0, lambda: experiment.table(results))
+    whole = len(results.frames) == len(run.times)
+    done = f"{len(results.frames)} frames" if whole else f"{len(results.frames)} of {len(run.times)} frames"
+    clipped(f"{done}, {run.settings.width} x {run.settings.height}", QUIET)
+    flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg
+    if not imgui.begin_table("table 1", 1 + len(rows), int(flags)):
+        return
+    imgui.table_setup_column("", int(imgui.TableColumnFlags_.width_stretch))
+    for line in rows:
+        width = em(_REFERENCE if line.method == REFERENCE else _METHOD)
+        imgui.table_setup_column(line.method, int(imgui.TableColumnFlags_.width_fixed), width)
+    imgui.table_next_column()
+    for line in rows:
+        imgui.table_next_column()
+        imgui.text_colored(QUIET, line.method)
+    for (heading, cell), short in zip(LINES, _SHORT, strict=True):
+        if heading == WRONG and not run.settings.verify:
+            continue
+        imgui.table_next_column()
+        clipped(short, QUIET)
+        tooltip(heading.strip())
+        for line in rows:
+            imgui.table_next_column()
+            clipped(cell(line), ERROR if heading == WRONG and line.wrong else None)
+    imgui.end_table()

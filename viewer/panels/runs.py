@@ -1,0 +1,97 @@
+"""What the panels of experiments and zoom tests share: three parts side by side, progress, and the files to save."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from viewer.exports import ENDINGS, duration
+from viewer.panels.widgets import QUIET, clipped, em, tooltip, wide_button
+from viewer.runs import Run
+from viewer.ui import Ui
+
+SIZES = ((128, 128), (256, 256), (512, 512), (1024, 1024), (1280, 720))
+MOST_PIXELS_OF_SIDE = 8192
+_KINDS = {".json": "JSON", ".csv": "CSV", ".png": "Plot"}
+_TIPS = {
+    ".json": "every figure, as JSON, into the folder of the pictures",
+    ".csv": "the table, as CSV, into the folder of the pictures",
+    ".png": "the plot, as a picture for a slide or a paper, into the folder of the pictures",
+}
+
+
+def side_by_side(
+    controls: Callable[[], None], plot: Callable[[ImVec2], None], table: Callable[[], None], table_width: float
+) -> None:
+    """Controls, plot and table in a row; one below the other where the panel is too narrow for that."""
+    room = imgui.get_content_region_avail()
+    spacing = imgui.get_style().item_spacing.x
+    left = em(14.0)
+    middle = room.x - left - table_width - 2.0 * spacing
+    if middle < em(12.0):
+        controls()
+        plot(ImVec2(room.x, em(14.0)))
+        table()
+        return
+    if imgui.begin_child("controls", ImVec2(left, 0.0)):
+        controls()
+    imgui.end_child()
+    imgui.same_line()
+    plot(ImVec2(middle, max(room.y, em(8.0))))
+    imgui.same_line()
+    if imgui.begin_child("table", ImVec2(table_width, 0.0)):
+        table()
+    imgui.end_child()
+
+
+def size_field(size: tuple[int, int]) -> tuple[int, int]:
+    """Width and height in pixels, typed or chosen from a list; returns what is set now."""
+    imgui.set_next_item_width(-em(2.0))
+    changed, typed = imgui.input_int2("##size", list(size))
+    if changed:
+        size = _side(typed[0]), _side(typed[1])
+    imgui.same_line(0.0, em(0.2))
+    if imgui.button(icons.ICON_FA_CHEVRON_DOWN, (-1.0, 0.0)):
+        imgui.open_popup("sizes")
+    if imgui.begin_popup("sizes"):
+        for width, height in SIZES:
+            if imgui.menu_item(f"{width} x {height}", "", False, True)[0]:
+                size = width, height
+        imgui.end_popup()
+    return size
+
+
+def _side(pixels: int) -> int:
+    return min(max(pixels, 1), MOST_PIXELS_OF_SIDE)
+
+
+def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: str) -> None:
+    """The button that starts, or, while the run is under way, how far it is and the button that stops it."""
+    runner = ui.controller.runner
+    if run is None or runner.current is not run:
+        imgui.begin_disabled(runner.current is not None)
+        if wide_button(f"{icons.ICON_FA_PLAY}  Start", tip):
+            start()
+        imgui.end_disabled()
+        return
+    left = run.seconds_left
+    imgui.progress_bar(run.fraction, ImVec2(-1.0, 0.0), "" if left is None else f"{duration(left)} left")
+    clipped(run.label, QUIET)
+    if run.stopping:
+        imgui.text_colored(QUIET, "stopping ...")
+    elif wide_button(f"{icons.ICON_FA_STOP}  Stop", "keeps what is done (Escape)"):
+        runner.stop()
+
+
+def export_buttons(ui: Ui, run: Run | None) -> None:
+    """One small button for each kind of file; none before there are results."""
+    if run is None or run.results is None:
+        return
+    for ending in ENDINGS:
+        if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK} {_KINDS[ending]}"):
+            ui.controller.runner.export(run, ending)
+        tooltip(_TIPS[ending])
+        imgui.same_line(0.0, em(0.25))
+    imgui.new_line()

@@ -1,0 +1,240 @@
+"""Experiments and zoom tests in the window: what `shadowcull bench` and `zoom` do, while one watches.
+
+A `Run` is a task of the render thread: it has renderers, and so modes, of its own, and shares the
+scene's world, so that no frame is traced beside it.  Meanwhile the window shows its frames as its
+picture.  What has come of it is there at any moment, and stays when it is stopped.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Generic, TypeVar, cast
+
+from tracer import experiment, zoom
+from tracer.frame import Frame, Settings
+from tracer.renderer import Renderer
+from tracer.scene.model import Cancelled, Scene
+from viewer import exports
+from viewer.console import TimeLeft
+from viewer.jobs import one_line
+from viewer.render_thread import Traces
+from viewer.zoom import parse_factors
+
+SEEN_WITHIN = 0.25
+"""Seconds that a frame of a zoom test waits, at most, to be drawn before the next is traced."""
+
+Results = TypeVar("Results")
+
+
+class Run(ABC, Generic[Results]):
+    """Long tracing under way, or what is left of it.
+
+    `results` is a copy that nothing changes any more, None before the first whole frame; `frames` is
+    how many there are to trace, `traced` how many have been; `error` is one line.
+    """
+
+    name = "run"
+
+    def __init__(self, scene: Scene, frames: int, wake: Callable[[], None] = lambda: None) -> None:
+        self.scene = scene
+        self.frames = frames
+        self.traced = 0
+        self.label = "starting"
+        self.results: Results | None = None
+        self.error: str | None = None
+        self.seconds = 0.0
+        self.stopping = False
+        self._left = TimeLeft()
+        self._wake = wake
+        self._lock = threading.Lock()
+        self._shown: Frame | None = None
+        self._seen = threading.Event()
+        self._done = threading.Event()
+
+    @property
+    def done(self) -> bool:
+        return self._done.is_set()
+
+    @property
+    def whole(self) -> bool:
+        """Whether it went on to its end."""
+        return self.done and self.error is None and self.traced == self.frames
+
+    @property
+    def fraction(self) -> float:
+        return self.traced / self.frames
+
+    @property
+    def seconds_left(self) -> float | None:
+        """An estimate from the frames so far; None before there are any."""
+        return self._left.seconds()
+
+    def stop(self) -> None:
+        """End it after the last whole frame."""
+        self.stopping = True
+        self._seen.set()
+
+    def take(self) -> Frame | None:
+        """The newest frame to be shown, once."""
+        with self._lock:
+            frame, self._shown = self._shown, None
+        self._seen.set()
+        return frame
+
+    def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None:
+        """Do it, on the render thread."""
+        began = time.monotonic()
+        self._left.mark(0, self.frames)
+        try:
+            for results in self._steps(cast(Renderer, renderer), lambda: self.stopping or cancelled()):
+                self.results = self._copy(results)
+                self._wake()
+        except Cancelled:
+            pass
+        except Exception as error:
+            self.error = one_line(error)
+        finally:
+            self.seconds = time.monotonic() - began
+            self._done.set()
+            self._wake()
+
+    def _count(self, label: str) -> None:
+        """One more frame has been traced."""
+        self.traced += 1
+        self.label = label
+        self._left.mark(self.traced, self.frames)
+
+    def _show(self, frame: Frame, wait: bool) -> None:
+        self._seen.clear()
+        with self._lock:
+            self._shown = frame
+        self._wake()
+        if wait and not self.stopping:
+            self._seen.wait(SEEN_WITHIN)
+
+    @abstractmethod
+    def _steps(self, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[Results]: ...
+
+    @abstractmethod
+    def _copy(self, results: Results) -> Results: ...
+
+    @abstractmethod
+    def write(self, results: Results, path: Path) -> None:
+        """Results of this run as one of `exports.ENDINGS`; raises OSError or ValueError in one line."""
+
+
+@dataclass
+class ExperimentPlan:
+    """What to measure: `frames` over the whole path, by each of `methods`, the reference always among them."""
+
+    methods: set[str]
+    frames: int = 100
+    size: tuple[int, int] = (512, 512)
+    depth: int = 10
+    verify: bool = False
+
+
+class Experiment(Run[experiment.Results]):
+    """A path of frames by several methods; the frames of the method `shown` are the picture.
+
+    Raises ValueError for a method that does not exist or a size out of range.
+    """
+
+    name = "experiment"
+
+    def __init__(
+        self, scene: Scene, settings: Settings, plan: ExperimentPlan, wake: Callable[[], None] = lambda: None
+    ) -> None:
+        self.methods = experiment.with_reference(sorted(plan.methods))
+        self.times = experiment.path_times(scene, plan.frames)
+        self.settings = replace(
+            settings, width=plan.size[0], height=plan.size[1], depth=plan.depth, verify=plan.verify, samples=1
+        ).validated()
+        self.shown = self.methods[-1]
+        super().__init__(scene, len(self.methods) * len(self.times), wake)
+
+    def _steps(self, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[experiment.Results]:
+        def on_frame(number: int, method: str, frame: Frame) -> None:
+            self._count(f"frame {number + 1} of {len(self.times)}, {method}")
+            if method == self.shown:
+                self._show(frame, wait=False)
+
+        return experiment.run(
+            self.scene,
+            self.settings,
+            self.methods,
+            self.times,
+            cancel=cancelled,
+            world=renderer.world,
+            on_frame=on_frame,
+        )
+
+    def _copy(self, results: experiment.Results) -> experiment.Results:
+        methods = {
+            method: {name: list(values) for name, values in figures.items()}
+            for method, figures in results.methods.items()
+        }
+        return replace(results, frames=list(results.frames), methods=methods)
+
+    def write(self, results: experiment.Results, path: Path) -> None:
+        exports.write_experiment(results, self.settings.verify, path)
+
+
+@dataclass
+class ZoomPlan:
+    """How to go towards a primitive: in `steps`, each to `ratio` of the distance, once with each of `factors`, which
+    are as they were typed."""
+
+    factors: str = "4, 16"
+    steps: int = 30
+    ratio: float = 0.94
+    size: tuple[int, int] = (256, 256)
+
+
+class ZoomTest(Run[zoom.Results]):
+    """Towards a primitive; every frame is the picture once.  Raises ValueError for factors or a size that are none."""
+
+    name = "zoom test"
+
+    def __init__(
+        self,
+        scene: Scene,
+        settings: Settings,
+        start: zoom.Aim,
+        plan: ZoomPlan,
+        wake: Callable[[], None] = lambda: None,
+    ) -> None:
+        self.start, self.plan = start, replace(plan)
+        self.factors = parse_factors(plan.factors)
+        self.settings = replace(settings, width=plan.size[0], height=plan.size[1]).validated()
+        super().__init__(scene, len(self.factors) * (plan.steps + zoom.STILL_FRAMES), wake)
+
+    def _steps(self, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[zoom.Results]:
+        last = self.plan.steps + zoom.STILL_FRAMES - 1
+
+        def on_frame(factor: float, number: int, frame: Frame) -> None:
+            self._count(f"zoom factor {factor:g}, step {number} of {last}")
+            self._show(frame, wait=True)
+
+        return zoom.run(
+            self.scene,
+            self.settings,
+            self.start,
+            self.factors,
+            self.plan.steps,
+            self.plan.ratio,
+            cancel=cancelled,
+            world=renderer.world,
+            on_frame=on_frame,
+        )
+
+    def _copy(self, results: zoom.Results) -> zoom.Results:
+        return replace(results, approaches=[replace(a, steps=list(a.steps)) for a in results.approaches])
+
+    def write(self, results: zoom.Results, path: Path) -> None:
+        exports.write_zoom_test(results, path)

@@ -1,0 +1,164 @@
+"""What is asked of the render thread so that the picture keeps up with the session, and what has come.
+
+In motion frames are coarse and come fast, at rest they are fine.  Nothing is asked for twice, and
+nothing at all while a run has the render thread to itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from tracer.frame import Frame, Settings
+from viewer.render_thread import RenderRequest, Traced
+from viewer.resolution import ResolutionControl, divided
+from viewer.views import View
+
+if TYPE_CHECKING:
+    from viewer.controller import Controller
+
+
+class Tracing:
+    """`traced` is the newest frame with the request it answers."""
+
+    def __init__(self, controller: Controller) -> None:
+        self._c = controller
+        self.traced: Traced | None = None
+        self._resolution = ResolutionControl()
+        self._serial = 0
+        self._settled: RenderRequest | None = None
+        self._asked: RenderRequest | None = None
+        self._chosen: Settings | None = None
+
+    @property
+    def frame(self) -> Frame | None:
+        return self.traced.frame if self.traced is not None else None
+
+    def forget(self) -> None:
+        """Another scene: it has no frame yet, and its pixels cost something else."""
+        self.traced = self._asked = self._settled = None
+        self._resolution.forget()
+
+    def again(self, modes_are_lost: bool = False) -> None:
+        """Trace what was traced last once more."""
+        self._serial += 1
+        if modes_are_lost:
+            self._settled = None
+
+    def show(self, traced: Traced) -> None:
+        """Take up a frame that was not asked for here; what should be seen is asked for anew after it."""
+        self.traced = traced
+        self._asked = None
+
+    def take(self) -> Frame | None:
+        """The newest frame that the render thread has finished, once."""
+        traced = self._c.render.take()
+        if traced is None:
+            return None
+        self.traced, frame = traced, traced.frame
+        self._resolution.observe(frame.statistics.seconds, frame.width * frame.height)
+        if not self._c.moving and not self._c.session.playing:
+            self._settle(traced.request)
+        return frame
+
+    def _settle(self, request: RenderRequest) -> None:
+        """At rest the first fine frame of a view teaches the modes; a second one shows what they save."""
+        view = replace(request, settings=replace(request.settings, verify=False), interactive=False, serial=0)
+        learns = request.divisor == 1 and request.settings.method != "none" and request.settings.samples == 1
+        if self._c.preferences.keep_tracing or (learns and view != self._settled):
+            self._settled = view
+            self._serial += 1
+
+    def ask(self) -> None:
+        """Ask for what should be seen now, unless it has been asked for, or is there."""
+        c, session = self._c, self._c.session
+        width, height = self.full_size
+        if session.scene is None or width < 1 or height < 1 or c.runner.current is not None:
+            return
+        if self._jumped():
+            c.moved()  # a coarse picture of the new view first
+        moving = c.moving
+        coarse = moving and c.preferences.dynamic_resolution
+        divisor = self._resolution.choose(width, height, c.preferences.target_fps) if coarse else 1
+        width, height = divided(width, height, divisor)
+        settings = replace(self.settings, width=width, height=height)
+        wanted = RenderRequest(session.time, session.camera, settings, moving, divisor, self._serial)
+        if self._answered(wanted):
+            return
+        self._asked, self._chosen = wanted, session.settings
+        c.render.submit(wanted)
+
+    @property
+    def settings(self) -> Settings:
+        """What the user has set, and verified where the view needs that."""
+        s = self._c.session
+        return replace(s.settings, verify=s.settings.verify or s.view.needs_verify)
+
+    def _answered(self, wanted: RenderRequest) -> bool:
+        """Whether a frame has been asked for, or is there.  One that was verified for a view serves the next view."""
+        if wanted == self._asked or self._same_picture(wanted):
+            return True
+        if self._c.session.settings != self._chosen:
+            return False
+        verified = replace(wanted, settings=replace(wanted.settings, verify=True))
+        return verified == self._asked or self._same_picture(verified)
+
+    def _same_picture(self, wanted: RenderRequest) -> bool:
+        if self.traced is None or self._c.render.busy:
+            return False
+        return replace(self.traced.request, interactive=wanted.interactive) == wanted
+
+    def _jumped(self) -> bool:
+        """Whether, at rest, something else is to be seen than was last asked for; to verify is to see the same."""
+        session, asked = self._c.session, self._asked
+        if asked is None or session.playing or self._c.moving:
+            return False
+        width, height, verify = asked.settings.width, asked.settings.height, asked.settings.verify
+        settings = replace(session.settings, width=width, height=height, verify=verify)
+        return (session.time, session.camera, settings) != (asked.time, asked.camera, asked.settings)
+
+    # --- what the newest frame is ----------------------------------------------------------------
+
+    @property
+    def becoming_finer(self) -> bool:
+        """Whether the picture is a coarse one and a fine one of the same view is to come."""
+        return self.traced is not None and self.traced.request.divisor > 1 and not self._c.session.playing
+
+    @property
+    def outdated(self) -> bool:
+        """Whether the newest frame was traced with other settings than those now chosen, or lacks to be verified."""
+        if self.frame is None or self._c.runner.current is not None:
+            return False
+        had, wanted = self.frame.settings, self.settings
+        verify = had.verify or wanted.verify
+        return replace(wanted, width=had.width, height=had.height, verify=verify) != had
+
+    @property
+    def full_size(self) -> tuple[int, int]:
+        """The resolution at rest: the window's, or the fixed one (0, 0 while there is nowhere to show it)."""
+        p, size = self._c.preferences, self._c.size
+        return (p.fixed_width, p.fixed_height) if p.fixed_resolution and min(size) > 0 else size
+
+    @property
+    def traced_full_size(self) -> tuple[int, int]:
+        """The size whose aspect the newest frame has: its own, or what it is a coarser version of."""
+        if self.traced is None:
+            return 1, 1
+        frame, divisor = self.traced.frame, self.traced.request.divisor
+        return frame.width * divisor, frame.height * divisor
+
+    @property
+    def drawn_view(self) -> View:
+        """The view to draw the newest frame in: the picture while one that needs a verified frame waits for it."""
+        view, unverified = self._c.session.view, self.frame is not None and self.frame.wrong is None
+        return View.COLOR if view.needs_verify and unverified else view
+
+    @property
+    def title(self) -> str:
+        """The view, and the light where it shows one; before it what a run that is under way is at."""
+        view, run = self.drawn_view, self._c.runner.current
+        title = f"{view.label}, light {self._c.session.light}" if view is View.SHADOW else view.label
+        if run is not None:
+            return f"{run.label}   {title}"
+        wanted = self._c.session.view
+        return title if wanted is view else f"{wanted.label}: verifying ..."
