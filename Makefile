@@ -17,7 +17,7 @@ export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
 export MPLCONFIGDIR := $(CURDIR)/.cache/matplotlib
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run test golden bench counters lint format lock clean distclean help
+.PHONY: run test golden bench frames counters lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -31,10 +31,14 @@ golden:  ## render the golden pictures of the tests anew, and say what changed
 	@tools/environment.sh dev
 	@$(RUN) -m tests.golden.pictures
 
-bench:  ## time frames with and without culling (ARGS="--frames 10 SCENE ..."), then what counters cost
+bench:  ## hold ray rates and frames against Embree's (ARGS="--quick SCENE ..."), then what counters cost
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.against_embree $(ARGS)
+	@$(RUN) -m tests.bench.counters
+
+frames:  ## time frames with and without culling, phase by phase (ARGS="--frames 10 SCENE ...")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.frame_times $(ARGS)
-	@$(RUN) -m tests.bench.counters
 
 counters:  ## time frames with and without counters of steps and tests (ARGS="--frames 10 SCENE")
 	@tools/environment.sh dev
