@@ -55,6 +55,24 @@ def test_rays_go_the_naive_twins_way_through_triangles(seed: int, n: int, size: 
     assert tests > any_tests > 0
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_of_equally_near_ones_the_first_is_hit(seed: int):
+    """Triangles in one plane, with numbers in which float32 does not round: small ones first, then large ones, which
+    slanted rays meet in leaves that they pass before those of the small ones."""
+    rng = np.random.default_rng(seed)
+    size = 2.0 ** np.sort(rng.integers(0, 6, 80))
+    corner = rng.integers(0, 32, (80, 2)).astype(float)
+    corners = np.zeros((80, 3, 3))
+    corners[..., :2] = corner[:, None] + size[:, None, None] * np.array([[0, 0], [1, 0], [0, 1]])
+    targets = np.column_stack([rng.integers(0, 40, (200, 2)) + 0.25, np.zeros(200)])
+    directions = np.column_stack([rng.choice([-1, 1], (200, 2)), np.full(200, -1)])
+    rays = tracer.RayBatch(targets - 64.0 * directions, directions)
+    world = tracer.World(scene(corners))
+    met = brute.meet_all(world, rays, np.ones(80, np.bool_))
+    assert (np.isfinite(met.t).sum(axis=1) > 3).sum() > 50 and set(met.t.flat) == {64.0, np.inf}
+    assert world.closest_hits(rays).primitive.tolist() == met.closest().tolist()
+
+
 def test_rays_go_the_naive_twins_way_through_random_scenes():
     sums = np.zeros((2, 2), np.int64)
 
