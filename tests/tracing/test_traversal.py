@@ -11,7 +11,7 @@ import tracer
 from tests.tracing import brute
 from tests.tracing.naive_tree import Line, Traversal
 from tests.tracing.random_worlds import END, quickly, scenes
-from tests.tracing.worlds import random_corners, scene
+from tests.tracing.worlds import quad, random_corners, scene
 from tracer.geometry.kdtree import traverse
 from tracer.geometry.rays import Hits, Rays
 
@@ -26,8 +26,11 @@ def random_rays(rng: np.random.Generator, n: int) -> Rays:
     return tracer.RayBatch(origins, directions, 1e-5, t_max)
 
 
-def assert_same_way(world: tracer.World, rays: Rays, there: np.ndarray) -> np.ndarray:
-    """Answers, steps and tests of both queries, ray by ray; returns the sums (queries, steps and tests)."""
+def assert_same_way(world: tracer.World, rays: Rays, there: np.ndarray, edges: bool = False) -> np.ndarray:
+    """Answers, steps and tests of both queries, ray by ray; returns the sums (queries, steps and tests).
+
+    Where rays run along `edges`, a hit on one may count or not; nothing else may be lost in the trees.
+    """
     n, placed = len(rays.t_min), world.placed
     met = brute.meet_all(world, rays, there)
     hits = Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
@@ -38,8 +41,14 @@ def assert_same_way(world: tracer.World, rays: Rays, there: np.ndarray) -> np.nd
         traverse.any_hits(placed, rays, blocked, i, i + 1, counts[1])
         line = Line(tuple(rays.origin[:, i]), tuple(rays.direction[:, i]))
         near, whatever = (Traversal(placed, line, rays.t_min[i], rays.t_max[i], met.t[i]) for _ in range(2))
-        assert (hits.t[i], hits.primitive[i]) == near.closest() == (met.t[i].min(initial=np.inf), met.closest()[i])
-        assert blocked[i] == whatever.any() == np.isfinite(met.t[i]).any()
+        assert (hits.t[i], hits.primitive[i]) == near.closest()
+        assert blocked[i] == whatever.any() == (hits.primitive[i] >= 0)
+        if edges:
+            inside = (met.u[i] > 0) & (met.v[i] > 0) & (met.u[i] + met.v[i] < 1)
+            assert hits.t[i] <= met.t[i, inside].min(initial=np.inf)
+            assert hits.primitive[i] < 0 or hits.t[i] == met.t[i, hits.primitive[i]]
+        else:
+            assert (hits.t[i], hits.primitive[i]) == (met.t[i].min(initial=np.inf), met.closest()[i])
         assert counts.tolist() == [[near.steps, near.tests], [whatever.steps, whatever.tests]]
         sums += counts
     return sums
@@ -53,6 +62,24 @@ def test_rays_go_the_naive_twins_way_through_triangles(seed: int, n: int, size: 
     (steps, tests), (any_steps, any_tests) = assert_same_way(world, random_rays(rng, 60), np.ones(n, np.bool_))
     assert steps > any_steps > 0
     assert tests > any_tests > 0
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_rays_through_edges_and_corners_go_the_naive_twins_way(seed: int):
+    """Squares on a lattice, and rays along its lines and diagonals: they enter and leave nodes at one and the same t,
+    and lie in planes that split.  No number here is rounded."""
+    rng = np.random.default_rng(seed)
+    low, size, axes = rng.integers(0, 8, (60, 3)), 2 ** rng.integers(0, 3, 60), rng.integers(3, size=60)
+    corners = []
+    for corner, side, axis in zip(low, size, axes, strict=True):
+        a, b = np.delete(np.eye(3) * side, axis, axis=0)
+        corners += quad(corner, corner + a, corner + a + b, corner + b)
+    world = tracer.World(scene(np.array(corners, np.float32)))
+    directions = rng.integers(-1, 2, (80, 3))
+    directions[(directions == 0).all(axis=1)] = 1
+    origins = rng.integers(0, 8, (80, 3)) - rng.integers(0, 9, (80, 1)) * directions
+    sums = assert_same_way(world, tracer.RayBatch(origins, directions), np.ones(120, np.bool_), edges=True)
+    assert (sums > 0).all()
 
 
 @pytest.mark.parametrize("seed", range(4))
