@@ -14,7 +14,7 @@ from tests.tracing import naive
 from tests.tracing.random_worlds import END, quickly, scenes
 from tests.tracing.worlds import affine, moved, quadrics, random_corners, scene
 from tracer.geometry.kdtree.build import CANCELLED, build_tree
-from tracer.geometry.world import triangle_rows
+from tracer.geometry.primitives import triangle_rows
 from tracer.scene.model import SPHERE, Cancelled
 
 

@@ -157,9 +157,7 @@ class Animation:
     """All tracks of a scene by name.  Names that no track bears mean the identity."""
 
     tracks: Mapping[str, TrackSet] = field(default_factory=dict)
-    _latest: dict[str, tuple[float, dict[str, Float64]]] = field(
-        default_factory=dict, init=False, repr=False, compare=False
-    )
+    _latest: dict[str, tuple[float, Float64]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @staticmethod
     def empty() -> Animation:
@@ -183,8 +181,12 @@ class Animation:
         present = [keys for keys in tracks if keys is not None]
         return which, _Segments.of(present, [knots(keys) for keys in present]) if present else None
 
-    def _matrices(self, time: float) -> dict[str, Float64]:
-        """T R S of every name at a time, (4, 4) each."""
+    @cached_property
+    def _numbers(self) -> dict[str, int]:
+        return {name: i for i, name in enumerate(self.tracks)}
+
+    def matrices(self, time: float) -> Float64:
+        """T R S of every track, (tracks, 4, 4) float64 in the order of `tracks`; kept, so not to be written to."""
         known = self._latest.get("matrices")
         if known is not None and known[0] == time:
             return known[1]
@@ -198,18 +200,21 @@ class Animation:
         which, segments = self._translations
         if segments is not None:
             placed[which, :3, 3] = _hermite(*segments.find(time))
-        matrices = dict(zip(self.tracks, placed, strict=True))
-        self._latest["matrices"] = (time, matrices)  # one assignment: safe from any thread
-        return matrices
+        placed.flags.writeable = False
+        self._latest["matrices"] = (time, placed)  # one assignment: safe from any thread
+        return placed
 
     def matrix(self, chain: Chain, time: float) -> Float64:
         """(4, 4) float64 from the space of the chain's last element to the world."""
-        matrices = self._matrices(time)
         product: Float64 | None = None
         for element in chain:
-            step = matrices.get(element) if isinstance(element, str) else element
-            if step is not None:
-                product = step if product is None else product @ step
+            if not isinstance(element, str):
+                step = element
+            elif element in self._numbers:
+                step = self.matrices(time)[self._numbers[element]]
+            else:
+                continue
+            product = step if product is None else product @ step
         return np.eye(4) if product is None else product.copy()
 
     def visible(self, chain: Chain, time: float) -> bool:
@@ -219,8 +224,8 @@ class Animation:
 
     def translation(self, name: str, time: float) -> Float64:
         """(3,) float64; zero where no track of that name translates."""
-        matrix = self._matrices(time).get(name)
-        return np.zeros(3) if matrix is None else matrix[:3, 3].copy()
+        number = self._numbers.get(name)
+        return np.zeros(3) if number is None else self.matrices(time)[number, :3, 3].copy()
 
     def camera(self, base: Camera, time: float) -> Camera:
         """`base` moved by the tracks named `camera`: they replace what they tell, and leave the rest."""

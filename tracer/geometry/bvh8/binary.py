@@ -1,13 +1,15 @@
 """From triangles and boxes to a binary tree, by the surface area heuristic over bins (Wald 2007).
 
-A node's items lie together.  To split, they are put in 16 bins an axis by the centres of their
-boxes, the cheapest of the 45 planes between bins is taken, and they are copied, lower side first,
-to the same places of a second array; the children are copied back, and so on.  What a side costs is
-counted in blocks of 8 triangles, because that is what a leaf holds and a ray tests at once.
+A node's items lie together.  To split, they are put in bins along each axis by the centres of their
+boxes, the cheapest of all planes between bins is taken, and they are copied, lower side first, to the
+same places of a second array; the children are copied back, and so on.  What a side costs is counted
+in blocks of 8 triangles, because that is what a ray tests at once.  Leaves are smaller than blocks:
+which of them make one is decided when the tree is collapsed.
 
 An item is eight float32: lower corner, upper corner *negated* (so that a box grows by one vector
-minimum), its number and its weight, both as int32.  A node is eight too: its box in the same way,
-then either WEIGHT 0 and the number of its upper child, or a leaf's count and first item.  The
+minimum), its number and its weight (1 of a triangle, 8 of
+what needs a leaf to itself), both as int32.  A node is eight too: its box in the same way,
+then either WEIGHT 0 and the number of its upper child, or a leaf's weight and first item.  The
 lower child follows its parent.  A tree over n items takes at most 2 n - 1 places, those of every
 subtree are set aside in advance, and so any number of threads builds the same tree.
 """
@@ -19,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.geometry.building import CANCELLED
 from tracer.geometry.bvh8.tree import WIDTH
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.simd import (
@@ -34,13 +37,13 @@ from tracer.simd import (
     store,
 )
 
-BINS = 16
+BINS, FEW = 16, 8  # so many items or fewer are put in as many bins
+LEAF_WEIGHT = 2  # no more than that is not split
 HUGE = np.float32(3e38)
 TINY_EXTENT = np.float32(1e-30)  # centres closer together than this cannot be told apart
 COSTS_SIZE, BINS_SIZE, WEIGHTS_SIZE = 4 * BINS, 96 * BINS, 24 * BINS  # bytes
 ITEM = 32  # bytes of an item, a bin and a node
 UPPER, NUMBER, WEIGHT = 12, 24, 28  # bytes into an item; a node has its upper child or first item at NUMBER
-CANCELLED, DONE = 0, 1  # entries of `control`: set to stop the build; items placed in leaves so far
 FIRST, LAST, NODE, DEPTH, SIDE = 0, 1, 2, 3, 4  # of a task: a range of items, its node, and the array they lie in
 
 
@@ -140,22 +143,23 @@ def _measure(first, last, node, low, high):
 
 
 @inlined
-def _bin(item, axis, low, scale):
-    """Which bin an item belongs to; low is the axis's least centre, doubled."""
+def _bin(item, axis, low, scale, count):
+    """Which of so many bins an item belongs to; low is the axis's least centre, doubled."""
     centre = load_f32(item + 4 * axis) - load_f32(item + 4 * axis + UPPER)
-    return min(int((centre - low) * scale), BINS - 1)
+    return min(max(int((centre - low) * scale), 0), count - 1)
 
 
 @subkernel
-def _fill_bins(first, last, low, scale, bins, weights):
-    """Boxes and weights of all bins (3, BINS)."""
-    for i in range(3 * BINS):
-        store(bins + ITEM * i, f32x8(HUGE))
-        store(weights + 8 * i, 0)
+def _fill_bins(first, last, low, scale, count, bins, weights):
+    """Boxes and weights of the first `count` bins of all axes (3, BINS)."""
+    for axis in range(3):
+        for i in range(BINS * axis, BINS * axis + count):
+            store(bins + ITEM * i, f32x8(HUGE))
+            store(weights + 8 * i, 0)
     for item in range(first, last, ITEM):
         bounds, weight = load_f32x8(item), load_i32(item + WEIGHT)
         for axis in range(3):
-            i = BINS * axis + _bin(item, axis, load_f32(low + 4 * axis), load_f32(scale + 4 * axis))
+            i = BINS * axis + _bin(item, axis, load_f32(low + 4 * axis), load_f32(scale + 4 * axis), count)
             store(bins + ITEM * i, minimum(bounds, load_f32x8(bins + ITEM * i)))
             store(weights + 8 * i, load_i64(weights + 8 * i) + weight)
 
@@ -166,19 +170,19 @@ def _blocks(weight):
 
 
 @subkernel
-def _best_plane(bins, weights):
+def _best_plane(count, bins, weights):
     """(axis, bin): the cheapest split is above that bin of that axis; axis -1 where all centres are one."""
     best, best_axis, best_bin = np.inf, -1, 0
     upper_costs, side = local_memory(COSTS_SIZE), local_memory(ITEM)
     for axis in range(3):
         row, row_weights = bins + ITEM * BINS * axis, weights + 8 * BINS * axis
         box, upper = f32x8(HUGE), 0
-        for i in range(BINS - 1, 0, -1):
+        for i in range(count - 1, 0, -1):
             box, upper = minimum(load_f32x8(row + ITEM * i), box), upper + load_i64(row_weights + 8 * i)
             store(side, box)
             store(upper_costs + 4 * i, np.float32(half_area(side) * _blocks(upper) if upper > 0 else np.inf))
         box, lower = f32x8(HUGE), 0
-        for i in range(BINS - 1):
+        for i in range(count - 1):
             box, lower = minimum(load_f32x8(row + ITEM * i), box), lower + load_i64(row_weights + 8 * i)
             if lower > 0:
                 store(side, box)
@@ -189,12 +193,12 @@ def _best_plane(bins, weights):
 
 
 @subkernel
-def _partition(first, last, axis, plane, low, scale, target):
+def _partition(first, last, axis, plane, low, scale, count, target):
     """Copy the items between two addresses to `target`, those of bins above `plane` to its end; how many are not."""
     lower, upper = target, target + last - first - ITEM
     origin, factor = load_f32(low + 4 * axis), load_f32(scale + 4 * axis)
     for item in range(first, last, ITEM):
-        above = _bin(item, axis, origin, factor) > plane
+        above = _bin(item, axis, origin, factor, count) > plane
         store(upper if above else lower, load_f32x8(item))
         lower += 0 if above else ITEM
         upper -= ITEM if above else 0
@@ -224,14 +228,15 @@ def _levels(count):
 def _split(first, last, low, high, target, halving):
     """Sort items to both sides of a plane; how many are on the lower one."""
     scale, bins, weights = local_memory(ITEM), local_memory(BINS_SIZE), local_memory(WEIGHTS_SIZE)
+    count = BINS if last - first > ITEM * FEW else FEW
     for axis in range(3):
         extent = load_f32(high + 4 * axis) - load_f32(low + 4 * axis)
-        store(scale + 4 * axis, np.float32(BINS) / extent if extent > TINY_EXTENT else np.float32(0))
+        store(scale + 4 * axis, np.float32(count) / extent if extent > TINY_EXTENT else np.float32(0))
     if not halving:
-        _fill_bins(first, last, low, scale, bins, weights)
-        axis, plane = _best_plane(bins, weights)
+        _fill_bins(first, last, low, scale, count, bins, weights)
+        axis, plane = _best_plane(count, bins, weights)
         if axis >= 0:
-            return _partition(first, last, axis, plane, low, scale, target)
+            return _partition(first, last, axis, plane, low, scale, count, target)
     return _halve(first, last, target)
 
 
@@ -255,11 +260,12 @@ def grow(items, todo, pending, splits, max_depth, control):
         depth, side = todo[pending, DEPTH], todo[pending, SIDE]
         source, node = sides[side], nodes + ITEM * number
         start, end = source + ITEM * first, source + ITEM * last
-        if _measure(start, end, node, low, high) <= WIDTH:
+        weight = _measure(start, end, node, low, high)
+        if weight <= LEAF_WEIGHT or last - first == 1:
             for i in range(first, last):
                 store(order + 4 * i, load_i32(source + ITEM * i + NUMBER))
             store(node + NUMBER, np.int32(first))
-            store(node + WEIGHT, np.int32(last - first))
+            store(node + WEIGHT, np.int32(weight))
             continue
         halving = depth + _levels(last - first) >= max_depth
         middle = first + _split(start, end, low, high, sides[1 - side] + ITEM * first, halving)

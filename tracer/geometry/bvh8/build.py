@@ -11,18 +11,19 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.bvh8.binary import CANCELLED, DONE, FIRST, LAST, Items, grow, make_items, put_boxes, put_triangles
-from tracer.geometry.bvh8.collapse import VACANT, Offsets, Shape, collapse, write_shape
-from tracer.geometry.bvh8.refit import clear, fill_blocks, make_links, pad_blocks, pad_quadrics, refit_nodes
+from tracer.geometry.building import CANCELLED, DONE
+from tracer.geometry.bvh8.binary import FIRST, LAST, Items, grow, make_items, put_boxes, put_triangles
+from tracer.geometry.bvh8.collapse import VACANT, Shape, collapse, plan
+from tracer.geometry.bvh8.refit import fill_blocks, make_links, pad_blocks, pad_quadrics, unite_nodes
+from tracer.geometry.bvh8.shape import Offsets, clear, write_shape
 from tracer.geometry.bvh8.tree import BLOCK_SIZE, MAX_DEPTH, NODE_SIZE, PADDING, WIDTH, Tree, aligned
 from tracer.parallel import for_each_chunk
-from tracer.scene.model import Cancelled
+from tracer.scene.model import Cancelled, Float32
 
-SUBTREE_DEPTH = MAX_DEPTH - 16  # the rest is for a tree over trees
+CROWN_DEPTH = 24  # of a tree over trees, which have the rest of MAX_DEPTH; enough for 16 million of them
 SMALL = 1 << 14  # items; a subtree of no more is grown by one thread
 CHUNK = 1 << 12  # blocks or triangles that a thread takes at a time
 ALL = 1 << 62
-IDENTITY = np.eye(4)[:3].reshape(12)
 
 
 def _in_chunks(work: Callable[[int, int], None], count: int, control: NDArray[np.int64], threads: int) -> None:
@@ -34,17 +35,17 @@ def _in_chunks(work: Callable[[int, int], None], count: int, control: NDArray[np
     for_each_chunk(one, -(-count // CHUNK), threads, lambda: bool(control[CANCELLED]))
 
 
-def _grow(items: Items, count: int, control: NDArray[np.int64], threads: int) -> None:
-    """A binary tree over all items; raises Cancelled when control[CANCELLED] is set."""
+def _grow(items: Items, count: int, depth: int, control: NDArray[np.int64], threads: int) -> None:
+    """A binary tree over all items, at most so deep; raises Cancelled when control[CANCELLED] is set."""
 
     def run(tasks: list[NDArray[np.int64]], splits: int) -> list[NDArray[np.int64]]:
         """Work off tasks in parallel; those that are left in each."""
         left: list[list[NDArray[np.int64]]] = [[] for _ in tasks]
 
         def one(chunk: int, worker: int) -> None:
-            stack = np.zeros((SUBTREE_DEPTH + 2, 5), np.int64)
+            stack = np.zeros((depth + 2, 5), np.int64)
             stack[0] = tasks[chunk]
-            pending = grow(items, stack, 1, splits, SUBTREE_DEPTH, control)
+            pending = grow(items, stack, 1, splits, depth, control)
             left[chunk] = list(stack[:pending])
             if not pending:
                 control[DONE] += tasks[chunk][LAST] - tasks[chunk][FIRST]
@@ -63,49 +64,60 @@ def _grow(items: Items, count: int, control: NDArray[np.int64], threads: int) ->
 
 
 def build_shape(
-    rows: NDArray[np.float32], boxes: NDArray[np.float32], control: NDArray[np.int64], threads: int
-) -> tuple[Shape, NDArray[np.int32]]:
-    """The shape of a tree over triangles (t, 9), corner and edges, and boxes (q, 6); and the order its leaves refer to.
+    rows: Float32, boxes: Float32, control: NDArray[np.int64], threads: int = 1, depth: int = MAX_DEPTH - CROWN_DEPTH
+) -> Shape:
+    """The shape of a tree over triangles (t, 9), corner and edges, and boxes (q, 6), numbered in this order.
 
-    Items are numbered triangles first.  Raises Cancelled when control[CANCELLED] is set; counts items
-    that have found their leaf in control[DONE].
+    No way down has more than `depth` nodes, which must do for a balanced binary tree.  Raises Cancelled
+    when control[CANCELLED] is set; counts items that have found their leaf in control[DONE].
     """
     triangles, count = len(rows), len(rows) + len(boxes)
     if count == 0:
-        return Shape(np.full((1, WIDTH), VACANT, np.int32), np.empty((0, 2), np.int32)), np.empty(0, np.int32)
+        return Shape(np.full((1, WIDTH), VACANT, np.int32), np.empty((0, 2), np.int32), np.empty(0, np.int32))
+    threads = threads if count > SMALL else 1
     items = make_items(count)
     _in_chunks(lambda first, last: put_triangles(items, rows, first, last), triangles, control, threads)
     put_boxes(items, boxes, triangles)
-    _grow(items, count, control, threads)
+    _grow(items, count, depth, control, threads)
     children, leaves = np.empty((count, WIDTH), np.int32), np.empty((count, 2), np.int32)
-    used_nodes, used_leaves = collapse(items.nodes, children, leaves, np.empty((WIDTH * MAX_DEPTH, 2), np.int64))
-    return Shape(children[:used_nodes].copy(), leaves[:used_leaves].copy()), items.order
+    plan(items.nodes, depth)
+    used_nodes, used_leaves = collapse(items.nodes, children, leaves, depth)
+    return Shape(children[:used_nodes].copy(), leaves[:used_leaves].copy(), items.order)
 
 
-def build_tree(
-    rows: NDArray[np.float32], boxes: NDArray[np.float32], control: NDArray[np.int64] | None = None, threads: int = 1
-) -> Tree:
-    """A tree over triangles (t, 9) float32, corner and two edges, and boxes (q, 6) of quadrics, float32.
+def count_blocks(shape: Shape, triangles: int) -> int:
+    """How many of a shape's leaves are blocks, the first so many items being triangles."""
+    return int(np.count_nonzero(shape.order[shape.leaves[:, 0]] < triangles))
+
+
+def build_tree(rows: Float32, boxes: Float32, control: NDArray[np.int64] | None = None, threads: int = 1) -> Tree:
+    """A tree over triangles (t, 9) float32, corner and two edges, and boxes (q, 6) float32 of quadrics.
 
     Numbers count both from 0.  `control` (2,) int64: the build ends with Cancelled once
     control[CANCELLED] is set, and counts items that have found their leaf in control[DONE].
     """
     control = np.zeros(2, np.int64) if control is None else control
-    shape, order = build_shape(rows, boxes, control, threads)
-    quadrics = int(np.count_nonzero(order[shape.leaves[:, 0]] >= len(rows)))
-    tree = Tree(aligned(len(shape.children), NODE_SIZE), aligned(1 + len(shape.leaves) - quadrics, BLOCK_SIZE))
+    shape = build_shape(rows, boxes, control, threads)
+    tree = empty_tree(len(shape.children), count_blocks(shape, len(rows)))
     links = make_links(len(tree.nodes), len(tree.blocks), len(boxes), 1)
-    clear(tree)
-    write_shape(tree, links, shape, order, len(rows), Offsets(0, 1, 0, 0, 0))
-    extents = np.zeros(-(-len(tree.blocks) // CHUNK) + 1, np.float32)
+    write_shape(tree, links, shape, len(rows), Offsets(0, 1, 0, 0, 0))
+    count = len(tree.blocks) - 1  # without the empty one
+    extents = np.zeros(1 + -(-count // CHUNK), np.float32)
+    extents[-1] = np.abs(boxes).max(initial=0)
 
     def fill(first: int, last: int) -> None:
-        extents[first // CHUNK] = fill_blocks(tree.blocks, rows, IDENTITY, max(first, 1), last)
+        extents[first // CHUNK] = fill_blocks(tree.blocks, rows, 1 + first, 1 + last)
 
-    _in_chunks(fill, len(tree.blocks), control, threads)
-    extents[-1] = np.abs(boxes).max(initial=0)
+    _in_chunks(fill, count, control, threads)
     padding = np.float32(PADDING * extents.max())
-    _in_chunks(lambda a, b: pad_blocks(tree, links, padding, max(a, 1), b), len(tree.blocks), control, threads)
-    pad_quadrics(tree, links, boxes, padding, 0, len(boxes))
-    refit_nodes(tree, links, 0, len(tree.nodes))
+    _in_chunks(lambda first, last: pad_blocks(tree, links, padding, 1 + first, 1 + last), count, control, threads)
+    pad_quadrics(tree, links, boxes.copy(), padding, 0, len(boxes))
+    unite_nodes(tree, links, 0, len(tree.nodes))
+    return tree
+
+
+def empty_tree(nodes: int, blocks: int) -> Tree:
+    """A tree over nothing, with room for so many nodes, one at least, and blocks beside the empty one."""
+    tree = Tree(aligned(nodes, NODE_SIZE), aligned(1 + blocks, BLOCK_SIZE))
+    clear(tree)
     return tree

@@ -1,9 +1,8 @@
 """Filling a tree whose shape is known: triangles into blocks, and boxes from the blocks up to the root.
 
-Triangles are taken to world space in float64 and rounded once.  The box of a block or quadric is
-padded and written where its parent holds it; a node's is the union of what the node holds, exactly.
-So a parent's box always contains its children's as they are stored, and a ray that meets those, in
-float32 arithmetic, meets the parent's.
+Boxes of blocks and quadrics are padded and handed to their parents; a node's box is the union of
+what the node holds, exactly.  So a stored box always contains its children's stored boxes, and a
+ray that meets those, in float32 arithmetic, meets it too.
 """
 
 from __future__ import annotations
@@ -13,21 +12,26 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.bvh8.tree import (
-    BLOCK_SIZE,
-    BOX,
-    CHILDREN,
-    COUNT,
-    EMPTY,
-    NO_PRIMITIVE,
-    NODE_SIZE,
-    PRIMITIVES,
-    WIDTH,
+from tracer.geometry.bvh8.tree import BLOCK_SIZE, BOX, COUNT, EMPTY, NODE_SIZE, PRIMITIVES, WIDTH
+from tracer.kernels import inlined, kernel, subkernel
+from tracer.simd import (
+    address_of,
+    f32x8,
+    fma,
+    largest,
+    load_f32,
+    load_f32x8,
+    load_i32,
+    mask8,
+    maximum,
+    minimum,
+    select,
+    smallest,
+    store,
 )
-from tracer.kernels import kernel, subkernel
-from tracer.simd import address_of, f32x8, i32x8, largest, load_f32x8, load_i32, select, smallest, store
 
-NODE_BYTES, BLOCK_BYTES = 4 * NODE_SIZE, 4 * BLOCK_SIZE
+NODE_BYTES, BLOCK_BYTES, CORNER_BYTES, LANES = 4 * NODE_SIZE, 4 * BLOCK_SIZE, 4 * 9 * WIDTH, 4 * WIDTH
+ROW = 4 * 9  # bytes of a triangle
 
 
 class Links(NamedTuple):
@@ -44,116 +48,137 @@ class Links(NamedTuple):
 
 def make_links(nodes: int, blocks: int, quadrics: int, roots: int) -> Links:
     """Uninitialised links of a tree with so many of each."""
-    numbers = [np.empty(n, np.int32) for n in (nodes, blocks, quadrics)]
-    return Links(*numbers, np.empty((roots, 6), np.float32))
-
-
-@subkernel
-def clear_nodes(nodes, first, last):
-    """Nodes with eight empty slots."""
-    for i in range(first, last):
-        node = address_of(nodes) + NODE_BYTES * i
-        for k in range(6):
-            store(node + 32 * k, f32x8(EMPTY))
-        store(node + 4 * CHILDREN, i32x8(~0))
-        store(node + 4 * CHILDREN + 32, i32x8(0))
-
-
-@subkernel
-def clear_blocks(blocks, first, last):
-    """Blocks without triangles."""
-    for i in range(first, last):
-        block = address_of(blocks) + BLOCK_BYTES * i
-        for k in range(9):
-            store(block + 32 * k, f32x8(0))
-        store(block + 4 * PRIMITIVES, i32x8(NO_PRIMITIVE))
-        store(block + 4 * BOX, f32x8(0))
-        store(block + 4 * BOX + 32, f32x8(0))
+    return Links(
+        np.empty(nodes, np.int32),
+        np.empty(blocks, np.int32),
+        np.empty(quadrics, np.int32),
+        np.empty((roots, 6), np.float32),
+    )
 
 
 @kernel
-def clear(tree):
-    """Make all nodes and blocks empty ones."""
-    clear_nodes(tree.nodes, 0, len(tree.nodes))
-    clear_blocks(tree.blocks, 0, len(tree.blocks))
+def fill_blocks(blocks, rows, first, last):
+    """Copy triangles (t, 9) to blocks first to last - 1, by the numbers there; their largest absolute coordinate.
 
-
-@subkernel
-def set_child(nodes, node, slot, code):
-    store(address_of(nodes) + NODE_BYTES * node + 4 * (CHILDREN + slot), np.int32(code))
-
-
-@subkernel
-def set_triangles(blocks, b, order, first, count, offset):
-    """Give a block the triangles offset + order[first], and so on."""
-    block = address_of(blocks) + BLOCK_BYTES * b
-    for lane in range(count):
-        store(block + 4 * (PRIMITIVES + lane), np.int32(offset + order[first + lane]))
-    store(block + 4 * COUNT, np.int32(count))
-
-
-@kernel
-def fill_blocks(blocks, rows, matrix, first, last):
-    """Take triangles from rows (t, 9) to blocks first to last - 1, by their numbers and through matrix (12,) float64.
-
-    Stores exact boxes, and returns their largest absolute coordinate.
+    The boxes that are stored are exact.
     """
-    extent = np.float32(0)
-    m = matrix
-    box = np.empty(6, np.float32)
-    for b in range(first, last):
-        block = address_of(blocks) + BLOCK_BYTES * b
-        box[:3], box[3:] = np.inf, -np.inf
-        for lane in range(load_i32(block + 4 * COUNT)):
-            row = rows[load_i32(block + 4 * (PRIMITIVES + lane))]
-            for k in range(3):
-                i = 4 * k
-                corner = np.float32(m[i] * row[0] + m[i + 1] * row[1] + m[i + 2] * row[2] + m[i + 3])
-                edge1 = np.float32(m[i] * row[3] + m[i + 1] * row[4] + m[i + 2] * row[5])
-                edge2 = np.float32(m[i] * row[6] + m[i + 1] * row[7] + m[i + 2] * row[8])
-                blocks[b, 8 * k + lane] = corner
-                blocks[b, 8 * (k + 3) + lane] = edge1
-                blocks[b, 8 * (k + 6) + lane] = edge2
-                box[k] = min(box[k], min(corner, min(corner + edge1, corner + edge2)))
-                box[k + 3] = max(box[k + 3], max(corner, max(corner + edge1, corner + edge2)))
-        for k in range(6):
-            blocks[b, BOX + k] = box[k]
-            extent = max(extent, abs(box[k]))
+    extent, triangles = np.float32(0), address_of(rows)
+    for block in range(address_of(blocks) + BLOCK_BYTES * first, address_of(blocks) + BLOCK_BYTES * last, BLOCK_BYTES):
+        for k in range(3):
+            low, high = np.float32(np.inf), np.float32(-np.inf)
+            for lane in range(load_i32(block + 4 * COUNT)):
+                row = triangles + ROW * load_i32(block + 4 * (PRIMITIVES + lane)) + 4 * k
+                a, b, c = load_f32(row), load_f32(row + 12), load_f32(row + 24)
+                place = block + LANES * k + 4 * lane
+                store(place, a)
+                store(place + 3 * LANES, b)
+                store(place + 6 * LANES, c)
+                low, high = min(low, min(a, min(a + b, a + c))), max(high, max(a, max(a + b, a + c)))
+            store(block + 4 * (BOX + k), low)
+            store(block + 4 * (BOX + k + 3), high)
+            extent = max(extent, max(-low, high))
     return extent
 
 
+@kernel
+def gather_corners(local, blocks, corners, offset, first, last):
+    """Copy the corners of the triangles of blocks first to last - 1 to local (m, 72), as structure of arrays.
+
+    Row i of corners (d, 9) are those of triangle offset + i.  Unused lanes repeat the first triangle.
+    """
+    target = address_of(local) + CORNER_BYTES * first
+    for block in range(address_of(blocks) + BLOCK_BYTES * first, address_of(blocks) + BLOCK_BYTES * last, BLOCK_BYTES):
+        count = load_i32(block + 4 * COUNT)
+        for lane in range(WIDTH):
+            number = load_i32(block + 4 * (PRIMITIVES + (lane if lane < count else 0)))
+            row = address_of(corners) + ROW * (number - offset)
+            for k in range(9):
+                store(target + LANES * k + 4 * lane, load_f32(row + 4 * k))
+        target += CORNER_BYTES
+
+
+@inlined
+def _image(local, m0, m1, m2, m3):
+    """One coordinate of 8 points under an affine map."""
+    return fma(m0, load_f32x8(local), fma(m1, load_f32x8(local + LANES), fma(m2, load_f32x8(local + 2 * LANES), m3)))
+
+
 @subkernel
-def _store_box(tree, links, link, k, value):
+def move_blocks(blocks, local, matrix, first, last):
+    """Take blocks first to last - 1 to the world from their corners, by matrix (12,); the largest absolute coordinate.
+
+    Each corner is moved by itself, so that triangles that share it still do.  Boxes are exact.  All
+    arrays are given as addresses.
+    """
+    extent, nothing = np.float32(0), f32x8(0)
+    corners = local + CORNER_BYTES * first
+    for block in range(blocks + BLOCK_BYTES * first, blocks + BLOCK_BYTES * last, BLOCK_BYTES):
+        used = mask8((1 << load_i32(block + 4 * COUNT)) - 1)
+        for k in range(3):
+            m = matrix + 16 * k
+            m0, m1, m2, m3 = f32x8(load_f32(m)), f32x8(load_f32(m + 4)), f32x8(load_f32(m + 8)), f32x8(load_f32(m + 12))
+            a = _image(corners, m0, m1, m2, m3)
+            b = _image(corners + 3 * LANES, m0, m1, m2, m3)
+            c = _image(corners + 6 * LANES, m0, m1, m2, m3)
+            store(block + LANES * k, select(used, a, nothing))
+            store(block + LANES * (k + 3), select(used, b - a, nothing))
+            store(block + LANES * (k + 6), select(used, c - a, nothing))
+            low, high = smallest(minimum(a, minimum(b, c))), largest(maximum(a, maximum(b, c)))
+            store(block + 4 * (BOX + k), low)
+            store(block + 4 * (BOX + k + 3), high)
+            extent = max(extent, max(-low, high))
+        corners += CORNER_BYTES
+    return extent
+
+
+@inlined
+def _hand_up(nodes, roots, link):
+    """Where a box is to be stored, and how far apart its numbers."""
     if link >= 0:
-        tree.nodes[link // WIDTH, WIDTH * k + link % WIDTH] = value
-    else:
-        links.roots[~link, k] = value
+        return nodes + NODE_BYTES * (link // WIDTH) + 4 * (link % WIDTH), LANES
+    return roots + 24 * ~link, 4
+
+
+@subkernel
+def pad_box(nodes, roots, link, box, padding):
+    """Let a box (6,) grow, and hand it to its parent."""
+    place, stride = _hand_up(nodes, roots, link)
+    for k in range(6):
+        value = load_f32(box + 4 * k) + (padding if k >= 3 else -padding)
+        store(box + 4 * k, value)
+        store(place + stride * k, value)
+
+
+@subkernel
+def unite(nodes, roots, links, first, last):
+    """Hand the boxes of nodes first to last - 1 to their parents, children before parents."""
+    for i in range(last - 1, first - 1, -1):
+        node = nodes + NODE_BYTES * i
+        place, stride = _hand_up(nodes, roots, load_i32(links + 4 * i))
+        for k in range(3):
+            upper = load_f32x8(node + LANES * (k + 3))
+            store(place + stride * k, smallest(load_f32x8(node + LANES * k)))
+            store(place + stride * (k + 3), largest(select(upper == EMPTY, f32x8(-EMPTY), upper)))
 
 
 @kernel
 def pad_blocks(tree, links, padding, first, last):
     """Let the boxes of blocks first to last - 1 grow, and hand them to their parents."""
-    for b in range(first, last):
-        for k in range(6):
-            value = tree.blocks[b, BOX + k] + (padding if k >= 3 else -padding)
-            tree.blocks[b, BOX + k] = value
-            _store_box(tree, links, links.blocks[b], k, value)
+    nodes, blocks, roots = address_of(tree.nodes), address_of(tree.blocks), address_of(links.roots)
+    parents = address_of(links.blocks)
+    for i in range(first, last):
+        pad_box(nodes, roots, load_i32(parents + 4 * i), blocks + BLOCK_BYTES * i + 4 * BOX, padding)
 
 
 @kernel
 def pad_quadrics(tree, links, boxes, padding, first, last):
-    """Hand the boxes (q, 6) of quadrics first to last - 1, a little larger, to their parents."""
-    for q in range(first, last):
-        for k in range(6):
-            _store_box(tree, links, links.quadrics[q], k, boxes[q, k] + (padding if k >= 3 else -padding))
+    """Let boxes first to last - 1 of quadrics (q, 6) grow, and hand them to their parents."""
+    nodes, roots = address_of(tree.nodes), address_of(links.roots)
+    for i in range(first, last):
+        pad_box(nodes, roots, links.quadrics[i], address_of(boxes) + 24 * i, padding)
 
 
 @kernel
-def refit_nodes(tree, links, first, last):
-    """Hand the boxes of nodes first to last - 1 to their parents, children before parents."""
-    for i in range(last - 1, first - 1, -1):
-        node = address_of(tree.nodes) + NODE_BYTES * i
-        for k in range(3):
-            upper = load_f32x8(node + 32 * (k + 3))
-            _store_box(tree, links, links.nodes[i], k, smallest(load_f32x8(node + 32 * k)))
-            _store_box(tree, links, links.nodes[i], k + 3, largest(select(upper == EMPTY, f32x8(-EMPTY), upper)))
+def unite_nodes(tree, links, first, last):
+    """As `unite`, of nodes all of whose leaves' boxes are known."""
+    unite(address_of(tree.nodes), address_of(links.roots), address_of(links.nodes), first, last)

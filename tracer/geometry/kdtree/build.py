@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from tracer.geometry.building import CANCELLED, DONE
 from tracer.geometry.kdtree.tree import LEAF, MAX_DEPTH, Trees
 from tracer.geometry.memory import float_bits
 from tracer.kernels import kernel, subkernel
@@ -22,7 +23,6 @@ INTERSECTION_COST = 0.8  # measured: below 1.4 a third fewer nodes, built faster
 EMPTY_BONUS = 0.8  # a split that cuts off empty space costs this much of its estimate
 BINS = 32
 SWEEP_BELOW = 48  # references; below it every plane is tried
-CANCELLED, DONE = 0, 1  # entries of `control`: set to stop the build; references placed in leaves so far
 
 
 @subkernel

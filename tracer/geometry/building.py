@@ -1,0 +1,34 @@
+"""Long builds: run where they can be watched and stopped."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, wait
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.scene.model import Progress
+
+CANCELLED, DONE = 0, 1  # entries of a build's `control` (2,) int64: set to stop it; how much it has done
+LONG = 5000  # primitives; what has fewer is built in no time
+T = TypeVar("T")
+
+
+def watched(
+    build: Callable[[NDArray[np.int64]], T], what: str, primitives: int, work: float, progress: Progress | None
+) -> T:
+    """build(control), while `progress` is told what and how much of `work` is done; what it raises stops the build."""
+    control = np.zeros(2, np.int64)
+    if progress is None or primitives < LONG:
+        return build(control)
+    with ThreadPoolExecutor(1, thread_name_prefix="build") as builder:
+        result = builder.submit(build, control)
+        try:
+            while not result.done():
+                progress(what, min(0.99, control[DONE] / work))
+                wait([result], 0.05)
+        finally:
+            control[CANCELLED] = 1
+    return result.result()

@@ -1,0 +1,115 @@
+"""One tree for all dynamic objects: a sub-tree for each, and a small tree over those that are present.
+
+The shape of a sub-tree is made once, in its object's space.  For a frame its triangles are moved to
+the world, its boxes found from the bottom up, and the small tree written anew into the first nodes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.geometry.bvh8.build import CROWN_DEPTH, build_shape, count_blocks, empty_tree
+from tracer.geometry.bvh8.collapse import VACANT, Shape
+from tracer.geometry.bvh8.refit import BLOCK_BYTES, Links, gather_corners, make_links, move_blocks, pad_box, unite
+from tracer.geometry.bvh8.shape import Offsets, clear_nodes, set_child, write_shape
+from tracer.geometry.bvh8.tree import BOX, PADDING, WIDTH, Tree
+from tracer.kernels import kernel
+from tracer.simd import address_of, load_i32
+
+NODE, BLOCK, TRIANGLE, QUADRIC = 0, 1, 2, 3  # columns of `starts`
+
+
+class Forest(NamedTuple):
+    """Sub-trees of n objects back to back, with room for a tree over them before.
+
+    corners (m, 72) float32 are those of the triangles in each block, in their object's space, as
+    structure of arrays; starts (n + 1, 4) int32 tell where each object's nodes, blocks, triangles and
+    quadrics begin.  Row i of links.roots is the box of object i, but row 0 of everything: object 0 is
+    static, and not in here.
+    """
+
+    tree: Tree
+    links: Links
+    corners: NDArray[np.float32]
+    starts: NDArray[np.int32]
+
+
+def plant(shapes: Sequence[Shape], triangles: NDArray[np.int32], quadrics: NDArray[np.int32]) -> Forest:
+    """A forest of objects 1 to n - 1, without triangles yet, whose numbers start at triangles and quadrics (n + 1,)."""
+    counts = np.diff(triangles)
+    sizes = [(len(s.children), count_blocks(s, n)) for s, n in zip(shapes, counts[1:], strict=True)]
+    starts = np.zeros((len(triangles), 4), np.int32)
+    starts[:2, :2] = max(1, len(shapes)), 1
+    starts[2:, :2] = starts[1, :2] + np.cumsum(sizes, axis=0).reshape(-1, 2)
+    starts[:, TRIANGLE], starts[:, QUADRIC] = triangles, quadrics
+    tree = empty_tree(starts[-1, NODE], starts[-1, BLOCK] - 1)
+    links = make_links(len(tree.nodes), len(tree.blocks), quadrics[-1], len(counts))
+    for i, shape in enumerate(shapes, 1):
+        node, block, triangle, quadric = starts[i].tolist()
+        write_shape(tree, links, shape, counts[i], Offsets(node, block, triangle, quadric, i))
+    return Forest(tree, links, np.empty((len(tree.blocks), 9 * WIDTH), np.float32), starts)
+
+
+@kernel
+def gather(forest, corners, first, last):
+    """Take the corners of objects first to last - 1 from corners (d, 9) of the triangles of objects 1 to n - 1."""
+    start, end = forest.starts[first, BLOCK], forest.starts[last, BLOCK]
+    gather_corners(forest.corners, forest.tree.blocks, corners, forest.starts[1, TRIANGLE], start, end)
+
+
+@kernel
+def move(forest, matrices, present, boxes):
+    """Move what is present to the world and find all boxes.
+
+    matrices (n, 12) float32, present (n,) bool; boxes (q, 6) float32 of quadrics, in the world already.
+    """
+    nodes, blocks, roots = address_of(forest.tree.nodes), address_of(forest.tree.blocks), address_of(forest.links.roots)
+    node_links, block_links = address_of(forest.links.nodes), address_of(forest.links.blocks)
+    starts, corners, extent = forest.starts, address_of(forest.corners), np.float32(0)
+    for i in range(1, len(present)):
+        if present[i]:
+            matrix = address_of(matrices) + 48 * i
+            moved = move_blocks(blocks, corners, matrix, starts[i, BLOCK], starts[i + 1, BLOCK])
+            extent = max(extent, moved)
+            for q in range(starts[i, QUADRIC], starts[i + 1, QUADRIC]):
+                for k in range(6):
+                    extent = max(extent, abs(boxes[q, k]))
+    padding = np.float32(PADDING) * extent
+    for i in range(1, len(present)):
+        if present[i]:
+            for b in range(starts[i, BLOCK], starts[i + 1, BLOCK]):
+                box = blocks + BLOCK_BYTES * b + 4 * BOX
+                pad_box(nodes, roots, load_i32(block_links + 4 * b), box, padding)
+            for q in range(starts[i, QUADRIC], starts[i + 1, QUADRIC]):
+                pad_box(nodes, roots, forest.links.quadrics[q], address_of(boxes) + 24 * q, padding)
+            unite(nodes, roots, node_links, starts[i, NODE], starts[i + 1, NODE])
+
+
+@kernel
+def _crown(forest, shape, present):
+    """Write the tree over the objects (p,) that are present."""
+    nodes, roots, links = address_of(forest.tree.nodes), address_of(forest.links.roots), forest.links.nodes
+    clear_nodes(nodes, 0, forest.starts[1, NODE])
+    links[0] = ~0
+    for link in range(WIDTH * len(shape.children)):
+        child = shape.children[link // WIDTH, link % WIDTH]
+        if child >= 0:
+            set_child(nodes, link, child)
+            links[child] = link
+        elif child != VACANT:
+            item = present[shape.order[shape.leaves[~child, 0]]]
+            set_child(nodes, link, forest.starts[item, NODE])
+            pad_box(nodes, roots, link, roots + 24 * item, np.float32(0))
+    unite(nodes, roots, address_of(links), 0, len(shape.children))
+
+
+def crown(forest: Forest, present: NDArray[np.bool_]) -> None:
+    """Make the tree over what is present, (n,) bool, and has been moved."""
+    numbers = np.flatnonzero(present)
+    boxes = forest.links.roots[numbers]
+    shape = build_shape(np.empty((0, 9), np.float32), boxes, np.zeros(2, np.int64), depth=CROWN_DEPTH)
+    _crown(forest, shape, numbers)

@@ -1,0 +1,140 @@
+"""The 8-wide trees of a scene: one of what never moves, one of all dynamic objects, placed for a frame.
+
+Rays are traced in the world alone: what moves is moved there for each frame.  What deforms has a tree of
+the shape that was best at the nearest of some times along its animation.  Shapes are kept; so they
+stay good, are seldom made, and do not depend on which frames came before.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.geometry.building import watched
+from tracer.geometry.bvh8.build import build_shape, build_tree
+from tracer.geometry.bvh8.collapse import Shape
+from tracer.geometry.bvh8.forest import crown, gather, move, plant
+from tracer.geometry.bvh8.tree import CHILDREN, WIDTH, Placed8, Tree
+from tracer.geometry.poses import Poses, products
+from tracer.geometry.primitives import Primitives, triangle_rows
+from tracer.parallel import thread_count
+from tracer.scene.animation import deformed
+from tracer.scene.model import Float32, Float64, Progress
+
+STEPS, MOST_KEYS = 8, 64  # from a key of a deforming object to the next; in all
+
+
+class Trees8:
+    """Built over all primitives of a scene; raises Cancelled if `progress` does meanwhile."""
+
+    def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
+        self._primitives, self._objects = primitives, objects
+        triangles, quadrics = primitives.triangles_of(0), primitives.quadrics_of(0)
+        boxes = primitives.quadric_boxes(quadrics, primitives.to_object[quadrics])
+        count = triangles.stop + quadrics.stop
+        self._static = watched(
+            lambda control: build_tree(primitives.triangles[triangles], boxes, control, thread_count()),
+            "building the tree",
+            count,
+            1.2 * count,
+            progress,
+        )
+        self._keys = {index: _keys(d.times) for index, d in primitives.deformations.items()}
+        self._at = dict.fromkeys(self._keys, 0)
+        self._shapes: dict[tuple[int, int], Shape] = {}
+        self._plant(progress)
+        self._world_quadrics = primitives.quadrics.copy()
+        self._quadric_boxes = np.zeros((len(primitives.quadrics), 6), np.float32)
+
+    def _shape(self, index: int, progress: Progress | None = None) -> Shape:
+        """The shape of a dynamic object's tree; of one that deforms, at the key it is at."""
+        known = (index, self._at.get(index, 0))
+        if known not in self._shapes:
+            primitives, quadrics = self._primitives, self._primitives.quadrics_of(index)
+            rows = primitives.triangles[primitives.triangles_of(index)]
+            if index in self._keys:
+                time = self._keys[index][self._at[index]]
+                rows = triangle_rows(deformed(primitives.deformations[index], time)[0])
+            boxes = primitives.quadric_boxes(quadrics, primitives.to_object[quadrics])
+            count = len(rows) + len(boxes)
+            self._shapes[known] = watched(
+                lambda control: build_shape(rows, boxes, control, thread_count()),
+                "building the tree",
+                count,
+                1.2 * count,
+                progress,
+            )
+        return self._shapes[known]
+
+    def _plant(self, progress: Progress | None = None) -> None:
+        """Put all objects' trees together."""
+        primitives = self._primitives
+        shapes = [self._shape(index, progress) for index in range(1, self._objects)]
+        self._forest = plant(shapes, primitives.triangle_starts, primitives.quadric_starts)
+        gather(self._forest, primitives.corners.reshape(-1, 9), 1, self._objects)
+
+    def _deform(self, time: float) -> None:
+        at = {index: int(np.argmin(np.abs(keys - time))) for index, keys in self._keys.items()}
+        if at != self._at:
+            self._at = at
+            self._plant()
+        for index in self._keys:
+            gather(self._forest, self._primitives.corners.reshape(-1, 9), index, index + 1)
+
+    def place(self, poses: Poses) -> Placed8:
+        """Move all that is present, as the primitives are now, to where it is."""
+        primitives, present = self._primitives, poses.present.copy()
+        present[0] = False
+        self._deform(poses.time)
+        self._move_quadrics(poses)
+        to_world = poses.to_world.reshape(-1, 12).astype(np.float32)
+        move(self._forest, to_world, present, self._quadric_boxes)
+        crown(self._forest, present)
+        return Placed8(
+            primitives.triangles,
+            primitives.quadrics,
+            poses.to_object.reshape(-1, 12).astype(np.float32),
+            primitives.object_of,
+            self._world_quadrics,
+            self._static,
+            self._forest.tree,
+            bool(present.any()),
+        )
+
+    def _move_quadrics(self, poses: Poses) -> None:
+        """Maps and boxes, in the world, of dynamic quadrics."""
+        primitives = self._primitives
+        which = slice(primitives.quadrics_of(0).stop, len(primitives.quadrics))
+        if which.start == which.stop:
+            return
+        owners = primitives.object_of[len(primitives.triangles) :][which]
+        maps = products(primitives.to_canonical[which], poses.to_object[owners])
+        self._world_quadrics[which, :12] = maps.reshape(-1, 12)
+        maps = products(poses.to_world[owners], primitives.to_object[which])
+        self._quadric_boxes[which] = primitives.quadric_boxes(which, maps)
+
+    @staticmethod
+    def bounds(placed: Placed8) -> Float32:
+        """Box (6,) around everything that is there now; inverted for an empty world."""
+        boxes = np.stack([tree_box(placed.static), tree_box(placed.dynamic)])
+        boxes = boxes[boxes[:, 0] <= boxes[:, 3]]
+        if not len(boxes):
+            return np.array([1, 1, 1, -1, -1, -1], np.float32)
+        return np.concatenate([boxes[:, :3].min(0), boxes[:, 3:].max(0)])
+
+
+def _keys(times: Float64) -> Float64:
+    """STEPS times from each of an animation's keys to the next; where that were too many, evenly spaced ones."""
+    keys = np.unique(times)
+    if STEPS * len(keys) > MOST_KEYS:
+        return np.linspace(keys[0], keys[-1], MOST_KEYS)
+    return np.interp(np.arange(STEPS * (len(keys) - 1) + 1) / STEPS, np.arange(len(keys)), keys)
+
+
+def tree_box(tree: Tree) -> NDArray[np.float32]:
+    """Box (6,) around a tree; inverted where there is nothing in it."""
+    used = tree.nodes.view(np.int32)[0, CHILDREN : CHILDREN + WIDTH] != ~0
+    if not used.any():
+        return np.array([1, 1, 1, -1, -1, -1], np.float32)
+    boxes = tree.nodes[0, : 6 * WIDTH].reshape(6, WIDTH)[:, used]
+    return np.concatenate([boxes[:3].min(1), boxes[3:].max(1)])

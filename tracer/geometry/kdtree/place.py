@@ -1,0 +1,115 @@
+"""The kd-trees of a scene: one for what never moves, one per dynamic object, placed for a frame.
+
+A rigid object's tree is built once, and rays are carried into the object's space; only the trees of
+objects that deform are built again, and the small one over where the objects are (§3 of the paper;
+Hunt, Mark, Stoll 2006).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.geometry.building import watched
+from tracer.geometry.kdtree.build import bounds_of, build_tree
+from tracer.geometry.kdtree.traverse import Placed
+from tracer.geometry.kdtree.tree import LEAF, Trees
+from tracer.geometry.poses import Poses
+from tracer.geometry.primitives import Primitives
+from tracer.scene.model import Float32, Float64, Progress
+
+Tree = tuple[Trees, NDArray[np.float32]]  # with the box around it
+
+
+def triangle_boxes(rows: Float32) -> Float32:
+    """Boxes (n, 6) of triangles (n, 9)."""
+    corners = np.stack([rows[:, :3], rows[:, :3] + rows[:, 3:6], rows[:, :3] + rows[:, 6:]], axis=1)
+    return np.concatenate([corners.min(1), corners.max(1)], axis=1)
+
+
+def transform_boxes(boxes: Float64, affine: Float64) -> Float64:
+    """Boxes (n, 6) around the images of boxes under affine maps (n, 3, 4) (Arvo 1990), a little larger."""
+    middle, half = (boxes[:, 3:] + boxes[:, :3]) * 0.5, (boxes[:, 3:] - boxes[:, :3]) * 0.5
+    centre = (affine[:, :, :3] @ middle[:, :, None])[:, :, 0] + affine[:, :, 3]
+    reach = (np.abs(affine[:, :, :3]) @ half[:, :, None])[:, :, 0]
+    reach = reach + 2e-6 * (np.abs(centre).max(1, initial=0) + reach.max(1, initial=0))[:, None]
+    return np.concatenate([centre - reach, centre + reach], axis=1)
+
+
+class KdTrees:
+    """Built over all primitives of a scene; raises Cancelled if `progress` does meanwhile."""
+
+    def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
+        self._primitives, self._objects = primitives, objects
+        self._trees = [self._build(index, progress) for index in range(objects)]
+        self._static = self._globalised([0])[0]
+        self._dynamic, self._roots = self._globalised(range(1, objects))
+
+    def _build(self, index: int, progress: Progress | None = None) -> Tree:
+        """The tree of one object; its items count the object's own primitives."""
+        primitives, quadrics = self._primitives, self._primitives.quadrics_of(index)
+        rows = primitives.triangles[primitives.triangles_of(index)]
+        boxes = np.concatenate(
+            [triangle_boxes(rows), primitives.quadric_boxes(quadrics, primitives.to_object[quadrics])]
+        )
+        return watched(
+            lambda control: build_tree(boxes, rows, control),
+            "building the kd-tree",
+            len(boxes),
+            2.5 * len(boxes),
+            progress,
+        )
+
+    def _globalised(self, indices: Iterable[int]) -> tuple[Trees, NDArray[np.int32]]:
+        """Trees of several objects back to back, their items numbers of the whole scene; and all objects' roots."""
+        words, items = [], []
+        roots = np.zeros(self._objects, np.int32)
+        node_offset = item_offset = 0
+        for index in indices:
+            tree = self._trees[index][0]
+            moved = tree.words.reshape(-1, 2).copy()
+            leaf = (moved[:, 1] & 3) == LEAF
+            moved[leaf, 0] += item_offset
+            moved[~leaf, 1] += node_offset << 2
+            primitives, triangles = self._primitives, self._primitives.triangles_of(index)
+            count = triangles.stop - triangles.start
+            first_quadric = len(primitives.triangles) + primitives.quadric_starts[index] - count
+            words.append(moved.reshape(-1))
+            items.append(tree.items + np.where(tree.items < count, triangles.start, first_quadric).astype(np.int32))
+            roots[index] = node_offset
+            node_offset += len(moved)
+            item_offset += len(tree.items)
+        flat = np.concatenate(words) if words else np.array([0, LEAF], np.int32)
+        return Trees(flat, flat.view(np.float32), np.concatenate(items) if items else np.empty(0, np.int32)), roots
+
+    def place(self, poses: Poses) -> Placed:
+        """Build what deforms again, from the primitives as they are, and place all that is present."""
+        primitives = self._primitives
+        for index in primitives.deformations:
+            self._trees[index] = self._build(index)
+        if primitives.deformations:
+            self._dynamic, self._roots = self._globalised(range(1, self._objects))
+        present = 1 + np.flatnonzero(poses.present[1:])
+        boxes = np.stack([box for _, box in self._trees])
+        top_boxes = transform_boxes(boxes[present].astype(np.float64), poses.to_world[present]).astype(np.float32)
+        top, top_box = build_tree(top_boxes, primitives.triangles[:0])
+        return Placed(
+            primitives.triangles,
+            primitives.quadrics,
+            self._static,
+            self._dynamic,
+            Trees(top.words, top.planes, present.astype(np.int32)[top.items]),
+            self._roots,
+            boxes,
+            poses.to_object.reshape(-1, 12).astype(np.float32),
+            top_box,
+            primitives.object_of,
+        )
+
+    @staticmethod
+    def bounds(placed: Placed) -> Float32:
+        """Box (6,) around everything that is there now; inverted for an empty world."""
+        boxes = np.stack([placed.boxes[0], placed.top_box])
+        return bounds_of(boxes[boxes[:, 0] <= boxes[:, 3]])

@@ -1,0 +1,53 @@
+"""Where the objects of a scene are at a moment."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.scene.chains import Chains
+from tracer.scene.model import Float64
+
+
+class Poses(NamedTuple):
+    """Where n objects are at `time` seconds: maps (n, 3, 4) float64 to the world and back, and present (n,) bool.
+
+    Absent is what is empty, hidden, or scaled to nothing: no ray can be carried there.  Its maps are 0.
+    """
+
+    time: float
+    to_world: Float64
+    to_object: Float64
+    present: NDArray[np.bool_]
+
+
+def poses_at(chains: Chains, empty: NDArray[np.bool_], time: float) -> Poses:
+    """The poses of n objects at `time` seconds; empty (n,) bool tells which have no primitives."""
+    present = chains.visible(time) & ~empty
+    to_world = np.where(present[:, None, None], chains.matrices(time)[:, :3], 0.0)
+    to_object = np.zeros_like(to_world)
+    try:
+        to_object[present] = inverses(to_world[present])
+    except np.linalg.LinAlgError:  # one of them at least: find out which
+        for i in np.flatnonzero(present):
+            try:
+                to_object[i] = inverses(to_world[i : i + 1])[0]
+            except np.linalg.LinAlgError:
+                present[i] = False
+                to_world[i] = 0.0
+    return Poses(time, to_world, to_object, present)
+
+
+def inverses(affine: Float64) -> Float64:
+    """Inverses (n, 3, 4) of affine maps (n, 3, 4); raises LinAlgError where one squashes space."""
+    linear = np.linalg.inv(affine[:, :, :3])
+    return np.concatenate([linear, -(linear @ affine[:, :, 3:])], axis=2)
+
+
+def products(a: Float64, b: Float64) -> Float64:
+    """First b, then a: affine maps (n, 3, 4)."""
+    linear = a[:, :, :3] @ b
+    linear[:, :, 3] += a[:, :, 3]
+    return linear

@@ -1,0 +1,77 @@
+"""A scene's primitives as kernels want them: what every structure is built over."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.geometry.poses import inverses
+from tracer.scene.animation import deformed
+from tracer.scene.model import SPHERE, Float32, Float64, Int32, Scene
+
+
+def triangle_rows(corners: Float32) -> Float32:
+    """Corner and two edges, (n, 9) float32, of corners (n, 3, 3)."""
+    first = corners[:, 0].astype(np.float64)
+    edges = [corners[:, i] - first for i in (1, 2)]
+    return np.concatenate([first, *edges], axis=1).astype(np.float32)
+
+
+class Primitives:
+    """All primitives of a scene's n objects, in the space of their object.
+
+    triangles (t, 9) float32, corner and two edges, and normals (t, 9) float32, of the corners; corners
+    (d, 3, 3) float32 are those of dynamic triangles.  quadrics (q, 16) float32: map to canonical space,
+    kind, radii and side; the same map in float64 is to_canonical (q, 3, 4), its inverse to_object.
+    Those of object i begin at triangle_starts[i] and quadric_starts[i], (n + 1,) int32, and end before the
+    next object's; object_of (t + q,) int32 tells whose each is.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        objects = scene.objects
+        corners = np.concatenate([o.triangles.corners for o in objects])
+        self.triangles = triangle_rows(corners)
+        self.normals = np.concatenate([o.triangles.normals for o in objects]).reshape(-1, 9)
+        self.corners = corners[scene.triangle_offsets[1] :].copy()
+        quadrics = [o.quadrics for o in objects]
+        self.to_object = np.concatenate([q.to_object for q in quadrics])
+        self.to_canonical = inverses(self.to_object)
+        self.quadrics = np.zeros((len(self.to_object), 16), np.float32)
+        self.quadrics[:, :12] = self.to_canonical.reshape(-1, 12)
+        self.quadrics[:, 12] = np.concatenate([q.kind for q in quadrics])
+        self.quadrics[:, 13:15] = np.concatenate([q.radii for q in quadrics])
+        self.quadrics[:, 15] = np.concatenate([q.inside for q in quadrics])
+        self.triangle_starts: Int32 = scene.triangle_offsets
+        self.quadric_starts: Int32 = scene.quadric_offsets - scene.quadric_offsets[0]
+        counts = np.diff(self.triangle_starts), np.diff(self.quadric_starts)
+        self.object_of = np.concatenate([np.repeat(np.arange(len(objects)), n) for n in counts]).astype(np.int32)
+        self.empty: NDArray[np.bool_] = counts[0] + counts[1] == 0
+        self.deformations = {i: o.deformation for i, o in enumerate(objects) if o.deformation is not None}
+
+    def triangles_of(self, index: int) -> slice:
+        """Where an object's are."""
+        return slice(int(self.triangle_starts[index]), int(self.triangle_starts[index + 1]))
+
+    def quadrics_of(self, index: int) -> slice:
+        """Where an object's are."""
+        return slice(int(self.quadric_starts[index]), int(self.quadric_starts[index + 1]))
+
+    def deform(self, time: float) -> None:
+        """Take all deforming objects to a time."""
+        for index, deformation in self.deformations.items():
+            rows, first_dynamic = self.triangles_of(index), int(self.triangle_starts[1])
+            corners, normals = deformed(deformation, time)
+            self.corners[rows.start - first_dynamic : rows.stop - first_dynamic] = corners
+            self.triangles[rows], self.normals[rows] = triangle_rows(corners), normals.reshape(-1, 9)
+
+    def quadric_boxes(self, which: slice, maps: Float64) -> NDArray[np.float32]:
+        """Boxes (n, 6) around quadrics whose canonical space is taken by maps (n, 3, 4) to where they are wanted."""
+        kinds, radii = self.quadrics[which, 12, None], np.abs(self.quadrics[which, 13:15].astype(np.float64))
+        sphere, axis, start = kinds == SPHERE, maps[:, :, 2], maps[:, :, 3]
+        across = maps[:, :, 0] ** 2 + maps[:, :, 1] ** 2
+        across = np.sqrt(np.where(sphere, across + axis**2, across))  # how far a unit sphere or circle reaches
+        first, second = (np.where(sphere, 1.0, radii[:, i, None]) * across for i in (0, 1))
+        end = np.where(sphere, start, start + axis)
+        lower, upper = np.minimum(start - first, end - second), np.maximum(start + first, end + second)
+        slack = 2e-6 * np.maximum(np.abs(lower), np.abs(upper)).max(1, initial=0)[:, None]
+        return np.concatenate([lower - slack, upper + slack], axis=1).astype(np.float32)
