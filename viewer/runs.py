@@ -25,7 +25,7 @@ from viewer.jobs import one_line
 from viewer.render_thread import Traces
 from viewer.zoom import parse_factors
 
-SEEN_WITHIN = 0.25
+SEEN_WITHIN = 1.0
 """Seconds that a frame of a zoom test waits, at most, to be drawn before the next is traced."""
 
 Results = TypeVar("Results")

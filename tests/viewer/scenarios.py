@@ -11,6 +11,7 @@ from pathlib import Path
 import glfw
 import numpy as np
 from imgui_bundle import glfw_utils, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from PIL import Image
 
 from tests.viewer.window import Driver
@@ -397,6 +398,107 @@ def closing_while_tracing(d: Driver) -> None:
     _close(d)
 
 
+def closing_while_experimenting(d: Driver) -> None:
+    """The window goes at once, whatever is being measured."""
+    d.settle()
+    d.c.runner.experiment_plan.size = (2048, 2048)
+    d.c.runner.start_experiment()
+    d.wait(lambda: d.c.runner.experiment.traced > 0, "a first frame")
+    _close(d)
+
+
+def experimenting(d: Driver) -> None:
+    """An experiment starts from its panel, plays, can be stopped, and leaves a table, a plot and files."""
+    d.settle()
+    runner, home = d.c.runner, d.c.session.camera
+    d.ui.show_panel("Experiment")
+    d.frames(3)
+    runner.experiment_plan.frames, runner.experiment_plan.size = 3000, (64, 48)
+    d.context.item_click("//Experiment/**/##verify")
+    assert runner.experiment_plan.verify
+    d.context.item_click(f"//Experiment/**/{icons.ICON_FA_PLAY}  Start")
+    run = runner.experiment
+    for _ in range(3):
+        before = run.traced
+        d.wait(lambda: run.traced > before + 3, "frames of the experiment")  # noqa: B023
+        assert (d.c.frame.width, d.c.frame.height) == (64, 48) == d.ui.display.size, "they are not the picture"
+    d.hold(KEY.w, 0.1)
+    assert d.c.session.camera == home and "stop it first" in d.c.message.text
+    d.press(KEY.c)
+    assert d.c.session.settings.method == "paper"
+    d.press(KEY._2)
+    assert d.c.session.view is View.OCCLUSION, "a view can be chosen any time"
+    d.context.item_click(f"//Experiment/**/{icons.ICON_FA_STOP}  Stop")
+    d.wait(lambda: runner.current is None, "the experiment to stop", 20.0)
+    assert 3 <= len(run.results.frames) < 3000 and "what was done is kept" in d.c.message.text
+    d.settle()
+    assert (d.c.frame.width, d.c.frame.height) == d.c.size and d.c.frame.camera == home
+
+    runner.experiment_plan.frames = 6
+    d.context.menu_click("//##MainMenuBar/Run/Experiment")
+    d.wait(lambda: runner.current is None, "the experiment to end")
+    d.settle()
+    assert runner.experiment is not run and runner.experiment.whole
+    files = _saved(d, "Experiment")
+    assert len(json.loads(files[".json"].read_text())["frames"]) == 6
+    assert files[".csv"].read_text().splitlines()[1].startswith("none,")
+
+
+def zooming(d: Driver) -> None:
+    """A zoom test starts from its panel, plays, and leaves plots, steps to go to, and files; Escape stops another."""
+    d.settle()
+    runner = d.c.runner
+    d.ui.show_panel("Zoom test")
+    d.frames(3)
+    start = f"//Zoom test/**/{icons.ICON_FA_PLAY}  Start"
+    d.context.item_click(start)
+    d.frames(2)
+    assert runner.zoom_test is None and "click a primitive" in d.c.message.text
+    d.context.mouse_move_to_pos(d.picture_centre())
+    d.context.mouse_click(0)
+    d.frames(2)
+    assert d.c.selected is not None
+    runner.zoom_plan.steps, runner.zoom_plan.size = 5, (64, 64)
+    d.context.item_click(start)
+    d.wait(lambda: runner.current is None, "the zoom test")
+    d.settle()
+    test = runner.zoom_test
+    assert test.whole and [a.factor for a in test.results.approaches] == [4.0, 16.0]
+    d.context.item_click("//Zoom test/**/all steps")
+    d.frames(3)
+    step = test.results.approaches[0].steps[4]  # farther down, a row is out of the pointer's reach
+    d.context.item_click("//Zoom test/**/4##4")
+    d.settle()
+    assert np.allclose(d.c.frame.camera.position, step.camera.position)
+    files = _saved(d, "Zoom test")
+    assert json.loads(files[".json"].read_text())["primitive"] == test.start.primitive
+    assert len(files[".csv"].read_text().splitlines()) == 1 + test.frames
+
+    runner.zoom_plan.steps, runner.zoom_plan.ratio = 1000, 0.999
+    d.context.item_click(start)
+    d.wait(lambda: runner.zoom_test.traced > 5, "steps")
+    d.press(KEY.escape)
+    d.wait(lambda: runner.current is None, "the zoom test to stop", 20.0)
+    assert len(runner.zoom_test.results.approaches[0].steps) >= 5
+    d.settle()
+
+
+def _saved(d: Driver, panel: str) -> dict[str, Path]:
+    """Save results by the panel's buttons; the files by their endings."""
+    folder = d.folder / "pictures"
+    before = set(folder.glob("*"))
+    for kind in ("JSON", "CSV", "Plot"):
+        d.context.item_click(f"//{panel}/**/{icons.ICON_FA_FLOPPY_DISK} {kind}")
+    d.wait(lambda: not d.c.keeper.busy, "the files to be written")
+    d.frames(2)
+    assert not d.c.message.error, d.c.message.text
+    files = {path.suffix: path for path in set(folder.glob("*")) - before}
+    assert set(files) == {".json", ".csv", ".png"}
+    with Image.open(files[".png"]) as plot:
+        assert plot.size == (1920, 1080)
+    return files
+
+
 def closing_while_loading(d: Driver) -> None:
     """The window goes at once, whatever is being loaded."""
     d.wait(lambda: d.c.opener.warm_up_job is None, "the kernels")
@@ -423,7 +525,7 @@ def panels(d: Driver) -> None:
     """Every panel, dialog and menu is shown once, as a new user would open them."""
     d.settle()
     d.press(KEY.b)
-    for label in ("Camera", "Rendering", "Saving", "Scene", "View"):
+    for label in ("Camera", "Rendering", "Saving", "Scene", "View", "Experiment", "Zoom test", "Plots"):
         d.app.params.docking_params.focus_dockable_window(label)
         d.frames(3)
     d.press(KEY.f1)

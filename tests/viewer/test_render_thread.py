@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from threading import Event
 
 import pytest
 
@@ -135,6 +136,63 @@ def test_modes_are_reset_on_the_threads_own_time(thread):
     thread.submit(request(0.0))
     taken(thread)
     assert renderer.resets == 1
+
+
+class FakeTask:
+    """Works until `go` is set or it is cancelled."""
+
+    def __init__(self) -> None:
+        self.started, self.go = Event(), Event()
+        self.renderer: object = None
+        self.cancelled = False
+
+    def work(self, renderer, cancelled) -> None:
+        self.renderer = renderer
+        self.started.set()
+        while not self.go.wait(0.002):
+            if cancelled():
+                self.cancelled = True
+                return
+
+
+def test_a_task_has_the_thread_to_itself_and_the_newest_request_waits(thread):
+    renderer, task = FakeRenderer(), FakeTask()
+    renderer.go.clear()
+    thread.use(renderer)
+    thread.submit(request(0.0))
+    assert renderer.started.wait(5.0)
+    thread.perform(task)
+    assert task.started.wait(5.0)
+    assert renderer.cancelled == [0.0], "what was under way is cut short"
+    renderer.go.set()
+    for at in (1.0, 2.0):
+        thread.submit(request(at))
+    thread.reset_modes()
+    time.sleep(0.05)
+    assert thread.busy and not task.cancelled and len(renderer.asked) == 1
+    task.go.set()
+    assert taken(thread).frame.time == 2.0
+    assert task.renderer is renderer and renderer.resets == 1
+    idle(thread)
+
+
+def test_another_renderer_ends_a_task(thread):
+    task = FakeTask()
+    thread.use(FakeRenderer())
+    thread.perform(task)
+    assert task.started.wait(5.0)
+    thread.use(FakeRenderer())
+    idle(thread)
+    assert task.cancelled
+
+
+def test_closing_ends_a_task():
+    thread, task = RenderThread(), FakeTask()
+    thread.use(FakeRenderer())
+    thread.perform(task)
+    assert task.started.wait(5.0)
+    assert thread.close(5.0)
+    assert task.cancelled
 
 
 def test_nothing_is_traced_without_a_scene_and_nothing_waits_for_it(thread):

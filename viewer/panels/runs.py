@@ -33,7 +33,9 @@ def side_by_side(
     if middle < em(12.0):
         controls()
         plot(ImVec2(room.x, em(14.0)))
-        table()
+        if imgui.begin_child("table", ImVec2(0.0, em(14.0))):
+            table()
+        imgui.end_child()
         return
     if imgui.begin_child("controls", ImVec2(left, 0.0)):
         controls()
