@@ -161,7 +161,7 @@ def table(result: dict[str, Any]) -> Table:
     (width, height), (first, last) = result["size"], result["frames"]
     made = Table(
         title=f"What counters cost: {Path(result['scene']).name}, frames {first} to {last - 1}, {width} x {height}, "
-        f"depth {result['depth']}, {result['threads']} threads",
+        f"depth {result['depth']}, {result['threads']} thread{'s' * (result['threads'] != 1)}",
         title_justify="left",
         title_style="bold",
         caption="medians over frames; the ratio is that of each frame's two times, with its quartiles",
