@@ -184,6 +184,22 @@ def test_answers_do_not_depend_on_the_company_in_views(bart: Path, name: str, nu
     assert_alone_or_not(world, chosen(rays, near), chosen(kinds["incoherent"], np.arange(300)), 3)
 
 
+@pytest.mark.parametrize("odd", [np.nan, np.inf, -np.inf, 0.0])
+@pytest.mark.parametrize("where", ["origin", "direction"])
+@pytest.mark.parametrize("ended", [False, True])
+def test_rays_that_lead_nowhere_disturb_no_others(odd: float, where: str, ended: bool):
+    rng = np.random.default_rng(8)
+    world = of_8(scene(random_corners(rng, 2000, 0.05)))
+    for kind, rays in shoals(rng, 400).items():
+        expected, odd_ones = ask(world, rays), rng.random(400) < 0.1
+        mixed = Rays(*(a.copy() for a in rays))
+        getattr(mixed, where)[rng.integers(3), odd_ones] = odd
+        if ended:
+            mixed.t_max[odd_ones] = 0.0
+        found = ask(world, mixed)
+        assert_same(expected.of(~odd_ones), found.of(~odd_ones), kind)
+
+
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("copies", ["static", "dynamic"])
 def test_of_equally_near_ones_the_lowest_number_is_hit(seed: int, copies: str):
