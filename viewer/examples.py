@@ -59,8 +59,8 @@ with --verify the wrong answers.
 ZOOM = """\
 examples:
   shadowcull zoom figure4 --primitive 0 --size 128x128 --factors 4,64 --plot figure4.png
-  shadowcull zoom kitchen.aff --frame 100 --pixel 253,198 --size 256x256
-  shadowcull zoom kitchen.aff --frame 100 --primitive 1229 --factors 4,1000 --json zoom.json --csv zoom.csv
+  shadowcull zoom kitchen.aff --frame 100 --primitive 15548 --size 256x256 --ratio 0.9 --factors 4,64
+  shadowcull zoom default --pixel 310,250 --json zoom.json --csv zoom.csv
 
 A primitive that was seen whole from afar is culled by what its few pixels met then, until it covers more
 than the zoom factor times its highest pixel count; then it is examined anew. The camera goes straight

@@ -35,7 +35,8 @@ class Run(ABC, Generic[Results]):
     """Long tracing under way, or what is left of it.
 
     `results` is a copy that nothing changes any more, None before the first whole frame; `frames` is
-    how many there are to trace, `traced` how many have been; `error` is one line.
+    how many there are to trace, `traced` how many have been; `label` says which was the last of them,
+    `label_shown` which is shown; `error` is one line.
     """
 
     name = "run"
@@ -44,7 +45,7 @@ class Run(ABC, Generic[Results]):
         self.scene = scene
         self.frames = frames
         self.traced = 0
-        self.label = "starting"
+        self.label = self.label_shown = "starting"
         self.results: Results | None = None
         self.error: str | None = None
         self.seconds = 0.0
@@ -52,7 +53,7 @@ class Run(ABC, Generic[Results]):
         self._left = TimeLeft()
         self._wake = wake
         self._lock = threading.Lock()
-        self._shown: Frame | None = None
+        self._shown: tuple[Frame, str] | None = None
         self._seen = threading.Event()
         self._done = threading.Event()
 
@@ -82,8 +83,11 @@ class Run(ABC, Generic[Results]):
     def take(self) -> Frame | None:
         """The newest frame to be shown, once."""
         with self._lock:
-            frame, self._shown = self._shown, None
+            shown, self._shown = self._shown, None
         self._seen.set()
+        if shown is None:
+            return None
+        frame, self.label_shown = shown
         return frame
 
     def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None:
@@ -112,7 +116,7 @@ class Run(ABC, Generic[Results]):
     def _show(self, frame: Frame, wait: bool) -> None:
         self._seen.clear()
         with self._lock:
-            self._shown = frame
+            self._shown = frame, self.label
         self._wake()
         if wait and not self.stopping:
             self._seen.wait(SEEN_WITHIN)

@@ -159,6 +159,6 @@ class Tracing:
         view, run = self.drawn_view, self._c.runner.current
         title = f"{view.label}, light {self._c.session.light}" if view is View.SHADOW else view.label
         if run is not None:
-            return f"{run.label}   {title}"
+            return f"{run.label_shown}   {title}"
         wanted = self._c.session.view
         return title if wanted is view else f"{wanted.label}: verifying ..."

@@ -75,6 +75,7 @@ def _plan(ui: Ui) -> None:
 
 def _shown_method(run: Experiment) -> None:
     """Whose frames are the picture."""
+    imgui.align_text_to_frame_padding()
     imgui.text_colored(QUIET, "show")
     for method in run.methods:
         imgui.same_line()
@@ -143,7 +144,7 @@ def _table(ui: Ui, run: Experiment | None, results: Results | None) -> None:
     rows: list[Row] = ui.cached("table 1", results, 0, lambda: experiment.table(results))
     whole = len(results.frames) == len(run.times)
     done = f"{len(results.frames)} frames" if whole else f"{len(results.frames)} of {len(run.times)} frames"
-    clipped(f"{done}, {run.settings.width} x {run.settings.height}", QUIET)
+    clipped(f"{done}, {run.settings.width} x {run.settings.height}, {run.settings.accelerator}", QUIET)
     flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg
     if not imgui.begin_table("table 1", 1 + len(rows), int(flags)):
         return
