@@ -22,9 +22,11 @@ from typing import NoReturn
 
 from viewer import examples, resources
 from viewer.argument_types import count, factors, pixel, size, view
+from viewer.lines import say
 from viewer.screen import has_display, no_display_reason
 
 FAILED, MISUSED, INTERRUPTED = 1, 2, 130
+ERROR = "error: "
 PICTURE = Path("out") / "first-light.png"
 
 
@@ -32,7 +34,7 @@ class _Parser(argparse.ArgumentParser):
     """Errors in one line, which names where help is."""
 
     def error(self, message: str) -> NoReturn:
-        complain(f"{message} (see '{self.prog} --help')")
+        say(f"{message} (see '{self.prog} --help')", ERROR)
         sys.exit(MISUSED)
 
 
@@ -50,7 +52,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return commands[arguments[0]](arguments[1:])
         return _view(arguments, list(commands))
     except KeyboardInterrupt:
-        complain("cancelled", kind="")
+        say("cancelled")
         return INTERRUPTED
     except BrokenPipeError:
         # Whoever read our output has gone (`| head`): no error, but nothing may be flushed to it at exit.
@@ -60,24 +62,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _failed(error)
 
 
-def complain(message: object, kind: str = "error: ") -> None:
-    """One line on standard error."""
-    print(f"shadowcull: {kind}{' '.join(str(message).split())}", file=sys.stderr, flush=True)
-
-
 def _failed(error: Exception) -> int:
     """Say what went wrong; a mistake of the program's own can be asked for its traceback."""
     from tracer.scene.model import Cancelled, SceneError
 
     if isinstance(error, Cancelled):
-        complain("cancelled", kind="")
+        say("cancelled")
         return INTERRUPTED
     if isinstance(error, MemoryError):
-        complain("out of memory; a smaller --size needs less")
+        say("out of memory; a smaller --size needs less", ERROR)
     elif isinstance(error, SceneError | ValueError | OSError) and str(error):
-        complain(error)
+        say(error, ERROR)
     else:
-        complain(f"{type(error).__name__}: {error} (a fault of the program; SHADOWCULL_DEBUG=1 shows where)")
+        say(f"{type(error).__name__}: {error} (a fault of the program; SHADOWCULL_DEBUG=1 shows where)", ERROR)
     if os.environ.get("SHADOWCULL_DEBUG"):
         raise error
     return FAILED
@@ -110,12 +107,12 @@ def _view(arguments: list[str], commands: list[str]) -> int:
         if options.or_picture:
             return _picture_instead(options.scene)
         named = options.scene or resources.DEFAULT_SCENE
-        complain(f"{no_display_reason()}; without one, use: shadowcull render {named} -o out.png", kind="")
+        say(f"{no_display_reason()}; without one, use: shadowcull render {named} -o out.png")
         return MISUSED
     try:
         from viewer import app
     except ImportError as error:
-        complain(f"no window can be opened, as a library is missing ({error}); 'shadowcull render' needs none")
+        say(f"no window can be opened, as a library is missing ({error}); 'shadowcull render' needs none", ERROR)
         return FAILED
     return app.run(path)
 
@@ -131,7 +128,7 @@ def _check_is_scene(parser: _Parser, name: str, commands: list[str]) -> None:
 
 def _picture_instead(scene: str | None) -> int:
     """Without a display, `make run` still does the main job: a frame after enough others for culling to act."""
-    print(f"shadowcull: {no_display_reason()}; rendering to a file instead", file=sys.stderr, flush=True)
+    say(f"{no_display_reason()}; rendering to a file instead")
     PICTURE.parent.mkdir(exist_ok=True)
     where = ["--frame", "12", "--warmup", "12"] if scene is None else ["--warmup", "8"]
     return _render([scene or resources.DEFAULT_SCENE, "-o", str(PICTURE.absolute()), "--size", "640x480", *where])

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from tracer import experiment, zoom
 from viewer.bench import csv_text as experiment_csv
-from viewer.outputs import write_text
+from viewer.outputs import reserve, write_text
 from viewer.zoom import csv_text as zoom_csv
 
 ENDINGS = (".json", ".csv", ".png")
@@ -51,16 +51,19 @@ def write_zoom_test(results: zoom.Results, path: Path) -> None:
 def save(folder: Path, name: str, ending: str, write: Callable[[Path], None], now: datetime | None = None) -> Path:
     """Let `write` make a new file, `name` with date, time and ending, in a folder that is made if need be; its path.
 
-    A name that is taken gets a number.  Raises OSError in one line, and what `write` raises.
+    A name that is taken gets a number.  Raises OSError in one line, and what `write` raises; then no file is left.
     """
     stem = f"{name}-{now or datetime.now():%Y-%m-%d-%H-%M-%S}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        path = reserve(folder, stem, ending)
     except OSError as error:
         raise OSError(f"nothing saved: cannot write to {folder}: {error.strerror or error}") from None
-    names = (f"{stem}{f'-{number}' if number > 1 else ''}{ending}" for number in range(1, 1000))
-    path = next(folder / name for name in names if not (folder / name).exists())
-    write(path)
+    try:
+        write(path)
+    except BaseException:
+        path.unlink(missing_ok=True)
+        raise
     return path
 
 

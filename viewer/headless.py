@@ -24,7 +24,8 @@ from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, load_visible_scene, scene_info
 from tracer.scene.model import Camera, Scene
 from viewer import capture
-from viewer.console import Work, print_table, say, statistics_table, working
+from viewer.console import Work, print_table, statistics_table, working
+from viewer.lines import say
 from viewer.outputs import check_writable, write_whole
 from viewer.pictures import lights_in_words, picture
 from viewer.session import Session

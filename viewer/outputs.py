@@ -1,11 +1,14 @@
-"""Files that a command writes: known to be writable before the work, whole or absent after it."""
+"""Files that are whole or absent: known to be writable before the work, and written without a moment of being half."""
 
 from __future__ import annotations
 
 import os
+import secrets
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import BinaryIO
+
+MOST_NUMBERS = 100_000
 
 
 def check_writable(path: Path) -> None:
@@ -36,22 +39,27 @@ def check_outputs(outputs: dict[str, Path | None]) -> None:
 
 
 def write_each(writers: Iterable[Callable[[], None]]) -> list[str]:
-    """Write all files, and return why some could not be: no failure takes the other files along."""
+    """Write all files, and return why some could not be: no OSError or ValueError takes the other files along."""
     failures = []
     for write in writers:
         try:
             write()
-        except OSError as error:
+        except (OSError, ValueError) as error:
             failures.append(str(error))
     return failures
 
 
-def write_whole(path: Path, write: Callable[[BinaryIO], None]) -> None:
-    """Let `write` fill a file that takes its name once it is complete; raises OSError in one line, leaving nothing."""
+def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
+    """Let `write` fill a file that takes its name once it is complete and on the disk; several may at once.
+
+    Raises OSError in one line, and what `write` raises, leaving what was there before.
+    """
     temporary = _temporary(path)
     try:
         with temporary.open("xb") as file:
             write(file)
+            file.flush()
+            os.fsync(file.fileno())
         os.replace(temporary, path)
     except OSError as error:
         raise OSError(f"{path}: not written: {error.strerror or error}") from None
@@ -61,12 +69,24 @@ def write_whole(path: Path, write: Callable[[BinaryIO], None]) -> None:
 
 def write_text(path: Path, text: str) -> None:
     """As `write_whole`, in UTF-8."""
+    write_whole(path, lambda file: file.write(text.encode()))
 
-    def write(file: BinaryIO) -> None:
-        file.write(text.encode())
 
-    write_whole(path, write)
+def reserve(folder: Path, stem: str, ending: str) -> Path:
+    """Create an empty file of a name that nobody has: stem and ending, or with -2, -3, ... between them.
+
+    Raises OSError where it cannot be.
+    """
+    for number in range(1, MOST_NUMBERS + 1):
+        path = folder / f"{stem}{f'-{number}' if number > 1 else ''}{ending}"
+        try:
+            path.open("xb").close()
+        except FileExistsError:
+            continue
+        return path
+    raise OSError(f"{stem}{ending} and {MOST_NUMBERS - 1} more exist already")
 
 
 def _temporary(path: Path) -> Path:
-    return path.with_name(f".{path.name[:100]}.{os.getpid()}.part")
+    """A name beside it that nobody else has, of this process or another; tempfile's files would stay the user's own."""
+    return path.with_name(f".{path.name[:100]}.{secrets.token_hex(8)}.part")

@@ -384,7 +384,7 @@ def test_a_name_that_is_taken_gets_a_number(tmp_path: Path) -> None:
     now = datetime(2024, 5, 31, 14, 5, 9)
 
     def save() -> str:
-        return exports.save(tmp_path, "room-experiment", ".csv", lambda path: path.touch(exist_ok=False), now).name
+        return exports.save(tmp_path, "room-experiment", ".csv", lambda path: path.write_text("saved"), now).name
 
     stem = "room-experiment-2024-05-31-14-05-09"
     assert [save(), save(), save()] == [f"{stem}.csv", f"{stem}-2.csv", f"{stem}-3.csv"]
