@@ -65,11 +65,3 @@ def save(folder: Path, name: str, ending: str, write: Callable[[Path], None], no
         path.unlink(missing_ok=True)
         raise
     return path
-
-
-def duration(seconds: float) -> str:
-    """A time as people say it: 4 s, 2:05 min, 1:10 h."""
-    if seconds < 59.5:
-        return f"{seconds:.0f} s"
-    minutes, rest = divmod(round(seconds), 60)
-    return f"{minutes}:{rest:02d} min" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d} h"

@@ -16,7 +16,7 @@ from viewer import exports
 from viewer.jobs import Job
 from viewer.preferences import default_screenshot_folder
 from viewer.render_thread import RenderRequest, Traced
-from viewer.runs import Experiment, ExperimentPlan, Run, ZoomPlan, ZoomTest
+from viewer.runs import Experiment, ExperimentPlan, Run, ZoomPlan, ZoomTest, duration
 
 if TYPE_CHECKING:
     from viewer.controller import Controller
@@ -80,6 +80,7 @@ class Runner:
     def _start(self, run: Run) -> None:
         self.current = run
         self._c.session.playing = False
+        self._c.tracing.interrupted()
         self._c.render.perform(run)
 
     def stop(self) -> None:
@@ -92,12 +93,12 @@ class Runner:
         run = self.current
         if run is None:
             return None
+        done = run.done  # before its last frame is taken: none comes after
         frame = run.take()
-        if run.done:
+        if done:
             self.current = None
             self._tell(run)
-            return None
-        if frame is None or run.stopping or run.scene is not self._c.session.scene:
+        if frame is None or run.stopping or not run.is_of(self._c.session.scene):
             return None
         return Traced(RenderRequest(frame.time, frame.camera, frame.settings), frame)
 
@@ -105,7 +106,7 @@ class Runner:
         if run.error is not None:
             self._c.say(f"the {run.name} failed: {run.error}", error=True)
         elif run.whole:
-            self._c.say(f"{run.name} done: {run.frames} frames in {exports.duration(run.seconds)}")
+            self._c.say(f"{run.name} done: {run.frames} frames in {duration(run.seconds)}")
         else:
             kept = "" if run.results is None else "; what was done is kept"
             self._c.say(f"{run.name} stopped after {run.traced} of {run.frames} frames{kept}")
@@ -115,8 +116,8 @@ class Runner:
         test, session = self.zoom_test, self._c.session
         if test is None or test.results is None or self.refuses():
             return
-        if test.scene is not session.scene:
-            self._c.say(f"this test was made in {test.scene.path.name}; open that scene again to go there")
+        if not test.is_of(session.scene):
+            self._c.say(f"this test was made in {test.scene_path.name}; open that scene again to go there")
             return
         session.playing = False
         session.time = test.results.time
@@ -129,7 +130,7 @@ class Runner:
             return
         results = run.results
         folder = Path(self._c.preferences.screenshot_folder or default_screenshot_folder()).expanduser()
-        name = f"{run.scene.path.stem}-{run.name.replace(' ', '-')}"
+        name = f"{run.scene_path.stem}-{run.name.replace(' ', '-')}"
 
         def save(_: Progress) -> Path:
             return exports.save(folder, name, ending, lambda path: run.write(results, path))

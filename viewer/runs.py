@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import threading
 import time
+import weakref
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -36,13 +37,15 @@ class Run(ABC, Generic[Results]):
 
     `results` is a copy that nothing changes any more, None before the first whole frame; `frames` is
     how many there are to trace, `traced` how many have been; `label` says which was the last of them,
-    `label_shown` which is shown; `error` is one line.
+    `label_shown` which is shown; `error` is one line.  The scene is let go at the end; `scene_path` stays.
     """
 
     name = "run"
 
     def __init__(self, scene: Scene, frames: int, wake: Callable[[], None] = lambda: None) -> None:
-        self.scene = scene
+        self.scene_path = scene.path
+        self._scene: Scene | None = scene
+        self._identity = weakref.ref(scene)
         self.frames = frames
         self.traced = 0
         self.label = self.label_shown = "starting"
@@ -65,6 +68,10 @@ class Run(ABC, Generic[Results]):
     def whole(self) -> bool:
         """Whether it went on to its end."""
         return self.done and self.error is None and self.traced == self.frames
+
+    def is_of(self, scene: Scene | None) -> bool:
+        """Whether it is (or was) made in this very scene, as it was loaded then."""
+        return scene is not None and self._identity() is scene
 
     @property
     def fraction(self) -> float:
@@ -92,10 +99,11 @@ class Run(ABC, Generic[Results]):
 
     def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None:
         """Do it, on the render thread."""
+        assert self._scene is not None, "a run is done once"
         began = time.monotonic()
         self._left.mark(0, self.frames)
         try:
-            for results in self._steps(cast(Renderer, renderer), lambda: self.stopping or cancelled()):
+            for results in self._steps(self._scene, cast(Renderer, renderer), lambda: self.stopping or cancelled()):
                 self.results = self._copy(results)
                 self._wake()
         except Cancelled:
@@ -104,6 +112,7 @@ class Run(ABC, Generic[Results]):
             self.error = one_line(error)
         finally:
             self.seconds = time.monotonic() - began
+            self._scene = None
             self._done.set()
             self._wake()
 
@@ -122,7 +131,7 @@ class Run(ABC, Generic[Results]):
             self._seen.wait(SEEN_WITHIN)
 
     @abstractmethod
-    def _steps(self, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[Results]: ...
+    def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[Results]: ...
 
     @abstractmethod
     def _copy(self, results: Results) -> Results: ...
@@ -162,14 +171,14 @@ class Experiment(Run[experiment.Results]):
         self.shown = self.methods[-1]
         super().__init__(scene, len(self.methods) * len(self.times), wake)
 
-    def _steps(self, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[experiment.Results]:
+    def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[experiment.Results]:
         def on_frame(number: int, method: str, frame: Frame) -> None:
             self._count(f"frame {number + 1} of {len(self.times)}, {method}")
             if method == self.shown:
                 self._show(frame, wait=False)
 
         return experiment.run(
-            self.scene,
+            scene,
             self.settings,
             self.methods,
             self.times,
@@ -218,7 +227,7 @@ class ZoomTest(Run[zoom.Results]):
         self.settings = replace(settings, width=plan.size[0], height=plan.size[1]).validated()
         super().__init__(scene, len(self.factors) * (plan.steps + zoom.STILL_FRAMES), wake)
 
-    def _steps(self, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[zoom.Results]:
+    def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[zoom.Results]:
         last = self.plan.steps + zoom.STILL_FRAMES - 1
 
         def on_frame(factor: float, number: int, frame: Frame) -> None:
@@ -226,7 +235,7 @@ class ZoomTest(Run[zoom.Results]):
             self._show(frame, wait=True)
 
         return zoom.run(
-            self.scene,
+            scene,
             self.settings,
             self.start,
             self.factors,
@@ -242,3 +251,11 @@ class ZoomTest(Run[zoom.Results]):
 
     def write(self, results: zoom.Results, path: Path) -> None:
         exports.write_zoom_test(results, path)
+
+
+def duration(seconds: float) -> str:
+    """A time as people say it: 4 s, 2:05 min, 1:10 h."""
+    if seconds < 59.5:
+        return f"{seconds:.0f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}:{rest:02d} min" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d} h"

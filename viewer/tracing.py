@@ -45,10 +45,14 @@ class Tracing:
         if modes_are_lost:
             self._settled = None
 
+    def interrupted(self) -> None:
+        """What was asked for may never come: it is asked for anew."""
+        self._asked = None
+
     def show(self, traced: Traced) -> None:
         """Take up a frame that was not asked for here; what should be seen is asked for anew after it."""
         self.traced = traced
-        self._asked = None
+        self.interrupted()
 
     def take(self) -> Frame | None:
         """The newest frame that the render thread has finished, once."""

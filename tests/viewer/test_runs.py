@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import csv
+import gc
 import json
 import threading
 import time
+import weakref
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from datetime import datetime
@@ -20,11 +22,13 @@ from tracer import experiment, zoom
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
-from tracer.scene.model import Camera
+from tracer.scene.model import Camera, Cancelled
 from viewer import exports
 from viewer.controller import Controller
 from viewer.preferences import Preferences
+from viewer.render_thread import Traced
 from viewer.resources import embedded_scenes
+from viewer.runs import duration
 
 SIZE = (64, 48)
 ELSEWHERE = Camera((0.0, 2.0, 8.0), (0.0, -0.2, -1.0))
@@ -111,7 +115,8 @@ def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(des
     desk.run_to_its_end()
     assert run.whole and run.results is not None and desk.said.startswith("experiment done: 10 frames in ")
 
-    scene, times = run.scene, experiment.path_times(run.scene, 5)
+    scene = desk.c.session.scene
+    times = experiment.path_times(scene, 5)
     *_, expected = experiment.run(scene, run.settings, ["paper"], times)
     assert same_figures(run.results, expected)
     assert len(experiment.table(run.results)) == 2
@@ -152,6 +157,61 @@ def test_stopping_keeps_the_whole_frames(desk: Desk) -> None:
     desk.runner.stop()
     desk.run_to_its_end()
     assert desk.c.frame.width == SIZE[0]
+
+
+def test_stopped_before_its_first_frame_a_run_leaves_nothing_and_what_it_cut_short_is_traced(desk: Desk) -> None:
+    renderer, begun = desk.c.render._renderer, threading.Event()
+
+    def never(_time: float, _camera: Camera, cancel: Callable[[], bool]) -> Frame:
+        begun.set()
+        while not cancel():
+            time.sleep(0.001)
+        raise Cancelled()
+
+    renderer.render = never
+    desk.c.trace_again()
+    desk.tick()
+    assert begun.wait(20.0)
+    desk.came.clear()
+    desk.runner.start_experiment()
+    desk.runner.stop()
+    del renderer.render
+    desk.run_to_its_end()
+    assert desk.runner.experiment.results is None
+    assert desk.said == "experiment stopped after 0 of 10 frames"
+    assert {(frame.width, frame.height) for frame in desk.came} == {SIZE}
+
+
+def test_the_last_frame_of_a_run_is_shown_though_the_window_was_late(desk: Desk) -> None:
+    desk.came.clear()
+    desk.runner.start_experiment()
+    run = desk.runner.experiment
+    assert run._done.wait(60.0)
+    desk.tick()
+    assert [(f.width, f.height, f.settings.method) for f in desk.came] == [(32, 24, "paper")]
+    assert desk.runner.current is None and desk.said.startswith("experiment done")
+    desk.rest()
+    assert (desk.c.frame.width, desk.c.frame.height) == SIZE
+
+
+def test_a_run_that_is_over_keeps_neither_its_scene_nor_a_frame(desk: Desk) -> None:
+    scene, frames = weakref.ref(desk.c.session.scene), []
+    show = desk.c.tracing.show
+
+    def showing(traced: Traced) -> None:
+        frames.append(weakref.ref(traced.frame))
+        show(traced)
+
+    desk.c.tracing.show = showing
+    desk.runner.start_experiment()
+    desk.run_to_its_end()
+    desk.came.clear()
+    assert desk.runner.experiment.whole and frames
+    desk.open(embedded_scenes()["figure4"])
+    desk.came.clear()
+    gc.collect()
+    assert scene() is None and not any(frame() for frame in frames)
+    assert desk.runner.experiment.scene_path.name == "tiny.aff"
 
 
 def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
@@ -293,7 +353,7 @@ def test_a_zoom_test_shows_every_frame_and_finds_what_the_command_finds(figure4:
     of_test = [frame for frame in desk.came if frame.settings.verify]
     assert len(of_test) == test.frames == 2 * (20 + zoom.STILL_FRAMES)
     assert [frame.settings.zoom_factor for frame in of_test] == [4.0] * 23 + [64.0] * 23
-    *_, expected = zoom.run(test.scene, test.settings, start, [4.0, 64.0], 20, test.plan.ratio)
+    *_, expected = zoom.run(desk.c.session.scene, test.settings, start, [4.0, 64.0], 20, test.plan.ratio)
     assert test.results == expected
     four, sixty_four = test.results.approaches
     assert four.steps[-1].wrong == 0 < sixty_four.steps[-1].wrong
@@ -395,4 +455,4 @@ def test_a_name_that_is_taken_gets_a_number(tmp_path: Path) -> None:
     [(0.2, "0 s"), (59.4, "59 s"), (59.6, "1:00 min"), (125, "2:05 min"), (3599.6, "1:00 h"), (4200, "1:10 h")],
 )
 def test_durations_as_people_say_them(seconds: float, said: str) -> None:
-    assert exports.duration(seconds) == said
+    assert duration(seconds) == said

@@ -93,7 +93,7 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
         imgui.end_child()
         return
     wrong = run.settings.verify and any(any(figures["wrong"]) for figures in results.methods.values())
-    if not implot.begin_plot(f"{run.scene.path.name}: saved, %##saved", size, FLAGS):
+    if not implot.begin_plot(f"{run.scene_path.name}: saved, %##saved", size, FLAGS):
         return
     frames = np.array(results.frames, np.float64)
     savings = ui.cached("savings", results, 0, lambda: _savings(results))

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.exports import ENDINGS, duration
+from viewer.exports import ENDINGS
 from viewer.panels.widgets import QUIET, clipped, em, tooltip, wide_button
-from viewer.runs import Run
+from viewer.runs import Run, duration
 from viewer.ui import Ui
 
 SIZES = ((128, 128), (256, 256), (512, 512), (1024, 1024), (1280, 720))
