@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import csv
 import json
-import os
-import pty
 import re
-import select
 import subprocess
 import sys
-import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from tests.terminal import Terminal
 from viewer import figures
 from viewer.bench import frame_range
 from viewer.cli import main
@@ -181,41 +177,6 @@ def test_cancelled_before_any_frame_is_done_there_is_nothing_to_keep(tmp_path: P
 # --- on a terminal ---------------------------------------------------------------------------------
 
 
-class Terminal:
-    """A command on a terminal of its own: what it says, and keys for it."""
-
-    def __init__(self, *arguments: str) -> None:
-        self._end, inside = pty.openpty()
-        command = [sys.executable, "-m", "viewer", *arguments]
-        environment = os.environ | {"TERM": "xterm", "COLUMNS": "80"}
-        self._process = subprocess.Popen(
-            command, cwd=ROOT, env=environment, stdin=inside, stdout=inside, stderr=inside, start_new_session=True
-        )
-        os.close(inside)
-        self.said = ""
-
-    def lines(self, seconds: float = 120.0) -> Iterator[str]:
-        """All that is said so far, each time there is more of it, until the command ends."""
-        until = time.monotonic() + seconds
-        while select.select([self._end], [], [], max(0.0, until - time.monotonic()))[0]:
-            try:
-                read = os.read(self._end, 65536)
-            except OSError:  # what Linux says where the other side is closed
-                return
-            if not read:
-                return
-            self.said += re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", read.decode(errors="replace"))
-            yield self.said
-        raise AssertionError(f"it says no more and does not end: {self.said[-300:]}")
-
-    def interrupt(self) -> None:
-        self._process.send_signal(2)
-
-    def end(self) -> int:
-        os.close(self._end)
-        return self._process.wait(timeout=60)
-
-
 def test_progress_shows_frame_methods_time_gone_and_time_left():
     terminal = Terminal("bench", "default", "--frames", "0:8", "--size", "96x96")
     *_, said = terminal.lines()
@@ -230,11 +191,7 @@ def test_progress_shows_frame_methods_time_gone_and_time_left():
 def test_ctrl_c_keeps_what_is_done(tmp_path: Path):
     path = tmp_path / "figures.json"
     terminal = Terminal("bench", "default", "--path-frames", "100000", "--size", "64x64", "--json", str(path))
-    pressed = False
-    for said in terminal.lines():
-        if not pressed and re.search(r"frame ([3-9]|\d{2,}) of 100000", said):
-            pressed = True
-            terminal.interrupt()
+    terminal.interrupt_once(r"frame ([3-9]|\d{2,}) of 100000")
     assert terminal.end() == 130
     told = re.search(r"cancelled after (\d+) of 100000 frames; the table is of these", terminal.said)
     assert told and len(json.loads(path.read_text())["frames"]) == int(told[1]) >= 2

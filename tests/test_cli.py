@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from tests.terminal import Terminal
 from viewer import capture, cli
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -370,12 +369,9 @@ def test_a_picture_instead_of_the_window(room: Path, tmp_path: Path) -> None:
 
 def test_ctrl_c_ends_a_rendering(room: Path, tmp_path: Path) -> None:
     output = tmp_path / "never.png"
-    command = shadowcull("render", room, "-o", output, "--size", "4000x4000", "--frame", 9, "--warmup", 9)
-    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True) as process:
-        time.sleep(4.0)
-        process.send_signal(signal.SIGINT)
-        _, err = process.communicate(timeout=120)
-    assert (process.returncode, err.splitlines()[-1]) == (130, "shadowcull: cancelled")
+    terminal = Terminal("render", str(room), "-o", str(output), "--size", "4000x4000", "--frame", "9", "--warmup", "9")
+    terminal.interrupt_once("warming up, frame 1 of 9")
+    assert (terminal.end(), terminal.said.splitlines()[-1]) == (130, "shadowcull: cancelled")
     assert not output.exists()
 
 

@@ -150,16 +150,16 @@ def aim(frame: Frame, primitive: int) -> Aim:
 
 def primitive_at(frame: Frame, x: int, y: int) -> int:
     """The primitive that a pixel shows; raises ValueError for one outside the picture or that shows none."""
-    check_pixel(x, y, (frame.width, frame.height))
+    check_pixel((x, y), (frame.width, frame.height))
     primitive = int(frame.primitive[y, x])
     if primitive < 0:
         raise ValueError(f"pixel {x},{y} shows no primitive, only background")
     return primitive
 
 
-def check_pixel(x: int, y: int, size: tuple[int, int]) -> None:
-    """Raise ValueError for a pixel outside a picture of this width and height."""
-    width, height = size
+def check_pixel(pixel: tuple[int, int], size: tuple[int, int]) -> None:
+    """Raise ValueError for a pixel (x, y) outside a picture of this width and height."""
+    (x, y), (width, height) = pixel, size
     if not (0 <= x < width and 0 <= y < height):
         raise ValueError(f"pixel {x},{y}: the picture has {width} x {height} pixels, counted from 0")
 

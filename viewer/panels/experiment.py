@@ -8,10 +8,10 @@ from imgui_bundle import ImVec2, imgui, implot
 from tracer import experiment
 from tracer.experiment import REFERENCE, Results, Row
 from tracer.frame import METHODS
-from viewer.bench import LINES, WRONG
 from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND
 from viewer.panels.runs import export_buttons, side_by_side, size_field, start_or_progress
 from viewer.panels.widgets import ERROR, QUIET, checkbox, clipped, em, paragraph, properties, row, tooltip
+from viewer.reports import LINES, WRONG
 from viewer.runs import Experiment
 from viewer.ui import Ui
 

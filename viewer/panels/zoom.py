@@ -21,9 +21,9 @@ from viewer.panels.widgets import (
     row,
     tooltip,
 )
+from viewer.reports import changes_in_words, happenings, modes_in_words
 from viewer.runs import ZoomTest
 from viewer.ui import Ui
-from viewer.zoom import changes_in_words, happenings, modes_in_words
 
 _NARROWEST = 15.0  # ems of a plot that stands beside another
 _MARK = ImVec4(0.95, 0.96, 0.98, 1.0)
