@@ -12,8 +12,6 @@ from viewer.panels.widgets import QUIET, clipped, em, tooltip, wide_button
 from viewer.runs import Run, duration
 from viewer.ui import Ui
 
-SIZES = ((128, 128), (256, 256), (512, 512), (1024, 1024), (1280, 720))
-MOST_PIXELS_OF_SIDE = 8192
 _KINDS = {".json": "JSON", ".csv": "CSV", ".png": "Plot"}
 _TIPS = {
     ".json": "every figure, as JSON, into the folder of the pictures",
@@ -46,27 +44,6 @@ def side_by_side(
     if imgui.begin_child("table", ImVec2(table_width, 0.0)):
         table()
     imgui.end_child()
-
-
-def size_field(size: tuple[int, int]) -> tuple[int, int]:
-    """Width and height in pixels, typed or chosen from a list; returns what is set now."""
-    imgui.set_next_item_width(-em(2.0))
-    changed, typed = imgui.input_int2("##size", list(size))
-    if changed:
-        size = _side(typed[0]), _side(typed[1])
-    imgui.same_line(0.0, em(0.2))
-    if imgui.button(icons.ICON_FA_CHEVRON_DOWN, (-1.0, 0.0)):
-        imgui.open_popup("sizes")
-    if imgui.begin_popup("sizes"):
-        for width, height in SIZES:
-            if imgui.menu_item(f"{width} x {height}", "", False, True)[0]:
-                size = width, height
-        imgui.end_popup()
-    return size
-
-
-def _side(pixels: int) -> int:
-    return min(max(pixels, 1), MOST_PIXELS_OF_SIDE)
 
 
 def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: str) -> None:

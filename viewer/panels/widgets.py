@@ -6,11 +6,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 WARNING = ImVec4(0.96, 0.74, 0.31, 1.0)
 ERROR = ImVec4(1.0, 0.47, 0.42, 1.0)
 QUIET = ImVec4(0.62, 0.65, 0.70, 1.0)
 GOOD = ImVec4(0.36, 0.80, 0.64, 1.0)
+SIZES = ((128, 128), (256, 256), (512, 512), (800, 600), (1024, 1024), (1280, 720), (1920, 1080))
+LONGEST_SIDE = 8192
 
 
 def em(size: float) -> float:
@@ -90,6 +93,24 @@ def checkbox(label: str, state: bool, change: Callable[[bool], None], tip: str =
         tooltip(tip)
     if changed:
         change(now)
+
+
+def size_field(size: tuple[int, int]) -> tuple[int, int]:
+    """Width and height in pixels, typed or chosen from a list, across what room there is; returns what is set now."""
+    imgui.set_next_item_width(-em(2.2))
+    changed, typed = imgui.input_int2("##size", list(size))
+    if changed:
+        width, height = (min(max(pixels, 1), LONGEST_SIDE) for pixels in typed)
+        size = width, height
+    imgui.same_line(0.0, em(0.2))
+    if imgui.button(icons.ICON_FA_CHEVRON_DOWN, (-1.0, 0.0)):
+        imgui.open_popup("sizes")
+    if imgui.begin_popup("sizes"):
+        for width, height in SIZES:
+            if imgui.menu_item(f"{width} x {height}", "", False, True)[0]:
+                size = width, height
+        imgui.end_popup()
+    return size
 
 
 def wide_button(label: str, tip: str = "", columns: int = 1) -> bool:

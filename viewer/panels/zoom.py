@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from tracer.zoom import Approach, Results, Step
 from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND
-from viewer.panels.runs import export_buttons, side_by_side, size_field, start_or_progress
+from viewer.panels.runs import export_buttons, side_by_side, start_or_progress
 from viewer.panels.widgets import (
     ERROR,
     QUIET,
@@ -19,6 +19,7 @@ from viewer.panels.widgets import (
     paragraph,
     properties,
     row,
+    size_field,
     tooltip,
 )
 from viewer.reports import changes_in_words, happenings, modes_in_words
