@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from viewer import exports
-from viewer.outputs import write_each, write_text, write_whole
+from viewer.outputs import check_outputs, check_writable, write_each, write_text, write_whole
 
 
 def test_two_writers_of_one_file_do_not_disturb_each_other(tmp_path: Path) -> None:
@@ -98,3 +98,58 @@ def test_no_file_takes_the_others_along() -> None:
     writers = [lambda: fail(ValueError("nothing to plot")), lambda: fail(OSError("full")), lambda: done.append(1)]
     assert write_each(writers) == ["nothing to plot", "full"]
     assert done == [1]
+
+
+def test_a_link_is_followed(tmp_path: Path) -> None:
+    (tmp_path / "results").mkdir()
+    target, link, dangling = tmp_path / "results" / "a.json", tmp_path / "link.json", tmp_path / "dangling.json"
+    target.write_text("old")
+    link.symlink_to(target)
+    dangling.symlink_to("results/b.json")
+    for path in (link, dangling):
+        check_writable(path)
+        write_text(path, "new")
+        assert path.is_symlink() and path.resolve().parent == target.parent
+    assert sorted(p.name for p in target.parent.iterdir()) == ["a.json", "b.json"]
+    assert target.read_text() == (target.parent / "b.json").read_text() == "new"
+
+
+def test_two_names_of_one_file_are_not_two_files(tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to("file")
+    with pytest.raises(ValueError, match="--json, --csv: give each a file of its own"):
+        check_outputs({"--json": tmp_path / "file", "--csv": tmp_path / "link"})
+
+
+@pytest.mark.parametrize("linked", [False, True])
+def test_what_is_no_regular_file_is_refused_and_stays(tmp_path: Path, linked: bool) -> None:
+    path = pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    if linked:
+        path = tmp_path / "link"
+        path.symlink_to(pipe)
+    for write in (check_writable, lambda path: write_text(path, "new")):
+        with pytest.raises(OSError, match="a device, a pipe or a socket"):
+            write(path)
+    assert pipe.is_fifo() and path.is_symlink() == linked
+
+
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        ("-", "not written to standard output"),
+        ("/dev/full", "a device"),
+        ("/proc/x", "no file can be made in the folder /proc|/proc cannot be written to"),
+        ("loop", "cannot be written: "),
+        ("away", "there is no folder .*gone"),
+        ("a" * 300, "cannot be written: File name too long"),
+    ],
+)
+def test_what_cannot_be_written_is_said_in_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, path: str, said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("loop").symlink_to("loop")
+    Path("away").symlink_to("gone/file")
+    with pytest.raises(OSError, match=said) as error:
+        check_writable(Path(path))
+    assert "\n" not in str(error.value)
