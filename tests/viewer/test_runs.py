@@ -106,6 +106,12 @@ def same_figures(one: experiment.Results, other: experiment.Results) -> bool:
     return one.frames == other.frames and left == right
 
 
+def is_the_same_picture(one: Frame, other: Frame) -> bool:
+    """Of the same place, traced alike."""
+    same = (one.time, one.camera, one.settings) == (other.time, other.camera, other.settings)
+    return same and np.array_equal(one.primitive, other.primitive)
+
+
 def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(desk: Desk) -> None:
     desk.runner.experiment_plan.verify = True
     own = desk.c.frame
@@ -124,9 +130,7 @@ def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(des
     shown = [frame for frame in desk.came if frame.settings == replace(run.settings, method="paper")]
     assert shown and shown == desk.came[: len(shown)], "they are not the picture while it is under way"
     assert {frame.time for frame in shown} <= set(times)
-    assert (desk.c.frame.width, desk.c.frame.height) == SIZE, "the user's own picture is not back"
-    assert np.array_equal(desk.c.frame.primitive, own.primitive)
-    assert desk.c.frame.settings == own.settings
+    assert is_the_same_picture(desk.c.frame, own)
 
 
 def test_the_frames_of_the_chosen_method_are_shown(desk: Desk) -> None:
@@ -139,6 +143,7 @@ def test_the_frames_of_the_chosen_method_are_shown(desk: Desk) -> None:
 
 
 def test_stopping_keeps_the_whole_frames(desk: Desk) -> None:
+    own = desk.c.frame
     desk.runner.experiment_plan.frames = 5000
     desk.runner.start_experiment()
     run = desk.runner.experiment
@@ -153,10 +158,7 @@ def test_stopping_keeps_the_whole_frames(desk: Desk) -> None:
     assert before <= done < 5000
     assert all(len(values) == done for figures in run.results.methods.values() for values in figures.values())
     assert f"experiment stopped after {run.traced} of 10000 frames; what was done is kept" == desk.said
-    desk.runner.start_experiment()
-    desk.runner.stop()
-    desk.run_to_its_end()
-    assert desk.c.frame.width == SIZE[0]
+    assert is_the_same_picture(desk.c.frame, own)
 
 
 def test_stopped_before_its_first_frame_a_run_leaves_nothing_and_what_it_cut_short_is_traced(desk: Desk) -> None:
@@ -345,6 +347,7 @@ def test_a_zoom_test_shows_every_frame_and_finds_what_the_command_finds(figure4:
     desk.runner.zoom_plan = replace(desk.runner.zoom_plan, factors="4, 64", steps=20, size=(128, 128))
     desk.c.select((0.5, 0.5))
     assert desk.c.selected.primitive == 0
+    own = desk.c.frame
     start = zoom.aim(desk.c.frame, 0)
     desk.came.clear()
     desk.runner.start_zoom_test()
@@ -357,6 +360,8 @@ def test_a_zoom_test_shows_every_frame_and_finds_what_the_command_finds(figure4:
     assert test.results == expected
     four, sixty_four = test.results.approaches
     assert four.steps[-1].wrong == 0 < sixty_four.steps[-1].wrong
+    desk.rest()
+    assert is_the_same_picture(desk.c.frame, own)
 
 
 def test_a_zoom_test_needs_something_to_go_to(desk: Desk) -> None:
@@ -386,6 +391,13 @@ def test_a_step_can_be_gone_to(figure4: Desk) -> None:
     desk.rest()
     assert desk.c.frame.camera.position == pytest.approx(step.camera.position)
     assert desk.c.frame.time == 0.0
+    camera = desk.c.session.camera
+    desk.runner.experiment_plan.frames = 5000
+    desk.runner.start_experiment()
+    desk.runner.go_to(desk.runner.zoom_test.results.approaches[0].steps[0])
+    assert desk.said.startswith("the experiment is still under way") and desk.c.session.camera == camera
+    desk.runner.stop()
+    desk.run_to_its_end()
     desk.open(embedded_scenes()["figure3"])
     camera = desk.c.session.camera
     desk.runner.go_to(step)
@@ -418,6 +430,25 @@ def test_results_are_written_beside_the_pictures(figure4: Desk, tmp_path: Path) 
     for name in (files[2], files[5]):
         with Image.open(folder / name) as plot:
             assert plot.size == (1920, 1080)
+
+
+def test_what_is_there_can_be_saved_while_a_run_goes_on(desk: Desk, tmp_path: Path) -> None:
+    desk.runner.experiment_plan.frames = 5000
+    desk.runner.start_experiment()
+    run = desk.runner.experiment
+    desk.until(lambda: run.results is not None and len(run.results.frames) > 3)
+    there = run.results.to_dict()
+    desk.runner.export(run, ".json")
+    desk.until(lambda: not desk.c.keeper.busy)
+    (file,) = (tmp_path / "pictures").iterdir()
+    kept = json.loads(file.read_text())
+    assert len(there["frames"]) <= len(kept["frames"]) < 5000
+    assert all(
+        len(values) == len(kept["frames"]) for figures in kept["methods"].values() for values in figures.values()
+    )
+    assert desk.runner.current is run and not run.stopping, "saving has disturbed it"
+    desk.runner.stop()
+    desk.run_to_its_end()
 
 
 class FakeRun:
