@@ -165,10 +165,10 @@ def test_verified_buffers_say_what_is_wrong(capfd: pytest.CaptureFixture[str], t
 
 def test_views_of_what_is_wrong_verify_by_themselves(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     drawn = {}
+    output = tmp_path / "view.png"
+    where = ("figure4", "-o", output, "--size", "128x128", "--threads", 1, "--frame", 20, "--warmup", 20)
     for view in ("difference", "wipe:0", "wipe:1", "wipe:.25", "color"):
-        output = tmp_path / "view.png"
-        where = ("--size", "128x128", "--threads", 1, "--frame", 20, "--warmup", 20)
-        code, out, _ = run(capfd, "render", "figure4", "-o", output, "--view", view, *where)
+        code, out, _ = run(capfd, "render", *where, "--view", view)
         assert code == 0 and ("wrong answers" in out) == (view != "color")
         with Image.open(output) as image:
             drawn[view] = np.asarray(image)
@@ -184,6 +184,9 @@ def test_views_of_what_is_wrong_verify_by_themselves(capfd: pytest.CaptureFixtur
     assert (drawn["wipe:0"][wrong] != drawn["color"][wrong]).any(axis=-1).all()
     np.testing.assert_array_equal(drawn["wipe:.25"][:, :32], drawn["wipe:1"][:, :32])
     np.testing.assert_array_equal(drawn["wipe:.25"][:, 33:], drawn["wipe:0"][:, 33:])
+    assert run(capfd, "render", *where, "--view", "wipe:1", "--no-marks")[0] == 0
+    with Image.open(output) as image:
+        np.testing.assert_array_equal(np.asarray(image), drawn["color"])
 
 
 def test_warm_up_makes_culling_act(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
@@ -268,7 +271,10 @@ def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None
         (["-o", "OUT/x.png", "--camera", "{}"], "--camera: a camera's position"),
         (["-o", "OUT/x.png", "--camera", "nowhere.json"], "neither JSON nor a file"),
         (["-o", "OUT/x.png", "--camera", "[1, 2]"], "neither JSON nor a file"),
-        (["-o", "OUT/x.png", "--zoom-factor", "0.5"], "zoom_factor"),
+        (["-o", "OUT/x.png", "--zoom-factor", "0.5"], "argument --zoom-factor: 0.5 is not in 1 to 1,000,000"),
+        (["-o", "OUT/x.png", "--zoom-factor", "nan"], "argument --zoom-factor: nan is not in"),
+        (["-o", "OUT/x.png", "--zoom-factor", "much"], "argument --zoom-factor: 'much' is no number"),
+        (["-o", "OUT/x.png", "--warm", "3"], "unrecognized arguments"),
         (["-o", "OUT/x.png", "--warmup", "-3"], "-3 is not in"),
         (["-o", "OUT/x.png", "--wurmup", "3"], "unrecognized arguments"),
     ],
@@ -329,7 +335,7 @@ def test_a_mistyped_command(capfd: pytest.CaptureFixture[str], arguments: list[s
 
 
 def test_help_shows_examples(capfd: pytest.CaptureFixture[str]) -> None:
-    for arguments in (["--help"], ["render", "--help"], ["bench", "--help"], ["info", "-h"]):
+    for arguments in (["--help"], ["render", "--help"], ["bench", "--help"], ["zoom", "--help"], ["info", "-h"]):
         code, out, err = run(capfd, *arguments)
         assert (code, err) == (0, "")
         assert "examples:\n  shadowcull" in out
