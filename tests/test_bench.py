@@ -14,7 +14,7 @@ import pytest
 from tests.terminal import Terminal
 from viewer import figures
 from viewer.bench import frame_range
-from viewer.cli import main
+from viewer.cli import MISUSED, main
 from viewer.console import Work
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -102,11 +102,24 @@ def test_frames_are_a_range_of_the_path(text, numbers):
         (["--frames", "three"], "give A:B"),
         (["--methods", "telepathy"], "there is no method 'telepathy'"),
         (["--methods", ""], "there is no method ''"),
-        (["--zoom-factor", "0"], "zoom_factor"),
     ],
 )
 def test_mistakes_are_one_line(wrong, said, capsys):
     assert main([*SMALL, *wrong]) == 1
+    _mistake(capsys, said)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (["--zoom-factor", "0"], "argument --zoom-factor: 0 is not in 1 to 1,000,000"),
+        (["--method", "none"], "unrecognized arguments: --method none"),
+    ],
+)
+def test_options_that_are_none_end_as_misuse(wrong, said, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([*SMALL, *wrong])
+    assert ended.value.code == MISUSED
     _mistake(capsys, said)
 
 

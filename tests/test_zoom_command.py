@@ -94,6 +94,7 @@ def test_a_pixel_chooses_the_primitive_and_a_camera_the_start(
         (["--primitive", "0", "--pixel", "1,1"], "not allowed with"),
         (["--primitive", "0", "--factors", "4,zero"], "no zoom factors"),
         (["--primitive", "0", "--factors", "0.5"], "no zoom factors"),
+        (["--primitive", "0", "--ratio", "1.5"], "argument --ratio: 1.5 is not in 0.001 to 0.9999"),
         (["--primitive", "0", "--frame", "99"], "frame numbers are 0 to 59"),
         (["--primitive", "0", "--zoom-factor", "4"], "unrecognized arguments"),
     ],
@@ -110,7 +111,6 @@ def test_mistakes_end_in_one_line(
     ("arguments", "said"),
     [
         (["--pixel", "32,0"], "32 x 32 pixels"),
-        (["--primitive", "0", "--ratio", "1.5"], "between 0 and 1"),
         (["--primitive", "0", "--ratio", "0.5", "--steps", "50"], "go fewer"),
         (["--primitive", "0", "--factors", "2,3,4,5,6,7,8"], "these are 7 zoom factors; give 6 at most"),
         (["--primitive", "0", "--plot", "OUT/plot.gif"], "unknown kind of plot"),

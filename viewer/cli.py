@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from viewer import examples, resources
-from viewer.argument_types import count, factors, pixel, size, view
+from viewer.argument_types import count, factors, number, pixel, size, view
 from viewer.lines import say
 from viewer.screen import has_display, no_display_reason
 
@@ -31,7 +31,16 @@ PICTURE = Path("out") / "first-light.png"
 
 
 class _Parser(argparse.ArgumentParser):
-    """Errors in one line, which names where help is."""
+    """Options by their whole names; errors in one line, which names where help is."""
+
+    def __init__(self, prog: str, description: str, epilog: str) -> None:
+        super().__init__(
+            prog=prog,
+            description=description,
+            epilog=epilog,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+            allow_abbrev=False,
+        )
 
     def error(self, message: str) -> NoReturn:
         say(f"{message} (see '{self.prog} --help')", ERROR)
@@ -94,7 +103,6 @@ def _view(arguments: list[str], commands: list[str]) -> int:
         prog="shadowcull",
         description="An interactive ray tracer that shows shadow culling at work.",
         epilog=examples.COMMANDS,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("scene", nargs="?", metavar="SCENE", help=_scene_help())
     parser.add_argument("--version", action="version", version=f"shadowcull {_version()}")
@@ -139,7 +147,6 @@ def _render(arguments: list[str]) -> int:
         prog="shadowcull render",
         description="Trace one frame of a scene, print its statistics, and write a picture, its buffers, or both.",
         epilog=examples.RENDER,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = parser.add_argument
     add("scene", nargs="?", metavar="SCENE", help=_scene_help())
@@ -156,6 +163,7 @@ def _render(arguments: list[str]) -> int:
         help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference or "
         "wipe:PART (default: color)",
     )
+    add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
     add("--camera", metavar="JSON", help="another camera: position, direction, up, angle; or a file with that")
     add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="trace the N frames before it first")
     add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
@@ -176,7 +184,6 @@ def _bench(arguments: list[str]) -> int:
         prog="shadowcull bench",
         description="Render a path of frames by several methods and print what each saves, as the paper's Table 1.",
         epilog=examples.BENCH,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = parser.add_argument
     add("scene", nargs="?", metavar="SCENE", help=_scene_help())
@@ -208,7 +215,6 @@ def _zoom(arguments: list[str]) -> int:
         prog="shadowcull zoom",
         description="Go towards a primitive in steps, and tell whether its shadows keep up, for several zoom factors.",
         epilog=examples.ZOOM,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = parser.add_argument
     add("scene", nargs="?", metavar="SCENE", help=_scene_help())
@@ -218,7 +224,13 @@ def _zoom(arguments: list[str]) -> int:
     _add_moment(parser)
     add("--camera", metavar="JSON", help="where to start from: position, direction, up, angle; or a file with that")
     add("--steps", type=count(1, 10_000), default=30, metavar="N", help="how many (default: 30)")
-    add("--ratio", type=float, default=0.94, metavar="R", help="part of its distance that a step leaves (0.94)")
+    add(
+        "--ratio",
+        type=number(0.001, 0.9999),
+        default=0.94,
+        metavar="R",
+        help="part of its distance that a step leaves (0.94)",
+    )
     add("--factors", type=factors, default=(4.0, 16.0), metavar="F,...", help="zoom factors (default: 4,16)")
     add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
     add("--json", type=Path, metavar="FILE", help="every figure of every step")
@@ -252,7 +264,7 @@ def _add_tracing_options(parser: _Parser) -> None:
 
 def _add_zoom_factor(parser: _Parser) -> None:
     told = "growth after which modes are learnt anew (4)"
-    parser.add_argument("--zoom-factor", type=float, default=4.0, metavar="F", help=told)
+    parser.add_argument("--zoom-factor", type=number(1.0, 1e6), default=4.0, metavar="F", help=told)
 
 
 def _info(arguments: list[str]) -> int:
@@ -260,7 +272,6 @@ def _info(arguments: list[str]) -> int:
         prog="shadowcull info",
         description="Say what a scene holds: primitives, lights, materials, frames, bounds, and warnings.",
         epilog=examples.INFO,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("scene", nargs="?", metavar="SCENE", help=_scene_help())
     parser.add_argument("--json", action="store_true", help="as JSON on standard output")

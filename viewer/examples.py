@@ -37,7 +37,7 @@ wrong shadow answers of each pixel.
 
 --view difference and --view wipe verify by themselves: the first shows the pixels with wrong shadow answers,
 the second the picture left of a line and what it should be right of it; wipe:0.3 puts the line at 30 % of
-the width.
+the width. Rings show where wrong pixels are; --no-marks leaves them out.
 """
 
 BENCH = """\
