@@ -69,6 +69,11 @@ class Run(ABC, Generic[Results]):
         """Whether it went on to its end."""
         return self.done and self.error is None and self.traced == self.frames
 
+    @property
+    def verifies(self) -> bool:
+        """Whether its frames tell right answers from wrong ones."""
+        return True
+
     def is_of(self, scene: Scene | None) -> bool:
         """Whether it is (or was) made in this very scene, as it was loaded then."""
         return scene is not None and self._identity() is scene
@@ -170,6 +175,10 @@ class Experiment(Run[experiment.Results]):
         ).validated()
         self.shown = self.methods[-1]
         super().__init__(scene, len(self.methods) * len(self.times), wake)
+
+    @property
+    def verifies(self) -> bool:
+        return self.settings.verify
 
     def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[experiment.Results]:
         def on_frame(number: int, method: str, frame: Frame) -> None:

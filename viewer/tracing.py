@@ -162,7 +162,8 @@ class Tracing:
         """The view, and the light where it shows one; before it what a run that is under way is at."""
         view, run = self.drawn_view, self._c.runner.current
         title = f"{view.label}, light {self._c.session.light}" if view is View.SHADOW else view.label
-        if run is not None:
-            return f"{run.label_shown}   {title}"
         wanted = self._c.session.view
+        if run is not None:
+            lacks = wanted is not view and not run.verifies
+            return f"{run.label_shown}   {title}{' (this run does not verify)' if lacks else ''}"
         return title if wanted is view else f"{wanted.label}: verifying ..."

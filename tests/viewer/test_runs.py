@@ -29,6 +29,7 @@ from viewer.preferences import Preferences
 from viewer.render_thread import Traced
 from viewer.resources import embedded_scenes
 from viewer.runs import duration
+from viewer.views import View
 
 SIZE = (64, 48)
 ELSEWHERE = Camera((0.0, 2.0, 8.0), (0.0, -0.2, -1.0))
@@ -131,6 +132,19 @@ def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(des
     assert shown and shown == desk.came[: len(shown)], "they are not the picture while it is under way"
     assert {frame.time for frame in shown} <= set(times)
     assert is_the_same_picture(desk.c.frame, own)
+
+
+@pytest.mark.parametrize("verify", [False, True])
+def test_a_view_of_what_is_wrong_says_whether_the_run_verifies(desk: Desk, verify: bool) -> None:
+    desk.runner.experiment_plan = replace(desk.runner.experiment_plan, frames=5000, verify=verify)
+    desk.c.set_view(View.WIPE)
+    desk.rest()
+    desk.came.clear()
+    desk.runner.start_experiment()
+    desk.until(lambda: desk.came)
+    assert desk.runner.current.verifies is verify
+    assert ("this run does not verify" in desk.c.tracing.title) is not verify
+    assert desk.c.tracing.drawn_view is (View.WIPE if verify else View.COLOR)
 
 
 def test_the_frames_of_the_chosen_method_are_shown(desk: Desk) -> None:

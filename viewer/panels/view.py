@@ -95,6 +95,10 @@ def _legend(ui: Ui, frame: Frame) -> None:
         _swatch(GREY)
         imgui.text_unformatted("never fully rendered")
     elif view.needs_verify:
+        run = ui.controller.runner.current
+        if run is not None and not run.verifies:
+            paragraph("This run does not verify; tick Verify in the Experiment panel before the next.", WARNING)
+            return
         _difference(ui, frame)
         tip += " While it is chosen each culled ray is traced as well, so that frames take longer."
     paragraph(tip, QUIET)
