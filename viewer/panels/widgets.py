@@ -144,6 +144,11 @@ def count(number: float) -> str:
     return f"{int(number):,}".replace(",", " ")
 
 
+def judged(highest: int) -> str:
+    """A primitive's highest pixel count in words: what its modes go by."""
+    return f"judged by {count(highest)}" if highest else "not judged yet"
+
+
 def short(number: float) -> str:
     """A large number in few characters: 1.23 M."""
     for limit, unit in ((1e9, " G"), (1e6, " M"), (1e4, " k")):

@@ -16,6 +16,7 @@ from viewer.panels.widgets import (
     clipped,
     count,
     em,
+    judged,
     paragraph,
     properties,
     row,
@@ -153,7 +154,8 @@ def _explain(steps: list[Step], x: float) -> None:
     """The step under the pointer, in numbers and words."""
     step = steps[min(max(round(x), 0), len(steps) - 1)]
     if imgui.begin_tooltip():
-        imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {count(step.highest)} at most")
+        what = " (highest count while fully rendered)" if step.highest else ""
+        imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {judged(step.highest)}{what}")
         imgui.text_unformatted(f"{count(step.wrong_of_primitive)} of them wrong, {count(step.wrong)} in the picture")
         for line in changes_in_words(step.changes):
             imgui.text_unformatted(line)
