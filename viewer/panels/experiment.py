@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, imgui, implot
 from tracer import experiment
 from tracer.experiment import REFERENCE, Results, Row
 from tracer.frame import METHODS
-from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND
+from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
 from viewer.panels.runs import export_buttons, side_by_side, start_or_progress
 from viewer.panels.widgets import ERROR, QUIET, checkbox, clipped, em, paragraph, properties, row, size_field, tooltip
 from viewer.reports import LINES, WRONG
@@ -18,6 +18,7 @@ from viewer.ui import Ui
 _WORKS = (("steps", "steps"), ("tests", "tests"))
 _SHORT = ("steps saved", "  most (frame)", "tests saved", "  most (frame)", "extra / pixel", "wrong", "time in window")
 _TIME_TIP = "while the window draws as well: not to be compared with the times of shadowcull bench"
+_FEWEST_FRAMES, _LEAST_TOP = 10, 2.0  # frames and percents that the plot's axes span at least
 _HEADING, _REFERENCE, _METHOD = 6.8, 4.0, 7.4  # widths of the table's columns in ems
 
 
@@ -94,7 +95,7 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
         imgui.end_child()
         return
     wrong = run.settings.verify and any(any(figures["wrong"]) for figures in results.methods.values())
-    if not implot.begin_plot(f"{run.scene_path.name}: saved, %##saved", size, FLAGS):
+    if not implot.begin_plot(f"{run.scene_path.name}: saved##saved", size, FLAGS):
         return
     frames = np.array(results.frames, np.float64)
     savings = ui.cached("savings", results, 0, lambda: _savings(results))
@@ -102,19 +103,20 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
     bottom = min([float(values.min()) for _, values in savings] or [0.0])
     implot.setup_axes("", "", AXIS, AXIS)
     implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
-    implot.setup_axis_format(implot.ImAxis_.y1, "%.0f")
+    implot.setup_axis_format(implot.ImAxis_.y1, "%.4g %%")
     once = int(imgui.Cond_.always if ui.controller.runner.current is run else imgui.Cond_.once)
-    implot.setup_axes_limits(-0.5, len(run.times) - 0.5, min(1.1 * bottom, 0.0), max(1.12 * top, 1.0), once)
+    last = max(len(run.times), _FEWEST_FRAMES) - 0.5
+    implot.setup_axes_limits(-0.5, last, min(1.1 * bottom, 0.0), max(1.12 * top, _LEAST_TOP), once)
     if wrong:
-        implot.setup_axis(implot.ImAxis_.y2, "", AXIS | int(implot.AxisFlags_.aux_default))
-        most = max(max(figures["wrong"]) for figures in results.methods.values())
-        implot.setup_axis_limits(implot.ImAxis_.y2, 0.0, 3.0 * most, once)
-        implot.setup_axis_format(implot.ImAxis_.y2, "%.0f")
+        wrong_axis(max(int(max(figures["wrong"])) for figures in results.methods.values()), once)
     implot.setup_legend(implot.Location_.south, LEGEND)
     if wrong:
         _plot_wrong(results, frames)
     for number, (name, values) in enumerate(savings):
-        implot.plot_line(name, frames, values, implot.Spec(line_color=COLORS[number % len(COLORS)], line_weight=1.6))
+        spec = implot.Spec(line_color=COLORS[number % len(COLORS)], line_weight=1.6)
+        if len(frames) == 1:  # is no line
+            spec.marker = int(implot.Marker_.circle)
+        implot.plot_line(name, frames, values, spec)
     implot.end_plot()
 
 

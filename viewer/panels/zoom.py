@@ -6,7 +6,7 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from tracer.zoom import Approach, Results, Step
-from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND
+from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
 from viewer.panels.runs import export_buttons, side_by_side, start_or_progress
 from viewer.panels.widgets import (
     ERROR,
@@ -124,16 +124,14 @@ def _plot(test: ZoomTest, approaches: list[Approach], approach: Approach, name: 
     limits = np.array([approach.factor * step.highest or np.nan for step in steps], np.float64)
     seen = [max(step.pixels, step.highest, 1) for a in approaches for step in a.steps]
     most_wrong = max(1, *(a.most_wrong for a in approaches))
-    implot.setup_axes("", "", AXIS, AXIS)
+    implot.setup_axes("", "pixels", AXIS, AXIS)
     implot.setup_axis_scale(implot.ImAxis_.y1, int(implot.Scale_.log10))
     implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
     implot.setup_axis_format(implot.ImAxis_.y1, "%.0f")
     low, high = 0.3 * min(pixels.min(), *(s.pixels or 0.5 for a in approaches for s in a.steps)), 6.0 * max(seen)
     always = int(imgui.Cond_.always)
     implot.setup_axes_limits(-0.7, test.frames / len(test.factors) - 0.3, low, high, always)
-    hidden = implot.AxisFlags_.aux_default | implot.AxisFlags_.no_decorations
-    implot.setup_axis(implot.ImAxis_.y2, "", int(hidden))
-    implot.setup_axis_limits(implot.ImAxis_.y2, 0.0, 3.0 * most_wrong, always)
+    wrong_axis(most_wrong, always)
     implot.setup_legend(implot.Location_.south, LEGEND)
     implot.set_axes(implot.ImAxis_.x1, implot.ImAxis_.y2)
     wrong = np.array([step.wrong_of_primitive for step in steps], np.float64)
