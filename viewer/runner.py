@@ -55,24 +55,35 @@ class Runner:
         self._start(run)
 
     def start_zoom_test(self) -> None:
-        """Go towards the selected primitive, from where the picture shows it."""
+        """Go towards the selected primitive, from where the picture shows it or, so planned, from the last start."""
         scene, frame, selected = self._c.session.scene, self._c.frame, self._c.selected
         if scene is None or frame is None or self.current is not None:
             self._refuse_start()
             return
-        if selected is None:
+        start = self.last_start if self.zoom_plan.same_start else None
+        if start is None and selected is None:
             self._c.say("click a primitive in the picture first: the zoom test goes towards it", error=True)
             return
         try:
-            if selected.dynamic:
-                raise ValueError(f"primitive {selected.primitive} moves, and what moves is never culled")
-            start = zoom.aim(frame, selected.primitive)
+            if start is None and selected is not None:
+                if selected.dynamic:
+                    raise ValueError(f"primitive {selected.primitive} moves, and what moves is never culled")
+                start = zoom.aim(frame, selected.primitive)
+            assert start is not None
             run = ZoomTest(scene, self._c.session.settings, start, self.zoom_plan, lambda: self._c.wake())
         except ValueError as error:
             self._c.say(str(error), error=True)
             return
         self.zoom_test = run
         self._start(run)
+
+    @property
+    def last_start(self) -> zoom.Aim | None:
+        """Where the last zoom test began; None where that was in another scene, or another primitive is selected."""
+        test, selected = self.zoom_test, self._c.selected
+        if test is None or not test.is_of(self._c.session.scene):
+            return None
+        return test.start if selected is None or selected.primitive == test.start.primitive else None
 
     def _refuse_start(self) -> None:
         self._c.say(f"the {self.current.name} is still under way" if self.current is not None else "open a scene first")
@@ -112,7 +123,7 @@ class Runner:
             self._c.say(f"{run.name} stopped after {run.traced} of {run.frames} frames{kept}")
 
     def go_to(self, step: Step) -> None:
-        """Put the camera where a step of the zoom test stood, at the test's time."""
+        """Put the camera where a step of the zoom test stood, at the test's time; the next test starts as that did."""
         test, session = self.zoom_test, self._c.session
         if test is None or test.results is None or self.refuses():
             return
@@ -121,6 +132,7 @@ class Runner:
             return
         session.playing = False
         session.time = test.results.time
+        self.zoom_plan.same_start = True
         self._c.glide(step.camera)
 
     def export(self, run: Run, ending: str) -> None:

@@ -210,12 +210,13 @@ class Experiment(Run[experiment.Results]):
 @dataclass
 class ZoomPlan:
     """How to go towards a primitive: in `steps`, each to `ratio` of the distance, once with each of `factors`, which
-    are as they were typed."""
+    are as they were typed; with `same_start` from where the last test began, if that is known."""
 
     factors: str = "4, 16"
     steps: int = 30
     ratio: float = 0.94
     size: tuple[int, int] = (256, 256)
+    same_start: bool = False
 
 
 class ZoomTest(Run[zoom.Results]):

@@ -419,6 +419,29 @@ def test_a_step_can_be_gone_to(figure4: Desk) -> None:
     assert desk.c.session.camera == camera and "figure4.aff" in desk.said
 
 
+def test_a_zoom_test_can_be_repeated_from_its_start(figure4: Desk) -> None:
+    desk = figure4
+    desk.c.select((0.5, 0.5))
+    desk.runner.start_zoom_test()
+    desk.run_to_its_end()
+    first = desk.runner.zoom_test
+    desk.runner.go_to(first.results.approaches[0].steps[-1])
+    desk.rest()
+    assert desk.runner.zoom_plan.same_start
+    for selected in (desk.c.selected, None):
+        desk.c.selected = selected
+        desk.runner.start_zoom_test()
+        desk.run_to_its_end()
+        assert desk.runner.zoom_test is not first and desk.runner.zoom_test.results == first.results
+    desk.runner.zoom_plan.same_start = False
+    desk.c.select((0.5, 0.5))
+    desk.runner.start_zoom_test()
+    desk.run_to_its_end()
+    assert desk.runner.zoom_test.start.distance < first.start.distance
+    desk.c.selected = replace(desk.c.selected, primitive=first.start.primitive + 1)
+    assert desk.runner.last_start is None, "of another primitive it is no start"
+
+
 def test_results_are_written_beside_the_pictures(figure4: Desk, tmp_path: Path) -> None:
     desk, folder = figure4, tmp_path / "pictures"
     desk.runner.export(FakeRun(), ".json")

@@ -28,6 +28,7 @@ from viewer.runs import ZoomTest
 from viewer.ui import Ui
 
 _NARROWEST = 15.0  # ems of a plot that stands beside another
+_GO_THERE = "go there: traced at the window's size with the window's modes, so that the wrong pixels need not be there"
 _MARK = ImVec4(0.95, 0.96, 0.98, 1.0)
 
 
@@ -59,10 +60,20 @@ def _plan(ui: Ui) -> None:
         if not shown:
             return
         row("Towards", "the primitive that was clicked in the picture")
-        if c.selected is None:
-            imgui.text_colored(WARNING, "click a primitive")
-        else:
+        start = c.runner.last_start
+        if c.selected is not None:
             clipped(f"{c.selected.primitive}  ({c.selected.kind}, {c.selected.object_name})")
+        elif start is not None and plan.same_start:
+            clipped(f"{start.primitive}")
+        else:
+            imgui.text_colored(WARNING, "click a primitive")
+        if start is not None:
+            row("From", "where the camera is, or where the last test towards this primitive began")
+            if imgui.radio_button("here", not plan.same_start):
+                plan.same_start = False
+            imgui.same_line()
+            if imgui.radio_button("start", plan.same_start):
+                plan.same_start = True
         row("Factors", "past so many times its highest pixel count the primitive is examined anew; several to compare")
         _, plan.factors = imgui.input_text("##factors", plan.factors)
         row("Steps", "how many, and to which part of the distance each goes")
@@ -188,7 +199,7 @@ def _row(ui: Ui, approach: Approach, step: Step) -> None:
     flags = imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_overlap
     if imgui.selectable(f"{approach.factor:g}##{step.number}", False, int(flags))[0]:
         ui.controller.runner.go_to(step)
-    tooltip("\n".join(["go there", *changes_in_words(step.changes)]))
+    tooltip("\n".join([_GO_THERE, *changes_in_words(step.changes)]))
     for text, color in (
         (str(step.number), None),
         (count(step.pixels), None),
