@@ -152,6 +152,14 @@ class Tracing:
         return frame.width * divisor, frame.height * divisor
 
     @property
+    def magnified(self) -> int:
+        """How many of the screen's pixels show one of the newest frame's, from side to side; 1 at least."""
+        if self.frame is None:
+            return 1
+        width, height = self._c.size
+        return max(1, round(min(width / self.frame.width, height / self.frame.height)))
+
+    @property
     def drawn_view(self) -> View:
         """The view to draw the newest frame in: the picture while one that needs a verified frame waits for it."""
         view, unverified = self._c.session.view, self.frame is not None and self.frame.wrong is None

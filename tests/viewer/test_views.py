@@ -79,10 +79,13 @@ def test_the_difference_legend_counts_what_is_wrong():
         views.difference_legend(make_frame())
 
 
-@pytest.mark.parametrize(("size", "radius", "thickness"), [((64, 48), 3, 1), ((1500, 40), 8, 1), ((30, 4000), 20, 3)])
-def test_rings_lie_at_one_distance_and_grow_with_the_picture(size, radius, thickness):
+@pytest.mark.parametrize(
+    ("size", "magnified", "radius", "thickness"),
+    [((64, 48), 1, 3, 1), ((1500, 40), 1, 8, 1), ((30, 4000), 1, 20, 3), ((1500, 40), 2, 4, 1), ((64, 48), 12, 1, 1)],
+)
+def test_rings_lie_at_one_distance_grow_with_the_picture_and_stay_small_on_screen(size, magnified, radius, thickness):
     frame = make_frame(Settings(width=size[0], height=size[1], verify=True))
-    marks = views.wrong_marks(frame)
+    marks = views.wrong_marks(frame, magnified)
     points = np.argwhere(frame.wrong > 0)
     rows, columns = np.indices(marks.shape)
     distance = np.min([np.hypot(rows - y, columns - x) for y, x in points], axis=0)
