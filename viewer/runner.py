@@ -117,10 +117,11 @@ class Runner:
         if run.error is not None:
             self._c.say(f"the {run.name} failed: {run.error}", error=True)
         elif run.whole:
-            self._c.say(f"{run.name} done: {run.frames} frames in {duration(run.seconds)}")
+            self._c.say(f"{run.name} done: {run.done_of[1]} frames in {duration(run.seconds)}")
         else:
             kept = "" if run.results is None else "; what was done is kept"
-            self._c.say(f"{run.name} stopped after {run.traced} of {run.frames} frames{kept}")
+            done, frames = run.done_of
+            self._c.say(f"{run.name} stopped after {done} of {frames} frames{kept}")
 
     def go_to(self, step: Step) -> None:
         """Put the camera where a step of the zoom test stood, at the test's time; the next test starts as that did."""

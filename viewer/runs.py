@@ -79,6 +79,11 @@ class Run(ABC, Generic[Results]):
         return scene is not None and self._identity() is scene
 
     @property
+    def done_of(self) -> tuple[int, int]:
+        """Frames that the results are of, and how many they are to be of."""
+        return self.traced, self.frames
+
+    @property
     def fraction(self) -> float:
         return self.traced / self.frames
 
@@ -179,6 +184,10 @@ class Experiment(Run[experiment.Results]):
     @property
     def verifies(self) -> bool:
         return self.settings.verify
+
+    @property
+    def done_of(self) -> tuple[int, int]:
+        return len(self.results.frames) if self.results is not None else 0, len(self.times)
 
     def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[experiment.Results]:
         def on_frame(number: int, method: str, frame: Frame) -> None:

@@ -173,5 +173,5 @@ class Tracing:
         wanted = self._c.session.view
         if run is not None:
             lacks = wanted is not view and not run.verifies
-            return f"{run.label_shown}   {title}{' (this run does not verify)' if lacks else ''}"
+            return f"showing {run.label_shown}   {title}{' (this run does not verify)' if lacks else ''}"
         return title if wanted is view else f"{wanted.label}: verifying ..."

@@ -120,7 +120,7 @@ def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(des
     desk.runner.start_experiment()
     run = desk.runner.experiment
     desk.run_to_its_end()
-    assert run.whole and run.results is not None and desk.said.startswith("experiment done: 10 frames in ")
+    assert run.whole and run.results is not None and desk.said.startswith("experiment done: 5 frames in ")
 
     scene = desk.c.session.scene
     times = experiment.path_times(scene, 5)
@@ -171,7 +171,7 @@ def test_stopping_keeps_the_whole_frames(desk: Desk) -> None:
     done = len(run.results.frames)
     assert before <= done < 5000
     assert all(len(values) == done for figures in run.results.methods.values() for values in figures.values())
-    assert f"experiment stopped after {run.traced} of 10000 frames; what was done is kept" == desk.said
+    assert f"experiment stopped after {done} of 5000 frames; what was done is kept" == desk.said
     assert is_the_same_picture(desk.c.frame, own)
 
 
@@ -194,7 +194,7 @@ def test_stopped_before_its_first_frame_a_run_leaves_nothing_and_what_it_cut_sho
     del renderer.render
     desk.run_to_its_end()
     assert desk.runner.experiment.results is None
-    assert desk.said == "experiment stopped after 0 of 10 frames"
+    assert desk.said == "experiment stopped after 0 of 5 frames"
     assert {(frame.width, frame.height) for frame in desk.came} == {SIZE}
 
 
@@ -304,7 +304,7 @@ def test_a_run_that_is_overtaken_by_another_scene_does_not_trace_it(desk: Desk) 
     desk.run_to_its_end()
     assert renderer is not desk.c.render._renderer
     assert desk.runner.experiment.results is None and not desk.runner.experiment.traced
-    assert desk.said == "experiment stopped after 0 of 10 frames"
+    assert desk.said == "experiment stopped after 0 of 5 frames"
 
 
 def test_restoring_a_place_ends_a_run(desk: Desk) -> None:
