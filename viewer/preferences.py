@@ -23,6 +23,8 @@ from viewer.views import View
 
 SETTINGS_FILE = "settings.json"
 RECENT_SCENES = 10
+LONGEST_SIDE = 8192
+"""Pixels of a picture of fixed size."""
 DEFAULT_TEMPLATE = "{scene}-{view}-{frame:04d}-{date}-{time}.png"
 
 # Limits of the numbers; whatever lies outside is not from this program.
@@ -30,8 +32,8 @@ _RANGES: dict[str, tuple[float, float]] = {
     "target_fps": (1.0, 240.0),
     "speed": (0.001, 1000.0),
     "playback_rate": (0.01, 100.0),
-    "fixed_width": (1, 8192),
-    "fixed_height": (1, 8192),
+    "fixed_width": (1, LONGEST_SIDE),
+    "fixed_height": (1, LONGEST_SIDE),
     "zoom_factor": (1.0, 1e6),
     "depth": (0, 100),
     "samples": (1, 64),

@@ -26,6 +26,9 @@ from viewer.jobs import one_line
 from viewer.render_thread import Traces
 from viewer.zoom import parse_factors
 
+LONGEST_SIDE = 4096
+"""Pixels of a run's pictures: it traces many."""
+
 SEEN_WITHIN = 1.0
 """Seconds that a frame of a zoom test waits, at most, to be drawn before the next is traced."""
 
@@ -173,6 +176,7 @@ class Experiment(Run[experiment.Results]):
     def __init__(
         self, scene: Scene, settings: Settings, plan: ExperimentPlan, wake: Callable[[], None] = lambda: None
     ) -> None:
+        _check_size(plan.size)
         self.methods = experiment.with_reference(sorted(plan.methods))
         self.times = experiment.path_times(scene, plan.frames)
         self.settings = replace(
@@ -241,6 +245,7 @@ class ZoomTest(Run[zoom.Results]):
         plan: ZoomPlan,
         wake: Callable[[], None] = lambda: None,
     ) -> None:
+        _check_size(plan.size)
         self.start, self.plan = start, replace(plan)
         self.factors = parse_factors(plan.factors)
         self.settings = replace(settings, width=plan.size[0], height=plan.size[1]).validated()
@@ -270,6 +275,11 @@ class ZoomTest(Run[zoom.Results]):
 
     def write(self, results: zoom.Results, path: Path) -> None:
         exports.write_zoom_test(results, path)
+
+
+def _check_size(size: tuple[int, int]) -> None:
+    if max(size) > LONGEST_SIDE:
+        raise ValueError(f"{size[0]} x {size[1]} is too large for a run; {LONGEST_SIDE} pixels a side at most")
 
 
 def duration(seconds: float) -> str:

@@ -346,6 +346,12 @@ def test_a_plan_that_is_no_good_is_one_line(desk: Desk) -> None:
     desk.runner.start_experiment()
     assert desk.c.message.error and "width and height" in desk.said
     desk.c.select((0.5, 0.5))
+    desk.runner.experiment_plan.size = desk.runner.zoom_plan.size = (64, 4097)
+    for start in (desk.runner.start_experiment, desk.runner.start_zoom_test):
+        desk.c.message = None
+        start()
+        assert desk.c.message.error and "64 x 4097 is too large for a run" in desk.said
+    desk.runner.zoom_plan.size = (32, 24)
     desk.runner.zoom_plan.factors = "four"
     desk.runner.start_zoom_test()
     assert desk.c.message.error and "'four' are no zoom factors" in desk.said

@@ -12,7 +12,7 @@ from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
 from viewer.panels.runs import export_buttons, side_by_side, start_or_progress
 from viewer.panels.widgets import ERROR, QUIET, checkbox, clipped, em, paragraph, properties, row, size_field, tooltip
 from viewer.reports import LINES, WRONG
-from viewer.runs import Experiment
+from viewer.runs import LONGEST_SIDE, Experiment
 from viewer.ui import Ui
 
 _WORKS = (("steps", "steps"), ("tests", "tests"))
@@ -66,7 +66,7 @@ def _plan(ui: Ui) -> None:
         if changed:
             plan.frames = min(max(frames, 1), 100_000)
         row("Size")
-        plan.size = size_field(plan.size)
+        plan.size = size_field(plan.size, LONGEST_SIDE, ui.controller.say)
         row("Bounces", "of reflected and refracted rays, at most")
         changed, depth = imgui.slider_int("##depth", plan.depth, 0, 20)
         if changed:

@@ -7,6 +7,7 @@ import os
 from imgui_bundle import imgui
 
 from viewer.panels.widgets import checkbox, properties, row, size_field
+from viewer.preferences import LONGEST_SIDE
 from viewer.ui import Ui
 
 
@@ -17,7 +18,7 @@ def show(ui: Ui) -> None:
     checkbox("Fixed size", p.fixed_resolution, lambda on: setattr(p, "fixed_resolution", on), "else that of the window")
     if p.fixed_resolution:
         imgui.same_line()
-        p.fixed_width, p.fixed_height = size_field((p.fixed_width, p.fixed_height))
+        p.fixed_width, p.fixed_height = size_field((p.fixed_width, p.fixed_height), LONGEST_SIDE, ui.controller.say)
     tip = "trace coarser frames while the camera moves, to hold the frame rate"
     checkbox("Coarser in motion", p.dynamic_resolution, lambda on: setattr(p, "dynamic_resolution", on), tip)
     with properties("quality", 5.0) as shown:

@@ -13,7 +13,6 @@ ERROR = ImVec4(1.0, 0.47, 0.42, 1.0)
 QUIET = ImVec4(0.62, 0.65, 0.70, 1.0)
 GOOD = ImVec4(0.36, 0.80, 0.64, 1.0)
 SIZES = ((128, 128), (256, 256), (512, 512), (800, 600), (1024, 1024), (1280, 720), (1920, 1080))
-LONGEST_SIDE = 8192
 
 
 def em(size: float) -> float:
@@ -95,13 +94,17 @@ def checkbox(label: str, state: bool, change: Callable[[bool], None], tip: str =
         change(now)
 
 
-def size_field(size: tuple[int, int]) -> tuple[int, int]:
-    """Width and height in pixels, typed or chosen from a list, across what room there is; returns what is set now."""
+def size_field(size: tuple[int, int], longest: int, say: Callable[[str], None]) -> tuple[int, int]:
+    """Width and height in pixels, typed or chosen from a list, across what room there is; returns what is set now.
+
+    Says so where a side that is typed is none, or longer than `longest`, and another taken for it."""
     imgui.set_next_item_width(-em(2.2))
     changed, typed = imgui.input_int2("##size", list(size))
     if changed:
-        width, height = (min(max(pixels, 1), LONGEST_SIDE) for pixels in typed)
+        width, height = (min(max(pixels, 1), longest) for pixels in typed)
         size = width, height
+        if list(size) != list(typed):
+            say(f"{typed[0]} x {typed[1]} became {width} x {height}: a side has 1 to {longest} pixels here")
     imgui.same_line(0.0, em(0.2))
     if imgui.button(icons.ICON_FA_CHEVRON_DOWN, (-1.0, 0.0)):
         imgui.open_popup("sizes")

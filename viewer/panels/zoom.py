@@ -24,7 +24,7 @@ from viewer.panels.widgets import (
     tooltip,
 )
 from viewer.reports import changes_in_words, happenings, modes_in_words
-from viewer.runs import ZoomTest
+from viewer.runs import LONGEST_SIDE, ZoomTest
 from viewer.ui import Ui
 
 _NARROWEST = 15.0  # ems of a plot that stands beside another
@@ -88,7 +88,7 @@ def _plan(ui: Ui) -> None:
             plan.ratio = min(max(ratio, 0.01), 0.999)
         tooltip(f"the last step is at {100.0 * plan.ratio**plan.steps:.2g} % of the distance")
         row("Size", "counts, and what can be seen from afar, are those of this size")
-        plan.size = size_field(plan.size)
+        plan.size = size_field(plan.size, LONGEST_SIDE, c.say)
 
 
 def _plots(ui: Ui, test: ZoomTest | None, results: Results | None, size: ImVec2) -> None:
