@@ -14,7 +14,7 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
 from viewer import views
 from viewer.history import SERIES, History
-from viewer.panels.widgets import percent
+from viewer.panels.widgets import in_window_style, percent
 from viewer.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
 from viewer.resolution import ResolutionControl, divided
 
@@ -101,6 +101,10 @@ def test_rings_lie_at_one_distance_grow_with_the_picture_and_stay_small_on_scree
 )
 def test_a_small_share_does_not_look_like_none(part, whole, said):
     assert percent(part, whole) == said
+
+
+def test_numbers_of_other_places_are_written_as_in_the_window():
+    assert in_window_style("1,234,570 (0.499%), lights 0, 2: 12") == "1 234 570 (0.499 %), lights 0, 2: 12"
 
 
 def test_no_rings_where_nothing_is_wrong():

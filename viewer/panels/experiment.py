@@ -10,7 +10,19 @@ from tracer.experiment import REFERENCE, Results, Row
 from tracer.frame import METHODS
 from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
 from viewer.panels.runs import export_buttons, side_by_side, start_or_progress
-from viewer.panels.widgets import ERROR, QUIET, checkbox, clipped, em, paragraph, properties, row, size_field, tooltip
+from viewer.panels.widgets import (
+    ERROR,
+    QUIET,
+    checkbox,
+    clipped,
+    em,
+    in_window_style,
+    paragraph,
+    properties,
+    row,
+    size_field,
+    tooltip,
+)
 from viewer.reports import LINES, WRONG
 from viewer.runs import LONGEST_SIDE, Experiment
 from viewer.ui import Ui
@@ -42,7 +54,7 @@ def _controls(ui: Ui, run: Experiment | None) -> None:
         _shown_method(run)
     else:
         _plan(ui)
-    tip = "trace the frames of the whole path by each method and compare their work, as shadowcull bench does"
+    tip = "trace the path by each method, and compare"
     start_or_progress(ui, run, runner.start_experiment, tip)
     export_buttons(ui, run)
 
@@ -167,5 +179,5 @@ def _table(ui: Ui, run: Experiment | None, results: Results | None) -> None:
         tooltip(f"{heading.strip()}, {_TIME_TIP}" if short is _SHORT[-1] else heading.strip())
         for line in rows:
             imgui.table_next_column()
-            clipped(cell(line), ERROR if heading == WRONG and line.wrong else None)
+            clipped(in_window_style(cell(line)), ERROR if heading == WRONG and line.wrong else None)
     imgui.end_table()

@@ -8,15 +8,15 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.exports import ENDINGS
-from viewer.panels.widgets import QUIET, clipped, em, tooltip, wide_button
+from viewer.panels.widgets import QUIET, clipped, em, tooltip_above, wide_button
 from viewer.runs import Run, duration
 from viewer.ui import Ui
 
 _KINDS = {".json": "JSON", ".csv": "CSV", ".png": "Plot"}
 _TIPS = {
-    ".json": "every figure, as JSON, into the folder of the pictures",
-    ".csv": "the table, as CSV, into the folder of the pictures",
-    ".png": "the plot, as a picture for a slide or a paper, into the folder of the pictures",
+    ".json": "save every figure",
+    ".csv": "save the table",
+    ".png": "save the plot as a picture",
 }
 
 
@@ -51,7 +51,7 @@ def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: s
     runner = ui.controller.runner
     if run is None or runner.current is not run:
         imgui.begin_disabled(runner.current is not None)
-        if wide_button(f"{icons.ICON_FA_PLAY}  Start", tip):
+        if wide_button(f"{icons.ICON_FA_PLAY}  Start", tip, explain=tooltip_above):
             start()
         imgui.end_disabled()
         return
@@ -60,7 +60,7 @@ def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: s
     clipped(f"traced: {run.label}", QUIET)
     if run.stopping:
         imgui.text_colored(QUIET, "stopping ...")
-    elif wide_button(f"{icons.ICON_FA_STOP}  Stop", "keeps what is done (Escape)"):
+    elif wide_button(f"{icons.ICON_FA_STOP}  Stop", "keeps what is done (Escape)", explain=tooltip_above):
         runner.stop()
 
 
@@ -71,6 +71,6 @@ def export_buttons(ui: Ui, run: Run | None) -> None:
     for ending in ENDINGS:
         if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK} {_KINDS[ending]}"):
             ui.controller.runner.export(run, ending)
-        tooltip(_TIPS[ending])
+        tooltip_above(_TIPS[ending])
         imgui.same_line(0.0, em(0.25))
     imgui.new_line()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -85,6 +86,20 @@ def tooltip(text: str) -> None:
         imgui.end_tooltip()
 
 
+def tooltip_above(text: str) -> None:
+    """The same above the item, after a longer rest, so that neither what lies beside nor what lies below is hidden."""
+    flags = imgui.HoveredFlags_.stationary | imgui.HoveredFlags_.delay_normal | imgui.HoveredFlags_.allow_when_disabled
+    if not imgui.is_item_hovered(int(flags)):
+        return
+    corner = imgui.get_item_rect_min()
+    imgui.set_next_window_pos(ImVec2(corner.x, corner.y - em(0.3)), 0, ImVec2(0.0, 1.0))
+    if imgui.begin_tooltip():
+        imgui.push_text_wrap_pos(em(13.0))
+        imgui.text_unformatted(text)
+        imgui.pop_text_wrap_pos()
+        imgui.end_tooltip()
+
+
 def checkbox(label: str, state: bool, change: Callable[[bool], None], tip: str = "") -> None:
     """A tick that calls `change` with its new state."""
     changed, now = imgui.checkbox(label, state)
@@ -116,13 +131,13 @@ def size_field(size: tuple[int, int], longest: int, say: Callable[[str], None]) 
     return size
 
 
-def wide_button(label: str, tip: str = "", columns: int = 1) -> bool:
-    """A button that fills its share of the width."""
+def wide_button(label: str, tip: str = "", columns: int = 1, explain: Callable[[str], None] = tooltip) -> bool:
+    """A button that fills its share of the width; `explain` shows its tip."""
     spacing = imgui.get_style().item_spacing.x
     width = (imgui.get_content_region_avail().x - spacing * (columns - 1)) / columns
     clicked = imgui.button(label, ImVec2(max(width, em(2.0)), 0.0))
     if tip:
-        tooltip(tip)
+        explain(tip)
     return clicked
 
 
@@ -158,6 +173,11 @@ def short(number: float) -> str:
         if abs(number) >= limit:
             return f"{number / (limit if limit != 1e4 else 1e3):.4g}{unit}"
     return f"{number:.0f}"
+
+
+def in_window_style(text: str) -> str:
+    """Numbers of a text written as they are here: 10 570 (0.499 %) for 10,570 (0.499%)."""
+    return re.sub(r"(?<=\d)%", " %", re.sub(r"(?<=\d),(?=\d{3})", " ", text))
 
 
 def percent(part: float, whole: float) -> str:

@@ -48,7 +48,7 @@ def _controls(ui: Ui, test: ZoomTest | None) -> None:
     else:
         _plan(ui)
 
-    tip = "go towards the selected primitive, from where the picture shows it, once with each factor"
+    tip = "go towards the primitive, once with each factor"
     start_or_progress(ui, test, c.runner.start_zoom_test, tip)
     export_buttons(ui, test)
 
