@@ -271,7 +271,7 @@ def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None
         (["-o", "OUT/x.png", "--camera", "{}"], "--camera: a camera's position"),
         (["-o", "OUT/x.png", "--camera", "nowhere.json"], "neither JSON nor a file"),
         (["-o", "OUT/x.png", "--camera", "[1, 2]"], "neither JSON nor a file"),
-        (["-o", "OUT/x.png", "--zoom-factor", "0.5"], "argument --zoom-factor: 0.5 is not in 1 to 1,000,000"),
+        (["-o", "OUT/x.png", "--zoom-factor", "0.5"], "argument --zoom-factor: 0.5 is not in 1 to 1,000,000,000"),
         (["-o", "OUT/x.png", "--zoom-factor", "nan"], "argument --zoom-factor: nan is not in"),
         (["-o", "OUT/x.png", "--zoom-factor", "much"], "argument --zoom-factor: 'much' is no number"),
         (["-o", "OUT/x.png", "--warm", "3"], "unrecognized arguments"),

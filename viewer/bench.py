@@ -19,7 +19,7 @@ from tracer.scene.model import Cancelled, Scene
 from viewer import exports
 from viewer.console import Work, print_table, working
 from viewer.headless import prepare_kernels, tracing_settings
-from viewer.reports import LINES, WRONG
+from viewer.reports import LINES, WRONG, frames_in_words
 
 
 def bench(path: Path, options: Namespace) -> bool:
@@ -94,7 +94,7 @@ def frame_range(text: str | None, count: int) -> range:
 def _table(results: Results, verified: bool) -> Table:
     """A column per method, so that it fits terminals of 80 columns."""
     width, height = results.size
-    title = f"{Path(results.scene).name}, {len(results.frames)} frames, {width} x {height}: work of shadow rays"
+    title = f"Work of shadow rays\n{Path(results.scene).name}, {width} × {height}, {frames_in_words(results)}"
     table = Table(title=title, title_justify="left", title_style="bold", caption_justify="left")
     rows = experiment.table(results)
     table.add_column("")

@@ -24,6 +24,7 @@ from viewer import examples, resources
 from viewer.argument_types import count, factors, number, pixel, size, view
 from viewer.lines import say
 from viewer.screen import has_display, no_display_reason
+from viewer.version import program_version
 
 FAILED, MISUSED, INTERRUPTED = 1, 2, 130
 ERROR = "error: "
@@ -105,7 +106,7 @@ def _view(arguments: list[str], commands: list[str]) -> int:
         epilog=examples.COMMANDS,
     )
     parser.add_argument("scene", nargs="?", metavar="SCENE", help=_scene_help())
-    parser.add_argument("--version", action="version", version=f"shadowcull {_version()}")
+    parser.add_argument("--version", action="version", version=f"shadowcull {program_version()}")
     parser.add_argument("--or-picture", action="store_true", help=argparse.SUPPRESS)
     if arguments and not arguments[0].startswith("-"):
         _check_is_scene(parser, arguments[0], commands)
@@ -264,7 +265,7 @@ def _add_tracing_options(parser: _Parser) -> None:
 
 def _add_zoom_factor(parser: _Parser) -> None:
     told = "growth after which modes are learnt anew (4)"
-    parser.add_argument("--zoom-factor", type=number(1.0, 1e6), default=4.0, metavar="F", help=told)
+    parser.add_argument("--zoom-factor", type=number(1.0, 1e9), default=4.0, metavar="F", help=told)
 
 
 def _info(arguments: list[str]) -> int:
@@ -286,12 +287,3 @@ def _info(arguments: list[str]) -> int:
 def _scene_help() -> str:
     names = ", ".join(resources.embedded_scenes())
     return f"a file (.aff .nff .obj .ply .stl .gltf .glb) or a scene that comes with the program ({names})"
-
-
-def _version() -> str:
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return version("shadowcull")
-    except PackageNotFoundError:
-        return "(not installed)"

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, TypeVar
 from tracer import experiment, zoom
 from viewer import reports
 from viewer.outputs import check_outputs, reserve, write_each, write_text
+from viewer.version import program_version
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,10 +35,15 @@ _drawing = threading.Lock()  # matplotlib's settings are global while a figure i
 
 def _writers(csv_text: Callable[[Results], str], figure: Callable[[Results], Figure]) -> Writers[Results]:
     return {
-        "json": lambda results, path: write_text(path, json.dumps(results.to_dict())),
+        "json": lambda results, path: write_text(path, json_text(results)),
         "csv": lambda results, path: write_text(path, csv_text(results)),
         "plot": lambda results, path: _plot(partial(figure, results), path),
     }
+
+
+def json_text(results: experiment.Results | zoom.Results) -> str:
+    """Every figure, and which version of the program found them."""
+    return json.dumps(results.to_dict() | {"version": program_version()})
 
 
 def _plot(draw: Callable[[], Figure], path: Path) -> None:

@@ -18,6 +18,7 @@ from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from tracer.experiment import REFERENCE, Results, Row, table
 from viewer.outputs import write_whole
+from viewer.reports import frames_in_words
 
 ENDINGS = (".png", ".svg", ".pdf")
 # Okabe and Ito's colours, those that read well as letters first; in greys, dashes and marks tell methods apart.
@@ -96,9 +97,8 @@ def savings_figure(results: Results, verified: bool) -> Figure:
 
 
 def _title(results: Results, rows: list[Row], verified: bool) -> str:
-    count, (width, height) = len(results.frames), results.size
-    frames = f"frames {results.frames[0]} to {results.frames[-1]}" if count > 1 else f"frame {results.frames[0]}"
-    told = f"{Path(results.scene).name}, {width} × {height} pixels, {frames}"
+    width, height = results.size
+    told = f"{Path(results.scene).name}, {width} × {height} pixels, {frames_in_words(results)}"
     if not verified:
         told += ", answers not verified"
     elif not any(row.wrong for row in rows):

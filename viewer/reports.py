@@ -33,6 +33,19 @@ LINES: tuple[tuple[str, Callable[[Row], str]], ...] = (
 """The table's lines: what each is called, and what it says of a method; WRONG means nothing unless verified."""
 
 
+def frames_in_words(results: experiment.Results) -> str:
+    """Which frames of which path there are, e.g. "frames 0 to 19 of 200" or "70 of 100 frames, stopped"."""
+    done, path = len(results.frames), results.path_frames
+    if results.planned < path:
+        first, last = results.frames[0], results.frames[-1]
+        told = f"frames {first} to {last} of {path}" if done > 1 else f"frame {first} of {path}"
+    elif done < path:
+        told = f"{done} of {path} frames"
+    else:
+        told = f"{done} frames over the whole path" if done > 1 else "1 frame"
+    return told + ", stopped" * results.stopped
+
+
 def experiment_csv(results: experiment.Results) -> str:
     """The table as CSV, parts of 1 and seconds as they are."""
     text = io.StringIO()
@@ -78,7 +91,7 @@ def _spoken(mode: str) -> str:
 def zoom_title(results: zoom.Results) -> str:
     """Which test this is, in one line."""
     name, (width, height) = Path(results.scene).name, results.size
-    return f"{name}, {results.time:.3f} s, towards primitive {results.primitive}, {width} x {height}"
+    return f"{name}, {results.time:.3f} s, towards primitive {results.primitive}, {width} × {height}"
 
 
 SUMMARY = ("factor", "examined anew", "wrong pixels", "most", "at the end", "culled", "dynamic only")
