@@ -117,7 +117,8 @@ class Runner:
         if run.error is not None:
             self._c.say(f"the {run.name} failed: {run.error}", error=True)
         elif run.whole:
-            self._c.say(f"{run.name} done: {run.done_of[1]} frames in {duration(run.seconds)}")
+            frames = run.done_of[1]
+            self._c.say(f"{run.name} done: {frames} frame{'s' * (frames != 1)} in {duration(run.seconds)}")
         else:
             kept = "" if run.results is None else "; what was done is kept"
             done, frames = run.done_of

@@ -31,7 +31,7 @@ _WORKS = (("steps", "steps"), ("tests", "tests"))
 _SHORT = ("steps saved", "  most (frame)", "tests saved", "  most (frame)", "extra / pixel", "wrong", "time in window")
 _TIME_TIP = "while the window draws as well: not to be compared with the times of shadowcull bench"
 _FEWEST_FRAMES, _LEAST_TOP = 10, 2.0  # frames and percents that the plot's axes span at least
-_HEADING, _REFERENCE, _METHOD = 6.8, 4.0, 7.4  # widths of the table's columns in ems
+_HEADING, _REFERENCE, _METHOD = 6.8, 5.4, 7.4  # widths of the table's columns in ems
 
 
 def show(ui: Ui) -> None:
@@ -107,7 +107,7 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
         imgui.end_child()
         return
     wrong = run.settings.verify and any(any(figures["wrong"]) for figures in results.methods.values())
-    if not implot.begin_plot(f"{run.scene_path.name}: saved##saved", size, FLAGS):
+    if not implot.begin_plot(f"{run.scene_path.name}: saved##{id(run)}", size, FLAGS):
         return
     frames = np.array(results.frames, np.float64)
     savings = ui.cached("savings", results, 0, lambda: _savings(results))
@@ -158,7 +158,8 @@ def _table(ui: Ui, run: Experiment | None, results: Results | None) -> None:
         return
     rows: list[Row] = ui.cached("table 1", results, 0, lambda: experiment.table(results))
     whole = len(results.frames) == len(run.times)
-    done = f"{len(results.frames)} frames" if whole else f"{len(results.frames)} of {len(run.times)} frames"
+    plural = "s" * (len(run.times) != 1)
+    done = f"{len(results.frames)} frame{plural}" if whole else f"{len(results.frames)} of {len(run.times)} frames"
     clipped(f"{done}, {run.settings.width} x {run.settings.height}, {run.settings.accelerator}", QUIET)
     flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg
     if not imgui.begin_table("table 1", 1 + len(rows), int(flags)):
