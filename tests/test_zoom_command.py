@@ -110,7 +110,7 @@ def test_mistakes_end_in_one_line(
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--pixel", "32,0"], "32 x 32 pixels"),
+        (["--pixel", "32,0"], "32 × 32 pixels"),
         (["--primitive", "0", "--ratio", "0.5", "--steps", "50"], "go fewer"),
         (["--primitive", "0", "--factors", "2,3,4,5,6,7,8"], "these are 7 zoom factors; give 6 at most"),
         (["--primitive", "0", "--plot", "OUT/plot.gif"], "unknown kind of plot"),
@@ -158,7 +158,7 @@ def test_ctrl_c_keeps_the_steps_that_are_done(tmp_path: Path) -> None:
     steps = json.loads(output.read_text())["approaches"][0]["steps"]
     assert 3 < len(steps) < 9999
     assert f"cancelled after {len(steps)} of " in terminal.said
-    assert "towards primitive 0, 128 x 128" in terminal.said
+    assert "towards primitive 0, 128 × 128" in terminal.said
 
 
 @pytest.mark.parametrize(
@@ -220,6 +220,25 @@ def test_a_figure_draws_the_counts_and_the_wrong_pixels() -> None:
     assert drawn["its modes change"] == [(2, 12)]
     assert [bar.get_height() for bar in wrong.patches] == [0, 2, 3, 0]
     assert told.texts[0].get_text() == "step 2: init"
+    figure.draw_without_rendering()
+    ticks = [*counts.yaxis.get_majorticklabels(), *counts.yaxis.get_minorticklabels()]
+    said = {tick.get_text() for tick in ticks} - {""}
+    assert "10" in said and all(text.replace(",", "").isdigit() for text in said)
+
+
+@pytest.mark.parametrize("highest", [0, 5])
+def test_a_primitive_never_seen_whole_is_told_in_the_figure(highest: int) -> None:
+    steps = [replace(step(n), pixels=10, highest=highest * n) for n in range(3)]
+    figure = zoom_figure(Results("s.aff", (8, 8), 0, 0.0, (0, 0, 0), 0.9, approaches=[Approach(4.0, steps)]))
+    assert ("Never seen whole in any step" in figure.get_suptitle()) == (highest == 0)
+
+
+def test_a_primitive_never_seen_whole_is_told(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """The figure's edge cuts through it in every step."""
+    camera = '{"position": [0, 0, 1], "direction": [0, 0, -1], "angle": 20}'
+    aim = ["--primitive", "0", "--camera", camera, "--steps", "2"]
+    assert main(["zoom", "figure4", "--size", "32x32", *aim]) == 0
+    assert "primitive 0: never seen whole in any step" in capfd.readouterr().err
 
 
 @pytest.mark.filterwarnings("error")

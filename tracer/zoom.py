@@ -93,6 +93,11 @@ class Approach:
         return [step.number for step in self.steps if went_back in step.changes]
 
     @property
+    def seen_whole(self) -> bool:
+        """Whether the primitive was ever fully rendered: else it has no highest count, and is never culled."""
+        return any(step.highest for step in self.steps)
+
+    @property
     def wrong_steps(self) -> list[int]:
         """Numbers of the steps that show the primitive with wrong pixels."""
         return [step.number for step in self.steps if step.wrong_of_primitive]
@@ -161,7 +166,7 @@ def check_pixel(pixel: tuple[int, int], size: tuple[int, int]) -> None:
     """Raise ValueError for a pixel (x, y) outside a picture of this width and height."""
     (x, y), (width, height) = pixel, size
     if not (0 <= x < width and 0 <= y < height):
-        raise ValueError(f"pixel {x},{y}: the picture has {width} x {height} pixels, counted from 0")
+        raise ValueError(f"pixel {x},{y}: the picture has {width} × {height} pixels, counted from 0")
 
 
 def check_primitive(scene: Scene, primitive: int) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from tracer.experiment import REFERENCE, Results, Row, table
@@ -42,6 +43,7 @@ _STYLE: dict[str, Any] = {
     "svg.hashsalt": "shadowcull",
 }
 _PANELS = (("steps", "Traversal steps saved"), ("tests", "Intersection tests saved"))
+_MARGIN = 0.12  # inches that keep the labels beside panels off the edge
 _FEW = 40  # frames up to which each has a dot
 
 styled = style.context(["default", _STYLE])
@@ -78,7 +80,7 @@ def savings_figure(results: Results, verified: bool) -> Figure:
     if not rows:
         raise ValueError("there is nothing to plot: no frame, or no method to compare with the reference")
     wrong = verified and any(row.wrong for row in rows)
-    figure = Figure(figsize=SIZE, layout="constrained")
+    figure = Figure(figsize=SIZE, layout=ConstrainedLayoutEngine(w_pad=_MARGIN))
     heights = [3, 3, 1.6] if wrong else [1, 1]
     panels: Sequence[Axes] = figure.subplots(len(heights), sharex=True, gridspec_kw={"height_ratios": heights})
     for panel, (work, label) in zip(panels, _PANELS):

@@ -94,6 +94,15 @@ def zoom_title(results: zoom.Results) -> str:
     return f"{name}, {results.time:.3f} s, towards primitive {results.primitive}, {width} × {height}"
 
 
+NEVER_WHOLE = "never seen whole in any step: it is never culled, and the zoom factor does not matter"
+
+
+def never_whole(results: zoom.Results) -> bool:
+    """Whether NEVER_WHOLE is to be said of the primitive: nothing was tested then."""
+    return any(a.steps for a in results.approaches) and not any(a.seen_whole for a in results.approaches)
+
+
+WRONG_PIXELS = "wrong pixels of this primitive"
 SUMMARY = ("factor", "examined anew", "wrong pixels", "most", "at the end", "culled", "dynamic only")
 
 

@@ -22,7 +22,17 @@ from viewer import exports
 from viewer.argument_types import parse_factors as parse_factors  # for viewer.runs
 from viewer.console import Work, print_table, working
 from viewer.headless import moment, prepare_kernels, tracing_settings
-from viewer.reports import SUMMARY, happenings, modes_in_words, summary, zoom_title
+from viewer.lines import say
+from viewer.reports import (
+    NEVER_WHOLE,
+    SUMMARY,
+    WRONG_PIXELS,
+    happenings,
+    modes_in_words,
+    never_whole,
+    summary,
+    zoom_title,
+)
 
 WHICH = (
     "zoom: towards which primitive? give --pixel X,Y, for what a pixel of the picture shows, or --primitive N; the "
@@ -72,6 +82,8 @@ def run(path: Path, options: Namespace) -> bool:
     for approach in results.approaches:
         print_table(_steps_table(approach))
     print_table(_summary_table(results))
+    if never_whole(results):
+        say(f"primitive {results.primitive}: {NEVER_WHOLE}")
     if failures:
         raise OSError("; ".join(failures))
     return done == frames
@@ -88,20 +100,22 @@ def _aim(scene: Scene, settings: Settings, world: World, time: float, options: N
 
 def _steps_table(approach: Approach) -> Table:
     table = Table(title=f"zoom factor {approach.factor:g}", title_justify="left", caption_justify="left")
-    for heading in ("step", "distance", "pixels", "highest", "wrong", "in all"):
+    for heading in ("step", "distance", "pixels", "highest", "wrong", "in picture"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("modes from there on")
     for step in happenings(approach):
         numbers = (step.pixels, step.highest, step.wrong_of_primitive, step.wrong)
         modes = modes_in_words(step.changes)
         table.add_row(str(step.number), f"{step.distance:.4g}", *(f"{number:,}" for number in numbers), modes)
-    table.caption = "wrong: pixels of the primitive with wrong shadows; in all: of the whole picture"
+    table.caption = f"wrong: {WRONG_PIXELS}; in picture: those of the whole picture"
     return table
 
 
 def _summary_table(results: Results) -> Table:
     table = Table(*SUMMARY, title=zoom_title(results), title_justify="left", title_style="bold", caption_justify="left")
-    table.caption = "of the shadow rays due: culled, and those that asked moving objects alone"
+    table.caption = (
+        "wrong pixels: of this primitive\nof the shadow rays due: culled, and those that asked moving objects alone"
+    )
     for approach in results.approaches:
         table.add_row(*summary(approach))
     return table

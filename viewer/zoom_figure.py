@@ -7,12 +7,12 @@ import textwrap
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import LogFormatter, MaxNLocator
 
 from tracer import zoom
 from viewer.argument_types import MOST_FACTORS
 from viewer.figures import COLORS, DASHES, SIZE, styled
-from viewer.reports import modes_in_words, zoom_title
+from viewer.reports import NEVER_WHOLE, WRONG_PIXELS, modes_in_words, never_whole, zoom_title
 
 _LETTERS = 138  # of a line as wide as the figure
 _LINES = 9  # that tell of mode changes under a panel, at most
@@ -54,10 +54,12 @@ def zoom_figure(results: zoom.Results) -> Figure:
         told_below.axis("off")
         told_below.text(0.0, 1.0, "\n".join(lines), transform=told_below.transAxes, va="top", fontsize=12.0)
     panels[0, 0].set_ylabel("Pixels")
-    panels[1, 0].set_ylabel("Wrong\npixels")
+    panels[1, 0].set_ylabel("\n".join(textwrap.wrap(WRONG_PIXELS.capitalize(), 15)), fontsize=12.0)
     figure.align_ylabels(panels[:2, 0])
     figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     told_above = f"A primitive seen from nearer and nearer, and its shadows\n{zoom_title(results)}"
+    if never_whole(results):
+        told_above += f"\n{NEVER_WHOLE.capitalize()}"
     figure.suptitle(told_above, x=0.01, ha="left", fontsize=18.0)
     return figure
 
@@ -79,12 +81,21 @@ def _names_of_changes(approach: zoom.Approach, width: int) -> list[str]:
     return lines if len(told) == len(changed) else [*lines, f"and {len(changed) - len(told)} more"]
 
 
+class _PlainNumbers(LogFormatter):
+    """100,000 and not a power, for those ticks of a logarithmic scale that have room for a label."""
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        return f"{x:,.12g}" if super().__call__(x, pos) else ""
+
+
 def _draw_counts(panel: Axes, approach: zoom.Approach) -> None:
     numbers = [step.number for step in approach.steps]
     pixels = [max(step.pixels, 0.5) for step in approach.steps]  # none is a half: a logarithmic scale has no 0
     limits = [approach.factor * step.highest or np.nan for step in approach.steps]
     changed = [step.number for step in approach.steps if step.changes]
     panel.set_yscale("log")
+    panel.yaxis.set_major_formatter(_PlainNumbers())
+    panel.yaxis.set_minor_formatter(_PlainNumbers())
     panel.step(numbers, limits, where="post", color=COLORS[2], linestyle=DASHES[1], label="zoom factor × highest count")
     panel.plot(numbers, pixels, ".-", color=COLORS[0], markersize=9, label="the primitive's pixels")
     marks = [pixels[number] for number in changed]

@@ -163,7 +163,7 @@ def test_pixels_name_primitives():
     with pytest.raises(ValueError, match="pixel 0,0 shows no primitive"):
         zoom.primitive_at(frame, 0, 0)
     for x, y in ((128, 0), (0, 128), (-1, 0)):
-        with pytest.raises(ValueError, match="128 x 128 pixels"):
+        with pytest.raises(ValueError, match="128 × 128 pixels"):
             zoom.primitive_at(frame, x, y)
 
 
