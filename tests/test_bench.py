@@ -4,22 +4,19 @@ from __future__ import annotations
 
 import csv
 import json
-import os
-import pty
 import re
-import select
 import subprocess
 import sys
-import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from tests.terminal import Terminal
 from viewer import figures
 from viewer.bench import frame_range
-from viewer.cli import main
+from viewer.cli import MISUSED, main
 from viewer.console import Work
+from viewer.version import program_version
 
 ROOT = Path(__file__).resolve().parent.parent
 SMALL = ["bench", "figure4", "--path-frames", "6", "--size", "48x32"]
@@ -36,7 +33,13 @@ def test_bench_writes_an_entry_per_frame_and_prints_the_table(tmp_path: Path, ca
     lines, plot = tmp_path / "table.csv", tmp_path / "plot.svg"
     more = ["--frames", "1:5", "--verify", "--methods", "none, paper"]
     results = bench(tmp_path, *more, "--csv", str(lines), "--plot", str(plot))
-    assert list(results) == ["scene", "size", "frames", "methods"]
+    assert list(results)[:4] == ["scene", "size", "frames", "methods"]
+    whole = bench(tmp_path)
+    assert results["times"] == whole["times"][1:5] and results["path_frames"] == 6
+    assert (results["planned_frames"], results["stopped"]) == (4, False)
+    shared = {"depth": 10, "zoom_factor": 4.0, "symmetric": False, "accelerator": "kdtree", "threads": 0}
+    assert results["settings"] == {**shared, "verify": True} and whole["settings"] == {**shared, "verify": False}
+    assert results["version"] == program_version()
     assert results["size"] == [48, 32]
     assert results["frames"] == [1, 2, 3, 4]
     assert list(results["methods"]) == ["none", "paper"]
@@ -72,7 +75,8 @@ def test_bench_writes_an_entry_per_frame_and_prints_the_table(tmp_path: Path, ca
     wrong, due = sum(paper["wrong"]), sum(paper["shadow_rays_due"])
     assert f" {wrong:,} ({wrong / due:.3%}) " in out
     assert re.search(r"time of a frame, median .* ms .* ms ", out)
-    assert "figure4.aff, 4 frames, 48 x 32" in out
+    assert "figure4.aff, 48 × 32, frames 1 to 4 of 6" in out
+    assert "figure4.aff, 48 × 32, 6 frames over the whole path" in out
     assert plot.read_text().startswith("<?xml")
 
 
@@ -106,11 +110,24 @@ def test_frames_are_a_range_of_the_path(text, numbers):
         (["--frames", "three"], "give A:B"),
         (["--methods", "telepathy"], "there is no method 'telepathy'"),
         (["--methods", ""], "there is no method ''"),
-        (["--zoom-factor", "0"], "zoom_factor"),
     ],
 )
 def test_mistakes_are_one_line(wrong, said, capsys):
     assert main([*SMALL, *wrong]) == 1
+    _mistake(capsys, said)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (["--zoom-factor", "0"], "argument --zoom-factor: 0 is not in 1 to 1,000,000,000"),
+        (["--method", "none"], "unrecognized arguments: --method none"),
+    ],
+)
+def test_options_that_are_none_end_as_misuse(wrong, said, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([*SMALL, *wrong])
+    assert ended.value.code == MISUSED
     _mistake(capsys, said)
 
 
@@ -165,9 +182,10 @@ def test_a_cancelled_run_keeps_its_whole_frames(steps: int, tmp_path: Path, caps
     paths = [tmp_path / name for name in ("figures.json", "table.csv", "plot.pdf")]
     assert main([*SMALL, "--json", str(paths[0]), "--csv", str(paths[1]), "--plot", str(paths[2])]) == 130
     out, err = capsys.readouterr()
-    assert "figure4.aff, 2 frames" in out
+    assert "figure4.aff, 48 × 32, 2 of 6 frames, stopped" in out
     assert err == "shadowcull: cancelled after 2 of 6 frames; the table is of these\n"
-    assert json.loads(paths[0].read_text())["frames"] == [0, 1]
+    results = json.loads(paths[0].read_text())
+    assert (results["frames"], results["planned_frames"], results["stopped"]) == ([0, 1], 6, True)
     assert all(path.stat().st_size > 0 for path in paths)
 
 
@@ -179,41 +197,6 @@ def test_cancelled_before_any_frame_is_done_there_is_nothing_to_keep(tmp_path: P
 
 
 # --- on a terminal ---------------------------------------------------------------------------------
-
-
-class Terminal:
-    """A command on a terminal of its own: what it says, and keys for it."""
-
-    def __init__(self, *arguments: str) -> None:
-        self._end, inside = pty.openpty()
-        command = [sys.executable, "-m", "viewer", *arguments]
-        environment = os.environ | {"TERM": "xterm", "COLUMNS": "80"}
-        self._process = subprocess.Popen(
-            command, cwd=ROOT, env=environment, stdin=inside, stdout=inside, stderr=inside, start_new_session=True
-        )
-        os.close(inside)
-        self.said = ""
-
-    def lines(self, seconds: float = 120.0) -> Iterator[str]:
-        """All that is said so far, each time there is more of it, until the command ends."""
-        until = time.monotonic() + seconds
-        while select.select([self._end], [], [], max(0.0, until - time.monotonic()))[0]:
-            try:
-                read = os.read(self._end, 65536)
-            except OSError:  # what Linux says where the other side is closed
-                return
-            if not read:
-                return
-            self.said += re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", read.decode(errors="replace"))
-            yield self.said
-        raise AssertionError(f"it says no more and does not end: {self.said[-300:]}")
-
-    def interrupt(self) -> None:
-        self._process.send_signal(2)
-
-    def end(self) -> int:
-        os.close(self._end)
-        return self._process.wait(timeout=60)
 
 
 def test_progress_shows_frame_methods_time_gone_and_time_left():
@@ -230,15 +213,11 @@ def test_progress_shows_frame_methods_time_gone_and_time_left():
 def test_ctrl_c_keeps_what_is_done(tmp_path: Path):
     path = tmp_path / "figures.json"
     terminal = Terminal("bench", "default", "--path-frames", "100000", "--size", "64x64", "--json", str(path))
-    pressed = False
-    for said in terminal.lines():
-        if not pressed and re.search(r"frame ([3-9]|\d{2,}) of 100000", said):
-            pressed = True
-            terminal.interrupt()
+    terminal.interrupt_once(r"frame ([3-9]|\d{2,}) of 100000")
     assert terminal.end() == 130
     told = re.search(r"cancelled after (\d+) of 100000 frames; the table is of these", terminal.said)
     assert told and len(json.loads(path.read_text())["frames"]) == int(told[1]) >= 2
-    assert f"default.aff, {told[1]} frames" in terminal.said
+    assert f"default.aff, 64 × 64, {told[1]} of 100000 frames, stopped" in terminal.said
     assert list(tmp_path.iterdir()) == [path]
 
 

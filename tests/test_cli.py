@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from tests.terminal import Terminal
 from viewer import capture, cli
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -166,10 +165,10 @@ def test_verified_buffers_say_what_is_wrong(capfd: pytest.CaptureFixture[str], t
 
 def test_views_of_what_is_wrong_verify_by_themselves(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     drawn = {}
+    output = tmp_path / "view.png"
+    where = ("figure4", "-o", output, "--size", "128x128", "--threads", 1, "--frame", 20, "--warmup", 20)
     for view in ("difference", "wipe:0", "wipe:1", "wipe:.25", "color"):
-        output = tmp_path / "view.png"
-        where = ("--size", "128x128", "--threads", 1, "--frame", 20, "--warmup", 20)
-        code, out, _ = run(capfd, "render", "figure4", "-o", output, "--view", view, *where)
+        code, out, _ = run(capfd, "render", *where, "--view", view)
         assert code == 0 and ("wrong answers" in out) == (view != "color")
         with Image.open(output) as image:
             drawn[view] = np.asarray(image)
@@ -185,6 +184,9 @@ def test_views_of_what_is_wrong_verify_by_themselves(capfd: pytest.CaptureFixtur
     assert (drawn["wipe:0"][wrong] != drawn["color"][wrong]).any(axis=-1).all()
     np.testing.assert_array_equal(drawn["wipe:.25"][:, :32], drawn["wipe:1"][:, :32])
     np.testing.assert_array_equal(drawn["wipe:.25"][:, 33:], drawn["wipe:0"][:, 33:])
+    assert run(capfd, "render", *where, "--view", "wipe:1", "--no-marks")[0] == 0
+    with Image.open(output) as image:
+        np.testing.assert_array_equal(np.asarray(image), drawn["color"])
 
 
 def test_warm_up_makes_culling_act(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
@@ -269,7 +271,10 @@ def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None
         (["-o", "OUT/x.png", "--camera", "{}"], "--camera: a camera's position"),
         (["-o", "OUT/x.png", "--camera", "nowhere.json"], "neither JSON nor a file"),
         (["-o", "OUT/x.png", "--camera", "[1, 2]"], "neither JSON nor a file"),
-        (["-o", "OUT/x.png", "--zoom-factor", "0.5"], "zoom_factor"),
+        (["-o", "OUT/x.png", "--zoom-factor", "0.5"], "argument --zoom-factor: 0.5 is not in 1 to 1,000,000,000"),
+        (["-o", "OUT/x.png", "--zoom-factor", "nan"], "argument --zoom-factor: nan is not in"),
+        (["-o", "OUT/x.png", "--zoom-factor", "much"], "argument --zoom-factor: 'much' is no number"),
+        (["-o", "OUT/x.png", "--warm", "3"], "unrecognized arguments"),
         (["-o", "OUT/x.png", "--warmup", "-3"], "-3 is not in"),
         (["-o", "OUT/x.png", "--wurmup", "3"], "unrecognized arguments"),
     ],
@@ -321,7 +326,7 @@ def test_an_output_that_cannot_be_written_is_known_before_tracing(
     [
         (["rendr", "x.aff"], "did you mean 'render'?"),
         (["inof"], "did you mean 'info'?"),
-        (["frobnicate"], "the commands are render, bench, info"),
+        (["frobnicate"], "the commands are render, bench, zoom, info"),
         (["--frame", "3"], "unrecognized arguments"),
     ],
 )
@@ -330,7 +335,7 @@ def test_a_mistyped_command(capfd: pytest.CaptureFixture[str], arguments: list[s
 
 
 def test_help_shows_examples(capfd: pytest.CaptureFixture[str]) -> None:
-    for arguments in (["--help"], ["render", "--help"], ["bench", "--help"], ["info", "-h"]):
+    for arguments in (["--help"], ["render", "--help"], ["bench", "--help"], ["zoom", "--help"], ["info", "-h"]):
         code, out, err = run(capfd, *arguments)
         assert (code, err) == (0, "")
         assert "examples:\n  shadowcull" in out
@@ -370,12 +375,9 @@ def test_a_picture_instead_of_the_window(room: Path, tmp_path: Path) -> None:
 
 def test_ctrl_c_ends_a_rendering(room: Path, tmp_path: Path) -> None:
     output = tmp_path / "never.png"
-    command = shadowcull("render", room, "-o", output, "--size", "4000x4000", "--frame", 9, "--warmup", 9)
-    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True) as process:
-        time.sleep(4.0)
-        process.send_signal(signal.SIGINT)
-        _, err = process.communicate(timeout=120)
-    assert (process.returncode, err.splitlines()[-1]) == (130, "shadowcull: cancelled")
+    terminal = Terminal("render", str(room), "-o", str(output), "--size", "4000x4000", "--frame", "9", "--warmup", "9")
+    terminal.interrupt_once("warming up, frame 1 of 9")
+    assert (terminal.end(), terminal.said.splitlines()[-1]) == (130, "shadowcull: cancelled")
     assert not output.exists()
 
 

@@ -14,6 +14,7 @@ from PIL import Image
 
 from tracer import experiment
 from viewer import figures
+from viewer.reports import frames_in_words
 
 FRAMES = [5, 6, 7, 8]
 PAPER = {"steps": [1.0, 0.4, 0.75, 0.85], "tests": [1.0, 0.95, 0.9, 0.5]}  # what is left of the work of `none`
@@ -21,7 +22,7 @@ PAPER = {"steps": [1.0, 0.4, 0.75, 0.85], "tests": [1.0, 0.95, 0.9, 0.5]}  # wha
 
 def results(wrong=(0, 0, 0, 0), **methods: dict[str, list[float]]) -> experiment.Results:
     """Of `none`, `paper` and more methods, given by the parts of the work that they leave."""
-    made = experiment.Results("scenes/hall.aff", (320, 200), frames=list(FRAMES))
+    made = experiment.Results("scenes/hall.aff", (320, 200), frames=list(FRAMES), path_times=range(20), planned=4)
     for method, left in {"none": {"steps": [1.0] * 4, "tests": [1.0] * 4}, "paper": PAPER, **methods}.items():
         made.methods[method] = {
             "shadow_rays_due": [1000] * 4,
@@ -67,14 +68,31 @@ def test_wrong_answers_have_a_panel_where_there_are_any() -> None:
 @pytest.mark.parametrize(
     ("verified", "wrong", "said"),
     [
-        (False, 0, "frames 5 to 8, answers not verified"),
-        (True, 0, "frames 5 to 8, no wrong answer"),
-        (True, 2, "frames 5 to 8"),
+        (False, 0, "frames 5 to 8 of 20, answers not verified"),
+        (True, 0, "frames 5 to 8 of 20, no wrong answer"),
+        (True, 2, "frames 5 to 8 of 20"),
     ],
 )
 def test_the_title_tells_scene_size_frames_and_whether_it_was_verified(verified: bool, wrong: int, said: str) -> None:
     figure = figures.savings_figure(results(wrong=(wrong, 0, 0, 0)), verified)
     assert figure.get_suptitle().endswith(f"\nhall.aff, 320 × 200 pixels, {said}")
+
+
+@pytest.mark.parametrize(
+    ("frames", "path", "planned", "stopped", "said"),
+    [
+        ([0, 1, 2], 3, 3, False, "3 frames over the whole path"),
+        ([0, 1, 2], 200, 3, False, "frames 0 to 2 of 200"),
+        ([0, 1, 2], 200, 200, True, "3 of 200 frames, stopped"),
+        ([0, 1, 2], 200, 200, False, "3 of 200 frames"),  # one has not stopped it, but looks meanwhile
+        ([7, 8], 200, 20, True, "frames 7 to 8 of 200, stopped"),
+        ([7], 200, 1, False, "frame 7 of 200"),
+        ([0], 1, 1, False, "1 frame"),
+    ],
+)
+def test_frames_are_told_by_their_path(frames, path: int, planned: int, stopped: bool, said: str) -> None:
+    made = experiment.Results("s", (1, 1), frames, path_times=range(path), planned=planned, stopped=stopped)
+    assert frames_in_words(made) == said
 
 
 def test_methods_differ_in_colour_and_dashes_and_their_labels_do_not_meet() -> None:

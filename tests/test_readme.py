@@ -72,7 +72,7 @@ def test_commands_have_the_options_that_are_shown() -> None:
     shown: dict[str, set[str]] = {}
     for command, rest in re.findall(r"^shadowcull ([a-z]+) ([^#\n]*)", README, re.MULTILINE):
         shown.setdefault(command, set()).update(re.findall(r"--[a-z-]+", rest))
-    assert {"render", "bench", "info"} <= set(shown)
+    assert {"render", "bench", "zoom", "info"} <= set(shown)
     for command, options in shown.items():
         line = [sys.executable, "-m", "viewer", command, "--help"]
         told = subprocess.run(line, cwd=ROOT, capture_output=True, text=True).stdout

@@ -7,7 +7,7 @@ makes any, count against it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -35,18 +35,49 @@ _FIGURES: dict[str, Callable[[FrameStatistics], float]] = {
 }
 
 
+_SHARED = ("depth", "zoom_factor", "symmetric", "verify", "accelerator", "threads")  # settings of all methods
+
+
 @dataclass
 class Results:
-    """What was measured: for each frame number in `frames`, an entry in each list of each method."""
+    """What was measured: for each frame number in `frames`, an entry in each list of each method.
+
+    The numbers count the frames of a path, `path_times` in seconds; `planned` is how many of them were to be
+    rendered, `stopped` whether somebody ended that early; `settings` are those that all methods share, by name.
+    """
 
     scene: str
     size: tuple[int, int]
     frames: list[int] = field(default_factory=list)
     methods: dict[str, dict[str, list[float]]] = field(default_factory=dict)
+    path_times: Sequence[float] = ()
+    planned: int = 0
+    stopped: bool = False
+    settings: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def path_frames(self) -> int:
+        """How many frames the path has: the scene's own number, or what it was resampled to."""
+        return len(self.path_times)
+
+    @property
+    def times(self) -> list[float]:
+        """Seconds of each frame."""
+        return [self.path_times[number] for number in self.frames]
 
     def to_dict(self) -> dict[str, Any]:
         """Plain lists and numbers, for JSON."""
-        return {"scene": self.scene, "size": list(self.size), "frames": self.frames, "methods": self.methods}
+        return {
+            "scene": self.scene,
+            "size": list(self.size),
+            "frames": self.frames,
+            "methods": self.methods,
+            "times": self.times,
+            "path_frames": self.path_frames,
+            "planned_frames": self.planned,
+            "stopped": self.stopped,
+            "settings": self.settings,
+        }
 
     def reductions(self, method: str, work: str) -> np.ndarray:
         """(frames,) part of the reference's `work` ("steps" or "tests") that a method saves, net of certificates."""
@@ -136,8 +167,14 @@ def run(
     names = with_reference(methods)
     world = world or World(scene, times[0] if times else 0.0, settings.accelerator, progress)
     renderers = {name: Renderer(scene, replace(settings, method=name), world=world) for name in names}
-    results = Results(str(scene.path), (settings.width, settings.height))
-    results.methods = {name: {figure: [] for figure in _FIGURES} for name in names}
+    results = Results(
+        str(scene.path),
+        (settings.width, settings.height),
+        methods={name: {figure: [] for figure in _FIGURES} for name in names},
+        path_times=tuple(times),
+        planned=len(numbers),
+        settings={name: getattr(settings, name) for name in _SHARED},
+    )
     for number in numbers:
         frames = {}
         try:
@@ -146,6 +183,7 @@ def run(
                 if on_frame is not None:
                     on_frame(number, name, frames[name])
         except Cancelled:
+            results.stopped = True
             return
         results.frames.append(number)
         for name, frame in frames.items():

@@ -93,6 +93,11 @@ class Approach:
         return [step.number for step in self.steps if went_back in step.changes]
 
     @property
+    def seen_whole(self) -> bool:
+        """Whether the primitive was ever fully rendered: else it has no highest count, and is never culled."""
+        return any(step.highest for step in self.steps)
+
+    @property
     def wrong_steps(self) -> list[int]:
         """Numbers of the steps that show the primitive with wrong pixels."""
         return [step.number for step in self.steps if step.wrong_of_primitive]
@@ -124,9 +129,9 @@ class Results:
 def aim(frame: Frame, primitive: int) -> Aim:
     """Point a frame's camera at a primitive that the frame shows, which must not lie behind anything on the way.
 
-    A camera that looks at it already goes straight on.  Any other turns to the middle of what is to be
-    seen of it: the visible point nearest to the mean of all.  Raises ValueError where the frame does
-    not show the primitive.
+    A camera that looks at it already, with all pixels about its axis, goes straight on.  Any other turns
+    to the middle of what is to be seen of it: the visible point nearest to the mean of all.  Raises
+    ValueError where the frame does not show the primitive.
     """
     rows, columns = np.nonzero(frame.primitive == primitive)
     if primitive < 0 or not len(rows):
@@ -137,9 +142,12 @@ def aim(frame: Frame, primitive: int) -> Aim:
     x, y = (columns + 0.5 - 0.5 * frame.width) * pixel, (0.5 * frame.height - rows - 0.5) * pixel
     rays = forward + x[:, None] * right + y[:, None] * up
     ahead = frame.depth[rows, columns] / np.linalg.norm(rays, axis=1)  # along the view, not along the ray
-    middle = np.flatnonzero((rows == frame.height // 2) & (columns == frame.width // 2))
-    if len(middle):
-        return Aim(primitive, frame.time, camera, _triple(camera.position + forward * ahead[middle[0]]))
+    sides = ((frame.height - 1) // 2, frame.height // 2), ((frame.width - 1) // 2, frame.width // 2)
+    if (frame.primitive[np.ix_(*sides)] == primitive).all():
+        # The axis goes between those pixels. On a plane the inverse of this distance is linear over the picture, so
+        # that its mean is the axis's own: a point beside the surface would be passed when the camera comes near.
+        about = np.isin(rows, sides[0]) & np.isin(columns, sides[1])
+        return Aim(primitive, frame.time, camera, _triple(camera.position + forward / np.mean(1.0 / ahead[about])))
     points = camera.position + rays * ahead[:, None]
     target = points[np.argmin(np.linalg.norm(points - points.mean(0), axis=1))]
     return Aim(primitive, frame.time, replace(camera, direction=_triple(target - camera.position)), _triple(target))
@@ -147,12 +155,37 @@ def aim(frame: Frame, primitive: int) -> Aim:
 
 def primitive_at(frame: Frame, x: int, y: int) -> int:
     """The primitive that a pixel shows; raises ValueError for one outside the picture or that shows none."""
-    if not (0 <= x < frame.width and 0 <= y < frame.height):
-        raise ValueError(f"pixel {x},{y}: the picture has {frame.width} x {frame.height} pixels, counted from 0")
+    check_pixel((x, y), (frame.width, frame.height))
     primitive = int(frame.primitive[y, x])
     if primitive < 0:
         raise ValueError(f"pixel {x},{y} shows no primitive, only background")
     return primitive
+
+
+def check_pixel(pixel: tuple[int, int], size: tuple[int, int]) -> None:
+    """Raise ValueError for a pixel (x, y) outside a picture of this width and height."""
+    (x, y), (width, height) = pixel, size
+    if not (0 <= x < width and 0 <= y < height):
+        raise ValueError(f"pixel {x},{y}: the picture has {width} × {height} pixels, counted from 0")
+
+
+def check_primitive(scene: Scene, primitive: int) -> None:
+    """Raise ValueError for a primitive that the scene has not, or that moves, which is never culled."""
+    if not 0 <= primitive < scene.primitive_count:
+        raise ValueError(f"there is no primitive {primitive}; the scene's are 0 to {scene.primitive_count - 1}")
+    if scene.object_of(primitive):
+        raise ValueError(f"primitive {primitive} belongs to an object that moves, and those are never culled")
+
+
+def settings_of_tests(settings: Settings, factors: Sequence[float], steps: int, ratio: float) -> list[Settings]:
+    """The settings of each factor's test, from those that all share; raises ValueError for numbers out of range."""
+    if not 0.0 < ratio < 1.0 or steps < 1:
+        raise ValueError("a zoom test goes at least one step, each to between 0 and 1 of the distance before")
+    if ratio**steps < NEAREST:
+        raise ValueError(
+            f"{steps} steps of {ratio:g} end nearer than {NEAREST:g} of the distance; go fewer or smaller ones"
+        )
+    return [replace(settings, method="paper", verify=True, samples=1, zoom_factor=f).validated() for f in factors]
 
 
 def run(
@@ -173,17 +206,10 @@ def run(
     come first.  The method is "paper", and every culled answer is verified, whatever `settings` say.
     A `cancel` that turns true ends the iteration after the last whole frame.  `world` is one that
     nobody else uses meanwhile; `on_frame` is shown each picture with its factor and number.  Raises
-    ValueError for a primitive that moves, which is never culled, and for numbers out of range.
+    ValueError for a primitive that is not there or moves, and for numbers out of range.
     """
-    if scene.object_of(start.primitive):
-        raise ValueError(f"primitive {start.primitive} belongs to an object that moves, and those are never culled")
-    if not 0.0 < ratio < 1.0 or steps < 1:
-        raise ValueError("a zoom test goes at least one step, each to between 0 and 1 of the distance before")
-    if ratio**steps < NEAREST:
-        raise ValueError(
-            f"{steps} steps of {ratio:g} end nearer than {NEAREST:g} of the distance; go fewer or smaller ones"
-        )
-    tests = [replace(settings, method="paper", verify=True, samples=1, zoom_factor=f).validated() for f in factors]
+    tests = settings_of_tests(settings, factors, steps, ratio)
+    check_primitive(scene, start.primitive)
     world = world or World(scene, start.time, settings.accelerator)
     size = (settings.width, settings.height)
     results = Results(str(scene.path), size, start.primitive, start.time, start.target, ratio)

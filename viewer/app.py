@@ -146,6 +146,7 @@ class App:
                 selected=c.selected.primitive if c.selected is not None else -1,
                 smooth=p.smooth_upscaling,
                 marked=p.mark_wrong,
+                magnified=c.tracing.magnified,
                 wipe=c.session.wipe,
                 line=not c.tracing.becoming_finer,
             )

@@ -1,10 +1,12 @@
-"""Words of a command line as values; each raises argparse.ArgumentTypeError, in one line, on other words."""
+"""Words that people type as values; on other words, each raises argparse.ArgumentTypeError, in one line."""
 
 from __future__ import annotations
 
 import argparse
 import re
 from collections.abc import Callable
+
+MOST_FACTORS = 6  # that are compared in one zoom test
 
 _VIEW_NAMES = {"colour": "color", "primitives": "primitive", "normals": "normal", "count": "pixel-count"}
 
@@ -29,6 +31,19 @@ def count(least: int, most: int) -> Callable[[str], int]:
     return parse
 
 
+def number(least: float, most: float) -> Callable[[str], float]:
+    def parse(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"{text!r} is no number") from None
+        if not least <= value <= most:
+            raise argparse.ArgumentTypeError(f"{text} is not in {least:,.12g} to {most:,.12g}")
+        return value
+
+    return parse
+
+
 def pixel(text: str) -> tuple[int, int]:
     match = re.fullmatch(r"(\d{1,6}) *, *(\d{1,6})", text.strip(), re.ASCII)
     if not match:
@@ -36,9 +51,20 @@ def pixel(text: str) -> tuple[int, int]:
     return int(match[1]), int(match[2])
 
 
-def factors(text: str) -> list[float]:
-    from viewer.zoom import parse_factors
+def parse_factors(text: str) -> list[float]:
+    """Zoom factors, from words like "4, 16", each once, MOST_FACTORS at most; raises ValueError in one line."""
+    try:
+        factors = list(dict.fromkeys(float(word) for word in text.replace(",", " ").split()))
+    except ValueError:
+        factors = []
+    if not factors or not all(1.0 <= factor <= 1e6 for factor in factors):
+        raise ValueError(f"{text!r} are no zoom factors; give numbers from 1 up, like 4,16")
+    if len(factors) > MOST_FACTORS:
+        raise ValueError(f"these are {len(factors)} zoom factors; give {MOST_FACTORS} at most")
+    return factors
 
+
+def factors(text: str) -> list[float]:
     try:
         return parse_factors(text)
     except ValueError as error:

@@ -5,26 +5,21 @@ Ctrl-C ends it after the last whole frame: what is done is shown, and written wh
 
 from __future__ import annotations
 
-import csv
-import io
-import json
 from argparse import Namespace
-from collections.abc import Callable
-from dataclasses import astuple, fields
-from functools import partial
 from pathlib import Path
 
 from rich.table import Table
 
 from tracer import experiment
-from tracer.experiment import REFERENCE, Results, Row
+from tracer.experiment import REFERENCE, Results
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.scene.load import load_visible_scene
 from tracer.scene.model import Cancelled, Scene
+from viewer import exports
 from viewer.console import Work, print_table, working
 from viewer.headless import prepare_kernels, tracing_settings
-from viewer.outputs import check_outputs, write_each, write_text
+from viewer.reports import LINES, WRONG, frames_in_words
 
 
 def bench(path: Path, options: Namespace) -> bool:
@@ -34,7 +29,9 @@ def bench(path: Path, options: Namespace) -> bool:
     """
     settings = tracing_settings(options)
     methods = experiment.with_reference(options.methods)
-    writers = _writers(options, methods)
+    wanted = exports.wanted_files(options)
+    if "plot" in wanted and methods == [REFERENCE]:
+        raise ValueError(f"--plot: nothing to compare with {REFERENCE}; give another of --methods")
     with working() as work:
         scene = load_visible_scene(path, work.progress)
         for warning in scene.warnings:
@@ -46,7 +43,7 @@ def bench(path: Path, options: Namespace) -> bool:
         finished = len(results.frames) == len(numbers)
         if not finished:
             work.note(f"cancelled after {len(results.frames)} of {len(numbers)} frames; the table is of these")
-        failures = write_each(partial(write, results) for write in writers)
+        failures = exports.write_files(exports.experiment_writers(options.verify), results, wanted)
     print_table(_table(results, options.verify))
     if failures:
         raise OSError("; ".join(failures))
@@ -80,27 +77,6 @@ def _run(
     return results
 
 
-_Writer = Callable[[Results], None]
-
-
-def _writers(options: Namespace, methods: list[str]) -> list[_Writer]:
-    """What writes each file that was asked for; raises ValueError and OSError for one that cannot be."""
-    writers: list[_Writer] = []
-    if options.json is not None:
-        writers.append(lambda results: write_text(options.json, json.dumps(results.to_dict())))
-    if options.csv is not None:
-        writers.append(lambda results: write_text(options.csv, csv_text(results)))
-    if options.plot is not None:
-        from viewer import figures  # loads matplotlib
-
-        figures.check_ending(options.plot)
-        if methods == [REFERENCE]:
-            raise ValueError(f"--plot: nothing to compare with {REFERENCE}; give another of --methods")
-        writers.append(lambda results: figures.save(figures.savings_figure(results, options.verify), options.plot))
-    check_outputs({"--json": options.json, "--csv": options.csv, "--plot": options.plot})
-    return writers
-
-
 def frame_range(text: str | None, count: int) -> range:
     """`A:B`, the frames A to B - 1 of a path of `count`; either may be left out."""
     if text is None:
@@ -118,7 +94,7 @@ def frame_range(text: str | None, count: int) -> range:
 def _table(results: Results, verified: bool) -> Table:
     """A column per method, so that it fits terminals of 80 columns."""
     width, height = results.size
-    title = f"{Path(results.scene).name}, {len(results.frames)} frames, {width} x {height}: work of shadow rays"
+    title = f"Work of shadow rays\n{Path(results.scene).name}, {width} × {height}, {frames_in_words(results)}"
     table = Table(title=title, title_justify="left", title_style="bold", caption_justify="left")
     rows = experiment.table(results)
     table.add_column("")
@@ -129,30 +105,3 @@ def _table(results: Results, verified: bool) -> Table:
             table.add_row(heading, *(cell(row) for row in rows))
     table.caption = "times include verifying" if verified else "--verify counts wrong answers"
     return table
-
-
-def _saved(text: str) -> Callable[[Row], str]:
-    """A cell of what a method saves, for the reference empty."""
-    return lambda row: text.format(row) if row.method != REFERENCE else ""
-
-
-WRONG = "wrong answers (of rays due)"
-LINES: tuple[tuple[str, Callable[[Row], str]], ...] = (
-    ("traversal steps saved, average", _saved("{0.average_steps:.1%}")),
-    ("  most (frame)", _saved("{0.most_steps:.1%} ({0.most_steps_frame})")),
-    ("intersection tests saved, average", _saved("{0.average_tests:.1%}")),
-    ("  most (frame)", _saved("{0.most_tests:.1%} ({0.most_tests_frame})")),
-    ("extra occlusion tests per pixel", lambda row: f"{row.extra_tests_per_pixel:.3f}"),
-    (WRONG, lambda row: f"{row.wrong:,} ({row.wrong_part:.3%})"),
-    ("time of a frame, median", lambda row: f"{1000.0 * row.frame_seconds:,.0f} ms"),
-)
-"""The table's lines: what each is called, and what it says of a method; WRONG means nothing unless verified."""
-
-
-def csv_text(results: Results) -> str:
-    """The table as CSV, parts of 1 and seconds as they are."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([f.name for f in fields(Row)])
-    writer.writerows(astuple(row) for row in experiment.table(results))
-    return text.getvalue()

@@ -8,9 +8,7 @@ named from a template, never overwrites, and every failure is one line.
 from __future__ import annotations
 
 import json
-import os
 import string
-import time
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -19,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, PngImagePlugin
 
+from viewer.outputs import reserve, write_whole
 from viewer.session import Snapshot
 
 CHUNK = "shadowcull"
@@ -84,32 +83,16 @@ def save(pixels: NDArray[np.uint8], folder: Path, name: str, text: str) -> Path:
     info.add_text("Software", "Shadowcull")
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        path = _reserve(folder, name)
+        path = reserve(folder, name.removesuffix(".png"), ".png")
     except OSError as error:
         raise CaptureError(f"no picture saved: cannot write to {folder}: {error.strerror or error}") from None
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.{time.monotonic_ns()}.tmp")
+    image = Image.fromarray(np.ascontiguousarray(pixels))
     try:
-        Image.fromarray(np.ascontiguousarray(pixels)).save(temporary, "PNG", pnginfo=info, compress_level=4)
-        os.replace(temporary, path)
+        write_whole(path, lambda file: image.save(file, "PNG", pnginfo=info, compress_level=4))
     except (OSError, ValueError) as error:
-        temporary.unlink(missing_ok=True)
         path.unlink(missing_ok=True)
-        reason = getattr(error, "strerror", None) or error
-        raise CaptureError(f"no picture saved: {path}: {reason}") from None
+        raise CaptureError(f"no picture saved: {error}") from None
     return path
-
-
-def _reserve(folder: Path, name: str) -> Path:
-    """Create an empty file of a name that nobody has: the given one, or with -2, -3, ... before its suffix."""
-    stem = name[:-4]
-    for number in range(1, 100000):
-        path = folder / (name if number == 1 else f"{stem}-{number}.png")
-        try:
-            path.open("xb").close()
-        except FileExistsError:
-            continue
-        return path
-    raise OSError(f"{name} and 99999 more exist already")
 
 
 def read(path: Path) -> Snapshot:

@@ -21,18 +21,30 @@ from pathlib import Path
 from typing import NoReturn
 
 from viewer import examples, resources
-from viewer.argument_types import count, factors, pixel, size, view
+from viewer.argument_types import count, factors, number, pixel, size, view
+from viewer.lines import say
 from viewer.screen import has_display, no_display_reason
+from viewer.version import program_version
 
 FAILED, MISUSED, INTERRUPTED = 1, 2, 130
+ERROR = "error: "
 PICTURE = Path("out") / "first-light.png"
 
 
 class _Parser(argparse.ArgumentParser):
-    """Errors in one line, which names where help is."""
+    """Options by their whole names; errors in one line, which names where help is."""
+
+    def __init__(self, prog: str, description: str, epilog: str) -> None:
+        super().__init__(
+            prog=prog,
+            description=description,
+            epilog=epilog,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+            allow_abbrev=False,
+        )
 
     def error(self, message: str) -> NoReturn:
-        complain(f"{message} (see '{self.prog} --help')")
+        say(f"{message} (see '{self.prog} --help')", ERROR)
         sys.exit(MISUSED)
 
 
@@ -50,7 +62,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return commands[arguments[0]](arguments[1:])
         return _view(arguments, list(commands))
     except KeyboardInterrupt:
-        complain("cancelled", kind="")
+        say("cancelled")
         return INTERRUPTED
     except BrokenPipeError:
         # Whoever read our output has gone (`| head`): no error, but nothing may be flushed to it at exit.
@@ -60,24 +72,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _failed(error)
 
 
-def complain(message: object, kind: str = "error: ") -> None:
-    """One line on standard error."""
-    print(f"shadowcull: {kind}{' '.join(str(message).split())}", file=sys.stderr, flush=True)
-
-
 def _failed(error: Exception) -> int:
     """Say what went wrong; a mistake of the program's own can be asked for its traceback."""
     from tracer.scene.model import Cancelled, SceneError
 
     if isinstance(error, Cancelled):
-        complain("cancelled", kind="")
+        say("cancelled")
         return INTERRUPTED
     if isinstance(error, MemoryError):
-        complain("out of memory; a smaller --size needs less")
+        say("out of memory; a smaller --size needs less", ERROR)
     elif isinstance(error, SceneError | ValueError | OSError) and str(error):
-        complain(error)
+        say(error, ERROR)
     else:
-        complain(f"{type(error).__name__}: {error} (a fault of the program; SHADOWCULL_DEBUG=1 shows where)")
+        say(f"{type(error).__name__}: {error} (a fault of the program; SHADOWCULL_DEBUG=1 shows where)", ERROR)
     if os.environ.get("SHADOWCULL_DEBUG"):
         raise error
     return FAILED
@@ -97,10 +104,9 @@ def _view(arguments: list[str], commands: list[str]) -> int:
         prog="shadowcull",
         description="An interactive ray tracer that shows shadow culling at work.",
         epilog=examples.COMMANDS,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("scene", nargs="?", metavar="SCENE", help=_scene_help())
-    parser.add_argument("--version", action="version", version=f"shadowcull {_version()}")
+    parser.add_argument("--version", action="version", version=f"shadowcull {program_version()}")
     parser.add_argument("--or-picture", action="store_true", help=argparse.SUPPRESS)
     if arguments and not arguments[0].startswith("-"):
         _check_is_scene(parser, arguments[0], commands)
@@ -110,12 +116,12 @@ def _view(arguments: list[str], commands: list[str]) -> int:
         if options.or_picture:
             return _picture_instead(options.scene)
         named = options.scene or resources.DEFAULT_SCENE
-        complain(f"{no_display_reason()}; without one, use: shadowcull render {named} -o out.png", kind="")
+        say(f"{no_display_reason()}; without one, use: shadowcull render {named} -o out.png")
         return MISUSED
     try:
         from viewer import app
     except ImportError as error:
-        complain(f"no window can be opened, as a library is missing ({error}); 'shadowcull render' needs none")
+        say(f"no window can be opened, as a library is missing ({error}); 'shadowcull render' needs none", ERROR)
         return FAILED
     return app.run(path)
 
@@ -131,7 +137,7 @@ def _check_is_scene(parser: _Parser, name: str, commands: list[str]) -> None:
 
 def _picture_instead(scene: str | None) -> int:
     """Without a display, `make run` still does the main job: a frame after enough others for culling to act."""
-    print(f"shadowcull: {no_display_reason()}; rendering to a file instead", file=sys.stderr, flush=True)
+    say(f"{no_display_reason()}; rendering to a file instead")
     PICTURE.parent.mkdir(exist_ok=True)
     where = ["--frame", "12", "--warmup", "12"] if scene is None else ["--warmup", "8"]
     return _render([scene or resources.DEFAULT_SCENE, "-o", str(PICTURE.absolute()), "--size", "640x480", *where])
@@ -142,7 +148,6 @@ def _render(arguments: list[str]) -> int:
         prog="shadowcull render",
         description="Trace one frame of a scene, print its statistics, and write a picture, its buffers, or both.",
         epilog=examples.RENDER,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = parser.add_argument
     add("scene", nargs="?", metavar="SCENE", help=_scene_help())
@@ -159,6 +164,7 @@ def _render(arguments: list[str]) -> int:
         help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference or "
         "wipe:PART (default: color)",
     )
+    add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
     add("--camera", metavar="JSON", help="another camera: position, direction, up, angle; or a file with that")
     add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="trace the N frames before it first")
     add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
@@ -179,7 +185,6 @@ def _bench(arguments: list[str]) -> int:
         prog="shadowcull bench",
         description="Render a path of frames by several methods and print what each saves, as the paper's Table 1.",
         epilog=examples.BENCH,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = parser.add_argument
     add("scene", nargs="?", metavar="SCENE", help=_scene_help())
@@ -211,7 +216,6 @@ def _zoom(arguments: list[str]) -> int:
         prog="shadowcull zoom",
         description="Go towards a primitive in steps, and tell whether its shadows keep up, for several zoom factors.",
         epilog=examples.ZOOM,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = parser.add_argument
     add("scene", nargs="?", metavar="SCENE", help=_scene_help())
@@ -221,7 +225,13 @@ def _zoom(arguments: list[str]) -> int:
     _add_moment(parser)
     add("--camera", metavar="JSON", help="where to start from: position, direction, up, angle; or a file with that")
     add("--steps", type=count(1, 10_000), default=30, metavar="N", help="how many (default: 30)")
-    add("--ratio", type=float, default=0.94, metavar="R", help="part of its distance that a step leaves (0.94)")
+    add(
+        "--ratio",
+        type=number(0.001, 0.9999),
+        default=0.94,
+        metavar="R",
+        help="part of its distance that a step leaves (0.94)",
+    )
     add("--factors", type=factors, default=(4.0, 16.0), metavar="F,...", help="zoom factors (default: 4,16)")
     add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
     add("--json", type=Path, metavar="FILE", help="every figure of every step")
@@ -255,7 +265,7 @@ def _add_tracing_options(parser: _Parser) -> None:
 
 def _add_zoom_factor(parser: _Parser) -> None:
     told = "growth after which modes are learnt anew (4)"
-    parser.add_argument("--zoom-factor", type=float, default=4.0, metavar="F", help=told)
+    parser.add_argument("--zoom-factor", type=number(1.0, 1e9), default=4.0, metavar="F", help=told)
 
 
 def _info(arguments: list[str]) -> int:
@@ -263,7 +273,6 @@ def _info(arguments: list[str]) -> int:
         prog="shadowcull info",
         description="Say what a scene holds: primitives, lights, materials, frames, bounds, and warnings.",
         epilog=examples.INFO,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("scene", nargs="?", metavar="SCENE", help=_scene_help())
     parser.add_argument("--json", action="store_true", help="as JSON on standard output")
@@ -278,12 +287,3 @@ def _info(arguments: list[str]) -> int:
 def _scene_help() -> str:
     names = ", ".join(resources.embedded_scenes())
     return f"a file (.aff .nff .obj .ply .stl .gltf .glb) or a scene that comes with the program ({names})"
-
-
-def _version() -> str:
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return version("shadowcull")
-    except PackageNotFoundError:
-        return "(not installed)"

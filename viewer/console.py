@@ -8,7 +8,6 @@ work ends by `Cancelled` at the next report of progress; a second one ends it at
 from __future__ import annotations
 
 import signal
-import sys
 import time
 from bisect import bisect_left
 from collections.abc import Callable, Iterator
@@ -23,15 +22,7 @@ from rich.text import Text
 
 from tracer.scene.model import Cancelled
 from tracer.statistics import FrameStatistics
-
-
-def one_line(text: object) -> str:
-    return " ".join(str(text).split())
-
-
-def say(line: str) -> None:
-    """One line on standard error."""
-    print(f"shadowcull: {one_line(line)}", file=sys.stderr, flush=True)
+from viewer.lines import in_one_line, say
 
 
 class TimeLeft:
@@ -96,7 +87,7 @@ class Work:
             if self._task is None:
                 self._task = self._bar.add_task(label, total=1.0)
             completed = min(max(fraction, 0.0), 1.0 - 1e-9)  # a task that was once finished keeps the time of it
-            self._bar.update(self._task, description=one_line(label), completed=completed, left=self._left)
+            self._bar.update(self._task, description=in_one_line(label), completed=completed, left=self._left)
 
     def cancelled(self) -> bool:
         return self.stopped
@@ -106,7 +97,7 @@ class Work:
         if self._bar is None:
             say(line)
         else:
-            self._bar.console.print(f"shadowcull: {one_line(line)}", markup=False, highlight=False)
+            self._bar.console.print(f"shadowcull: {in_one_line(line)}", markup=False, highlight=False)
 
     def _interrupt(self, number: int, frame: FrameType | None) -> None:
         if self.stopped:

@@ -22,6 +22,7 @@ from tracer.scene.model import Camera, Scene
 from viewer import navigation
 from viewer.history import History
 from viewer.keeper import Keeper
+from viewer.motion import Motion
 from viewer.opener import Opener
 from viewer.picking import Pick, pick, refreshed, typical_depth
 from viewer.preferences import Preferences, save_preferences
@@ -31,9 +32,6 @@ from viewer.session import Session, Snapshot
 from viewer.tracing import Tracing
 from viewer.views import View
 
-AT_REST_AFTER = 0.25
-GLIDE_SECONDS = 0.35
-LONGEST_STEP = 0.25
 INFO_SECONDS = 6.0
 
 
@@ -44,15 +42,6 @@ class Message:
     text: str
     error: bool
     at: float
-
-
-@dataclass(frozen=True)
-class Glide:
-    """A camera on its way to another place."""
-
-    start: Camera
-    end: Camera
-    began: float
 
 
 class Controller:
@@ -72,11 +61,9 @@ class Controller:
         self.keeper = Keeper(self)
         self.runner = Runner(self)
         self.tracing = Tracing(self)
+        self.motion = Motion(self)
         self.drawn_seconds = 0.0
         self.size = (0, 0)
-        self._glide: Glide | None = None
-        self._moving_until = 0.0
-        self._last_tick = time.monotonic()
         self._seen = math.inf
 
     # --- the frame -------------------------------------------------------------------------------
@@ -85,16 +72,13 @@ class Controller:
         """One step of everything: `size` is what the picture's window has room for, in pixels (0 if hidden).
 
         Returns the frame that has just come, if one has."""
-        now = time.monotonic()
-        step, self._last_tick = min(now - self._last_tick, LONGEST_STEP), now
         if size != self.size:
             self.size = size
             self.moved()
         self.opener.follow()
         self.keeper.follow()
         frame = self._take_frame()
-        self._pass_time(step)
-        self._follow_glide(now)
+        self.motion.follow()
         self.tracing.ask()
         return frame
 
@@ -111,8 +95,7 @@ class Controller:
     @property
     def moving(self) -> bool:
         """Whether frames should come fast rather than fine."""
-        real_time = self.session.playing and not self.preferences.every_frame
-        return real_time or self._glide is not None or time.monotonic() < self._moving_until
+        return self.motion.under_way
 
     @property
     def active(self) -> bool:
@@ -138,22 +121,6 @@ class Controller:
         if self.selected is not None:
             self.selected = refreshed(self.selected, frame)
         return frame
-
-    def _pass_time(self, step: float) -> None:
-        """Play: in real time, or on to the next frame once this one has been traced."""
-        if not self.session.playing:
-            return
-        if not self.preferences.every_frame:
-            self.session.advance(step * self.preferences.playback_rate, self.preferences.loop)
-        elif self.traced is not None and self.traced.request.time == self.session.time:
-            self.session.advance_frame(self.preferences.loop)
-
-    def _follow_glide(self, now: float) -> None:
-        if self._glide is not None:
-            t = (now - self._glide.began) / GLIDE_SECONDS
-            self.session.move(navigation.blend(self._glide.start, self._glide.end, t))
-            if t >= 1.0:
-                self._glide = None
 
     # --- messages and selection ------------------------------------------------------------------
 
@@ -188,14 +155,15 @@ class Controller:
         self.history.clear()
         self.tracing.forget()
         self._seen = math.inf
-        self.selected = self._glide = None
+        self.selected = None
+        self.motion.halt()
         self.preferences.remember_scene(Path(scene.path).absolute())
         self.save_preferences()
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot of the open scene."""
         self.runner.stop()
-        self._glide = None
+        self.motion.halt()
         self.session.restore(snapshot)
         self.preferences.keep(self.session.settings)
         self.preferences.view = self.session.view.value
@@ -253,13 +221,13 @@ class Controller:
 
     def moved(self) -> None:
         """Note that the picture is changing under the user's hand: coarse frames for a moment."""
-        self._moving_until = time.monotonic() + AT_REST_AFTER
+        self.motion.by_hand()
 
     def move(self, camera: Camera) -> None:
         """Take the camera in hand and put it there."""
         if self.runner.refuses():
             return
-        self._glide = None
+        self.motion.halt()
         self.session.move(camera)
         self.moved()
 
@@ -267,13 +235,13 @@ class Controller:
         """Move the camera there in a moment's time."""
         if self.runner.refuses():
             return
-        self._glide = Glide(start or self.session.camera, camera, time.monotonic())
+        self.motion.glide(start or self.session.camera, camera)
 
     def follow_path(self, follow: bool) -> None:
         """Put the camera on the scene's own path, or take it off where it is."""
         if self.runner.refuses():
             return
-        self._glide = None
+        self.motion.halt()
         self.session.free_camera = None if follow else self.session.camera
 
     def reset_camera(self) -> None:

@@ -50,7 +50,8 @@ _UNITS = (
 class Look:
     """How to draw a frame: everything that changes the picture without tracing.
 
-    `marked` draws rings around wrong pixels, `wipe` is the place of the line, 0 to 1 from the left,
+    `marked` draws rings around wrong pixels, sized for pixels that are shown `magnified` times,
+    `wipe` is the place of the line, 0 to 1 from the left,
     and `line` whether it is drawn."""
 
     view: View = View.COLOR
@@ -60,6 +61,7 @@ class Look:
     selected: int = -1
     smooth: bool = True
     marked: bool = True
+    magnified: int = 1
     wipe: float = 0.5
     line: bool = True
 
@@ -73,7 +75,7 @@ class Display:
         self._frame: Frame | None = None
         self._drawn: tuple[int, Look] | None = None
         self._serial = 0
-        self._verified_serial = 0
+        self._verified = (0, 1)
         self._textures: dict[str, Any] = {}
         self._passes: dict[View, tuple[Any, Any]] = {}
         self._target: Any = None
@@ -113,7 +115,7 @@ class Display:
         window = self.context.detect_framebuffer()
         self._ensure_target()
         if look.view.needs_verify:
-            self._upload_verified()
+            self._upload_verified(look.magnified)
         program, triangle = self._pass(look.view)
         self._set_uniforms(program, look)
         for unit, name in enumerate(_UNITS):
@@ -150,15 +152,15 @@ class Display:
         self._textures.clear()
         self._frame = None
 
-    def _upload_verified(self) -> None:
-        """Bring to the GPU what only the views of verified frames need, once for each frame."""
+    def _upload_verified(self, magnified: int) -> None:
+        """Bring to the GPU what only the views of verified frames need, once for each frame and size on screen."""
         assert self._frame is not None
-        if self._verified_serial != self._serial:
-            marks = wrong_marks(self._frame)
+        if self._verified != (self._serial, magnified):
+            marks = wrong_marks(self._frame, magnified)
             assert self._frame.reference is not None
             self._write("reference_buffer", self.size, 3, "f4", self._frame.reference)
             self._write("mark_buffer", self.size, 1, "u1", marks)
-            self._verified_serial = self._serial
+            self._verified = self._serial, magnified
 
     def _write(self, name: str, size: tuple[int, int], components: int, dtype: str, data: NDArray) -> None:
         texture = self._textures.get(name)

@@ -37,7 +37,7 @@ wrong shadow answers of each pixel.
 
 --view difference and --view wipe verify by themselves: the first shows the pixels with wrong shadow answers,
 the second the picture left of a line and what it should be right of it; wipe:0.3 puts the line at 30 % of
-the width.
+the width. Rings show where wrong pixels are; --no-marks leaves them out.
 """
 
 BENCH = """\
@@ -59,8 +59,8 @@ with --verify the wrong answers.
 ZOOM = """\
 examples:
   shadowcull zoom figure4 --primitive 0 --size 128x128 --factors 4,64 --plot figure4.png
-  shadowcull zoom kitchen.aff --frame 100 --pixel 253,198 --size 256x256
-  shadowcull zoom kitchen.aff --frame 100 --primitive 1229 --factors 4,1000 --json zoom.json --csv zoom.csv
+  shadowcull zoom kitchen.aff --frame 100 --primitive 15548 --size 256x256 --ratio 0.9 --factors 4,64
+  shadowcull zoom figure4 --pixel 64,64 --size 128x128 --json zoom.json --csv zoom.csv
 
 A primitive that was seen whole from afar is culled by what its few pixels met then, until it covers more
 than the zoom factor times its highest pixel count; then it is examined anew. The camera goes straight
@@ -70,7 +70,8 @@ Every culled shadow ray is verified, and a pixel with a wrong answer is a wrong 
 and keeps the frames that are done; the exit code is 130 then.
 
 The tables show the steps where something happens, and what comes of each factor; the JSON and the CSV hold
-every step, the plot draws them.
+every step, the plot draws them. There, wrong_of_primitive are the wrong pixels of this primitive, wrong those
+of the whole picture. A primitive that is never seen whole is never culled: nothing is tested then.
 """
 
 INFO = """\

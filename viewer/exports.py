@@ -1,72 +1,117 @@
 """Results of runs as files: every figure as JSON, the table as CSV, the plot as a picture.
 
-They are what the commands `bench` and `zoom` write, under a name that tells what and when, and never
-over a file that is there.
+The commands `bench` and `zoom` write them where they are told to; the window under a name that tells
+what and when, and never over a file that is there.
 """
 
 from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Callable
+from argparse import Namespace
+from collections.abc import Callable, Mapping
 from datetime import datetime
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
 
 from tracer import experiment, zoom
-from viewer.bench import csv_text as experiment_csv
-from viewer.outputs import write_text
-from viewer.zoom import csv_text as zoom_csv
+from viewer import reports
+from viewer.outputs import check_outputs, reserve, write_each, write_text
+from viewer.version import program_version
 
-ENDINGS = (".json", ".csv", ".png")
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Results = TypeVar("Results", experiment.Results, zoom.Results)
+Writers = Mapping[str, Callable[[Results, Path], None]]
+"""What writes each kind of file; raises OSError in one line, and ValueError where there is nothing to plot."""
+
+ENDINGS = {".json": "json", ".csv": "csv", ".png": "plot"}
+"""The window's files, by their endings; the commands have an option of each kind's name."""
 
 _drawing = threading.Lock()  # matplotlib's settings are global while a figure is drawn
 
 
-def write_experiment(results: experiment.Results, verified: bool, path: Path) -> None:
-    """Into a file of one of ENDINGS; raises OSError, and ValueError where there is nothing to plot."""
-    if path.suffix == ".json":
-        write_text(path, json.dumps(results.to_dict()))
-    elif path.suffix == ".csv":
-        write_text(path, experiment_csv(results))
-    else:
+def _writers(csv_text: Callable[[Results], str], figure: Callable[[Results], Figure]) -> Writers[Results]:
+    return {
+        "json": lambda results, path: write_text(path, json_text(results)),
+        "csv": lambda results, path: write_text(path, csv_text(results)),
+        "plot": lambda results, path: _plot(partial(figure, results), path),
+    }
+
+
+def json_text(results: experiment.Results | zoom.Results) -> str:
+    """Every figure, and which version of the program found them."""
+    return json.dumps(results.to_dict() | {"version": program_version()})
+
+
+def _plot(draw: Callable[[], Figure], path: Path) -> None:
+    from viewer import figures  # loads matplotlib
+
+    with _drawing:
+        figures.save(draw(), path)
+
+
+def _savings_figure(verified: bool, results: experiment.Results) -> Figure:
+    from viewer import figures
+
+    return figures.savings_figure(results, verified)
+
+
+def _zoom_figure(results: zoom.Results) -> Figure:
+    from viewer.zoom_figure import zoom_figure
+
+    return zoom_figure(results)
+
+
+def experiment_writers(verified: bool) -> Writers[experiment.Results]:
+    return _writers(reports.experiment_csv, partial(_savings_figure, verified))
+
+
+ZOOM_WRITERS: Writers[zoom.Results] = _writers(reports.zoom_csv, _zoom_figure)
+
+
+def wanted_files(options: Namespace) -> dict[str, Path]:
+    """The files of a command's options, by kind; raises ValueError or OSError where they cannot all be written."""
+    wanted = {kind: getattr(options, kind) for kind in ENDINGS.values()}
+    if wanted["plot"] is not None:
         from viewer import figures  # loads matplotlib
 
-        with _drawing:
-            figures.save(figures.savings_figure(results, verified), path)
+        figures.check_ending(wanted["plot"])
+    check_outputs({f"--{kind}": path for kind, path in wanted.items()})
+    return {kind: path for kind, path in wanted.items() if path is not None}
+
+
+def write_files(writers: Writers[Results], results: Results, wanted: Mapping[str, Path]) -> list[str]:
+    """Write each kind of file that is wanted; returns why some could not be."""
+    return write_each(partial(writers[kind], results, path) for kind, path in wanted.items())
+
+
+def write_experiment(results: experiment.Results, verified: bool, path: Path) -> None:
+    """Into a file of one of ENDINGS; raises OSError, and ValueError where there is nothing to plot."""
+    experiment_writers(verified)[ENDINGS[path.suffix]](results, path)
 
 
 def write_zoom_test(results: zoom.Results, path: Path) -> None:
-    """Into a file of one of ENDINGS; raises OSError."""
-    if path.suffix == ".json":
-        write_text(path, json.dumps(results.to_dict()))
-    elif path.suffix == ".csv":
-        write_text(path, zoom_csv(results))
-    else:
-        from viewer import figures  # loads matplotlib
-
-        with _drawing:
-            figures.save(figures.zoom_figure(results), path)
+    """Into a file of one of ENDINGS; raises OSError, and ValueError where there is nothing to plot."""
+    ZOOM_WRITERS[ENDINGS[path.suffix]](results, path)
 
 
 def save(folder: Path, name: str, ending: str, write: Callable[[Path], None], now: datetime | None = None) -> Path:
     """Let `write` make a new file, `name` with date, time and ending, in a folder that is made if need be; its path.
 
-    A name that is taken gets a number.  Raises OSError in one line, and what `write` raises.
+    A name that is taken gets a number.  Raises OSError in one line, and what `write` raises; then no file is left.
     """
     stem = f"{name}-{now or datetime.now():%Y-%m-%d-%H-%M-%S}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        path = reserve(folder, stem, ending)
     except OSError as error:
         raise OSError(f"nothing saved: cannot write to {folder}: {error.strerror or error}") from None
-    names = (f"{stem}{f'-{number}' if number > 1 else ''}{ending}" for number in range(1, 1000))
-    path = next(folder / name for name in names if not (folder / name).exists())
-    write(path)
+    try:
+        write(path)
+    except BaseException:
+        path.unlink(missing_ok=True)
+        raise
     return path
-
-
-def duration(seconds: float) -> str:
-    """A time as people say it: 4 s, 2:05 min, 1:10 h."""
-    if seconds < 59.5:
-        return f"{seconds:.0f} s"
-    minutes, rest = divmod(round(seconds), 60)
-    return f"{minutes}:{rest:02d} min" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d} h"

@@ -6,7 +6,6 @@ of a user's own matplotlib settings shows, and the same data give the same file.
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -15,12 +14,12 @@ import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
-from tracer import zoom
 from tracer.experiment import REFERENCE, Results, Row, table
 from viewer.outputs import write_whole
-from viewer.zoom import modes_in_words, title
+from viewer.reports import frames_in_words
 
 ENDINGS = (".png", ".svg", ".pdf")
 # Okabe and Ito's colours, those that read well as letters first; in greys, dashes and marks tell methods apart.
@@ -28,7 +27,7 @@ COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 DASHES: tuple[Any, ...] = ("-", (0, (4, 1.5)), (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5)), (0, (8, 2)), (0, (2, 2)))
 MARKS = ("o", "s", "^", "D", "v", "P")
 
-_SIZE = (12.8, 7.2)  # inches: a slide of 16:9, 1920 x 1080 pixels
+SIZE = (12.8, 7.2)  # inches: a slide of 16:9, 1920 x 1080 pixels
 _DPI = 150
 _STYLE: dict[str, Any] = {
     "font.size": 15.0,
@@ -44,8 +43,7 @@ _STYLE: dict[str, Any] = {
     "svg.hashsalt": "shadowcull",
 }
 _PANELS = (("steps", "Traversal steps saved"), ("tests", "Intersection tests saved"))
-_NAMED = 7  # mode changes that are told under a panel
-_INCHES_OF_LINE = 0.21
+_MARGIN = 0.12  # inches that keep the labels beside panels off the edge
 _FEW = 40  # frames up to which each has a dot
 
 styled = style.context(["default", _STYLE])
@@ -82,7 +80,7 @@ def savings_figure(results: Results, verified: bool) -> Figure:
     if not rows:
         raise ValueError("there is nothing to plot: no frame, or no method to compare with the reference")
     wrong = verified and any(row.wrong for row in rows)
-    figure = Figure(figsize=_SIZE, layout="constrained")
+    figure = Figure(figsize=SIZE, layout=ConstrainedLayoutEngine(w_pad=_MARGIN))
     heights = [3, 3, 1.6] if wrong else [1, 1]
     panels: Sequence[Axes] = figure.subplots(len(heights), sharex=True, gridspec_kw={"height_ratios": heights})
     for panel, (work, label) in zip(panels, _PANELS):
@@ -101,9 +99,8 @@ def savings_figure(results: Results, verified: bool) -> Figure:
 
 
 def _title(results: Results, rows: list[Row], verified: bool) -> str:
-    count, (width, height) = len(results.frames), results.size
-    frames = f"frames {results.frames[0]} to {results.frames[-1]}" if count > 1 else f"frame {results.frames[0]}"
-    told = f"{Path(results.scene).name}, {width} × {height} pixels, {frames}"
+    width, height = results.size
+    told = f"{Path(results.scene).name}, {width} × {height} pixels, {frames_in_words(results)}"
     if not verified:
         told += ", answers not verified"
     elif not any(row.wrong for row in rows):
@@ -201,77 +198,3 @@ def _draw_wrong(panel: Axes, results: Results, rows: list[Row]) -> None:
     panel.yaxis.set_major_locator(MaxNLocator(3, integer=True))
     panel.yaxis.set_major_formatter("{x:,.0f}")
     _label_right(panel, labels, 0.25)
-
-
-@styled
-def zoom_figure(results: zoom.Results) -> Figure:
-    """A column for each factor of a zoom test, over its steps.
-
-    The primitive's pixels on a logarithmic scale, the count past which it is examined anew, and marks
-    where its modes change; below, its pixels with wrong shadows, and what the modes are from each mark
-    on.  Raises ValueError where there is no step.
-    """
-    approaches = [approach for approach in results.approaches if approach.steps]
-    if not approaches:
-        raise ValueError("there is nothing to plot: no step")
-    names = [_names_of_changes(approach, 138 // len(approaches)) for approach in approaches]
-    told = _INCHES_OF_LINE * max(1, *(len(lines) for lines in names))
-    figure = Figure(figsize=_SIZE, layout="constrained")
-    heights = [0.72 * (5.2 - told), 0.28 * (5.2 - told), told]
-    panels: np.ndarray = figure.subplots(
-        3, len(approaches), sharex="row", sharey="row", squeeze=False, gridspec_kw={"height_ratios": heights}
-    )
-    most = max(approach.most_wrong for approach in approaches)
-    last = max(approach.steps[-1].number for approach in approaches)
-    for panel in panels[:2].flat:
-        panel.set_xlim(-0.04 * last - 0.5, 1.04 * last + 0.5)
-        panel.xaxis.set_major_locator(MaxNLocator(integer=True))
-    for (counts, wrong, told_below), approach, lines in zip(panels.T, approaches, names):
-        _draw_counts(counts, approach)
-        _draw_wrong_pixels(wrong, approach, most)
-        told_below.axis("off")
-        told_below.text(0.0, 1.0, "\n".join(lines), transform=told_below.transAxes, va="top", fontsize=12.0)
-    panels[0, 0].set_ylabel("Pixels")
-    panels[1, 0].set_ylabel("Wrong\npixels")
-    figure.align_ylabels(panels[:2, 0])
-    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
-    told_above = f"A primitive seen from nearer and nearer, and its shadows\n{title(results)}"
-    figure.suptitle(told_above, x=0.01, ha="left", fontsize=18.0)
-    return figure
-
-
-def _names_of_changes(approach: zoom.Approach, width: int) -> list[str]:
-    """Lines of so many letters at most that tell which modes change, and when."""
-    changed = [step for step in approach.steps if step.changes]
-    # Where they are too many, those of the occlusion mode tell more.
-    by_weight = sorted(changed, key=lambda step: all(change.light is not None for change in step.changes))
-    named = {step.number for step in by_weight[:_NAMED]}
-    lines = []
-    for step in changed:
-        if step.number in named:
-            text = f"step {step.number}: {modes_in_words(step.changes)}"
-            lines += textwrap.wrap(text, width, subsequent_indent="      ")
-    return lines if len(changed) <= _NAMED else [*lines, f"and {len(changed) - _NAMED} more"]
-
-
-def _draw_counts(panel: Axes, approach: zoom.Approach) -> None:
-    numbers = [step.number for step in approach.steps]
-    pixels = [max(step.pixels, 0.5) for step in approach.steps]  # none is a half: a logarithmic scale has no 0
-    limits = [approach.factor * step.highest or np.nan for step in approach.steps]
-    changed = [step.number for step in approach.steps if step.changes]
-    panel.set_yscale("log")
-    panel.step(numbers, limits, where="post", color=COLORS[2], linestyle=DASHES[1], label="zoom factor × highest count")
-    panel.plot(numbers, pixels, ".-", color=COLORS[0], markersize=9, label="the primitive's pixels")
-    marks = [pixels[number] for number in changed]
-    panel.plot(changed, marks, "D", color="black", markersize=9, mec="white", label="its modes change")
-    panel.set_title(f"Zoom factor {approach.factor:g}")
-    panel.tick_params(labelbottom=False)
-
-
-def _draw_wrong_pixels(panel: Axes, approach: zoom.Approach, most: int) -> None:
-    panel.bar([step.number for step in approach.steps], [s.wrong_of_primitive for s in approach.steps], color=COLORS[1])
-    panel.set_xlabel("Step")
-    panel.set_ylim(0.0, 1.08 * max(most, 1))
-    panel.yaxis.set_major_locator(MaxNLocator(3, integer=True))
-    if not approach.most_wrong:
-        panel.text(0.5, 0.5, "none", transform=panel.transAxes, ha="center", va="center")

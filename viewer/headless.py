@@ -24,7 +24,8 @@ from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, load_visible_scene, scene_info
 from tracer.scene.model import Camera, Scene
 from viewer import capture
-from viewer.console import Work, print_table, say, statistics_table, working
+from viewer.console import Work, print_table, statistics_table, working
+from viewer.lines import say
 from viewer.outputs import check_writable, write_whole
 from viewer.pictures import lights_in_words, picture
 from viewer.session import Session
@@ -39,7 +40,7 @@ PICTURES = {
     ".bmp": "BMP",
     ".ppm": "PPM",
 }
-MOST_PIXELS = 1 << 26  # 8192 x 8192; a frame's buffers then take some 4 GB
+MOST_PIXELS = 1 << 26  # 8192 × 8192; a frame's buffers then take some 4 GB
 
 
 def info(path: Path, as_json: bool) -> None:
@@ -65,7 +66,7 @@ def render(path: Path, options: Namespace) -> None:
         prepare_kernels(work, len(scene.lights))
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)
         before = _render_before(renderer, time, options, work)
-        work.count(f"tracing {settings.width} x {settings.height}", before, before + options.samples)
+        work.count(f"tracing {settings.width} × {settings.height}", before, before + options.samples)
         verify = settings.verify or view.needs_verify
         wanted = replace(settings, samples=options.samples, verify=verify, record_lights=options.buffers is not None)
         renderer.settings = wanted
@@ -76,7 +77,7 @@ def render(path: Path, options: Namespace) -> None:
         if options.buffers is not None:
             arrays: dict[str, Any] = buffers(frame)
             write_whole(options.buffers, lambda file: np.savez(file, **arrays))
-    title = f"{path.name}, {time:.3f} s, {frame.width} x {frame.height}, method {settings.method}"
+    title = f"{path.name}, {time:.3f} s, {frame.width} × {frame.height}, method {settings.method}"
     print_table(statistics_table(frame.statistics, title, verify))
     for written in (options.output, options.buffers):
         if written is not None:
@@ -185,7 +186,7 @@ def _render_before(renderer: Renderer, time: float, options: Namespace, work: Wo
 def _write_picture(path: Path, scene: Scene, frame: Frame, options: Namespace) -> None:
     """The frame in the view asked for; a PNG remembers, as the window's captures do, how it was made."""
     view, light, wipe = options.view
-    image = Image.fromarray(picture(frame, view, light, wipe=wipe))
+    image = Image.fromarray(picture(frame, view, light, marked=not options.no_marks, wipe=wipe))
     settings = replace(frame.settings, verify=options.verify)  # what was chosen; a view verifies by itself
     session = Session(scene, frame.time, options.camera, settings=settings, view=view, light=light, wipe=wipe)
     notes = PngImagePlugin.PngInfo()

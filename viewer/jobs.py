@@ -16,6 +16,7 @@ from contextlib import suppress
 from typing import Generic, TypeVar
 
 from tracer.scene.model import Cancelled, Progress, SceneError
+from viewer.lines import in_one_line
 
 Result = TypeVar("Result")
 
@@ -92,7 +93,7 @@ def step_back() -> None:
 
 def one_line(error: BaseException) -> str:
     """An exception as one line for the status bar; the kind is named unless the message speaks for itself."""
-    text = " ".join(str(error).split())
+    text = in_one_line(error)
     if isinstance(error, MemoryError):
         return "out of memory" + (f": {text}" if text else "")
     if isinstance(error, SceneError | ValueError | OSError) and text:

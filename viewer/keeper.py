@@ -74,22 +74,25 @@ class Keeper:
         if frame is None or pixels is None or session.scene is None:
             self._c.say("there is no picture to save yet", error=True)
             return
+        # What the picture shows: another moment than the session's where a run goes on, or a finer frame is to come.
+        number = session.frame_at(frame.time)
+        follow = session.follow and frame.camera == session.scene.camera_at(frame.time)
         height, width = pixels.shape[:2]
         values = {
             "scene": session.scene.path.stem,
             "view": session.view.value,
-            "frame": session.frame,
+            "frame": number,
             "seconds": frame.time,
             "method": frame.settings.method,
             "light": session.light,
             "width": width,
             "height": height,
         }
-        # What the picture shows, which may be a moment older than what the user asks for by now.
         settings = replace(frame.settings, verify=session.settings.verify)  # a view may have verified by itself
-        snapshot = replace(session.snapshot(), time=frame.time, camera=frame.camera, settings=asdict(settings))
+        now = session.snapshot()
+        snapshot = replace(now, time=frame.time, camera=frame.camera, follow=follow, settings=asdict(settings))
         size = (frame.width, frame.height)
-        text = capture.metadata(snapshot, session.frame, size, frame.statistics.to_dict())
+        text = capture.metadata(snapshot, number, size, frame.statistics.to_dict())
         folder = Path(preferences.screenshot_folder or default_screenshot_folder()).expanduser()
         try:
             name = capture.file_name(preferences.screenshot_template, values)

@@ -1,11 +1,15 @@
-"""Files that a command writes: known to be writable before the work, whole or absent after it."""
+"""Files that are whole or absent: known to be writable before the work, and written without a moment of being half."""
 
 from __future__ import annotations
 
 import os
+import secrets
+import stat
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import BinaryIO
+
+MOST_NUMBERS = 100_000
 
 
 def check_writable(path: Path) -> None:
@@ -13,46 +17,55 @@ def check_writable(path: Path) -> None:
 
     A file is created beside it and removed again: permissions alone say too little of read-only or full disks.
     """
-    if path.is_dir():
-        raise IsADirectoryError(f"{path}: a folder; give a file in it")
-    folder = path.parent
-    if not folder.is_dir():
-        raise FileNotFoundError(f"{path}: there is no folder {folder}")
-    probe = _temporary(path)
+    if str(path) == "-":
+        raise OSError("-: results are not written to standard output; give the name of a file")
+    target = _target(path)
+    if not target.parent.is_dir():
+        raise FileNotFoundError(f"{path}: there is no folder {path.parent if target == path else target.parent}")
+    probe = _temporary(target)
     try:
         probe.touch(exist_ok=False)
         probe.unlink()
+    except FileNotFoundError:  # of a folder that is there
+        raise OSError(f"{path}: no file can be made in the folder {target.parent}") from None
     except OSError as error:
-        raise OSError(f"{path}: the folder {folder} cannot be written to: {error.strerror or error}") from None
+        raise OSError(f"{path}: the folder {target.parent} cannot be written to: {error.strerror or error}") from None
 
 
 def check_outputs(outputs: dict[str, Path | None]) -> None:
     """Raise ValueError or OSError where the files of these options cannot all be written; None is not wanted."""
     wanted = {option: path for option, path in outputs.items() if path is not None}
-    if len({path.resolve() for path in wanted.values()}) < len(wanted):
-        raise ValueError(f"{', '.join(outputs)}: give each a file of its own")
     for path in wanted.values():
         check_writable(path)
+    if len({os.path.realpath(path) for path in wanted.values()}) < len(wanted):
+        raise ValueError(f"{', '.join(outputs)}: give each a file of its own")
 
 
 def write_each(writers: Iterable[Callable[[], None]]) -> list[str]:
-    """Write all files, and return why some could not be: no failure takes the other files along."""
+    """Write all files, and return why some could not be: no OSError or ValueError takes the other files along."""
     failures = []
     for write in writers:
         try:
             write()
-        except OSError as error:
+        except (OSError, ValueError) as error:
             failures.append(str(error))
     return failures
 
 
-def write_whole(path: Path, write: Callable[[BinaryIO], None]) -> None:
-    """Let `write` fill a file that takes its name once it is complete; raises OSError in one line, leaving nothing."""
-    temporary = _temporary(path)
+def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
+    """Let `write` fill a file that takes its name once it is complete and on the disk; several may at once.
+
+    Links are followed.  Raises OSError in one line, also for what is there and no regular file, and what
+    `write` raises, leaving what was there before.
+    """
+    target = _target(path)
+    temporary = _temporary(target)
     try:
         with temporary.open("xb") as file:
             write(file)
-        os.replace(temporary, path)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(temporary, target)
     except OSError as error:
         raise OSError(f"{path}: not written: {error.strerror or error}") from None
     finally:
@@ -61,12 +74,42 @@ def write_whole(path: Path, write: Callable[[BinaryIO], None]) -> None:
 
 def write_text(path: Path, text: str) -> None:
     """As `write_whole`, in UTF-8."""
+    write_whole(path, lambda file: file.write(text.encode()))
 
-    def write(file: BinaryIO) -> None:
-        file.write(text.encode())
 
-    write_whole(path, write)
+def reserve(folder: Path, stem: str, ending: str) -> Path:
+    """Create an empty file of a name that nobody has: stem and ending, or with -2, -3, ... between them.
+
+    Raises OSError where it cannot be.
+    """
+    for number in range(1, MOST_NUMBERS + 1):
+        path = folder / f"{stem}{f'-{number}' if number > 1 else ''}{ending}"
+        try:
+            path.open("xb").close()
+        except FileExistsError:
+            continue
+        return path
+    raise OSError(f"{stem}{ending} and {MOST_NUMBERS - 1} more exist already")
+
+
+def _target(path: Path) -> Path:
+    """The file that a path means, past all links; raises OSError, in one line, for what is there and no regular file.
+
+    Taking the name of a device or a pipe would destroy it.
+    """
+    try:
+        kind = path.stat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        kind = stat.S_IFREG
+    except OSError as error:
+        raise OSError(f"{path}: cannot be written: {error.strerror or error}") from None
+    if stat.S_ISDIR(kind):
+        raise IsADirectoryError(f"{path}: a folder; give a file in it")
+    if not stat.S_ISREG(kind):
+        raise OSError(f"{path}: a device, a pipe or a socket; give a regular file")
+    return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
 def _temporary(path: Path) -> Path:
-    return path.with_name(f".{path.name[:100]}.{os.getpid()}.part")
+    """A name beside it that nobody else has, of this process or another; tempfile's files would stay the user's own."""
+    return path.with_name(f".{path.name[:100]}.{secrets.token_hex(8)}.part")

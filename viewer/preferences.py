@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
@@ -19,10 +18,13 @@ from typing import Any
 import platformdirs
 
 from tracer.frame import Settings
+from viewer.outputs import write_text
 from viewer.views import View
 
 SETTINGS_FILE = "settings.json"
 RECENT_SCENES = 10
+LONGEST_SIDE = 8192
+"""Pixels of a picture of fixed size."""
 DEFAULT_TEMPLATE = "{scene}-{view}-{frame:04d}-{date}-{time}.png"
 
 # Limits of the numbers; whatever lies outside is not from this program.
@@ -30,8 +32,8 @@ _RANGES: dict[str, tuple[float, float]] = {
     "target_fps": (1.0, 240.0),
     "speed": (0.001, 1000.0),
     "playback_rate": (0.01, 100.0),
-    "fixed_width": (1, 8192),
-    "fixed_height": (1, 8192),
+    "fixed_width": (1, LONGEST_SIDE),
+    "fixed_height": (1, LONGEST_SIDE),
     "zoom_factor": (1.0, 1e6),
     "depth": (0, 100),
     "samples": (1, 64),
@@ -135,24 +137,10 @@ def save_preferences(preferences: Preferences, folder: Path | None = None) -> st
     folder = folder or config_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        write_atomically(folder / SETTINGS_FILE, json.dumps(asdict(preferences), indent=2).encode())
+        write_text(folder / SETTINGS_FILE, json.dumps(asdict(preferences), indent=2))
     except OSError as error:
         return f"settings not saved: {error}"
     return None
-
-
-def write_atomically(path: Path, data: bytes) -> None:
-    """Replace a file by `data` so that a reader sees the old one or the new one, whole; raises OSError."""
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
 
 
 def _from_json(data: Mapping[str, Any]) -> Preferences:

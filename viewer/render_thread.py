@@ -76,7 +76,7 @@ class RenderThread:
         self._renderer: Traces | None = None
         self._waiting: RenderRequest | None = None
         self._running: RenderRequest | None = None
-        self._task: Task | None = None
+        self._task: tuple[Traces, Task] | None = None
         self._performing = False
         self._cancel = False
         self._reset = False
@@ -87,7 +87,7 @@ class RenderThread:
         self._thread.start()
 
     def use(self, renderer: Traces | None) -> None:
-        """Trace this renderer's scene from now on; whatever was asked of the old one is dropped."""
+        """Trace this renderer's scene from now on; whatever was asked of the old one is dropped, and a task ended."""
         with self._changed:
             self._renderer = renderer
             self._waiting = self._finished = self._error = None
@@ -105,11 +105,15 @@ class RenderThread:
             self._changed.notify_all()
 
     def perform(self, task: Task) -> None:
-        """Do this instead of frames, from now on until it is done; what is under way is cut short, or dropped."""
+        """Do this instead of frames, from now on until it is done; what is under way is cut short, or dropped.
+
+        The task gets the renderer that is in use now.  Raises RuntimeError if none is."""
         with self._changed:
             if self._closing:
                 return
-            self._task, self._waiting = task, None
+            if self._renderer is None:
+                raise RuntimeError("there is no scene to work on")
+            self._task, self._waiting = (self._renderer, task), None
             self._cancel = True
             self._changed.notify_all()
 
@@ -136,7 +140,7 @@ class RenderThread:
         with self._changed:
             if self._running is not None or self._performing:
                 return True
-            return self._renderer is not None and (self._waiting is not None or self._task is not None)
+            return self._task is not None or (self._renderer is not None and self._waiting is not None)
 
     @property
     def running(self) -> RenderRequest | None:
@@ -166,19 +170,19 @@ class RenderThread:
 
     def _next(self) -> tuple[Traces, RenderRequest | Task, bool] | None:
         with self._changed:
-            while not self._closing and (self._renderer is None or (self._task is None and self._waiting is None)):
+            while not self._closing and self._task is None and (self._renderer is None or self._waiting is None):
                 self._changed.wait()
             if self._closing:
                 return None
-            renderer, task, request, reset = self._renderer, self._task, self._waiting, self._reset
-            assert renderer is not None
-            self._cancel = False
-            if task is not None:
-                self._performing, self._task = True, None
+            if self._task is not None:
+                (renderer, task), self._task = self._task, None
+                self._performing, self._cancel = True, renderer is not self._renderer
                 return renderer, task, False
-            assert request is not None
+            assert self._renderer is not None and self._waiting is not None
+            request, reset = self._waiting, self._reset
+            self._cancel = False
             self._running, self._waiting, self._reset = request, None, False
-            return renderer, request, reset
+            return self._renderer, request, reset
 
     def _trace(self, renderer: Traces, request: RenderRequest, reset: bool) -> None:
         frame, error = None, None

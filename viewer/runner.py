@@ -16,7 +16,7 @@ from viewer import exports
 from viewer.jobs import Job
 from viewer.preferences import default_screenshot_folder
 from viewer.render_thread import RenderRequest, Traced
-from viewer.runs import Experiment, ExperimentPlan, Run, ZoomPlan, ZoomTest
+from viewer.runs import Experiment, ExperimentPlan, Run, ZoomPlan, ZoomTest, duration
 
 if TYPE_CHECKING:
     from viewer.controller import Controller
@@ -55,18 +55,21 @@ class Runner:
         self._start(run)
 
     def start_zoom_test(self) -> None:
-        """Go towards the selected primitive, from where the picture shows it."""
+        """Go towards the selected primitive, from where the picture shows it or, so planned, from the last start."""
         scene, frame, selected = self._c.session.scene, self._c.frame, self._c.selected
         if scene is None or frame is None or self.current is not None:
             self._refuse_start()
             return
-        if selected is None:
+        start = self.last_start if self.zoom_plan.same_start else None
+        if start is None and selected is None:
             self._c.say("click a primitive in the picture first: the zoom test goes towards it", error=True)
             return
         try:
-            if selected.dynamic:
-                raise ValueError(f"primitive {selected.primitive} moves, and what moves is never culled")
-            start = zoom.aim(frame, selected.primitive)
+            if start is None and selected is not None:
+                if selected.dynamic:
+                    raise ValueError(f"primitive {selected.primitive} moves, and what moves is never culled")
+                start = zoom.aim(frame, selected.primitive)
+            assert start is not None
             run = ZoomTest(scene, self._c.session.settings, start, self.zoom_plan, lambda: self._c.wake())
         except ValueError as error:
             self._c.say(str(error), error=True)
@@ -74,12 +77,21 @@ class Runner:
         self.zoom_test = run
         self._start(run)
 
+    @property
+    def last_start(self) -> zoom.Aim | None:
+        """Where the last zoom test began; None where that was in another scene, or another primitive is selected."""
+        test, selected = self.zoom_test, self._c.selected
+        if test is None or not test.is_of(self._c.session.scene):
+            return None
+        return test.start if selected is None or selected.primitive == test.start.primitive else None
+
     def _refuse_start(self) -> None:
         self._c.say(f"the {self.current.name} is still under way" if self.current is not None else "open a scene first")
 
     def _start(self, run: Run) -> None:
         self.current = run
         self._c.session.playing = False
+        self._c.tracing.interrupted()
         self._c.render.perform(run)
 
     def stop(self) -> None:
@@ -92,12 +104,12 @@ class Runner:
         run = self.current
         if run is None:
             return None
+        done = run.done  # before its last frame is taken: none comes after
         frame = run.take()
-        if run.done:
+        if done:
             self.current = None
             self._tell(run)
-            return None
-        if frame is None or run.stopping or run.scene is not self._c.session.scene:
+        if frame is None or run.stopping or not run.is_of(self._c.session.scene):
             return None
         return Traced(RenderRequest(frame.time, frame.camera, frame.settings), frame)
 
@@ -105,21 +117,24 @@ class Runner:
         if run.error is not None:
             self._c.say(f"the {run.name} failed: {run.error}", error=True)
         elif run.whole:
-            self._c.say(f"{run.name} done: {run.frames} frames in {exports.duration(run.seconds)}")
+            frames = run.done_of[1]
+            self._c.say(f"{run.name} done: {frames} frame{'s' * (frames != 1)} in {duration(run.seconds)}")
         else:
             kept = "" if run.results is None else "; what was done is kept"
-            self._c.say(f"{run.name} stopped after {run.traced} of {run.frames} frames{kept}")
+            done, frames = run.done_of
+            self._c.say(f"{run.name} stopped after {done} of {frames} frames{kept}")
 
     def go_to(self, step: Step) -> None:
-        """Put the camera where a step of the zoom test stood, at the test's time."""
+        """Put the camera where a step of the zoom test stood, at the test's time; the next test starts as that did."""
         test, session = self.zoom_test, self._c.session
         if test is None or test.results is None or self.refuses():
             return
-        if test.scene is not session.scene:
-            self._c.say(f"this test was made in {test.scene.path.name}; open that scene again to go there")
+        if not test.is_of(session.scene):
+            self._c.say(f"this test was made in {test.scene_path.name}; open that scene again to go there")
             return
         session.playing = False
         session.time = test.results.time
+        self.zoom_plan.same_start = True
         self._c.glide(step.camera)
 
     def export(self, run: Run, ending: str) -> None:
@@ -129,7 +144,7 @@ class Runner:
             return
         results = run.results
         folder = Path(self._c.preferences.screenshot_folder or default_screenshot_folder()).expanduser()
-        name = f"{run.scene.path.stem}-{run.name.replace(' ', '-')}"
+        name = f"{run.scene_path.stem}-{run.name.replace(' ', '-')}"
 
         def save(_: Progress) -> Path:
             return exports.save(folder, name, ending, lambda path: run.write(results, path))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import threading
 import time
+import weakref
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -25,6 +26,9 @@ from viewer.jobs import one_line
 from viewer.render_thread import Traces
 from viewer.zoom import parse_factors
 
+LONGEST_SIDE = 4096
+"""Pixels of a run's pictures: it traces many."""
+
 SEEN_WITHIN = 1.0
 """Seconds that a frame of a zoom test waits, at most, to be drawn before the next is traced."""
 
@@ -35,16 +39,19 @@ class Run(ABC, Generic[Results]):
     """Long tracing under way, or what is left of it.
 
     `results` is a copy that nothing changes any more, None before the first whole frame; `frames` is
-    how many there are to trace, `traced` how many have been; `error` is one line.
+    how many there are to trace, `traced` how many have been; `label` says which was the last of them,
+    `label_shown` which is shown; `error` is one line.  The scene is let go at the end; `scene_path` stays.
     """
 
     name = "run"
 
     def __init__(self, scene: Scene, frames: int, wake: Callable[[], None] = lambda: None) -> None:
-        self.scene = scene
+        self.scene_path = scene.path
+        self._scene: Scene | None = scene
+        self._identity = weakref.ref(scene)
         self.frames = frames
         self.traced = 0
-        self.label = "starting"
+        self.label = self.label_shown = "starting"
         self.results: Results | None = None
         self.error: str | None = None
         self.seconds = 0.0
@@ -52,7 +59,7 @@ class Run(ABC, Generic[Results]):
         self._left = TimeLeft()
         self._wake = wake
         self._lock = threading.Lock()
-        self._shown: Frame | None = None
+        self._shown: tuple[Frame, str] | None = None
         self._seen = threading.Event()
         self._done = threading.Event()
 
@@ -64,6 +71,20 @@ class Run(ABC, Generic[Results]):
     def whole(self) -> bool:
         """Whether it went on to its end."""
         return self.done and self.error is None and self.traced == self.frames
+
+    @property
+    def verifies(self) -> bool:
+        """Whether its frames tell right answers from wrong ones."""
+        return True
+
+    def is_of(self, scene: Scene | None) -> bool:
+        """Whether it is (or was) made in this very scene, as it was loaded then."""
+        return scene is not None and self._identity() is scene
+
+    @property
+    def done_of(self) -> tuple[int, int]:
+        """Frames that the results are of, and how many they are to be of."""
+        return self.traced, self.frames
 
     @property
     def fraction(self) -> float:
@@ -82,16 +103,20 @@ class Run(ABC, Generic[Results]):
     def take(self) -> Frame | None:
         """The newest frame to be shown, once."""
         with self._lock:
-            frame, self._shown = self._shown, None
+            shown, self._shown = self._shown, None
         self._seen.set()
+        if shown is None:
+            return None
+        frame, self.label_shown = shown
         return frame
 
     def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None:
         """Do it, on the render thread."""
+        assert self._scene is not None, "a run is done once"
         began = time.monotonic()
         self._left.mark(0, self.frames)
         try:
-            for results in self._steps(cast(Renderer, renderer), lambda: self.stopping or cancelled()):
+            for results in self._steps(self._scene, cast(Renderer, renderer), lambda: self.stopping or cancelled()):
                 self.results = self._copy(results)
                 self._wake()
         except Cancelled:
@@ -100,6 +125,7 @@ class Run(ABC, Generic[Results]):
             self.error = one_line(error)
         finally:
             self.seconds = time.monotonic() - began
+            self._scene = None
             self._done.set()
             self._wake()
 
@@ -112,13 +138,13 @@ class Run(ABC, Generic[Results]):
     def _show(self, frame: Frame, wait: bool) -> None:
         self._seen.clear()
         with self._lock:
-            self._shown = frame
+            self._shown = frame, self.label
         self._wake()
         if wait and not self.stopping:
             self._seen.wait(SEEN_WITHIN)
 
     @abstractmethod
-    def _steps(self, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[Results]: ...
+    def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[Results]: ...
 
     @abstractmethod
     def _copy(self, results: Results) -> Results: ...
@@ -150,6 +176,7 @@ class Experiment(Run[experiment.Results]):
     def __init__(
         self, scene: Scene, settings: Settings, plan: ExperimentPlan, wake: Callable[[], None] = lambda: None
     ) -> None:
+        _check_size(plan.size)
         self.methods = experiment.with_reference(sorted(plan.methods))
         self.times = experiment.path_times(scene, plan.frames)
         self.settings = replace(
@@ -158,14 +185,22 @@ class Experiment(Run[experiment.Results]):
         self.shown = self.methods[-1]
         super().__init__(scene, len(self.methods) * len(self.times), wake)
 
-    def _steps(self, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[experiment.Results]:
+    @property
+    def verifies(self) -> bool:
+        return self.settings.verify
+
+    @property
+    def done_of(self) -> tuple[int, int]:
+        return len(self.results.frames) if self.results is not None else 0, len(self.times)
+
+    def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[experiment.Results]:
         def on_frame(number: int, method: str, frame: Frame) -> None:
             self._count(f"frame {number + 1} of {len(self.times)}, {method}")
             if method == self.shown:
                 self._show(frame, wait=False)
 
         return experiment.run(
-            self.scene,
+            scene,
             self.settings,
             self.methods,
             self.times,
@@ -188,12 +223,13 @@ class Experiment(Run[experiment.Results]):
 @dataclass
 class ZoomPlan:
     """How to go towards a primitive: in `steps`, each to `ratio` of the distance, once with each of `factors`, which
-    are as they were typed."""
+    are as they were typed; with `same_start` from where the last test began, if that is known."""
 
     factors: str = "4, 16"
     steps: int = 30
     ratio: float = 0.94
     size: tuple[int, int] = (256, 256)
+    same_start: bool = False
 
 
 class ZoomTest(Run[zoom.Results]):
@@ -209,12 +245,13 @@ class ZoomTest(Run[zoom.Results]):
         plan: ZoomPlan,
         wake: Callable[[], None] = lambda: None,
     ) -> None:
+        _check_size(plan.size)
         self.start, self.plan = start, replace(plan)
         self.factors = parse_factors(plan.factors)
         self.settings = replace(settings, width=plan.size[0], height=plan.size[1]).validated()
         super().__init__(scene, len(self.factors) * (plan.steps + zoom.STILL_FRAMES), wake)
 
-    def _steps(self, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[zoom.Results]:
+    def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[zoom.Results]:
         last = self.plan.steps + zoom.STILL_FRAMES - 1
 
         def on_frame(factor: float, number: int, frame: Frame) -> None:
@@ -222,7 +259,7 @@ class ZoomTest(Run[zoom.Results]):
             self._show(frame, wait=True)
 
         return zoom.run(
-            self.scene,
+            scene,
             self.settings,
             self.start,
             self.factors,
@@ -238,3 +275,16 @@ class ZoomTest(Run[zoom.Results]):
 
     def write(self, results: zoom.Results, path: Path) -> None:
         exports.write_zoom_test(results, path)
+
+
+def _check_size(size: tuple[int, int]) -> None:
+    if max(size) > LONGEST_SIDE:
+        raise ValueError(f"{size[0]} x {size[1]} is too large for a run; {LONGEST_SIDE} pixels a side at most")
+
+
+def duration(seconds: float) -> str:
+    """A time as people say it: 4 s, 2:05 min, 1:10 h."""
+    if seconds < 59.5:
+        return f"{seconds:.0f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}:{rest:02d} min" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d} h"

@@ -123,10 +123,14 @@ class Session:
     @property
     def frame(self) -> int:
         """The number of the frame whose time is nearest."""
+        return self.frame_at(self.time)
+
+    def frame_at(self, time: float) -> int:
+        """The number of the frame whose time is nearest to some time in seconds."""
         if self.scene is None or not self.animated:
             return 0
         start, end = self.scene.time_range
-        return round((self.time - start) / (end - start) * (self.scene.frames - 1))
+        return round((time - start) / (end - start) * (self.scene.frames - 1))
 
     def go_to_frame(self, frame: int) -> None:
         if self.scene is not None:

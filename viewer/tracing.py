@@ -45,10 +45,14 @@ class Tracing:
         if modes_are_lost:
             self._settled = None
 
+    def interrupted(self) -> None:
+        """What was asked for may never come: it is asked for anew."""
+        self._asked = None
+
     def show(self, traced: Traced) -> None:
         """Take up a frame that was not asked for here; what should be seen is asked for anew after it."""
         self.traced = traced
-        self._asked = None
+        self.interrupted()
 
     def take(self) -> Frame | None:
         """The newest frame that the render thread has finished, once."""
@@ -148,6 +152,14 @@ class Tracing:
         return frame.width * divisor, frame.height * divisor
 
     @property
+    def magnified(self) -> int:
+        """How many of the screen's pixels show one of the newest frame's, from side to side; 1 at least."""
+        if self.frame is None:
+            return 1
+        width, height = self._c.size
+        return max(1, round(min(width / self.frame.width, height / self.frame.height)))
+
+    @property
     def drawn_view(self) -> View:
         """The view to draw the newest frame in: the picture while one that needs a verified frame waits for it."""
         view, unverified = self._c.session.view, self.frame is not None and self.frame.wrong is None
@@ -158,7 +170,8 @@ class Tracing:
         """The view, and the light where it shows one; before it what a run that is under way is at."""
         view, run = self.drawn_view, self._c.runner.current
         title = f"{view.label}, light {self._c.session.light}" if view is View.SHADOW else view.label
-        if run is not None:
-            return f"{run.label}   {title}"
         wanted = self._c.session.view
+        if run is not None:
+            lacks = wanted is not view and not run.verifies
+            return f"showing {run.label_shown}   {title}{' (this run does not verify)' if lacks else ''}"
         return title if wanted is view else f"{wanted.label}: verifying ..."

@@ -200,15 +200,18 @@ class Mark(IntEnum):
     WRONG = 2
 
 
-def wrong_marks(frame: Frame) -> NDArray[np.uint8]:
+def wrong_marks(frame: Frame, magnified: int = 1) -> NDArray[np.uint8]:
     """(h, w) Mark: the pixels with wrong answers of a verified frame, and a ring around each, or around each crowd.
 
-    The rings grow with the picture, so that a lone pixel is found in any."""
+    The rings grow with the picture, so that a lone pixel is found in any; they are so much smaller where each pixel
+    is shown as `magnified` of the screen's."""
     wrong = _verified(frame.wrong) > 0
     if not wrong.any():
         return np.zeros(wrong.shape, np.uint8)
     side = max(frame.width, frame.height)
-    radius, thickness = max(3, round(side / 200)), max(1, round(side / 1500))
+    radius, thickness = (
+        max(1, round(size / magnified)) for size in (max(3, round(side / 200)), max(1, round(side / 1500)))
+    )
     ring = _within(wrong, radius + thickness) & ~_within(wrong, radius)
     return np.where(wrong, np.uint8(Mark.WRONG), ring.astype(np.uint8))
 

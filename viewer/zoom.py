@@ -5,12 +5,8 @@ Ctrl-C ends it after the last whole frame: what is done is shown, and written wh
 
 from __future__ import annotations
 
-import csv
-import io
-import json
 from argparse import Namespace
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 
 from rich.table import Table
@@ -21,10 +17,22 @@ from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.load import load_visible_scene
 from tracer.scene.model import Cancelled, Scene
-from tracer.zoom import Aim, Approach, Change, Results, Step
+from tracer.zoom import Aim, Approach, Results
+from viewer import exports
+from viewer.argument_types import parse_factors as parse_factors  # for viewer.runs
 from viewer.console import Work, print_table, working
 from viewer.headless import moment, prepare_kernels, tracing_settings
-from viewer.outputs import check_outputs, write_each, write_text
+from viewer.lines import say
+from viewer.reports import (
+    NEVER_WHOLE,
+    SUMMARY,
+    WRONG_PIXELS,
+    happenings,
+    modes_in_words,
+    never_whole,
+    summary,
+    zoom_title,
+)
 
 WHICH = (
     "zoom: towards which primitive? give --pixel X,Y, for what a pixel of the picture shows, or --primitive N; the "
@@ -40,17 +48,18 @@ def run(path: Path, options: Namespace) -> bool:
     if options.primitive is None and options.pixel is None:
         raise ValueError(WHICH)
     settings = tracing_settings(options)
-    check_outputs({"--json": options.json, "--csv": options.csv, "--plot": options.plot})
-    if options.plot is not None:
-        from viewer import figures  # loads matplotlib
-
-        figures.check_ending(options.plot)
+    zoom.settings_of_tests(settings, options.factors, options.steps, options.ratio)
+    if options.pixel is not None:
+        zoom.check_pixel(options.pixel, options.size)
+    wanted = exports.wanted_files(options)
     results = None
     with working() as work:
         scene = load_visible_scene(path, work.progress)
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
         time = moment(scene, options.frame, options.time)
+        if options.primitive is not None:
+            zoom.check_primitive(scene, options.primitive)
         prepare_kernels(work, len(scene.lights))
         world = World(scene, time, settings.accelerator, work.progress)
         start = _aim(scene, settings, world, time, options, work)
@@ -69,10 +78,12 @@ def run(path: Path, options: Namespace) -> bool:
             raise Cancelled("cancelled")
         if done < frames:
             work.note(f"cancelled after {done} of {frames} frames; the tables are of these")
-        failures = write_each(_writers(results, options))
+        failures = exports.write_files(exports.ZOOM_WRITERS, results, wanted)
     for approach in results.approaches:
         print_table(_steps_table(approach))
     print_table(_summary_table(results))
+    if never_whole(results):
+        say(f"primitive {results.primitive}: {NEVER_WHOLE}")
     if failures:
         raise OSError("; ".join(failures))
     return done == frames
@@ -84,120 +95,27 @@ def _aim(scene: Scene, settings: Settings, world: World, time: float, options: N
     frame = Renderer(scene, look, world=world).render(time, options.camera, work.cancelled)
     if options.pixel is not None:
         return zoom.aim(frame, zoom.primitive_at(frame, *options.pixel))
-    if not 0 <= options.primitive < scene.primitive_count:
-        raise ValueError(f"--primitive {options.primitive}: the scene's are 0 to {scene.primitive_count - 1}")
     return zoom.aim(frame, options.primitive)
-
-
-def parse_factors(text: str) -> list[float]:
-    """Zoom factors, from words like "4, 16", each once; raises ValueError in one line."""
-    try:
-        factors = [float(word) for word in text.replace(",", " ").split()]
-    except ValueError:
-        factors = []
-    if not factors or not all(1.0 <= factor <= 1e6 for factor in factors):
-        raise ValueError(f"{text!r} are no zoom factors; give numbers from 1 up, like 4,16")
-    return list(dict.fromkeys(factors))
-
-
-def happenings(approach: Approach) -> list[Step]:
-    """The steps where something happens: a mode changes, or the primitive's wrong pixels become more or fewer."""
-    wrong_before = [0, *(step.wrong_of_primitive for step in approach.steps)]
-    return [s for s, wrong in zip(approach.steps, wrong_before) if s.changes or s.wrong_of_primitive != wrong]
-
-
-def changes_in_words(changes: Sequence[Change]) -> list[str]:
-    """What changes in a step, e.g. "lights 0, 2: init → non shadow"; lights that change alike are told together."""
-    return [f"{who}{_spoken(before)} → {_spoken(after)}" for who, before, after in _gathered(changes)]
-
-
-def modes_in_words(changes: Sequence[Change]) -> str:
-    """The modes that are new in a step, shorter: "fully rendered, lights 0, 2: non shadow"."""
-    return ", ".join(f"{who}{_spoken(after)}" for who, _, after in _gathered(changes))
-
-
-def _gathered(changes: Sequence[Change]) -> list[tuple[str, str, str]]:
-    """(whose mode, before, after), the occlusion mode first."""
-    lights: dict[tuple[str, str], list[str]] = {}
-    for change in changes:
-        if change.light is not None:
-            lights.setdefault((change.before, change.after), []).append(str(change.light))
-    own = [("", change.before, change.after) for change in changes if change.light is None]
-    return own + [(f"light{'s' * (len(n) > 1)} {', '.join(n)}: ", *modes) for modes, n in lights.items()]
-
-
-def _spoken(mode: str) -> str:
-    return mode.replace("_", " ").lower()
-
-
-def title(results: Results) -> str:
-    """Which test this is, in one line."""
-    name, (width, height) = Path(results.scene).name, results.size
-    return f"{name}, {results.time:.3f} s, towards primitive {results.primitive}, {width} x {height}"
 
 
 def _steps_table(approach: Approach) -> Table:
     table = Table(title=f"zoom factor {approach.factor:g}", title_justify="left", caption_justify="left")
-    for heading in ("step", "distance", "pixels", "highest", "wrong", "in all"):
+    for heading in ("step", "distance", "pixels", "highest", "wrong", "in picture"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("modes from there on")
     for step in happenings(approach):
         numbers = (step.pixels, step.highest, step.wrong_of_primitive, step.wrong)
         modes = modes_in_words(step.changes)
         table.add_row(str(step.number), f"{step.distance:.4g}", *(f"{number:,}" for number in numbers), modes)
-    table.caption = "wrong: pixels of the primitive with wrong shadows; in all: of the whole picture"
+    table.caption = f"wrong: {WRONG_PIXELS}; in picture: those of the whole picture"
     return table
-
-
-SUMMARY = ("factor", "examined anew", "wrong pixels", "most", "at the end", "culled", "dynamic only")
-
-
-def summary(approach: Approach) -> tuple[str, ...]:
-    """What came of one factor, a cell for each heading of SUMMARY."""
-    anew, wrong = approach.examined_anew, approach.wrong_steps
-    due = max(1, sum(step.due for step in approach.steps))
-    culled, alone = (sum(getattr(step, name) for step in approach.steps) / due for name in ("culled", "dynamic_only"))
-    return (
-        f"{approach.factor:g}",
-        f"step {', '.join(map(str, anew))}" if anew else "never",
-        f"step {wrong[0]} to {wrong[-1]}" if wrong else "none",
-        f"{approach.most_wrong:,}",
-        f"{approach.steps[-1].wrong_of_primitive:,}" if approach.steps else "",
-        f"{culled:.1%}",
-        f"{alone:.1%}",
-    )
 
 
 def _summary_table(results: Results) -> Table:
-    table = Table(*SUMMARY, title=title(results), title_justify="left", title_style="bold", caption_justify="left")
-    table.caption = "of the shadow rays due: culled, and those that asked moving objects alone"
+    table = Table(*SUMMARY, title=zoom_title(results), title_justify="left", title_style="bold", caption_justify="left")
+    table.caption = (
+        "wrong pixels: of this primitive\nof the shadow rays due: culled, and those that asked moving objects alone"
+    )
     for approach in results.approaches:
         table.add_row(*summary(approach))
     return table
-
-
-def _writers(results: Results, options: Namespace) -> Iterator[Callable[[], None]]:
-    """What writes each file that was asked for."""
-    if options.json is not None:
-        yield lambda: write_text(options.json, json.dumps(results.to_dict()))
-    if options.csv is not None:
-        yield lambda: write_text(options.csv, csv_text(results))
-    if options.plot is not None:
-        from viewer import figures
-
-        yield lambda: figures.save(figures.zoom_figure(results), options.plot)
-
-
-def csv_text(results: Results) -> str:
-    """A line for each step of each factor, as CSV."""
-    plain = [f.name for f in fields(Step) if f.name not in ("camera", "shadows", "changes")]
-    lights = max((len(step.shadows) for approach in results.approaches for step in approach.steps), default=0)
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["factor", *plain, *(f"shadow_{light}" for light in range(lights)), "changes"])
-    for approach in results.approaches:
-        for step in approach.steps:
-            values = [getattr(step, name) for name in plain]
-            changes = "; ".join(changes_in_words(step.changes))
-            writer.writerow([approach.factor, *values, *(mode or "" for mode in step.shadows), changes])
-    return text.getvalue()

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import tracer
-from tests.tracing.worlds import moved, quad, scene
+from tests.tracing.worlds import affine, moved, quad, quadrics, scene
 from tracer import zoom
-from tracer.scene.model import Camera
+from tracer.scene.model import SPHERE, Camera
 from tracer.zoom import Change
 
 FIGURE_4 = Path(__file__).resolve().parents[2] / "assets" / "scenes" / "figure4.aff"
@@ -113,6 +113,42 @@ def test_a_camera_that_looks_at_it_goes_straight_on():
     assert aim.target == pytest.approx((0.0, 0.0, 0.0), abs=1e-5)
 
 
+def test_a_camera_whose_axis_may_pass_beside_it_turns():
+    """The middle pixel shows it, but not those on the axis's other side."""
+    world = scene([[(0.01, -2.0, 0.0), (3.0, -2.0, 0.0), (0.01, 2.0, 0.0)]], lights=[(0, 0, 20)])
+    frame = picture(world)
+    assert frame.primitive[64, 64] == 0
+    x, y, _ = zoom.aim(frame, 0).target
+    assert 0.5 < x < 1.5 and -1.0 < y < 0.0
+
+
+SLANTED = {"static": [[(-8, -4, 8), (8, -4, -8), (0, 8, 0)]]}
+SPHERE = {"static_quadrics": quadrics([(SPHERE, affine(0.5, (-0.2, 0.1, 0.0)), (1.0, 1.0))])}
+
+
+@pytest.mark.parametrize("size", [127, 128])
+@pytest.mark.parametrize("shape", [SLANTED, SPHERE])
+def test_a_slanted_surface_is_seen_to_the_end(shape: dict, size: int):
+    """So near, the camera would have passed a surface of which it had aimed half a pixel off."""
+    world = scene(**shape, lights=[(0, 5, 20)])
+    frame = picture(world, width=size, height=size)
+    primitive = int(frame.primitive[size // 2, size // 2])
+    start = zoom.aim(frame, primitive)
+    assert start.camera == frame.camera
+    *_, results = zoom.run(world, replace(SETTINGS, width=size, height=size), start, [4.0], steps=110)
+    steps = results.approaches[0].steps
+    assert len(steps) == zoom.STILL_FRAMES + 110
+    assert min(step.pixels for step in steps) == steps[0].pixels
+
+
+@pytest.mark.parametrize("primitive", [-1, 1])
+def test_a_primitive_that_is_not_there_is_refused(primitive: int):
+    world = scene(CARD, lights=[(0, 0, 20)])
+    start = replace(zoom.aim(picture(world), 0), primitive=primitive)
+    with pytest.raises(ValueError, match=f"there is no primitive {primitive}; the scene's are 0 to 0"):
+        next(zoom.run(world, SETTINGS, start))
+
+
 def test_what_is_not_to_be_seen_is_refused():
     behind = scene([*CARD, *quad((-9, -9, 5), (9, -9, 5), (9, 9, 5), (-9, 9, 5))])
     for primitive in (0, 99, -1):
@@ -127,7 +163,7 @@ def test_pixels_name_primitives():
     with pytest.raises(ValueError, match="pixel 0,0 shows no primitive"):
         zoom.primitive_at(frame, 0, 0)
     for x, y in ((128, 0), (0, 128), (-1, 0)):
-        with pytest.raises(ValueError, match="128 x 128 pixels"):
+        with pytest.raises(ValueError, match="128 × 128 pixels"):
             zoom.primitive_at(frame, x, y)
 
 

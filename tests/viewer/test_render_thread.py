@@ -186,6 +186,23 @@ def test_another_renderer_ends_a_task(thread):
     assert task.cancelled
 
 
+def test_a_task_that_waits_while_the_scene_changes_gets_its_own_renderer_and_ends(thread):
+    old, new, first, task = FakeRenderer(), FakeRenderer(), FakeTask(), FakeTask()
+    held = Event()
+    first.work = lambda renderer, cancelled: (first.started.set(), held.wait(5.0))
+    thread.use(old)
+    thread.perform(first)
+    assert first.started.wait(5.0)
+    thread.perform(task)
+    thread.use(new)
+    held.set()
+    assert task.started.wait(5.0)
+    idle(thread)
+    assert task.renderer is old and task.cancelled, "what was asked of the old scene is over"
+    thread.submit(request(1.0))
+    assert taken(thread).frame.time == 1.0 and [at for at, _ in new.asked] == [1.0]
+
+
 def test_closing_ends_a_task():
     thread, task = RenderThread(), FakeTask()
     thread.use(FakeRenderer())

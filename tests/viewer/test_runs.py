@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import csv
+import gc
 import json
 import threading
 import time
+import weakref
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from datetime import datetime
@@ -20,11 +22,14 @@ from tracer import experiment, zoom
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
-from tracer.scene.model import Camera
+from tracer.scene.model import Camera, Cancelled
 from viewer import exports
 from viewer.controller import Controller
 from viewer.preferences import Preferences
+from viewer.render_thread import Traced
 from viewer.resources import embedded_scenes
+from viewer.runs import duration
+from viewer.views import View
 
 SIZE = (64, 48)
 ELSEWHERE = Camera((0.0, 2.0, 8.0), (0.0, -0.2, -1.0))
@@ -102,6 +107,12 @@ def same_figures(one: experiment.Results, other: experiment.Results) -> bool:
     return one.frames == other.frames and left == right
 
 
+def is_the_same_picture(one: Frame, other: Frame) -> bool:
+    """Of the same place, traced alike."""
+    same = (one.time, one.camera, one.settings) == (other.time, other.camera, other.settings)
+    return same and np.array_equal(one.primitive, other.primitive)
+
+
 def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(desk: Desk) -> None:
     desk.runner.experiment_plan.verify = True
     own = desk.c.frame
@@ -109,9 +120,10 @@ def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(des
     desk.runner.start_experiment()
     run = desk.runner.experiment
     desk.run_to_its_end()
-    assert run.whole and run.results is not None and desk.said.startswith("experiment done: 10 frames in ")
+    assert run.whole and run.results is not None and desk.said.startswith("experiment done: 5 frames in ")
 
-    scene, times = run.scene, experiment.path_times(run.scene, 5)
+    scene = desk.c.session.scene
+    times = experiment.path_times(scene, 5)
     *_, expected = experiment.run(scene, run.settings, ["paper"], times)
     assert same_figures(run.results, expected)
     assert len(experiment.table(run.results)) == 2
@@ -119,9 +131,20 @@ def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(des
     shown = [frame for frame in desk.came if frame.settings == replace(run.settings, method="paper")]
     assert shown and shown == desk.came[: len(shown)], "they are not the picture while it is under way"
     assert {frame.time for frame in shown} <= set(times)
-    assert (desk.c.frame.width, desk.c.frame.height) == SIZE, "the user's own picture is not back"
-    assert np.array_equal(desk.c.frame.primitive, own.primitive)
-    assert desk.c.frame.settings == own.settings
+    assert is_the_same_picture(desk.c.frame, own)
+
+
+@pytest.mark.parametrize("verify", [False, True])
+def test_a_view_of_what_is_wrong_says_whether_the_run_verifies(desk: Desk, verify: bool) -> None:
+    desk.runner.experiment_plan = replace(desk.runner.experiment_plan, frames=5000, verify=verify)
+    desk.c.set_view(View.WIPE)
+    desk.rest()
+    desk.came.clear()
+    desk.runner.start_experiment()
+    desk.until(lambda: desk.came)
+    assert desk.runner.current.verifies is verify
+    assert ("this run does not verify" in desk.c.tracing.title) is not verify
+    assert desk.c.tracing.drawn_view is (View.WIPE if verify else View.COLOR)
 
 
 def test_the_frames_of_the_chosen_method_are_shown(desk: Desk) -> None:
@@ -134,6 +157,7 @@ def test_the_frames_of_the_chosen_method_are_shown(desk: Desk) -> None:
 
 
 def test_stopping_keeps_the_whole_frames(desk: Desk) -> None:
+    own = desk.c.frame
     desk.runner.experiment_plan.frames = 5000
     desk.runner.start_experiment()
     run = desk.runner.experiment
@@ -147,11 +171,63 @@ def test_stopping_keeps_the_whole_frames(desk: Desk) -> None:
     done = len(run.results.frames)
     assert before <= done < 5000
     assert all(len(values) == done for figures in run.results.methods.values() for values in figures.values())
-    assert f"experiment stopped after {run.traced} of 10000 frames; what was done is kept" == desk.said
+    assert f"experiment stopped after {done} of 5000 frames; what was done is kept" == desk.said
+    assert is_the_same_picture(desk.c.frame, own)
+
+
+def test_stopped_before_its_first_frame_a_run_leaves_nothing_and_what_it_cut_short_is_traced(desk: Desk) -> None:
+    renderer, begun = desk.c.render._renderer, threading.Event()
+
+    def never(_time: float, _camera: Camera, cancel: Callable[[], bool]) -> Frame:
+        begun.set()
+        while not cancel():
+            time.sleep(0.001)
+        raise Cancelled()
+
+    renderer.render = never
+    desk.c.trace_again()
+    desk.tick()
+    assert begun.wait(20.0)
+    desk.came.clear()
     desk.runner.start_experiment()
     desk.runner.stop()
+    del renderer.render
     desk.run_to_its_end()
-    assert desk.c.frame.width == SIZE[0]
+    assert desk.runner.experiment.results is None
+    assert desk.said == "experiment stopped after 0 of 5 frames"
+    assert {(frame.width, frame.height) for frame in desk.came} == {SIZE}
+
+
+def test_the_last_frame_of_a_run_is_shown_though_the_window_was_late(desk: Desk) -> None:
+    desk.came.clear()
+    desk.runner.start_experiment()
+    run = desk.runner.experiment
+    assert run._done.wait(60.0)
+    desk.tick()
+    assert [(f.width, f.height, f.settings.method) for f in desk.came] == [(32, 24, "paper")]
+    assert desk.runner.current is None and desk.said.startswith("experiment done")
+    desk.rest()
+    assert (desk.c.frame.width, desk.c.frame.height) == SIZE
+
+
+def test_a_run_that_is_over_keeps_neither_its_scene_nor_a_frame(desk: Desk) -> None:
+    scene, frames = weakref.ref(desk.c.session.scene), []
+    show = desk.c.tracing.show
+
+    def showing(traced: Traced) -> None:
+        frames.append(weakref.ref(traced.frame))
+        show(traced)
+
+    desk.c.tracing.show = showing
+    desk.runner.start_experiment()
+    desk.run_to_its_end()
+    desk.came.clear()
+    assert desk.runner.experiment.whole and frames
+    desk.open(embedded_scenes()["figure4"])
+    desk.came.clear()
+    gc.collect()
+    assert scene() is None and not any(frame() for frame in frames)
+    assert desk.runner.experiment.scene_path.name == "tiny.aff"
 
 
 def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
@@ -228,7 +304,7 @@ def test_a_run_that_is_overtaken_by_another_scene_does_not_trace_it(desk: Desk) 
     desk.run_to_its_end()
     assert renderer is not desk.c.render._renderer
     assert desk.runner.experiment.results is None and not desk.runner.experiment.traced
-    assert desk.said == "experiment stopped after 0 of 10 frames"
+    assert desk.said == "experiment stopped after 0 of 5 frames"
 
 
 def test_restoring_a_place_ends_a_run(desk: Desk) -> None:
@@ -270,6 +346,12 @@ def test_a_plan_that_is_no_good_is_one_line(desk: Desk) -> None:
     desk.runner.start_experiment()
     assert desk.c.message.error and "width and height" in desk.said
     desk.c.select((0.5, 0.5))
+    desk.runner.experiment_plan.size = desk.runner.zoom_plan.size = (64, 4097)
+    for start in (desk.runner.start_experiment, desk.runner.start_zoom_test):
+        desk.c.message = None
+        start()
+        assert desk.c.message.error and "64 x 4097 is too large for a run" in desk.said
+    desk.runner.zoom_plan.size = (32, 24)
     desk.runner.zoom_plan.factors = "four"
     desk.runner.start_zoom_test()
     assert desk.c.message.error and "'four' are no zoom factors" in desk.said
@@ -285,6 +367,7 @@ def test_a_zoom_test_shows_every_frame_and_finds_what_the_command_finds(figure4:
     desk.runner.zoom_plan = replace(desk.runner.zoom_plan, factors="4, 64", steps=20, size=(128, 128))
     desk.c.select((0.5, 0.5))
     assert desk.c.selected.primitive == 0
+    own = desk.c.frame
     start = zoom.aim(desk.c.frame, 0)
     desk.came.clear()
     desk.runner.start_zoom_test()
@@ -293,10 +376,12 @@ def test_a_zoom_test_shows_every_frame_and_finds_what_the_command_finds(figure4:
     of_test = [frame for frame in desk.came if frame.settings.verify]
     assert len(of_test) == test.frames == 2 * (20 + zoom.STILL_FRAMES)
     assert [frame.settings.zoom_factor for frame in of_test] == [4.0] * 23 + [64.0] * 23
-    *_, expected = zoom.run(test.scene, test.settings, start, [4.0, 64.0], 20, test.plan.ratio)
+    *_, expected = zoom.run(desk.c.session.scene, test.settings, start, [4.0, 64.0], 20, test.plan.ratio)
     assert test.results == expected
     four, sixty_four = test.results.approaches
     assert four.steps[-1].wrong == 0 < sixty_four.steps[-1].wrong
+    desk.rest()
+    assert is_the_same_picture(desk.c.frame, own)
 
 
 def test_a_zoom_test_needs_something_to_go_to(desk: Desk) -> None:
@@ -326,11 +411,41 @@ def test_a_step_can_be_gone_to(figure4: Desk) -> None:
     desk.rest()
     assert desk.c.frame.camera.position == pytest.approx(step.camera.position)
     assert desk.c.frame.time == 0.0
+    camera = desk.c.session.camera
+    desk.runner.experiment_plan.frames = 5000
+    desk.runner.start_experiment()
+    desk.runner.go_to(desk.runner.zoom_test.results.approaches[0].steps[0])
+    assert desk.said.startswith("the experiment is still under way") and desk.c.session.camera == camera
+    desk.runner.stop()
+    desk.run_to_its_end()
     desk.open(embedded_scenes()["figure3"])
     camera = desk.c.session.camera
     desk.runner.go_to(step)
     desk.rest()
     assert desk.c.session.camera == camera and "figure4.aff" in desk.said
+
+
+def test_a_zoom_test_can_be_repeated_from_its_start(figure4: Desk) -> None:
+    desk = figure4
+    desk.c.select((0.5, 0.5))
+    desk.runner.start_zoom_test()
+    desk.run_to_its_end()
+    first = desk.runner.zoom_test
+    desk.runner.go_to(first.results.approaches[0].steps[-1])
+    desk.rest()
+    assert desk.runner.zoom_plan.same_start
+    for selected in (desk.c.selected, None):
+        desk.c.selected = selected
+        desk.runner.start_zoom_test()
+        desk.run_to_its_end()
+        assert desk.runner.zoom_test is not first and desk.runner.zoom_test.results == first.results
+    desk.runner.zoom_plan.same_start = False
+    desk.c.select((0.5, 0.5))
+    desk.runner.start_zoom_test()
+    desk.run_to_its_end()
+    assert desk.runner.zoom_test.start.distance < first.start.distance
+    desk.c.selected = replace(desk.c.selected, primitive=first.start.primitive + 1)
+    assert desk.runner.last_start is None, "of another primitive it is no start"
 
 
 def test_results_are_written_beside_the_pictures(figure4: Desk, tmp_path: Path) -> None:
@@ -360,6 +475,25 @@ def test_results_are_written_beside_the_pictures(figure4: Desk, tmp_path: Path) 
             assert plot.size == (1920, 1080)
 
 
+def test_what_is_there_can_be_saved_while_a_run_goes_on(desk: Desk, tmp_path: Path) -> None:
+    desk.runner.experiment_plan.frames = 5000
+    desk.runner.start_experiment()
+    run = desk.runner.experiment
+    desk.until(lambda: run.results is not None and len(run.results.frames) > 3)
+    there = run.results.to_dict()
+    desk.runner.export(run, ".json")
+    desk.until(lambda: not desk.c.keeper.busy)
+    (file,) = (tmp_path / "pictures").iterdir()
+    kept = json.loads(file.read_text())
+    assert len(there["frames"]) <= len(kept["frames"]) < 5000
+    assert all(
+        len(values) == len(kept["frames"]) for figures in kept["methods"].values() for values in figures.values()
+    )
+    assert desk.runner.current is run and not run.stopping, "saving has disturbed it"
+    desk.runner.stop()
+    desk.run_to_its_end()
+
+
 class FakeRun:
     results = None
 
@@ -384,7 +518,7 @@ def test_a_name_that_is_taken_gets_a_number(tmp_path: Path) -> None:
     now = datetime(2024, 5, 31, 14, 5, 9)
 
     def save() -> str:
-        return exports.save(tmp_path, "room-experiment", ".csv", lambda path: path.touch(exist_ok=False), now).name
+        return exports.save(tmp_path, "room-experiment", ".csv", lambda path: path.write_text("saved"), now).name
 
     stem = "room-experiment-2024-05-31-14-05-09"
     assert [save(), save(), save()] == [f"{stem}.csv", f"{stem}-2.csv", f"{stem}-3.csv"]
@@ -395,4 +529,4 @@ def test_a_name_that_is_taken_gets_a_number(tmp_path: Path) -> None:
     [(0.2, "0 s"), (59.4, "59 s"), (59.6, "1:00 min"), (125, "2:05 min"), (3599.6, "1:00 h"), (4200, "1:10 h")],
 )
 def test_durations_as_people_say_them(seconds: float, said: str) -> None:
-    assert exports.duration(seconds) == said
+    assert duration(seconds) == said

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.viewer.conftest import FakeRenderer, make_scene
+from tests.viewer.conftest import FakeRenderer, make_frame, make_scene
+from tracer.scene.model import Camera
 from viewer.controller import Controller
 from viewer.preferences import Preferences
+from viewer.render_thread import RenderRequest, Traced
 from viewer.session import Snapshot
 from viewer.views import View
 
@@ -89,6 +91,43 @@ def test_switched_off_by_the_user_it_is_traced_without(desk: Desk):
     desk.rest()
     desk.c.change(verify=False)
     assert desk.rest() == [False]
+
+
+def test_what_a_run_cut_short_is_traced_after_it_though_it_showed_no_frame(desk: Desk):
+    desk.renderer.go.clear()
+    desk.renderer.started.clear()
+    desk.c.trace_again()
+    desk.c.tick(SIZE)
+    assert desk.renderer.started.wait(10.0) and not desk.c.render.running.interactive
+    desk.c.runner.start_experiment()
+    end = time.monotonic() + 10.0
+    while desk.c.runner.current is not None:
+        assert time.monotonic() < end
+        desk.c.tick(SIZE)
+    assert desk.c.message.error, "the renderer has no world, so that the run fails at once"
+    assert desk.renderer.cancelled, "the run came before the frame"
+    desk.renderer.go.set()
+    assert desk.rest() == [False], "the frame that was cut short has not come"
+
+
+def test_a_capture_of_a_runs_frame_is_named_and_restored_as_what_it_shows(desk: Desk, tmp_path):
+    own = desk.c.session.scene.camera
+    elsewhere = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
+    assert desk.c.session.follow and desk.c.session.frame == 0
+    desk.c.preferences.screenshot_folder, desk.c.preferences.screenshot_template = str(tmp_path), "{frame:04d}.png"
+    for camera, follow in ((elsewhere, False), (own, True)):
+        frame = make_frame(time=7.0, camera=camera)
+        desk.c.tracing.show(Traced(RenderRequest(7.0, camera, frame.settings), frame))
+        desk.c.keeper.capture(np.zeros((8, 16, 3), np.uint8))
+        name = "0007.png" if camera == elsewhere else "0007-2.png"
+        assert desk.c.keeper.saving.pop().join(10.0)
+        with Image.open(tmp_path / name) as image:
+            kept = json.loads(image.text["shadowcull"])
+        snapshot = Snapshot.from_json(kept["state"])
+        assert (kept["frame"], snapshot.time, snapshot.follow) == (7, 7.0, follow)
+        desk.c.restore(snapshot)
+        assert (desk.c.session.camera, desk.c.session.frame) == (camera, 7)
+        desk.c.reset_camera()
 
 
 def test_a_capture_keeps_the_users_setting_and_the_line(desk: Desk, tmp_path):

@@ -14,7 +14,7 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
 from viewer import views
 from viewer.history import SERIES, History
-from viewer.panels.widgets import percent
+from viewer.panels.widgets import in_window_style, percent
 from viewer.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
 from viewer.resolution import ResolutionControl, divided
 
@@ -79,10 +79,13 @@ def test_the_difference_legend_counts_what_is_wrong():
         views.difference_legend(make_frame())
 
 
-@pytest.mark.parametrize(("size", "radius", "thickness"), [((64, 48), 3, 1), ((1500, 40), 8, 1), ((30, 4000), 20, 3)])
-def test_rings_lie_at_one_distance_and_grow_with_the_picture(size, radius, thickness):
+@pytest.mark.parametrize(
+    ("size", "magnified", "radius", "thickness"),
+    [((64, 48), 1, 3, 1), ((1500, 40), 1, 8, 1), ((30, 4000), 1, 20, 3), ((1500, 40), 2, 4, 1), ((64, 48), 12, 1, 1)],
+)
+def test_rings_lie_at_one_distance_grow_with_the_picture_and_stay_small_on_screen(size, magnified, radius, thickness):
     frame = make_frame(Settings(width=size[0], height=size[1], verify=True))
-    marks = views.wrong_marks(frame)
+    marks = views.wrong_marks(frame, magnified)
     points = np.argwhere(frame.wrong > 0)
     rows, columns = np.indices(marks.shape)
     distance = np.min([np.hypot(rows - y, columns - x) for y, x in points], axis=0)
@@ -98,6 +101,10 @@ def test_rings_lie_at_one_distance_and_grow_with_the_picture(size, radius, thick
 )
 def test_a_small_share_does_not_look_like_none(part, whole, said):
     assert percent(part, whole) == said
+
+
+def test_numbers_of_other_places_are_written_as_in_the_window():
+    assert in_window_style("1,234,570 (0.499%), lights 0, 2: 12") == "1 234 570 (0.499 %), lights 0, 2: 12"
 
 
 def test_no_rings_where_nothing_is_wrong():

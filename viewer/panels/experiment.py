@@ -8,16 +8,30 @@ from imgui_bundle import ImVec2, imgui, implot
 from tracer import experiment
 from tracer.experiment import REFERENCE, Results, Row
 from tracer.frame import METHODS
-from viewer.bench import LINES, WRONG
-from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND
-from viewer.panels.runs import export_buttons, side_by_side, size_field, start_or_progress
-from viewer.panels.widgets import ERROR, QUIET, checkbox, clipped, em, paragraph, properties, row, tooltip
-from viewer.runs import Experiment
+from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
+from viewer.panels.runs import export_buttons, side_by_side, start_or_progress
+from viewer.panels.widgets import (
+    ERROR,
+    QUIET,
+    checkbox,
+    clipped,
+    em,
+    in_window_style,
+    paragraph,
+    properties,
+    row,
+    size_field,
+    tooltip,
+)
+from viewer.reports import LINES, WRONG
+from viewer.runs import LONGEST_SIDE, Experiment
 from viewer.ui import Ui
 
 _WORKS = (("steps", "steps"), ("tests", "tests"))
-_SHORT = ("steps saved", "  most (frame)", "tests saved", "  most (frame)", "extra / pixel", "wrong", "time of a frame")
-_HEADING, _REFERENCE, _METHOD = 6.8, 4.0, 7.4  # widths of the table's columns in ems
+_SHORT = ("steps saved", "  most (frame)", "tests saved", "  most (frame)", "extra / pixel", "wrong", "time in window")
+_TIME_TIP = "while the window draws as well: not to be compared with the times of shadowcull bench"
+_FEWEST_FRAMES, _LEAST_TOP = 10, 2.0  # frames and percents that the plot's axes span at least
+_HEADING, _REFERENCE, _METHOD = 6.8, 5.4, 7.4  # widths of the table's columns in ems
 
 
 def show(ui: Ui) -> None:
@@ -40,7 +54,7 @@ def _controls(ui: Ui, run: Experiment | None) -> None:
         _shown_method(run)
     else:
         _plan(ui)
-    tip = "trace the frames of the whole path by each method and compare their work, as shadowcull bench does"
+    tip = "trace the path by each method, and compare"
     start_or_progress(ui, run, runner.start_experiment, tip)
     export_buttons(ui, run)
 
@@ -64,7 +78,7 @@ def _plan(ui: Ui) -> None:
         if changed:
             plan.frames = min(max(frames, 1), 100_000)
         row("Size")
-        plan.size = size_field(plan.size)
+        plan.size = size_field(plan.size, LONGEST_SIDE, ui.controller.say)
         row("Bounces", "of reflected and refracted rays, at most")
         changed, depth = imgui.slider_int("##depth", plan.depth, 0, 20)
         if changed:
@@ -75,6 +89,7 @@ def _plan(ui: Ui) -> None:
 
 def _shown_method(run: Experiment) -> None:
     """Whose frames are the picture."""
+    imgui.align_text_to_frame_padding()
     imgui.text_colored(QUIET, "show")
     for method in run.methods:
         imgui.same_line()
@@ -92,7 +107,7 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
         imgui.end_child()
         return
     wrong = run.settings.verify and any(any(figures["wrong"]) for figures in results.methods.values())
-    if not implot.begin_plot(f"{run.scene.path.name}: saved, %##saved", size, FLAGS):
+    if not implot.begin_plot(f"{run.scene_path.name}: saved##{id(run)}", size, FLAGS):
         return
     frames = np.array(results.frames, np.float64)
     savings = ui.cached("savings", results, 0, lambda: _savings(results))
@@ -100,19 +115,20 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
     bottom = min([float(values.min()) for _, values in savings] or [0.0])
     implot.setup_axes("", "", AXIS, AXIS)
     implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
-    implot.setup_axis_format(implot.ImAxis_.y1, "%.0f")
+    implot.setup_axis_format(implot.ImAxis_.y1, "%.4g %%")
     once = int(imgui.Cond_.always if ui.controller.runner.current is run else imgui.Cond_.once)
-    implot.setup_axes_limits(-0.5, len(run.times) - 0.5, min(1.1 * bottom, 0.0), max(1.12 * top, 1.0), once)
+    last = max(len(run.times), _FEWEST_FRAMES) - 0.5
+    implot.setup_axes_limits(-0.5, last, min(1.1 * bottom, 0.0), max(1.12 * top, _LEAST_TOP), once)
     if wrong:
-        implot.setup_axis(implot.ImAxis_.y2, "", AXIS | int(implot.AxisFlags_.aux_default))
-        most = max(max(figures["wrong"]) for figures in results.methods.values())
-        implot.setup_axis_limits(implot.ImAxis_.y2, 0.0, 3.0 * most, once)
-        implot.setup_axis_format(implot.ImAxis_.y2, "%.0f")
+        wrong_axis(max(int(max(figures["wrong"])) for figures in results.methods.values()), once)
     implot.setup_legend(implot.Location_.south, LEGEND)
     if wrong:
         _plot_wrong(results, frames)
     for number, (name, values) in enumerate(savings):
-        implot.plot_line(name, frames, values, implot.Spec(line_color=COLORS[number % len(COLORS)], line_weight=1.6))
+        spec = implot.Spec(line_color=COLORS[number % len(COLORS)], line_weight=1.6)
+        if len(frames) == 1:  # is no line
+            spec.marker = int(implot.Marker_.circle)
+        implot.plot_line(name, frames, values, spec)
     implot.end_plot()
 
 
@@ -142,8 +158,9 @@ def _table(ui: Ui, run: Experiment | None, results: Results | None) -> None:
         return
     rows: list[Row] = ui.cached("table 1", results, 0, lambda: experiment.table(results))
     whole = len(results.frames) == len(run.times)
-    done = f"{len(results.frames)} frames" if whole else f"{len(results.frames)} of {len(run.times)} frames"
-    clipped(f"{done}, {run.settings.width} x {run.settings.height}", QUIET)
+    plural = "s" * (len(run.times) != 1)
+    done = f"{len(results.frames)} frame{plural}" if whole else f"{len(results.frames)} of {len(run.times)} frames"
+    clipped(f"{done}, {run.settings.width} x {run.settings.height}, {run.settings.accelerator}", QUIET)
     flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg
     if not imgui.begin_table("table 1", 1 + len(rows), int(flags)):
         return
@@ -160,8 +177,8 @@ def _table(ui: Ui, run: Experiment | None, results: Results | None) -> None:
             continue
         imgui.table_next_column()
         clipped(short, QUIET)
-        tooltip(heading.strip())
+        tooltip(f"{heading.strip()}, {_TIME_TIP}" if short is _SHORT[-1] else heading.strip())
         for line in rows:
             imgui.table_next_column()
-            clipped(cell(line), ERROR if heading == WRONG and line.wrong else None)
+            clipped(in_window_style(cell(line)), ERROR if heading == WRONG and line.wrong else None)
     imgui.end_table()

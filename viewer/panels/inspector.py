@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import OcclusionMode, ShadowMode
-from viewer.panels.widgets import QUIET, count, em, heading, paragraph, properties, tooltip, value
+from viewer.panels.widgets import QUIET, count, em, heading, judged, paragraph, properties, tooltip, value
 from viewer.picking import Pick
 from viewer.ui import Ui
 from viewer.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
@@ -41,7 +41,8 @@ def _details(ui: Ui, pick: Pick) -> None:
             value("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""))
             if pick.material is not None:
                 value("Material", pick.material.name, _describe(pick))
-            value("Pixels", f"{count(pick.pixels)} now, {count(pick.highest)} at most", "that this primitive covers")
+            tip = "that it covers now; its modes are judged by its highest count while fully rendered"
+            value("Pixels", f"{count(pick.pixels)} now, {judged(pick.highest)}", tip)
             if pick.wrong is not None:
                 answers = f"{count(pick.wrong)} shadow {'answer' if pick.wrong == 1 else 'answers'}"
                 value("Wrong here", answers, "of this pixel, of any light at any bounce: what is mirrored counts too")

@@ -6,7 +6,7 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from numpy.typing import NDArray
 
-from viewer.panels.widgets import QUIET, checkbox, em, paragraph
+from viewer.panels.widgets import QUIET, checkbox, count, em, paragraph
 from viewer.ui import Ui
 
 _BLUE, _GREEN, _ORANGE, _SKY = (
@@ -27,6 +27,15 @@ FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_
 AXIS = int(implot.AxisFlags_.no_highlight)
 LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
 COLORS = (_BLUE, _ORANGE, _GREEN, _SKY)
+
+
+def wrong_axis(most: int, condition: int) -> None:
+    """A right-hand axis y2 for bars of `most` at most, which stay in the lowest third; its ticks are whole numbers."""
+    step = max(1, most // 2)
+    implot.setup_axis(implot.ImAxis_.y2, "wrong", AXIS | int(implot.AxisFlags_.aux_default))
+    implot.setup_axis_limits(implot.ImAxis_.y2, 0.0, 3.0 * max(most, 1), condition)
+    ticks = [0, step] if most < 2 else [0, step, most]
+    implot.setup_axis_ticks(implot.ImAxis_.y2, [float(tick) for tick in ticks], [count(tick) for tick in ticks])
 
 
 def show(ui: Ui) -> None:

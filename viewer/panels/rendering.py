@@ -5,12 +5,10 @@ from __future__ import annotations
 import os
 
 from imgui_bundle import imgui
-from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.panels.widgets import checkbox, em, properties, row
+from viewer.panels.widgets import checkbox, properties, row, size_field
+from viewer.preferences import LONGEST_SIDE
 from viewer.ui import Ui
-
-_RESOLUTIONS = ((256, 256), (512, 512), (800, 600), (1024, 1024), (1280, 720), (1920, 1080))
 
 
 def show(ui: Ui) -> None:
@@ -20,18 +18,7 @@ def show(ui: Ui) -> None:
     checkbox("Fixed size", p.fixed_resolution, lambda on: setattr(p, "fixed_resolution", on), "else that of the window")
     if p.fixed_resolution:
         imgui.same_line()
-        imgui.set_next_item_width(-em(2.2))
-        changed, size = imgui.input_int2("##size", [p.fixed_width, p.fixed_height])
-        if changed:
-            p.fixed_width, p.fixed_height = (min(max(n, 1), 8192) for n in size)
-        imgui.same_line()
-        if imgui.button(icons.ICON_FA_CHEVRON_DOWN, (-1.0, 0.0)):
-            imgui.open_popup("sizes")
-        if imgui.begin_popup("sizes"):
-            for width, height in _RESOLUTIONS:
-                if imgui.menu_item(f"{width} x {height}", "", False, True)[0]:
-                    p.fixed_width, p.fixed_height = width, height
-            imgui.end_popup()
+        p.fixed_width, p.fixed_height = size_field((p.fixed_width, p.fixed_height), LONGEST_SIDE, ui.controller.say)
     tip = "trace coarser frames while the camera moves, to hold the frame rate"
     checkbox("Coarser in motion", p.dynamic_resolution, lambda on: setattr(p, "dynamic_resolution", on), tip)
     with properties("quality", 5.0) as shown:

@@ -7,18 +7,16 @@ from collections.abc import Callable
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.exports import ENDINGS, duration
-from viewer.panels.widgets import QUIET, clipped, em, tooltip, wide_button
-from viewer.runs import Run
+from viewer.exports import ENDINGS
+from viewer.panels.widgets import QUIET, clipped, em, tooltip_above, wide_button
+from viewer.runs import Run, duration
 from viewer.ui import Ui
 
-SIZES = ((128, 128), (256, 256), (512, 512), (1024, 1024), (1280, 720))
-MOST_PIXELS_OF_SIDE = 8192
 _KINDS = {".json": "JSON", ".csv": "CSV", ".png": "Plot"}
 _TIPS = {
-    ".json": "every figure, as JSON, into the folder of the pictures",
-    ".csv": "the table, as CSV, into the folder of the pictures",
-    ".png": "the plot, as a picture for a slide or a paper, into the folder of the pictures",
+    ".json": "save every figure",
+    ".csv": "save the table",
+    ".png": "save the plot as a picture",
 }
 
 
@@ -48,42 +46,21 @@ def side_by_side(
     imgui.end_child()
 
 
-def size_field(size: tuple[int, int]) -> tuple[int, int]:
-    """Width and height in pixels, typed or chosen from a list; returns what is set now."""
-    imgui.set_next_item_width(-em(2.0))
-    changed, typed = imgui.input_int2("##size", list(size))
-    if changed:
-        size = _side(typed[0]), _side(typed[1])
-    imgui.same_line(0.0, em(0.2))
-    if imgui.button(icons.ICON_FA_CHEVRON_DOWN, (-1.0, 0.0)):
-        imgui.open_popup("sizes")
-    if imgui.begin_popup("sizes"):
-        for width, height in SIZES:
-            if imgui.menu_item(f"{width} x {height}", "", False, True)[0]:
-                size = width, height
-        imgui.end_popup()
-    return size
-
-
-def _side(pixels: int) -> int:
-    return min(max(pixels, 1), MOST_PIXELS_OF_SIDE)
-
-
 def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: str) -> None:
     """The button that starts, or, while the run is under way, how far it is and the button that stops it."""
     runner = ui.controller.runner
     if run is None or runner.current is not run:
         imgui.begin_disabled(runner.current is not None)
-        if wide_button(f"{icons.ICON_FA_PLAY}  Start", tip):
+        if wide_button(f"{icons.ICON_FA_PLAY}  Start", tip, explain=tooltip_above):
             start()
         imgui.end_disabled()
         return
     left = run.seconds_left
     imgui.progress_bar(run.fraction, ImVec2(-1.0, 0.0), "" if left is None else f"{duration(left)} left")
-    clipped(run.label, QUIET)
+    clipped(f"traced: {run.label}", QUIET)
     if run.stopping:
         imgui.text_colored(QUIET, "stopping ...")
-    elif wide_button(f"{icons.ICON_FA_STOP}  Stop", "keeps what is done (Escape)"):
+    elif wide_button(f"{icons.ICON_FA_STOP}  Stop", "keeps what is done (Escape)", explain=tooltip_above):
         runner.stop()
 
 
@@ -94,6 +71,6 @@ def export_buttons(ui: Ui, run: Run | None) -> None:
     for ending in ENDINGS:
         if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK} {_KINDS[ending]}"):
             ui.controller.runner.export(run, ending)
-        tooltip(_TIPS[ending])
+        tooltip_above(_TIPS[ending])
         imgui.same_line(0.0, em(0.25))
     imgui.new_line()

@@ -24,7 +24,7 @@ def show(ui: Ui) -> None:
             if message.error and imgui.is_item_clicked():
                 c.message = None
         elif c.runner.current is not None:
-            imgui.text_colored(QUIET, f"{c.runner.current.name}: {c.runner.current.label} ...  Escape stops it")
+            imgui.text_colored(QUIET, f"{c.runner.current.name}, traced: {c.runner.current.label} ...  Escape stops it")
         elif c.render.busy:
             imgui.text_colored(QUIET, "tracing ...")
         else:

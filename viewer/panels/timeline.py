@@ -21,6 +21,8 @@ def show(ui: Ui) -> None:
     if session.scene is None:
         return
     imgui.dummy(ImVec2(0.0, em(0.05)))
+    run, last = c.runner.current, session.scene.frames - 1
+    imgui.begin_disabled(run is not None)
     if _button(icons.ICON_FA_BACKWARD_STEP + "##back", "one frame back (Left)"):
         c.step(-1)
     if _button((icons.ICON_FA_PAUSE if session.playing else icons.ICON_FA_PLAY) + "##play", "play or pause (Space)"):
@@ -34,16 +36,20 @@ def show(ui: Ui) -> None:
         c.follow_path(not following)
     if following:
         imgui.pop_style_color()
-    end = f"{session.time:.2f} s"
+    time, frame, words = session.time, session.frame, f"frame %d of {last}"
+    if run is not None and c.frame is not None:  # the picture is the run's, of another moment
+        time, words = c.frame.time, f"{run.name}: {run.label_shown}".replace("%", "%%")
+        frame = session.frame_at(time)
+    end = f"{time:.2f} s"
     imgui.set_next_item_width(max(em(4.0), imgui.get_content_region_avail().x - imgui.calc_text_size("0000.00 s").x))
-    last = session.scene.frames - 1
-    changed, frame = imgui.slider_int("##frame", session.frame, 0, last, f"frame %d of {last}")
+    changed, frame = imgui.slider_int("##frame", frame, 0, last, words)
     if changed:
         c.step(frame - session.frame)
     tooltip("drag to scrub; Ctrl+click to type a frame")
     imgui.same_line()
     imgui.align_text_to_frame_padding()
     imgui.text_unformatted(end)
+    imgui.end_disabled()
 
 
 def _button(label: str, tip: str) -> bool:

@@ -95,6 +95,10 @@ def _legend(ui: Ui, frame: Frame) -> None:
         _swatch(GREY)
         imgui.text_unformatted("never fully rendered")
     elif view.needs_verify:
+        run = ui.controller.runner.current
+        if run is not None and not run.verifies:
+            paragraph("This run does not verify; tick Verify in the Experiment panel before the next.", WARNING)
+            return
         _difference(ui, frame)
         tip += " While it is chosen each culled ray is traced as well, so that frames take longer."
     paragraph(tip, QUIET)
@@ -121,7 +125,7 @@ def _difference(ui: Ui, frame: Frame) -> None:
             if frame.settings.samples > 1:
                 tip += "; of the first sample of each pixel, while wrong pixels are those of all"
             value("Wrong answers", f"{count(found.answers)}  ({percent(found.answers, found.due)} of due)", tip)
-            share = percent(found.pixels, frame.width * frame.height)
+            share = percent(found.pixel_share, 1.0)
             value("Wrong pixels", f"{count(found.pixels)}  ({share})", "with a wrong answer of any light at any bounce")
             tip = "between a wrong pixel's colour and the right one; an answer deep in reflections may change nothing"
             value("Largest difference", f"{255.0 * found.largest:.0f} of 255", tip)

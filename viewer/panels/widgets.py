@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 WARNING = ImVec4(0.96, 0.74, 0.31, 1.0)
 ERROR = ImVec4(1.0, 0.47, 0.42, 1.0)
 QUIET = ImVec4(0.62, 0.65, 0.70, 1.0)
 GOOD = ImVec4(0.36, 0.80, 0.64, 1.0)
+SIZES = ((128, 128), (256, 256), (512, 512), (800, 600), (1024, 1024), (1280, 720), (1920, 1080))
 
 
 def em(size: float) -> float:
@@ -83,6 +86,20 @@ def tooltip(text: str) -> None:
         imgui.end_tooltip()
 
 
+def tooltip_above(text: str) -> None:
+    """The same above the item, after a longer rest, so that neither what lies beside nor what lies below is hidden."""
+    flags = imgui.HoveredFlags_.stationary | imgui.HoveredFlags_.delay_normal | imgui.HoveredFlags_.allow_when_disabled
+    if not imgui.is_item_hovered(int(flags)):
+        return
+    corner = imgui.get_item_rect_min()
+    imgui.set_next_window_pos(ImVec2(corner.x, corner.y - em(0.3)), 0, ImVec2(0.0, 1.0))
+    if imgui.begin_tooltip():
+        imgui.push_text_wrap_pos(em(13.0))
+        imgui.text_unformatted(text)
+        imgui.pop_text_wrap_pos()
+        imgui.end_tooltip()
+
+
 def checkbox(label: str, state: bool, change: Callable[[bool], None], tip: str = "") -> None:
     """A tick that calls `change` with its new state."""
     changed, now = imgui.checkbox(label, state)
@@ -92,13 +109,35 @@ def checkbox(label: str, state: bool, change: Callable[[bool], None], tip: str =
         change(now)
 
 
-def wide_button(label: str, tip: str = "", columns: int = 1) -> bool:
-    """A button that fills its share of the width."""
+def size_field(size: tuple[int, int], longest: int, say: Callable[[str], None]) -> tuple[int, int]:
+    """Width and height in pixels, typed or chosen from a list, across what room there is; returns what is set now.
+
+    Says so where a side that is typed is none, or longer than `longest`, and another taken for it."""
+    imgui.set_next_item_width(-em(2.2))
+    changed, typed = imgui.input_int2("##size", list(size))
+    if changed:
+        width, height = (min(max(pixels, 1), longest) for pixels in typed)
+        size = width, height
+        if list(size) != list(typed):
+            say(f"{typed[0]} x {typed[1]} became {width} x {height}: a side has 1 to {longest} pixels here")
+    imgui.same_line(0.0, em(0.2))
+    if imgui.button(icons.ICON_FA_CHEVRON_DOWN, (-1.0, 0.0)):
+        imgui.open_popup("sizes")
+    if imgui.begin_popup("sizes"):
+        for width, height in SIZES:
+            if imgui.menu_item(f"{width} x {height}", "", False, True)[0]:
+                size = width, height
+        imgui.end_popup()
+    return size
+
+
+def wide_button(label: str, tip: str = "", columns: int = 1, explain: Callable[[str], None] = tooltip) -> bool:
+    """A button that fills its share of the width; `explain` shows its tip."""
     spacing = imgui.get_style().item_spacing.x
     width = (imgui.get_content_region_avail().x - spacing * (columns - 1)) / columns
     clicked = imgui.button(label, ImVec2(max(width, em(2.0)), 0.0))
     if tip:
-        tooltip(tip)
+        explain(tip)
     return clicked
 
 
@@ -123,12 +162,22 @@ def count(number: float) -> str:
     return f"{int(number):,}".replace(",", " ")
 
 
+def judged(highest: int) -> str:
+    """A primitive's highest pixel count in words: what its modes go by."""
+    return f"judged by {count(highest)}" if highest else "not judged yet"
+
+
 def short(number: float) -> str:
     """A large number in few characters: 1.23 M."""
     for limit, unit in ((1e9, " G"), (1e6, " M"), (1e4, " k")):
         if abs(number) >= limit:
             return f"{number / (limit if limit != 1e4 else 1e3):.4g}{unit}"
     return f"{number:.0f}"
+
+
+def in_window_style(text: str) -> str:
+    """Numbers of a text written as they are here: 10 570 (0.499 %) for 10,570 (0.499%)."""
+    return re.sub(r"(?<=\d)%", " %", re.sub(r"(?<=\d),(?=\d{3})", " ", text))
 
 
 def percent(part: float, whole: float) -> str:

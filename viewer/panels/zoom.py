@@ -6,8 +6,8 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from tracer.zoom import Approach, Results, Step
-from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND
-from viewer.panels.runs import export_buttons, side_by_side, size_field, start_or_progress
+from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
+from viewer.panels.runs import export_buttons, side_by_side, start_or_progress
 from viewer.panels.widgets import (
     ERROR,
     QUIET,
@@ -16,16 +16,19 @@ from viewer.panels.widgets import (
     clipped,
     count,
     em,
+    judged,
     paragraph,
     properties,
     row,
+    size_field,
     tooltip,
 )
-from viewer.runs import ZoomTest
+from viewer.reports import changes_in_words, happenings, modes_in_words
+from viewer.runs import LONGEST_SIDE, ZoomTest
 from viewer.ui import Ui
-from viewer.zoom import changes_in_words, happenings, modes_in_words
 
 _NARROWEST = 15.0  # ems of a plot that stands beside another
+_GO_THERE = "go there: traced at the window's size with the window's modes, so that the wrong pixels need not be there"
 _MARK = ImVec4(0.95, 0.96, 0.98, 1.0)
 
 
@@ -45,7 +48,7 @@ def _controls(ui: Ui, test: ZoomTest | None) -> None:
     else:
         _plan(ui)
 
-    tip = "go towards the selected primitive, from where the picture shows it, once with each factor"
+    tip = "go towards the primitive, once with each factor"
     start_or_progress(ui, test, c.runner.start_zoom_test, tip)
     export_buttons(ui, test)
 
@@ -57,10 +60,20 @@ def _plan(ui: Ui) -> None:
         if not shown:
             return
         row("Towards", "the primitive that was clicked in the picture")
-        if c.selected is None:
-            imgui.text_colored(WARNING, "click a primitive")
-        else:
+        start = c.runner.last_start
+        if c.selected is not None:
             clipped(f"{c.selected.primitive}  ({c.selected.kind}, {c.selected.object_name})")
+        elif start is not None and plan.same_start:
+            clipped(f"{start.primitive}")
+        else:
+            imgui.text_colored(WARNING, "click a primitive")
+        if start is not None:
+            row("From", "where the camera is, or where the last test towards this primitive began")
+            if imgui.radio_button("here", not plan.same_start):
+                plan.same_start = False
+            imgui.same_line()
+            if imgui.radio_button("start", plan.same_start):
+                plan.same_start = True
         row("Factors", "past so many times its highest pixel count the primitive is examined anew; several to compare")
         _, plan.factors = imgui.input_text("##factors", plan.factors)
         row("Steps", "how many, and to which part of the distance each goes")
@@ -75,7 +88,7 @@ def _plan(ui: Ui) -> None:
             plan.ratio = min(max(ratio, 0.01), 0.999)
         tooltip(f"the last step is at {100.0 * plan.ratio**plan.steps:.2g} % of the distance")
         row("Size", "counts, and what can be seen from afar, are those of this size")
-        plan.size = size_field(plan.size)
+        plan.size = size_field(plan.size, LONGEST_SIDE, c.say)
 
 
 def _plots(ui: Ui, test: ZoomTest | None, results: Results | None, size: ImVec2) -> None:
@@ -122,16 +135,14 @@ def _plot(test: ZoomTest, approaches: list[Approach], approach: Approach, name: 
     limits = np.array([approach.factor * step.highest or np.nan for step in steps], np.float64)
     seen = [max(step.pixels, step.highest, 1) for a in approaches for step in a.steps]
     most_wrong = max(1, *(a.most_wrong for a in approaches))
-    implot.setup_axes("", "", AXIS, AXIS)
+    implot.setup_axes("", "pixels", AXIS, AXIS)
     implot.setup_axis_scale(implot.ImAxis_.y1, int(implot.Scale_.log10))
     implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
     implot.setup_axis_format(implot.ImAxis_.y1, "%.0f")
     low, high = 0.3 * min(pixels.min(), *(s.pixels or 0.5 for a in approaches for s in a.steps)), 6.0 * max(seen)
     always = int(imgui.Cond_.always)
     implot.setup_axes_limits(-0.7, test.frames / len(test.factors) - 0.3, low, high, always)
-    hidden = implot.AxisFlags_.aux_default | implot.AxisFlags_.no_decorations
-    implot.setup_axis(implot.ImAxis_.y2, "", int(hidden))
-    implot.setup_axis_limits(implot.ImAxis_.y2, 0.0, 3.0 * most_wrong, always)
+    wrong_axis(most_wrong, always)
     implot.setup_legend(implot.Location_.south, LEGEND)
     implot.set_axes(implot.ImAxis_.x1, implot.ImAxis_.y2)
     wrong = np.array([step.wrong_of_primitive for step in steps], np.float64)
@@ -152,7 +163,8 @@ def _explain(steps: list[Step], x: float) -> None:
     """The step under the pointer, in numbers and words."""
     step = steps[min(max(round(x), 0), len(steps) - 1)]
     if imgui.begin_tooltip():
-        imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {count(step.highest)} at most")
+        what = " (highest count while fully rendered)" if step.highest else ""
+        imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {judged(step.highest)}{what}")
         imgui.text_unformatted(f"{count(step.wrong_of_primitive)} of them wrong, {count(step.wrong)} in the picture")
         for line in changes_in_words(step.changes):
             imgui.text_unformatted(line)
@@ -187,7 +199,7 @@ def _row(ui: Ui, approach: Approach, step: Step) -> None:
     flags = imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_overlap
     if imgui.selectable(f"{approach.factor:g}##{step.number}", False, int(flags))[0]:
         ui.controller.runner.go_to(step)
-    tooltip("\n".join(["go there", *changes_in_words(step.changes)]))
+    tooltip("\n".join([_GO_THERE, *changes_in_words(step.changes)]))
     for text, color in (
         (str(step.number), None),
         (count(step.pixels), None),

@@ -1,0 +1,14 @@
+"""What is told to people in one line."""
+
+from __future__ import annotations
+
+import sys
+
+
+def in_one_line(text: object) -> str:
+    return " ".join(str(text).split())
+
+
+def say(message: object, kind: str = "") -> None:
+    """One line on standard error, of a kind such as "error: "."""
+    print(f"shadowcull: {kind}{in_one_line(message)}", file=sys.stderr, flush=True)
