@@ -20,8 +20,8 @@ from typing import Any
 import numba
 import platformdirs
 from numba import cfunc, njit
-from numba.core import types
 from numba.core import config as _config
+from numba.core import types
 
 _KERNEL_FOLDERS = ("simd", "geometry", "culling", "shading")
 
@@ -101,6 +101,10 @@ class Entry:
             return _cfunc(signature, cache=True, error_model="numpy")(self._function)
         finally:
             config.CACHE_DIR = saved
+
+    def compile(self) -> None:
+        """Make it ready now."""
+        _ = self._compiled
 
     @property
     def address(self) -> int:

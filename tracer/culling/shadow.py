@@ -28,12 +28,10 @@ from tracer.geometry.rays import Rays, empty_rays
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
-    any_lane,
     bits_of,
     f32x16,
     lane_of,
     load_f32x16,
-    load_i32,
     load_i32x16,
     load_mask16,
     load_three,

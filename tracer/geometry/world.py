@@ -22,10 +22,10 @@ from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.chains import Chains
 from tracer.scene.model import Progress, Scene
 
-ACCELERATORS = ("kdtree", "bvh8")
 CHUNK = 4096  # rays a thread takes at a time
 
-_STRUCTURES: dict[str, Any] = {"kdtree": kdtree.KdTrees, "bvh8": bvh8.Trees8}
+STRUCTURES: dict[str, Any] = {"kdtree": kdtree.KdTrees, "bvh8": bvh8.Trees8}
+ACCELERATORS = tuple(STRUCTURES)
 
 
 class World:
@@ -46,7 +46,7 @@ class World:
         self._primitives = Primitives(scene)
         self.normals, self.object_of = self._primitives.normals, self._primitives.object_of
         self.scene = scene
-        self.structure = _STRUCTURES[accelerator](self._primitives, len(scene.objects), progress)
+        self.structure = STRUCTURES[accelerator](self._primitives, len(scene.objects), progress)
         self.place(time)
 
     @property

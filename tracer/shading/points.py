@@ -237,9 +237,7 @@ def points_at(world, look, n, rays, hits, reach, spread):
         points.unit[i], points.material[i] = primitive, material[primitive]
         if primitive < len(world.triangles):
             cone = spread * (come[i] + hit_t[i])
-            _triangle_point(
-                source, look, raw, i, primitive, hit_u[i], hit_v[i], d[i], d[m + i], d[2 * m + i], cone
-            )
+            _triangle_point(source, look, raw, i, primitive, hit_u[i], hit_v[i], d[i], d[m + i], d[2 * m + i], cone)
         else:
             _quadric_point(world, points, i, primitive)
     _face_viewer(points, rays)

@@ -49,12 +49,12 @@ class Buffers(NamedTuple):
 
 
 class Wave(NamedTuple):
-    """n rays, `count` of them, in rows of whole vectors, what they hit, the pixel (n,) int32 they count for, with which weight (3, n) float32, and
-    reach (n,) float32, the length of the path from the eye to where they start."""
+    """`size` rays, in rows of n, whole vectors: what they hit, the pixel (n,) int32 they count for, with which
+    weight (3, n) float32, and reach (n,) float32, the length of the path from the eye to where they start."""
 
     rays: Rays
     hits: Hits
-    count: int
+    size: int
     pixel: NDArray[np.int32]
     weight: NDArray[np.float32]
     reach: NDArray[np.float32]
@@ -140,7 +140,7 @@ def _counted(wave, n):
 def _without_misses(wave, look, buffers):
     """The wave's rays that hit; the others bring home the background."""
     n = 0
-    for i in range(wave.count):
+    for i in range(wave.size):
         if wave.hits.primitive[i] == MISS:
             for c in range(3):
                 light = wave.weight[c, i] * look.background[c]
@@ -188,9 +188,9 @@ def _send(wave, n, origin, direction, pixel, reach, weight, scale):
 @subkernel
 def _next_wave(points, look, wave):
     """Reflected rays, scaled by the specular colour, and refracted ones, scaled by the transmission."""
-    out = _empty_wave(2 * wave.count)
+    out = _empty_wave(2 * wave.size)
     n = 0
-    for i in range(wave.count):
+    for i in range(wave.size):
         material = look.materials[points.material[i]]
         d = (wave.rays.direction[0, i], wave.rays.direction[1, i], wave.rays.direction[2, i])
         normal = (points.normal[0, i], points.normal[1, i], points.normal[2, i])
@@ -213,7 +213,7 @@ def _next_wave(points, look, wave):
 @subkernel
 def _bring_home(wave, light, color):
     """Add what came from a wave's points, (3, n), to their pixels."""
-    for i in range(wave.count):
+    for i in range(wave.size):
         for c in range(3):
             color[wave.pixel[i], c] += wave.weight[c, i] * light[c, i]
 
@@ -223,11 +223,11 @@ def _shade(world, look, wave, points, knowledge, first, buffers, counts):
     """Local light of a wave, with shadow testing for every light; `first` for the wave of primary rays."""
     light = np.zeros(points.position.shape, np.float32)
     reference = np.zeros((3, points.position.shape[1] if knowledge.verify else 0), np.float32)
-    answers = answers_for(points, wave.count, knowledge)
+    answers = answers_for(points, wave.size, knowledge)
     add_ambient(points, look, light)
     add_ambient(points, look, reference)
     for number in range(len(look.lights)):
-        shadow_testing(world, points, wave.count, look.lights[number], number, knowledge, answers, counts[SHADOW:])
+        shadow_testing(world, points, wave.size, look.lights[number], number, knowledge, answers, counts[SHADOW:])
         add_light(points, look, number, answers.lit, wave.rays, light)
         if knowledge.verify:
             add_light(points, look, number, answers.truth, wave.rays, reference)
@@ -238,21 +238,21 @@ def _shade(world, look, wave, points, knowledge, first, buffers, counts):
     if knowledge.verify:
         _bring_home(wave, reference, buffers.reference)
     if first:
-        for i in range(wave.count):
+        for i in range(wave.size):
             for axis in range(3):
                 buffers.normal[wave.pixel[i], axis] = points.normal[axis, i]
 
 
 @subkernel
 def _note_wrong(wave, answers, wrong):
-    for i in range(wave.count):
+    for i in range(wave.size):
         wrong[wave.pixel[i]] += ((answers.lit[i >> 4] ^ answers.truth[i >> 4]) >> (i & 15)) & 1
 
 
 @subkernel
 def _record(wave, number, answers, buffers):
     """Which shadow rays of primary hits are due, and their answers."""
-    for i in range(wave.count):
+    for i in range(wave.size):
         buffers.due[wave.pixel[i], number] = (answers.due[i >> 4] >> (i & 15)) & 1
         buffers.lit[wave.pixel[i], number] = (answers.lit[i >> 4] >> (i & 15)) & 1
 
@@ -263,16 +263,16 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts):
     world, look, knowledge, buffers = borrowed(world), borrowed(look), borrowed(knowledge), borrowed(buffers)
     wave = _without_misses(_first_wave(camera, tile, buffers), look, buffers)
     for bounce in range(depth + 1):
-        points = points_at(world, look, wave.count, wave.rays, wave.hits, wave.reach, camera.spread)
+        points = points_at(world, look, wave.size, wave.rays, wave.hits, wave.reach, camera.spread)
         _shade(world, look, wave, points, knowledge, bounce == 0, buffers, counts)
         if bounce == depth:
             break
         wave = _next_wave(points, look, wave)
-        n = wave.count
+        n = wave.size
         if n == 0:
             break
         closest_hits(world, wave.rays, wave.hits, 0, n, counts[SECONDARY:])
         counts[SECONDARY + RAYS] += n
         wave = _without_misses(wave, look, buffers)
-        if wave.count == 0:
+        if wave.size == 0:
             break

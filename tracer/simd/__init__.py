@@ -18,7 +18,6 @@ vectors that are wider than the processor's, so that everything runs everywhere.
 
 from tracer.simd.addresses import (
     address_of,
-    u8_at,
     call_entry,
     f32_at,
     i32_at,
@@ -35,6 +34,7 @@ from tracer.simd.addresses import (
     store,
     store_mask,
     store_where,
+    u8_at,
 )
 from tracer.simd.bits import as_f32, as_i32, leading_zeros, lowest_bit, ones
 from tracer.simd.functions import load_three, power

@@ -110,12 +110,8 @@ def crossing(dx, dy, dz, m):
 def _least_and_greatest(low, high, x, y, z):
     """Bounds of the dot product of (x, y, z) with any vector between low and high, in `dot`'s own arithmetic."""
     x_up, y_up, z_up = x > ZERO, y > ZERO, z > ZERO
-    least = dot(
-        select(x_up, low[0], high[0]), select(y_up, low[1], high[1]), select(z_up, low[2], high[2]), x, y, z
-    )
-    greatest = dot(
-        select(x_up, high[0], low[0]), select(y_up, high[1], low[1]), select(z_up, high[2], low[2]), x, y, z
-    )
+    least = dot(select(x_up, low[0], high[0]), select(y_up, low[1], high[1]), select(z_up, low[2], high[2]), x, y, z)
+    greatest = dot(select(x_up, high[0], low[0]), select(y_up, high[1], low[1]), select(z_up, high[2], low[2]), x, y, z)
     return least, greatest
 
 

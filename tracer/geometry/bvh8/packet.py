@@ -28,9 +28,8 @@ from tracer.simd import (
     as_i32,
     bits_of,
     f32x16,
-    lane_of,
     i32x16,
-    lane_numbers_x16,
+    lane_of,
     largest,
     load_f32,
     load_f32x8,
@@ -39,7 +38,6 @@ from tracer.simd import (
     load_i32x16,
     load_i64,
     lowest_bit,
-    mask8,
     maximum,
     minimum,
     select,
@@ -381,10 +379,10 @@ def _any_in_block(origin, memory, s, block, active):
             a = memory + 64 * v
             m = terms_at(origin, memory, block, v, k)
             dx, dy, dz = load_f32x16(a + DX * ROW), load_f32x16(a + DY * ROW), load_f32x16(a + DZ * ROW)
-            crosses, sign, u, w, area = crossing(dx, dy, dz, m)
+            crosses, sign, _u, _w, area = crossing(dx, dy, dz, m)
             if not any_lane(crosses):
                 continue
-            mask, t, scale = _distance(memory, v, crosses, m.height, sign, area)
+            mask, t, _scale = _distance(memory, v, crosses, m.height, sign, area)
             before = load_f32x16(a + T * ROW)
             mask = mask & (t < before)
             if any_lane(mask):
@@ -523,7 +521,7 @@ def any_in_tree(origin, memory, vectors, s, trees, stack, counts):
             continue
         counts[STEPS] += 1
         node = trees.nodes + NODE * code
-        enter, children = _open(node, s, far)
+        _enter, children = _open(node, s, far)
         while children != 0:
             c = lowest_bit(children)
             children &= children - 1

@@ -11,15 +11,39 @@ import numpy as np
 
 from tracer.geometry.bvh8.intersect import ZERO, crossing, terms_of, triangles_of
 from tracer.geometry.bvh8.packet import (
-    BLOCK, BOX, CHILDREN, FAR, NODE, NUMBERS, STACK, STEPS, TESTS, inverse, _push_sorted,
+    BLOCK,
+    BOX,
+    CHILDREN,
+    FAR,
+    NODE,
+    NUMBERS,
+    STACK,
+    STEPS,
+    TESTS,
+    _push_sorted,
+    inverse,
 )
 from tracer.geometry.bvh8.tree import QUADRIC
 from tracer.geometry.intersect import hit_quadric
 from tracer.geometry.rays import Ray
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
-    any_lane, as_f32, as_i32, bits_of, lane_of, load_f32, load_f32x8, load_i32, load_i32x8, load_i64, lowest_bit,
-    maximum, minimum, select, smallest, store, i32x8, f32x8,
+    any_lane,
+    as_f32,
+    as_i32,
+    bits_of,
+    lane_of,
+    load_f32,
+    load_f32x8,
+    load_i32,
+    load_i32x8,
+    load_i64,
+    lowest_bit,
+    maximum,
+    minimum,
+    select,
+    smallest,
+    store,
 )
 
 NOBODY = np.int32(0x7FFFFFFF)
@@ -165,7 +189,7 @@ def any_of_one(r, far, trees, stack, counts):
         code = load_i64(stack + 8 * pending)
         if code < 0:
             counts[TESTS] += 1
-            mask, t, u, v, scale = _hits_in_block(trees.blocks + BLOCK * ~code, r, far)
+            mask, t, _u, _v, _scale = _hits_in_block(trees.blocks + BLOCK * ~code, r, far)
             if any_lane(mask & (t < far)):
                 return True
             continue

@@ -12,7 +12,6 @@ from tracer.geometry.bvh8.intersect import ZERO
 from tracer.geometry.bvh8.packet import (
     BLOCKED_T,
     DX,
-    FAR,
     IX,
     LANES,
     MEMORY,
@@ -22,7 +21,6 @@ from tracer.geometry.bvh8.packet import (
     ROW,
     STACK,
     T_MIN,
-    Interval,
     T,
     Trees,
     U,
@@ -50,7 +48,6 @@ from tracer.geometry.rays import INFINITY, MISS, ray_at
 from tracer.kernels import entry, inlined, subkernel
 from tracer.simd import (
     all_lanes,
-    u8_at,
     f32_at,
     f32x16,
     i32_at,
@@ -69,6 +66,7 @@ from tracer.simd import (
     smallest,
     store,
     store_mask,
+    u8_at,
 )
 
 # A placed world as the entries get it: addresses of both trees' nodes and blocks and of the quadrics as seen from the
@@ -79,7 +77,12 @@ LARGEST = np.float32(1e29)  # of t_max, short of what stands for a blocked ray
 
 @inlined
 def _trees(data, nodes, blocks):
-    return Trees(load_i64(data + nodes), load_i64(data + blocks), f32_at(load_i64(data + QUADRICS)), load_i64(data + TRIANGLE_COUNT))
+    return Trees(
+        load_i64(data + nodes),
+        load_i64(data + blocks),
+        f32_at(load_i64(data + QUADRICS)),
+        load_i64(data + TRIANGLE_COUNT),
+    )
 
 
 @inlined
@@ -217,7 +220,9 @@ def _any_singles(data, nodes, blocks, batch, first, last, stack, counts):
     trees, rays, blocked = _trees(data, nodes, blocks), rays_of(batch), u8_at(load_i64(batch + BLOCKED))
     for i in range(first, last):
         ray = ray_at(rays, i)
-        blocked[i] = np.uint8(ray.t_min < ray.t_max and any_of_one(line_of(ray), min(ray.t_max, LARGEST), trees, stack, counts))
+        blocked[i] = np.uint8(
+            ray.t_min < ray.t_max and any_of_one(line_of(ray), min(ray.t_max, LARGEST), trees, stack, counts)
+        )
 
 
 @subkernel
