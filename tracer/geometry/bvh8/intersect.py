@@ -22,6 +22,7 @@ from tracer.simd import as_f32, as_i32, fma, load_f32, load_f32x8, select
 ZERO = np.float32(0)
 ONE = np.float32(1)
 SIGN = np.int32(-0x80000000)
+EDGE = np.float32(2e-6)  # of a triangle, by which it is larger: rays along a common edge must meet either side
 
 
 class Triangle(NamedTuple):
@@ -103,7 +104,8 @@ def crossing(dx, dy, dz, m):
     area = as_f32(as_i32(det) ^ sign)
     u = as_f32(as_i32(dot(dx, dy, dz, m.ax, m.ay, m.az)) ^ sign)
     v = as_f32(as_i32(dot(dx, dy, dz, m.bx, m.by, m.bz)) ^ sign)
-    return (u >= ZERO) & (v >= ZERO) & (u + v <= area) & (area > ZERO), sign, u, v, area
+    edge = -EDGE * area
+    return (u >= edge) & (v >= edge) & (u + v <= area - edge) & (area > ZERO), sign, u, v, area
 
 
 @inlined
@@ -124,6 +126,7 @@ def may_cross(low, high, m):
     area0, area1 = _least_and_greatest(low, high, m.nx, m.ny, m.nz)
     u0, u1 = _least_and_greatest(low, high, m.ax, m.ay, m.az)
     v0, v1 = _least_and_greatest(low, high, m.bx, m.by, m.bz)
-    front = (area1 > ZERO) & (u1 >= ZERO) & (v1 >= ZERO) & (u0 + v0 <= area1)
-    back = (area0 < ZERO) & (u0 <= ZERO) & (v0 <= ZERO) & (u1 + v1 >= area0)
+    edge0, edge1 = -EDGE * area0, -EDGE * area1
+    front = (area1 > ZERO) & (u1 >= edge1) & (v1 >= edge1) & (u0 + v0 <= area1 - edge1)
+    back = (area0 < ZERO) & (u0 <= edge0) & (v0 <= edge0) & (u1 + v1 >= area0 - edge0)
     return front | back
