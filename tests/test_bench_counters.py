@@ -13,6 +13,8 @@ from tracer.kernels import cache_folder
 from viewer.resources import embedded_scenes
 
 TRAVERSE, TREE = "tracer/geometry/kdtree/traverse.py", "tracer/geometry/kdtree/tree.py"
+PACKET, SINGLE = "tracer/geometry/bvh8/packet.py", "tracer/geometry/bvh8/single.py"
+SOURCES = (TRAVERSE, TREE, PACKET, SINGLE)
 
 
 def test_the_lines_that_count_are_taken_out_and_nothing_else(tmp_path: Path) -> None:
@@ -24,14 +26,16 @@ def test_the_lines_that_count_are_taken_out_and_nothing_else(tmp_path: Path) -> 
         compile("\n".join(after), name, "exec")
         if before != after:
             changed[name] = [line for line in difflib.ndiff(before, after) if line[:2] in ("- ", "+ ")]
-    assert set(changed) == {TRAVERSE, TREE}
+    assert set(changed) == set(SOURCES)
     assert len(changed[TRAVERSE]) == 6 and all("s.counts[" in line for line in changed[TRAVERSE])
     assert len(changed[TREE]) == 5 and all("steps" in line for line in changed[TREE] if line[0] == "-")
+    for file in (PACKET, SINGLE):
+        assert len(changed[file]) == 6 and all(line[2:].lstrip().startswith("counts[") for line in changed[file])
 
 
 @pytest.mark.parametrize("edit", EDITS, ids=lambda edit: edit.text.strip())
 def test_sources_that_count_otherwise_are_refused(tmp_path: Path, edit) -> None:
-    for file in (TRAVERSE, TREE):
+    for file in SOURCES:
         (tmp_path / "sources" / file).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "sources" / file).write_text((ROOT / file).read_text())
     altered = tmp_path / "sources" / edit.file
@@ -41,7 +45,7 @@ def test_sources_that_count_otherwise_are_refused(tmp_path: Path, edit) -> None:
 
 
 def test_another_way_of_counting_is_refused(tmp_path: Path) -> None:
-    for file in (TRAVERSE, TREE):
+    for file in SOURCES:
         (tmp_path / "sources" / file).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "sources" / file).write_text((ROOT / file).read_text())
     (tmp_path / "sources" / "tracer" / "more.py").write_text("def f(counts):\n    counts[TESTS] += 2\n")

@@ -52,7 +52,7 @@ def test_table_1_from_python(tmp_path: Path) -> None:
     assert re.split(" {2,}", heading) == columns
 
     scene = tracer.load_scene(SCENE)
-    settings = tracer.Settings(width=48, height=48, verify=True)
+    settings = tracer.Settings(width=48, height=48, accelerator="kdtree", verify=True)
     *_, results = experiment.run(scene, settings, ["paper"], experiment.path_times(scene, 7))
     rows = experiment.table(results)
     assert rows[1].most_steps > 0.0

@@ -12,7 +12,7 @@ import numpy as np
 
 from tracer.culling.modes import word_type
 from tracer.frame import Settings
-from tracer.geometry.rays import ray_batch
+from tracer.geometry.world import STRUCTURES
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation
 from tracer.scene.model import (
@@ -28,16 +28,17 @@ from tracer.scene.model import (
 )
 
 _lock = threading.Lock()
-_ready: set[type] = set()
+_ready: set[tuple[type, str]] = set()
 
 # What is made ready, with about how much of the whole time it takes when compiled.
 _SHARES = {
-    "the kd-tree builder": 0.2,
-    "ray traversal": 0.15,
+    "the builder": 0.25,
+    "nearest hits": 0.2,
+    "shadow rays": 0.2,
+    "primary rays": 0.05,
     "occlusion testing": 0.05,
-    "shading and shadow testing": 0.5,
+    "shading and shadow testing": 0.23,
     "mode setting": 0.02,
-    "ray queries": 0.08,
 }
 
 
@@ -62,13 +63,13 @@ def _tiny_scene(lights: int) -> Scene:
     )
 
 
-def warm_up(progress: Progress | None = None, lights: int = 1) -> None:
+def warm_up(progress: Progress | None = None, lights: int = 1, accelerator: str = "bvh8") -> None:
     """Make every kernel ready for scenes with so many lights; at once where that has been done before.
 
     `progress` is told what is being compiled; what it raises (Cancelled) passes through.
     """
     with _lock:
-        if word_type(lights) in _ready:
+        if (word_type(lights), accelerator) in _ready:
             return
         done = 0.0
 
@@ -78,23 +79,26 @@ def warm_up(progress: Progress | None = None, lights: int = 1) -> None:
                 progress(f"compiling {name}", done)
             done += _SHARES[name]
 
-        report("the kd-tree builder")
+        structure = STRUCTURES[accelerator]
+        report("nearest hits")
+        structure.closest.compile()
+        report("shadow rays")
+        structure.any_static.compile()
+        structure.any_dynamic.compile()
+        report("the builder")
         # As many lights as make a word of that size, no more: each is traced.
-        renderer = Renderer(_tiny_scene(1 if lights <= 15 else 16), Settings(width=4, height=4, threads=1))
+        scene = _tiny_scene(1 if lights <= 15 else 16)
+        renderer = Renderer(scene, Settings(width=4, height=4, threads=1, accelerator=accelerator))
         frame = renderer.begin(0.0)
         frame.place_objects_and_lights()
         for name, phase in (
-            ("ray traversal", frame.trace_primary_rays),
+            ("primary rays", frame.trace_primary_rays),
             ("occlusion testing", frame.test_occlusion),
             ("shading and shadow testing", frame.shade),
             ("mode setting", frame.set_modes),
         ):
             report(name)
             phase()
-        report("ray queries")
-        rays = ray_batch([[0, 0, 5]], [[0, 0, -1]])
-        renderer.world.closest_hits(rays, 1)
-        renderer.world.any_hits(rays, 1)
         if progress is not None:
             progress("compiled", 1.0)
-        _ready.add(word_type(lights))
+        _ready.add((word_type(lights), accelerator))

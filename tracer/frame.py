@@ -37,7 +37,7 @@ class Settings:
     verify: bool = False
     samples: int = 1
     threads: int = 0
-    accelerator: str = "kdtree"
+    accelerator: str = "bvh8"
     record_lights: bool = False
 
     def validated(self) -> Settings:

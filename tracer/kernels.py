@@ -13,16 +13,17 @@ import hashlib
 import os
 import tempfile
 from collections.abc import Callable
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
 import numba
 import platformdirs
-from numba import njit
+from numba import cfunc, njit
 from numba.core import config as _config
+from numba.core import types
 
-_KERNEL_FOLDERS = ("geometry", "culling", "shading")
+_KERNEL_FOLDERS = ("simd", "geometry", "culling", "shading")
 
 
 def _source_hash() -> str:
@@ -57,6 +58,7 @@ def cache_folder() -> Path:
 
 
 _njit: Any = njit
+_cfunc: Any = cfunc
 _OPTIONS = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 
@@ -78,3 +80,41 @@ def subkernel(function: Callable) -> Any:
 def inlined(function: Callable) -> Any:
     """A small subkernel that disappears into its callers."""
     return _njit(no_cpython_wrapper=True, forceinline=True, **_OPTIONS)(function)
+
+
+class Entry:
+    """Machine code that kernels call by address and Python by `call`: compiled, or loaded, when first wanted.
+
+    The function takes five int64 and returns nothing (`tracer.geometry.queries`).
+    """
+
+    def __init__(self, function: Callable) -> None:
+        self._function = function
+        self.__doc__ = function.__doc__
+
+    @cached_property
+    def _compiled(self) -> Any:
+        config: Any = _config
+        saved, config.CACHE_DIR = config.CACHE_DIR, str(cache_folder())
+        try:
+            signature = types.void(*[types.int64] * 5)
+            return _cfunc(signature, cache=True, error_model="numpy")(self._function)
+        finally:
+            config.CACHE_DIR = saved
+
+    def compile(self) -> None:
+        """Make it ready now."""
+        _ = self._compiled
+
+    @property
+    def address(self) -> int:
+        return self._compiled.address
+
+    def call(self, data: int, batch: int, first: int, last: int, counts: int) -> None:
+        """Call it from Python, without the GIL."""
+        self._compiled.ctypes(data, batch, first, last, counts)
+
+
+def entry(function: Callable) -> Entry:
+    """Compile a structure's query (see `Entry`)."""
+    return Entry(function)

@@ -168,7 +168,7 @@ def _render(arguments: list[str]) -> int:
     add("--camera", metavar="JSON", help="another camera: position, direction, up, angle; or a file with that")
     add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="trace the N frames before it first")
     add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
-    _add_tracing_options(parser)
+    _add_tracing_options(parser, "bvh8")
     _add_zoom_factor(parser)
     add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
     options = parser.parse_args(arguments)
@@ -202,7 +202,7 @@ def _bench(arguments: list[str]) -> int:
     add("--json", type=Path, metavar="FILE", help="every figure of every frame")
     add("--csv", type=Path, metavar="FILE", help="the table")
     add("--plot", type=Path, metavar="FILE", help="savings per frame, drawn for a slide: a .png, .svg or .pdf")
-    _add_tracing_options(parser)
+    _add_tracing_options(parser, "kdtree")  # whose steps are the paper's
     _add_zoom_factor(parser)
     options = parser.parse_args(arguments)
 
@@ -237,7 +237,7 @@ def _zoom(arguments: list[str]) -> int:
     add("--json", type=Path, metavar="FILE", help="every figure of every step")
     add("--csv", type=Path, metavar="FILE", help="a line for each step")
     add("--plot", type=Path, metavar="FILE", help="counts, modes and wrong pixels over the steps: a .png, .svg or .pdf")
-    _add_tracing_options(parser)
+    _add_tracing_options(parser, "bvh8")
     parser.set_defaults(zoom_factor=4.0, verify=True)  # each test has its own, and verifies
     options = parser.parse_args(arguments)
 
@@ -254,10 +254,11 @@ def _add_moment(parser: _Parser) -> None:
     moment.add_argument("--time", type=float, metavar="T", help="time in seconds, instead of a frame")
 
 
-def _add_tracing_options(parser: _Parser) -> None:
-    """What all commands that trace have in common."""
+def _add_tracing_options(parser: _Parser, accelerator: str) -> None:
+    """What all commands that trace have in common, with the structure that is theirs by default."""
     add = parser.add_argument
-    add("--accelerator", choices=("kdtree",), default="kdtree", help="the structure that rays go through")
+    told = f"the structure that rays go through (default: {accelerator})"
+    add("--accelerator", choices=("kdtree", "bvh8"), default=accelerator, help=told)
     add("--threads", type=count(0, 1024), default=0, metavar="N", help="0, the default: one per core")
     add("--depth", type=count(0, 100), default=10, metavar="D", help="the most bounces (default: 10)")
     add("--symmetric", action="store_true", help="occlusion tests in both directions between neighbouring pixels")

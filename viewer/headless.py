@@ -63,7 +63,7 @@ def render(path: Path, options: Namespace) -> None:
         if view is View.SHADOW and light >= len(scene.lights):
             raise ValueError(f"--view shadow:{light}: {lights_in_words(len(scene.lights))}")
         time = moment(scene, options.frame, options.time)
-        prepare_kernels(work, len(scene.lights))
+        prepare_kernels(work, len(scene.lights), options.accelerator)
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)
         before = _render_before(renderer, time, options, work)
         work.count(f"tracing {settings.width} × {settings.height}", before, before + options.samples)
@@ -104,11 +104,11 @@ def buffers(frame: Frame) -> dict[str, np.ndarray]:
     return arrays
 
 
-def prepare_kernels(work: Work, lights: int) -> None:
+def prepare_kernels(work: Work, lights: int, accelerator: str) -> None:
     """Compile or load every kernel that so many lights need; the first time takes a while and says so."""
     if next(cache_folder().rglob("*.nbi"), None) is None:
         work.note("compiling the kernels, once for this version; this takes a minute or less")
-    warm_up(work.progress, lights)
+    warm_up(work.progress, lights, accelerator)
 
 
 def tracing_settings(options: Namespace) -> Settings:

@@ -54,7 +54,7 @@ def open_scene(path: Path, settings: Settings, ready: Callable[[], bool], progre
     while not ready():
         progress(f"{path.name}: waiting for the kernels", 1.0)
         time.sleep(0.02)
-    warm_up(progress, len(scene.lights))  # many lights need wider words, and kernels for them
+    warm_up(progress, len(scene.lights), settings.accelerator)  # many lights need wider words, and kernels for them
     renderer = Renderer(scene, settings, progress)
     return Opened(scene, renderer, time.perf_counter() - started)
 

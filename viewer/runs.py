@@ -180,7 +180,13 @@ class Experiment(Run[experiment.Results]):
         self.methods = experiment.with_reference(sorted(plan.methods))
         self.times = experiment.path_times(scene, plan.frames)
         self.settings = replace(
-            settings, width=plan.size[0], height=plan.size[1], depth=plan.depth, verify=plan.verify, samples=1
+            settings,
+            width=plan.size[0],
+            height=plan.size[1],
+            depth=plan.depth,
+            verify=plan.verify,
+            samples=1,
+            accelerator="kdtree",  # whose steps are the paper's, as the command has it
         ).validated()
         self.shown = self.methods[-1]
         super().__init__(scene, len(self.methods) * len(self.times), wake)
@@ -205,7 +211,6 @@ class Experiment(Run[experiment.Results]):
             self.methods,
             self.times,
             cancel=cancelled,
-            world=renderer.world,
             on_frame=on_frame,
         )
 

@@ -3,7 +3,7 @@
     make counters                            BART's Kitchen, or the default scene where it is not there
     make counters ARGS="--frames 40 default"
 
-The sources are copied to a temporary folder, and the lines that count inside the kd-tree's traversal
+The sources are copied to a temporary folder, and the lines that count inside the structures' traversal
 taken out of the copy; where one of them is not found as it is known here, that ends the run.  Each of
 the two has a process and compiled kernels of its own.  They render the same frames in turn, now the one
 first and now the other, while the other waits.  Every frame of the two must be the same in each bit, and
@@ -65,6 +65,11 @@ EDITS = (
     Edit("tracer/geometry/kdtree/tree.py", "        steps += 1\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "    steps: int\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "leave, steps, pending)", 1, "leave, pending)"),
+    *(
+        Edit(f"tracer/geometry/bvh8/{file}.py", f"{indent * ' '}counts[{what}] += 1\n", 2)
+        for file in ("packet", "single")
+        for indent, what in ((16, "TESTS"), (12, "TESTS"), (8, "STEPS"))  # the deepest first: it ends like the others
+    ),
 )
 
 

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracer.geometry.kdtree.traverse import Placed
-from tracer.geometry.kdtree.tree import Trees
+from tracer.geometry.kdtree.tree import Parts, Trees
 
 F = np.float32
 Vector = tuple[np.float32, np.float32, np.float32]
@@ -50,8 +49,8 @@ class Traversal:
     meets (primitives,) float32 is where the ray meets each, inf where it does not.
     """
 
-    def __init__(self, placed: Placed, line: Line, t_min: float, t_max: float, meets: np.ndarray) -> None:
-        self.placed, self.line, self.meets = placed, line, meets
+    def __init__(self, parts: Parts, line: Line, t_min: float, t_max: float, meets: np.ndarray) -> None:
+        self.parts, self.line, self.meets = parts, line, meets
         self.t_min, self.t_max = F(t_min), F(t_max)
         self.steps = self.tests = 0
         self.nearest, self.primitive = self.t_max, -1
@@ -78,20 +77,20 @@ class Traversal:
     def _leaves(self, whatever: bool) -> Iterator[list[int]]:
         """Primitives of the leaves in the ray's way, in its order: static geometry's, then those of the dynamic
         objects whose boxes it crosses.  Unless it asks for whatever is there, nothing beyond `nearest` counts."""
-        placed = self.placed
+        parts = self.parts
 
         def limit() -> np.float32:
             return self.t_max if whatever else self.nearest
 
-        enter, leave = self.line.within(placed.boxes[0], self.t_min, self.t_max)
-        yield from (items for items, _, _ in self._walk(placed.static, 0, self.line, enter, leave, limit))
-        enter, leave = self.line.within(placed.top_box, self.t_min, self.t_max)
-        for objects, first, last in self._walk(placed.top, 0, self.line, enter, leave, limit):
+        enter, leave = self.line.within(parts.boxes[0], self.t_min, self.t_max)
+        yield from (items for items, _, _ in self._walk(parts.static, 0, self.line, enter, leave, limit))
+        enter, leave = self.line.within(parts.top_box, self.t_min, self.t_max)
+        for objects, first, last in self._walk(parts.top, 0, self.line, enter, leave, limit):
             first, last = first - F(1e-5) * abs(first), last + F(1e-5) * abs(last)
             for o in objects:
-                line = self.line.carried(placed.to_object[o])
-                enter, leave = line.within(placed.boxes[o], first, last if whatever else min(last, self.nearest))
-                walk = self._walk(placed.dynamic, int(placed.roots[o]), line, enter, leave, limit)
+                line = self.line.carried(parts.to_object[o])
+                enter, leave = line.within(parts.boxes[o], first, last if whatever else min(last, self.nearest))
+                walk = self._walk(parts.dynamic, int(parts.roots[o]), line, enter, leave, limit)
                 yield from (items for items, _, _ in walk)
 
     def _walk(

@@ -53,7 +53,7 @@ def assert_placed(world: tracer.World, time: float, rounding: float = 2e-7) -> N
     """What is dynamic is in the dynamic tree, where it belongs; `rounding` is relative to the largest coordinate."""
     rows, boxes = in_world(world, time)
     extent = max(np.nanmax(np.abs(a), initial=0) for a in (rows, boxes))
-    assert_sound(world.placed.dynamic, rows, boxes, rounding * extent)
+    assert_sound(world.structure.dynamic, rows, boxes, rounding * extent)
     assert world.placed.has_dynamic == (not np.isnan(rows).all() or not np.isnan(boxes).all())
 
 
@@ -62,11 +62,11 @@ def test_what_moves_and_deforms_is_where_the_animation_puts_it(bart, name):
     """And the tree is that of a world that never was at any other time."""
     content = tracer.load_scene(bart / name)
     world = tracer.World(content, accelerator="bvh8")
-    assert_sound(world.placed.static, *in_world(world, 0.0, static=True), rounding=1e-6)
+    assert_sound(world.structure.static, *in_world(world, 0.0, static=True), rounding=1e-6)
     for time in np.linspace(*content.time_range, 4):
         world.place(time)
         assert_placed(world, time)
-        assert same(world.placed.dynamic, tracer.World(content, time, "bvh8").placed.dynamic)
+        assert same(world.structure.dynamic, tracer.World(content, time, "bvh8").structure.dynamic)
 
     parts = [in_world(world, time, static) for static in (True, False)]
     points = np.concatenate([corners_of(rows).reshape(-1, 3) for rows, _ in parts])
@@ -82,7 +82,7 @@ def test_a_tree_of_what_deforms_stays_good(bart):
     for time in np.linspace(0.02, 3.98, 40):
         world.place(time)
         fresh = build_tree(world.placed.triangles[content.triangle_offsets[1] :].copy(), NO_BOXES)
-        assert cost(world.placed.dynamic) - 1 < 1.25 * cost(fresh)  # but for the node above all objects
+        assert cost(world.structure.dynamic) - 1 < 1.25 * cost(fresh)  # but for the node above all objects
 
 
 def spinning(rng: np.random.Generator, n: int) -> tuple[np.ndarray, ...]:
@@ -109,7 +109,7 @@ def test_objects_of_triangles_and_quadrics_are_placed(objects):
         parts.append(replace(item, quadrics=round_things(rng, int(rng.integers(0, 5)))))
     content = scene(random_corners(rng, 30, 0.1), round_things(rng, 5), tuple(parts))
     world = tracer.World(content, accelerator="bvh8")
-    assert_sound(world.placed.static, *in_world(world, 0.0, static=True), rounding=1e-5)
+    assert_sound(world.structure.static, *in_world(world, 0.0, static=True), rounding=1e-5)
     assert_placed(world, 0.0, rounding=1e-5)
 
 
@@ -118,14 +118,14 @@ def test_maps_of_quadrics_lead_from_the_world_to_canonical_space():
     (matrix,) = spinning(rng, 1)
     ball = SceneObject("ball", empty_triangles(), round_things(rng, 6), (matrix,))
     content = scene(random_corners(rng, 30, 0.1), round_things(rng, 4), (ball,))
-    placed = tracer.World(content, accelerator="bvh8").placed
-    maps = placed.world_quadrics[:, :12].reshape(-1, 3, 4).astype(np.float64)
+    world = tracer.World(content, accelerator="bvh8")
+    maps = world.structure.world_quadrics[:, :12].reshape(-1, 3, 4).astype(np.float64)
     for i, back in enumerate(maps):
         item, k = content.objects[i // 4 > 0], i if i < 4 else i - 4
         there = np.vstack([item.quadrics.to_object[k], [0, 0, 0, 1]])
         there = (matrix if i >= 4 else np.eye(4)) @ there
         assert np.allclose(back @ there, np.eye(4)[:3], atol=1e-4)
-    assert np.array_equal(placed.world_quadrics[:, 12:], placed.quadrics[:, 12:])
+    assert np.array_equal(world.structure.world_quadrics[:, 12:], world.placed.quadrics[:, 12:])
 
 
 def test_what_is_hidden_or_scaled_to_nothing_is_not_in_the_tree():
@@ -149,6 +149,6 @@ def test_what_is_hidden_or_scaled_to_nothing_is_not_in_the_tree():
 def test_a_world_without_anything_dynamic_says_so():
     world = tracer.World(scene(random_corners(np.random.default_rng(5), 30, 0.1)), accelerator="bvh8")
     assert not world.placed.has_dynamic
-    assert_sound(world.placed.dynamic, np.empty((0, 9)))
+    assert_sound(world.structure.dynamic, np.empty((0, 9)))
     empty = tracer.World(scene(), accelerator="bvh8")
     assert (empty.bounds()[:3] > empty.bounds()[3:]).all()

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import tracer
+from tracer.geometry.world import ACCELERATORS
 
 
 def contents(frame: tracer.Frame) -> dict[str, Any]:
@@ -37,6 +38,7 @@ def render(world: tracer.World, settings: tracer.Settings, first: int, count: in
     return [renderer.render(scene.frame_time(number)) for number in range(first, first + count)]
 
 
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
 @pytest.mark.parametrize(
     "name, first, count, size, symmetric",
     [
@@ -46,11 +48,10 @@ def render(world: tracer.World, settings: tracer.Settings, first: int, count: in
     ],
 )
 def test_frames_are_the_same_for_any_number_of_threads_and_on_every_run(
-    bart: Path, name: str, first: int, count: int, size: int, symmetric: bool
+    bart: Path, name: str, first: int, count: int, size: int, symmetric: bool, accelerator: str
 ):
     """Along the scene's own path: pictures, reference pictures, modes, counts and counters, bit for bit."""
-    world = tracer.World(tracer.load_scene(bart / name))
-    anew = tracer.World(tracer.load_scene(bart / name))
+    world, anew = (tracer.World(tracer.load_scene(bart / name), accelerator=accelerator) for _ in range(2))
     runs = {}
     for run, on, threads in (("1 thread", world, 1), ("2", world, 2), ("4", world, 4), ("2, loaded anew", anew, 2)):
         settings = tracer.Settings(size, size, 10, "paper", symmetric, verify=True, threads=threads, record_lights=True)

@@ -12,7 +12,7 @@ from tests.tracing import brute
 from tests.tracing.naive_tree import Line, Traversal
 from tests.tracing.random_worlds import END, quickly, scenes
 from tests.tracing.worlds import quad, random_corners, scene
-from tracer.geometry.kdtree import traverse
+from tracer.geometry.queries import batch_of
 from tracer.geometry.rays import Hits, Rays
 
 
@@ -31,16 +31,19 @@ def assert_same_way(world: tracer.World, rays: Rays, there: np.ndarray, edges: b
 
     Where rays run along `edges`, a hit on one may count or not; nothing else may be lost in the trees.
     """
-    n, placed = len(rays.t_min), world.placed
+    n, placed, structure = len(rays.t_min), world.placed, world.structure
     met = brute.meet_all(world, rays, there)
     hits = Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
     blocked, sums = np.zeros(n, np.bool_), np.zeros((2, 2), np.int64)
+    nearest, whether = batch_of(rays, hits), batch_of(rays, blocked=blocked)
     for i in range(n):
         counts = np.zeros((2, 2), np.int64)
-        traverse.closest_hits(placed, rays, hits, i, i + 1, counts[0])
-        traverse.any_hits(placed, rays, blocked, i, i + 1, counts[1])
+        structure.closest.call(placed.data, nearest.ctypes.data, i, i + 1, counts[0].ctypes.data)
+        structure.any_static.call(placed.data, whether.ctypes.data, i, i + 1, counts[1].ctypes.data)
+        if not blocked[i]:
+            structure.any_dynamic.call(placed.data, whether.ctypes.data, i, i + 1, counts[1].ctypes.data)
         line = Line(tuple(rays.origin[:, i]), tuple(rays.direction[:, i]))
-        near, whatever = (Traversal(placed, line, rays.t_min[i], rays.t_max[i], met.t[i]) for _ in range(2))
+        near, whatever = (Traversal(structure.parts, line, rays.t_min[i], rays.t_max[i], met.t[i]) for _ in range(2))
         assert (hits.t[i], hits.primitive[i]) == near.closest()
         assert blocked[i] == whatever.any() == (hits.primitive[i] >= 0)
         if edges:

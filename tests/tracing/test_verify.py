@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
+
 import tracer
+from tracer.geometry.world import ACCELERATORS
 
 SETTINGS = tracer.Settings(width=128, height=128, depth=10, verify=True)
 
@@ -19,10 +22,12 @@ def assert_verified(frame: tracer.Frame, none: tracer.Frame) -> None:
     assert none.statistics.shadow.wrong == 0 == none.wrong.sum()
 
 
-def test_the_reference_of_kitchen_is_the_picture_without_culling(bart: Path):
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_the_reference_of_kitchen_is_the_picture_without_culling(bart: Path, accelerator: str):
     scene = tracer.load_scene(bart / "kitchen" / "kitchen.aff")
-    paper = tracer.Renderer(scene, SETTINGS)
-    none = tracer.Renderer(scene, replace(SETTINGS, method="none"), world=paper.world)
+    settings = replace(SETTINGS, accelerator=accelerator)
+    paper = tracer.Renderer(scene, settings)
+    none = tracer.Renderer(scene, replace(settings, method="none"), world=paper.world)
     wrong = 0
     for number in range(395, 405):
         time = scene.frame_time(number)

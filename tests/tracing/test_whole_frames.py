@@ -13,6 +13,7 @@ import tracer
 from tests.tracing.naive_frame import NaiveFrame, NaiveRenderer
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.test_verify import assert_verified
+from tracer.geometry.world import ACCELERATORS
 
 
 def assert_same(frame: tracer.Frame, twin: NaiveFrame) -> None:
@@ -70,7 +71,8 @@ def test_frames_of_random_scenes_are_what_the_naive_twin_says(
     assert set(+seen) == counted  # none of them was never anything but 0
 
 
-def test_the_reference_of_random_scenes_is_the_picture_without_culling():
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_the_reference_of_random_scenes_is_the_picture_without_culling(accelerator: str):
     wrong = 0
 
     @quickly(15)
@@ -78,6 +80,7 @@ def test_the_reference_of_random_scenes_is_the_picture_without_culling():
     def check(walk: Walk, depth: int) -> None:
         nonlocal wrong
         settings = {"width": 48, "height": 40, "depth": depth, "threads": 2, "verify": True}
+        settings["accelerator"] = accelerator
         paper, none = (tracer.Renderer(walk.scene, tracer.Settings(method=m, **settings)) for m in ("paper", "none"))
         for time, camera in walk.frames:
             frame = paper.render(time, camera)

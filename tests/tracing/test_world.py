@@ -15,6 +15,7 @@ from tests.tracing.random_worlds import END, quickly, scenes
 from tests.tracing.worlds import affine, moved, quadrics, random_corners, scene
 from tracer.geometry.kdtree.build import CANCELLED, build_tree
 from tracer.geometry.primitives import triangle_rows
+from tracer.geometry.world import ACCELERATORS
 from tracer.scene.model import SPHERE, Cancelled
 
 
@@ -23,6 +24,11 @@ def random_rays(rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarra
     directions = targets - origins
     directions[: n // 10, rng.integers(3)] = 0.0  # parallel to a plane
     return origins.astype(np.float32), directions.astype(np.float32)
+
+
+@pytest.fixture(params=ACCELERATORS)
+def accelerator(request) -> str:
+    return request.param
 
 
 def assert_same_answers(world, corners, origins, directions):
@@ -44,14 +50,14 @@ def assert_same_answers(world, corners, origins, directions):
 
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("n, size", [(1, 0.5), (40, 0.3), (300, 0.05)])
-def test_queries_agree_with_brute_force(seed, n, size):
+def test_queries_agree_with_brute_force(accelerator, seed, n, size):
     rng = np.random.default_rng(seed)
     corners = random_corners(rng, n, size)
-    assert_same_answers(tracer.World(scene(corners)), corners, *random_rays(rng, 60))
+    assert_same_answers(tracer.World(scene(corners), 0.0, accelerator), corners, *random_rays(rng, 60))
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_dynamic_objects_are_found_where_they_are_placed(seed):
+def test_dynamic_objects_are_found_where_they_are_placed(accelerator, seed):
     rng = np.random.default_rng(100 + seed)
     static, parts = random_corners(rng, 50, 0.1), [random_corners(rng, 30, 0.1) for _ in range(5)]
     matrices = [np.eye(4) for _ in parts]
@@ -60,17 +66,18 @@ def test_dynamic_objects_are_found_where_they_are_placed(seed):
         m[:3, 3] = rng.normal(size=3) * 0.5
     objects = tuple(moved(f"part {i}", p, m) for i, (p, m) in enumerate(zip(parts, matrices, strict=True)))
     everything = [static] + [p @ m[:3, :3].T + m[:3, 3] for p, m in zip(parts, matrices, strict=True)]
-    assert_same_answers(tracer.World(scene(static, dynamic=objects)), np.concatenate(everything), *random_rays(rng, 80))
+    world = tracer.World(scene(static, dynamic=objects), 0.0, accelerator)
+    assert_same_answers(world, np.concatenate(everything), *random_rays(rng, 80))
 
 
-def test_queries_agree_with_float64_in_random_scenes():
+def test_queries_agree_with_float64_in_random_scenes(accelerator):
     """Triangles, spheres and cones, static, moving, vanishing and deforming."""
     compared: Counter[str] = Counter()
 
     @quickly(40)
     @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
     def check(made: tracer.Scene, time: float, seed: int) -> None:
-        world = tracer.World(made, time)
+        world = tracer.World(made, time, accelerator)
         origins, directions = random_rays(np.random.default_rng(seed), 20)
         rays = tracer.RayBatch(origins, directions)
         hits, blocked = world.closest_hits(rays, threads=1), world.any_hits(rays, threads=1)
@@ -91,37 +98,38 @@ def test_queries_agree_with_float64_in_random_scenes():
     assert len(compared) == 4 and min(compared.values()) >= 10, compared
 
 
-def test_an_object_scaled_to_nothing_is_not_there():
+def test_an_object_scaled_to_nothing_is_not_there(accelerator):
     gone = moved("gone", random_corners(np.random.default_rng(0), 20, 0.3), np.zeros((4, 4)))
-    world = tracer.World(scene(dynamic=(gone,)))
+    world = tracer.World(scene(dynamic=(gone,)), 0.0, accelerator)
     origins, directions = random_rays(np.random.default_rng(1), 50)
     assert not world.any_hits(tracer.RayBatch(origins, directions)).any()
 
 
-def test_an_empty_world_is_missed():
-    world = tracer.World(scene())
+def test_an_empty_world_is_missed(accelerator):
+    world = tracer.World(scene(), 0.0, accelerator)
     assert world.closest_hits(tracer.RayBatch([[0, 0, 0]], [[0, 0, 1]])).primitive.tolist() == [-1]
     assert not world.any_hits(tracer.RayBatch([[0, 0, 0]], [[0, 0, 1]]))[0]
 
 
 @pytest.mark.parametrize("make", [lambda n: np.zeros((n, 3, 3)), lambda n: np.tile(np.eye(3), (n, 1, 1))])
-def test_a_thousand_equal_triangles_still_make_a_tree(make):
-    world = tracer.World(scene(make(1000)))
+def test_a_thousand_equal_triangles_still_make_a_tree(accelerator, make):
+    world = tracer.World(scene(make(1000)), 0.0, accelerator)
     hits = world.closest_hits(tracer.RayBatch([[2, 2, 2]], [[-1, -1, -1]]))
     assert hits.primitive[0] in (-1, 0)  # the lowest number wins among equal distances
 
 
-def test_every_thread_count_gives_the_same_hits():
+def test_every_thread_count_gives_the_same_hits(accelerator):
     rng = np.random.default_rng(5)
-    world = tracer.World(scene(random_corners(rng, 2000, 0.02)))
+    world = tracer.World(scene(random_corners(rng, 2000, 0.02)), 0.0, accelerator)
     rays = tracer.RayBatch(*random_rays(rng, 20000))
     one, many = world.closest_hits(rays, 1), world.closest_hits(rays, 4)
     assert all(np.array_equal(a, b) for a, b in zip(one, many, strict=True))
     assert np.array_equal(world.any_hits(rays, 1), world.any_hits(rays, 3))
 
 
-def test_spheres_live_beside_triangles():
-    world = tracer.World(scene([[[-9, -9, -5], [9, -9, -5], [0, 9, -5]]], quadrics([(SPHERE, affine(), (1, 1))])))
+def test_spheres_live_beside_triangles(accelerator):
+    floor, ball = [[[-9, -9, -5], [9, -9, -5], [0, 9, -5]]], quadrics([(SPHERE, affine(), (1, 1))])
+    world = tracer.World(scene(floor, ball), 0.0, accelerator)
     hits = world.closest_hits(tracer.RayBatch([[0, 0, 5], [3, 0, 5]], [[0, 0, -1], [0, 0, -1]]))
     assert hits.primitive.tolist() == [1, 0]
     assert hits.t.tolist() == [4.0, 10.0]
@@ -136,12 +144,12 @@ def test_a_cancelled_build_stops():
     assert len(tree.items) == 0
 
 
-def test_progress_that_raises_cancels_a_large_build():
+def test_progress_that_raises_cancels_a_large_build(accelerator):
     def stop(what: str, done: float) -> None:
         raise Cancelled
 
     with pytest.raises(Cancelled):
-        tracer.World(scene(random_corners(np.random.default_rng(0), 20000, 0.01)), progress=stop)
+        tracer.World(scene(random_corners(np.random.default_rng(0), 20000, 0.01)), 0.0, accelerator, progress=stop)
 
 
 @pytest.mark.parametrize("n", [1, 5])

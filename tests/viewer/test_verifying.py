@@ -10,6 +10,7 @@ import pytest
 from PIL import Image
 
 from tests.viewer.conftest import FakeRenderer, make_frame, make_scene
+from tracer import experiment
 from tracer.scene.model import Camera
 from viewer.controller import Controller
 from viewer.preferences import Preferences
@@ -93,7 +94,11 @@ def test_switched_off_by_the_user_it_is_traced_without(desk: Desk):
     assert desk.rest() == [False]
 
 
-def test_what_a_run_cut_short_is_traced_after_it_though_it_showed_no_frame(desk: Desk):
+def test_what_a_run_cut_short_is_traced_after_it_though_it_showed_no_frame(desk: Desk, monkeypatch):
+    def fail(*arguments, **options):
+        raise AttributeError("no world")
+
+    monkeypatch.setattr(experiment, "run", fail)
     desk.renderer.go.clear()
     desk.renderer.started.clear()
     desk.c.trace_again()
@@ -104,7 +109,7 @@ def test_what_a_run_cut_short_is_traced_after_it_though_it_showed_no_frame(desk:
     while desk.c.runner.current is not None:
         assert time.monotonic() < end
         desk.c.tick(SIZE)
-    assert desk.c.message.error, "the renderer has no world, so that the run fails at once"
+    assert desk.c.message.error, "the run fails at once"
     assert desk.renderer.cancelled, "the run came before the frame"
     desk.renderer.go.set()
     assert desk.rest() == [False], "the frame that was cut short has not come"

@@ -10,6 +10,9 @@ is known to be, as the last frame left it, decides the ray's fate:
 
 Shadow rays start at the light.  They end a little above the surface (`lifted`), so that it does not
 shadow itself.
+
+Points come in vectors of sixteen.  Vectors without a ray to trace are left out, so that batches
+shrink with what is culled; what is found is kept as bits, one for each point.
 """
 
 from __future__ import annotations
@@ -19,26 +22,32 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.modes import (
-    DYNAMIC,
-    FULL_SHADOW,
-    FULLY_RENDERED,
-    MAX_CULLED_LIGHTS,
-    NON_SHADOW,
-    add_shadow,
-    occlusion_bits,
-    shadow_bits,
-)
+from tracer.culling.modes import DYNAMIC, FULL_SHADOW, FULLY_RENDERED, MAX_CULLED_LIGHTS, NON_SHADOW, add_shadow
 from tracer.geometry.queries import any_dynamic_hits, any_static_hits
-from tracer.geometry.rays import empty_rays
+from tracer.geometry.rays import Rays, empty_rays
 from tracer.kernels import inlined, subkernel
+from tracer.simd import (
+    address_of,
+    bits_of,
+    f32x16,
+    lane_of,
+    load_f32x16,
+    load_i32x16,
+    load_mask16,
+    load_three,
+    lowest_bit,
+    mask16,
+    ones,
+    select,
+    store,
+)
 
 # Shadow counters; the first two are those that queries add to.
 STEPS, TESTS, RAYS, DUE, CULLED, DYNAMIC_ONLY, WRONG = range(7)
 SHADOW_COUNTERS = 7
 
-NOT_DUE, BLOCKED, LIT = 0, 1, 2  # answers
 LIGHT_MARGIN = np.float32(1e-5)  # of the way from the light: what lies nearer to it is the lamp itself
+ZERO, ONE = np.float32(0), np.float32(1)
 
 
 class Knowledge(NamedTuple):
@@ -49,6 +58,24 @@ class Knowledge(NamedTuple):
     gained: NDArray[np.unsignedinteger]
     cull: bool
     verify: bool
+
+
+class Answers(NamedTuple):
+    """What is known of the shadow rays of n points to one light, 16 points a row, as bits of int32:
+    which are due, which of those reach the light and, where knowledge asks to verify, which truly do.
+
+    For asking: low and high (n,) int32, halves of the points' words; rays, source (n / 16,) int32, the
+    vectors that its own come from, live, the bits of those to be traced, and blocked (n,) bool."""
+
+    due: NDArray[np.int32]
+    lit: NDArray[np.int32]
+    truth: NDArray[np.int32]
+    low: NDArray[np.int32]
+    high: NDArray[np.int32]
+    rays: Rays
+    source: NDArray[np.int32]
+    live: NDArray[np.int32]
+    blocked: NDArray[np.bool_]
 
 
 @inlined
@@ -62,115 +89,172 @@ def lifted(position, geometric, offset, i):
 
 
 @subkernel
-def _is_due(points, light, i):
-    return (
-        points.geometric[0, i] * (light[0] - points.position[0, i])
-        + points.geometric[1, i] * (light[1] - points.position[1, i])
-        + points.geometric[2, i] * (light[2] - points.position[2, i])
-    ) > np.float32(0)
-
-
-@subkernel
-def _rays_from_light(points, light, index, count):
-    """Shadow rays from a light to the points listed in index: t = 1 is the point."""
-    rays = empty_rays(count)
-    for k in range(count):
-        target = lifted(points.position, points.geometric, points.offset[index[k]], index[k])
-        for axis in range(3):
-            rays.origin[axis, k] = light[axis]
-            rays.direction[axis, k] = target[axis] - light[axis]
-        rays.t_min[k], rays.t_max[k] = LIGHT_MARGIN, np.float32(1)
-    return rays
-
-
-@subkernel
-def _choose_fates(points, light, number, knowledge, asked, known_lit, answer, counts):
-    """Lists of points whose rays ask everything and of those that ask dynamic objects alone; their lengths."""
-    asking, lit = 0, 0
-    for i in range(len(points.unit)):
-        answer[i] = NOT_DUE
-        if not _is_due(points, light, i):
-            continue
-        counts[DUE] += 1
-        word = knowledge.words[points.unit[i]]
-        mode = np.uint64(0)
-        if knowledge.cull and number < MAX_CULLED_LIGHTS and occlusion_bits(word) == FULLY_RENDERED:
-            mode = shadow_bits(word, number)
-        if mode == FULL_SHADOW:
-            answer[i] = BLOCKED
-            counts[CULLED] += 1
-        elif mode == NON_SHADOW:
-            known_lit[lit] = i
-            lit += 1
-            counts[DYNAMIC_ONLY] += 1
-        else:
-            asked[asking] = i
-            asking += 1
-    return asking, lit
-
-
-@subkernel
-def _ask_static(world, points, light, number, knowledge, asked, asking, open_, opened, answer, counts):
-    """Ask static geometry, set shadow modes, and add the points where nothing blocks to open_; its new length."""
-    blocked = np.empty(asking, np.bool_)
-    any_static_hits(world, _rays_from_light(points, light, asked, asking), blocked, 0, asking, counts)
-    for k in range(asking):
-        i = asked[k]
-        unit = points.unit[i]
-        if number < MAX_CULLED_LIGHTS and occlusion_bits(knowledge.words[unit]) != DYNAMIC:
-            add_shadow(knowledge.gained, unit, number, FULL_SHADOW if blocked[k] else NON_SHADOW)
-        if blocked[k]:
-            answer[i] = BLOCKED
-        else:
-            open_[opened] = i
-            opened += 1
-    return opened
-
-
-@subkernel
-def _ask_dynamic(world, points, light, open_, opened, answer, counts):
-    blocked = np.zeros(opened, np.bool_)
-    if len(world.roots) > 1:
-        any_dynamic_hits(world, _rays_from_light(points, light, open_, opened), blocked, 0, opened, counts)
-    for k in range(opened):
-        answer[open_[k]] = BLOCKED if blocked[k] else LIT
-
-
-@subkernel
-def _verify(world, points, light, asked, asking, truth, counts):
-    """Trace what was culled after all, its steps uncounted, correct the answers in truth, and count the wrong ones."""
-    scratch = np.zeros(SHADOW_COUNTERS, np.int64)
-    was_asked = np.zeros(len(truth), np.bool_)
-    was_asked[asked[:asking]] = True
-    index = np.empty(len(truth), np.int32)
-    culled = 0
-    for i in range(len(truth)):
-        if truth[i] != NOT_DUE and not was_asked[i]:
-            index[culled] = i
-            culled += 1
-    rays = _rays_from_light(points, light, index, culled)
-    static, dynamic = np.zeros(culled, np.bool_), np.zeros(culled, np.bool_)
-    any_static_hits(world, rays, static, 0, culled, scratch)
-    any_dynamic_hits(world, rays, dynamic, 0, culled, scratch)
-    for k in range(culled):
-        traced = BLOCKED if static[k] or dynamic[k] else LIT
-        counts[WRONG] += traced != truth[index[k]]
-        truth[index[k]] = traced
-
-
-@subkernel
-def shadow_testing(world, points, light, number, knowledge, answer, truth, counts):
-    """Answer, for light `number` at light (3,), whether it reaches each point: NOT_DUE, BLOCKED or LIT.
-
-    Where knowledge asks to verify, truth gets the answers as tracing every ray gives them.
-    """
+def answers_for(points, count, knowledge):
+    """Room for the answers of `count` points, with what is known of them."""
     n = len(points.unit)
-    asked, open_ = np.empty(n, np.int32), np.empty(n, np.int32)
-    asking, opened = _choose_fates(points, light, number, knowledge, asked, open_, answer, counts)
-    counts[RAYS] += asking + (opened if len(world.roots) > 1 else 0)
-    opened = _ask_static(world, points, light, number, knowledge, asked, asking, open_, opened, answer, counts)
-    _ask_dynamic(world, points, light, open_, opened, answer, counts)
+    vectors = n // 16
+    low, high = np.zeros(n, np.int32), np.zeros(n, np.int32)
+    for i in range(count):
+        word = np.uint64(knowledge.words[points.unit[i]])
+        low[i], high[i] = np.int32(word & np.uint64(0xFFFFFFFF)), np.int32(word >> np.uint64(32))
+    due, lit, truth = np.zeros(vectors, np.int32), np.zeros(vectors, np.int32), np.zeros(vectors, np.int32)
+    source, live = np.empty(vectors, np.int32), np.empty(vectors, np.int32)
+    return Answers(due, lit, truth, low, high, empty_rays(n), source, live, np.empty(n, np.bool_))
+
+
+@inlined
+def lanes_below(count, v):
+    """Bits of those points of the v-th vector that there are."""
+    rest = count - 16 * v
+    return np.int64(0xFFFF) if rest >= 16 else (np.int64(1) << rest) - 1
+
+
+@inlined
+def _due(points, light, v):
+    """Bits of the points whose surface faces the light."""
+    px, py, pz = load_three(points.position, v)
+    gx, gy, gz = load_three(points.geometric, v)
+    return bits_of(gx * (light[0] - px) + gy * (light[1] - py) + gz * (light[2] - pz) > ZERO)
+
+
+@inlined
+def _known(answers, number, v):
+    """Bits of the points that are known to be in full shadow, and of those known to be in none."""
+    word = load_i32x16(address_of(answers.low) + 64 * v)
+    trusted = (word & 3) == FULLY_RENDERED
+    field = word if 2 + 2 * number < 32 else load_i32x16(address_of(answers.high) + 64 * v)
+    shift = (2 + 2 * number) % 32
+    field = field & np.int32(3 << shift)
+    return (
+        bits_of(trusted & (field == np.int32(FULL_SHADOW << shift))),
+        bits_of(trusted & (field == np.int32(NON_SHADOW << shift))),
+    )
+
+
+@subkernel
+def _choose_fates(points, light, number, knowledge, count, answers, counts):
+    """What is due, and what of it is known: answers.lit is what is known to be lit, live what is to be asked."""
+    vectors = (count + 15) // 16
+    for v in range(vectors):
+        due = _due(points, light, v) & lanes_below(count, v)
+        full, non = np.int64(0), np.int64(0)
+        if knowledge.cull and number < MAX_CULLED_LIGHTS and due != 0:
+            full, non = _known(answers, number, v)
+        answers.due[v], answers.lit[v], answers.live[v] = due, due & non, due & ~(full | non)
+        counts[DUE] += ones(due)
+        counts[CULLED] += ones(due & full)
+        counts[DYNAMIC_ONLY] += ones(due & non)
+
+
+@subkernel
+def _rays_from_light(points, light, vectors, answers):
+    """Shadow rays, from the light to the points that answers.live names; how many vectors of them there are.
+
+    At t = 1 is the point; lanes that are not to be traced go the way of one that is, and end before they begin."""
+    rays = answers.rays
+    stride = 4 * rays.origin.shape[1]
+    origin, direction = address_of(rays.origin), address_of(rays.direction)
+    packed = 0
+    for v in range(vectors):
+        live = answers.live[v]
+        if live == 0:
+            continue
+        answers.source[packed] = v
+        px, py, pz = load_three(points.position, v)
+        gx, gy, gz = load_three(points.geometric, v)
+        offset = load_f32x16(address_of(points.offset) + 64 * v)
+        at = 64 * packed
+        store(origin + at, f32x16(light[0]))
+        store(origin + at + stride, f32x16(light[1]))
+        store(origin + at + 2 * stride, f32x16(light[2]))
+        dx, dy, dz = px + offset * gx - light[0], py + offset * gy - light[1], pz + offset * gz - light[2]
+        on, one = mask16(np.int64(live)), lowest_bit(np.int64(live))
+        store(direction + at, select(on, dx, lane_of(dx, one)))
+        store(direction + at + stride, select(on, dy, lane_of(dy, one)))
+        store(direction + at + 2 * stride, select(on, dz, lane_of(dz, one)))
+        store(address_of(rays.t_min) + at, f32x16(LIGHT_MARGIN))
+        store(address_of(rays.t_max) + at, select(on, ONE, ZERO))
+        packed += 1
+    return packed
+
+
+@inlined
+def _blocked(answers, k):
+    """Bits of the rays of the k-th vector that something blocks."""
+    return bits_of(load_mask16(address_of(answers.blocked) + 16 * k))
+
+
+@subkernel
+def _learn(points, v, number, knowledge, answers, asked, blocked):
+    """OR what rays have met into the shadow modes of their primitives, where it is news."""
+    word = load_i32x16(address_of(answers.low) + 64 * v)
+    field = word if 2 + 2 * number < 32 else load_i32x16(address_of(answers.high) + 64 * v)
+    shift = (2 + 2 * number) % 32
+    moves = bits_of((word & 3) == DYNAMIC)
+    seen_blocked = bits_of((field & np.int32(FULL_SHADOW << shift)) == 0)
+    seen_free = bits_of((field & np.int32(NON_SHADOW << shift)) == 0)
+    news = asked & ~moves & ((blocked & seen_blocked) | (~blocked & seen_free))
+    while news != 0:
+        lane = lowest_bit(news)
+        news &= news - 1
+        mode = FULL_SHADOW if (blocked >> lane) & 1 else NON_SHADOW
+        add_shadow(knowledge.gained, points.unit[16 * v + lane], number, mode)
+
+
+@subkernel
+def _ask_static(world, points, light, number, knowledge, vectors, answers, counts):
+    """Ask static geometry and set shadow modes; answers.lit grows by the points where nothing blocks."""
+    packed = _rays_from_light(points, light, vectors, answers)
+    any_static_hits(world, answers.rays, answers.blocked, 0, 16 * packed, counts)
+    for k in range(packed):
+        v = np.int64(answers.source[k])
+        asked, blocked = np.int64(answers.live[v]), _blocked(answers, k)
+        counts[RAYS] += ones(asked)
+        if knowledge.cull and number < MAX_CULLED_LIGHTS:
+            _learn(points, v, number, knowledge, answers, asked, blocked)
+        answers.lit[v] |= asked & ~blocked
+
+
+@subkernel
+def _ask_dynamic(world, points, light, vectors, answers, counts):
+    """Ask dynamic objects where nothing static blocks."""
+    for v in range(vectors):
+        answers.live[v] = answers.lit[v]
+    packed = _rays_from_light(points, light, vectors, answers)
+    any_dynamic_hits(world, answers.rays, answers.blocked, 0, 16 * packed, counts)
+    for k in range(packed):
+        v = answers.source[k]
+        answers.lit[v] &= ~_blocked(answers, k)
+
+
+@subkernel
+def _verify(world, points, light, vectors, answers, counts):
+    """Trace every due ray, its steps uncounted, and count the answers that differ."""
+    scratch = np.zeros(SHADOW_COUNTERS, np.int64)
+    for v in range(vectors):
+        answers.live[v], answers.truth[v] = answers.due[v], answers.due[v]
+    packed = _rays_from_light(points, light, vectors, answers)
+    for moving in range(2):
+        if moving == 0:
+            any_static_hits(world, answers.rays, answers.blocked, 0, 16 * packed, scratch)
+        else:
+            any_dynamic_hits(world, answers.rays, answers.blocked, 0, 16 * packed, scratch)
+        for k in range(packed):
+            answers.truth[answers.source[k]] &= ~_blocked(answers, k)
+    for v in range(vectors):
+        counts[WRONG] += ones(np.int64(answers.truth[v] ^ answers.lit[v]))
+
+
+@subkernel
+def shadow_testing(world, points, count, light, number, knowledge, answers, counts):
+    """Which of `count` points are due to light `number` at light (3,), and which it reaches: into answers."""
+    vectors = (count + 15) // 16
+    before = counts[DYNAMIC_ONLY]
+    _choose_fates(points, light, number, knowledge, count, answers, counts)
+    known_lit = counts[DYNAMIC_ONLY] - before
+    _ask_static(world, points, light, number, knowledge, vectors, answers, counts)
+    if world.has_dynamic:  # those known to be lit were not counted yet
+        counts[RAYS] += known_lit
+        _ask_dynamic(world, points, light, vectors, answers, counts)
     if knowledge.verify:
-        truth[:] = answer
-        if knowledge.cull:
-            _verify(world, points, light, asked, asking, truth, counts)
+        _verify(world, points, light, vectors, answers, counts)

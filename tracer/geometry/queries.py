@@ -1,5 +1,121 @@
-"""The queries that everything above geometry calls on a placed world, whichever structure is below."""
+"""The queries that everything above geometry asks of a placed world, whichever structure is below.
 
-from tracer.geometry.kdtree.traverse import any_dynamic_hits, any_static_hits, closest_hits, hits_alone
+A structure's queries are machine code, compiled once for all who ask, and called by address: shading
+is compiled without them, and does not know which it calls.  A structure gives three entries
 
-__all__ = ["any_dynamic_hits", "any_static_hits", "closest_hits", "hits_alone"]
+    closest(data, batch, first, last, counts)
+    any_static(data, batch, first, last, counts)
+    any_dynamic(data, batch, first, last, counts)
+
+of int64 each: data is the address of whatever describes the structure to itself, batch that of the
+addresses listed in `Batch`, first and last say which of the batch's rays are meant, and counts is the
+address of two int64, of steps and tests, that grow.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.geometry.intersect import hit_quadric, hit_triangle, transform_ray
+from tracer.geometry.memory import pointer
+from tracer.geometry.rays import INFINITY, Hits, RayPointers, Rays
+from tracer.kernels import inlined, subkernel
+from tracer.simd import address_of, call_entry, f32_at, load_i64, local_memory, store
+
+# A batch as entries get it: addresses of origins and directions, (3, stride) float32, of t_min and t_max, of
+# what is asked for (t, primitive, u and v of the nearest hits, or whether there is any), and the stride.
+ORIGIN, DIRECTION, T_MIN, T_MAX, STRIDE, HIT_T, HIT_PRIMITIVE, HIT_U, HIT_V, BLOCKED = range(0, 80, 8)
+BATCH = 80  # bytes
+
+
+class Placed(NamedTuple):
+    """What rays can meet, placed for one moment.
+
+    triangles (t, 9) and quadrics (q, 16) float32 are in the space of their object, to which to_object
+    (objects, 12) float32 leads from the world: triangle i is primitive i, quadric j primitive t + j, and
+    object_of (t + q,) int32 tells whose they are; object 0 is static.  closest, any_static and
+    any_dynamic are the addresses of a structure's entries, and data what they are given.
+    """
+
+    triangles: NDArray[np.float32]
+    quadrics: NDArray[np.float32]
+    to_object: NDArray[np.float32]
+    object_of: NDArray[np.int32]
+    closest: int
+    any_static: int
+    any_dynamic: int
+    data: int
+    has_dynamic: bool
+
+
+@inlined
+def _describe(batch, rays):
+    store(batch + ORIGIN, address_of(rays.origin))
+    store(batch + DIRECTION, address_of(rays.direction))
+    store(batch + T_MIN, address_of(rays.t_min))
+    store(batch + T_MAX, address_of(rays.t_max))
+    store(batch + STRIDE, np.int64(rays.origin.shape[1]))
+
+
+@inlined
+def closest_hits(world, rays, hits, first, last, counts):
+    """Nearest hits of rays first to last - 1, into `hits`."""
+    batch = local_memory(BATCH)
+    _describe(batch, rays)
+    store(batch + HIT_T, address_of(hits.t))
+    store(batch + HIT_PRIMITIVE, address_of(hits.primitive))
+    store(batch + HIT_U, address_of(hits.u))
+    store(batch + HIT_V, address_of(hits.v))
+    call_entry(world.closest, world.data, batch, first, last, address_of(counts))
+
+
+@inlined
+def any_static_hits(world, rays, blocked, first, last, counts):
+    """blocked[i] for rays first to last - 1: whether static geometry lies in their interval."""
+    batch = local_memory(BATCH)
+    _describe(batch, rays)
+    store(batch + BLOCKED, address_of(blocked))
+    call_entry(world.any_static, world.data, batch, first, last, address_of(counts))
+
+
+@inlined
+def any_dynamic_hits(world, rays, blocked, first, last, counts):
+    """blocked[i] for rays first to last - 1: whether a dynamic object lies in their interval."""
+    batch = local_memory(BATCH)
+    _describe(batch, rays)
+    store(batch + BLOCKED, address_of(blocked))
+    call_entry(world.any_dynamic, world.data, batch, first, last, address_of(counts))
+
+
+@inlined
+def rays_of(batch):
+    """The rays of a described batch, to be read one at a time."""
+    return RayPointers(
+        f32_at(load_i64(batch + ORIGIN)),
+        f32_at(load_i64(batch + DIRECTION)),
+        f32_at(load_i64(batch + T_MIN)),
+        f32_at(load_i64(batch + T_MAX)),
+        load_i64(batch + STRIDE),
+    )
+
+
+def batch_of(rays: Rays, hits: Hits | None = None, blocked: NDArray[np.bool_] | None = None) -> NDArray[np.int64]:
+    """The description of a batch for an entry that is called from Python; its arrays must live as long."""
+    arrays = [rays.origin, rays.direction, rays.t_min, rays.t_max]
+    results = [0, 0, 0, 0] if hits is None else [a.ctypes.data for a in (hits.t, hits.primitive, hits.u, hits.v)]
+    answer = 0 if blocked is None else blocked.ctypes.data
+    return np.array([*(a.ctypes.data for a in arrays), rays.origin.shape[1], *results, answer], np.int64)
+
+
+@subkernel
+def hits_alone(world, ray, primitive):
+    """Whether a ray in world space meets this primitive, nothing else asked."""
+    o = world.object_of[primitive]
+    if o != 0:
+        ray = transform_ray(ray, pointer(world.to_object), o, 12)
+    if primitive < len(world.triangles):
+        return hit_triangle(ray, pointer(world.triangles), primitive)[0] < INFINITY
+    return hit_quadric(ray, pointer(world.quadrics), primitive - len(world.triangles)) < INFINITY

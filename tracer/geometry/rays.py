@@ -61,7 +61,15 @@ def ray_batch(origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0,
 
 
 @inlined
+def padded(n):
+    """n rounded up to whole vectors of 16."""
+    return (n + 15) & ~15
+
+
+@inlined
 def empty_rays(n):
+    """Room for n rays, in rows of whole vectors."""
+    n = padded(n)
     return Rays(
         np.empty((3, n), np.float32), np.empty((3, n), np.float32), np.empty(n, np.float32), np.empty(n, np.float32)
     )
@@ -69,6 +77,7 @@ def empty_rays(n):
 
 @inlined
 def empty_hits(n):
+    n = padded(n)
     return Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
 
 

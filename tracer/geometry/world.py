@@ -13,19 +13,19 @@ from numpy.typing import NDArray
 
 from tracer.geometry.bvh8 import place as bvh8
 from tracer.geometry.kdtree import place as kdtree
-from tracer.geometry.kdtree import traverse as kdtree_queries
 from tracer.geometry.poses import poses_at
 from tracer.geometry.primitives import Primitives
+from tracer.geometry.queries import batch_of
 from tracer.geometry.rays import Hits, Rays
+from tracer.kernels import Entry
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.chains import Chains
 from tracer.scene.model import Progress, Scene
 
-ACCELERATORS = ("kdtree", "bvh8")
 CHUNK = 4096  # rays a thread takes at a time
 
-_STRUCTURES: dict[str, Any] = {"kdtree": kdtree.KdTrees, "bvh8": bvh8.Trees8}
-_QUERIES: dict[str, Any] = {"kdtree": kdtree_queries}
+STRUCTURES: dict[str, Any] = {"kdtree": kdtree.KdTrees, "bvh8": bvh8.Trees8}
+ACCELERATORS = tuple(STRUCTURES)
 
 
 class World:
@@ -46,7 +46,7 @@ class World:
         self._primitives = Primitives(scene)
         self.normals, self.object_of = self._primitives.normals, self._primitives.object_of
         self.scene = scene
-        self._structure = _STRUCTURES[accelerator](self._primitives, len(scene.objects), progress)
+        self.structure = STRUCTURES[accelerator](self._primitives, len(scene.objects), progress)
         self.place(time)
 
     @property
@@ -62,30 +62,37 @@ class World:
     def place(self, time: float) -> None:
         """Move and deform dynamic objects to where and what they are at `time` seconds."""
         self._primitives.deform(time)
-        self.placed = self._structure.place(poses_at(self._chains, self._primitives.empty, time))
+        self.placed = self.structure.place(poses_at(self._chains, self._primitives.empty, time))
 
     def closest_hits(self, rays: Rays, threads: int = 0) -> Hits:
         """Nearest hits of a batch (see `tracer.geometry.rays`)."""
         n = len(rays.t_min)
         hits = Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
-        self._ask("closest_hits", rays, hits, threads)
+        self._ask(self.structure.closest, batch_of(rays, hits), n, threads)
         return hits
 
     def any_hits(self, rays: Rays, threads: int = 0) -> NDArray[np.bool_]:
         """(n,) whether anything, static or dynamic, lies in each ray's interval."""
-        blocked = np.zeros(len(rays.t_min), np.bool_)
-        self._ask("any_hits", rays, blocked, threads)
+        n = len(rays.t_min)
+        blocked = np.zeros(n, np.bool_)
+        self._ask(self.structure.any_static, batch_of(rays, blocked=blocked), n, threads)
+        if self.placed.has_dynamic:
+            still = np.flatnonzero(~blocked)
+            rest = Rays(*(np.ascontiguousarray(a[..., still]) for a in rays))
+            more = np.zeros(len(still), np.bool_)
+            self._ask(self.structure.any_dynamic, batch_of(rest, blocked=more), len(still), threads)
+            blocked[still] = more
         return blocked
 
-    def _ask(self, query: str, rays: Rays, answers: Hits | NDArray[np.bool_], threads: int) -> None:
-        kernel = getattr(_QUERIES[self._accelerator], query)
-        n, counts = len(rays.t_min), np.zeros((thread_count(threads), 2), np.int64)
+    def _ask(self, query: Entry, batch: NDArray[np.int64], n: int, threads: int) -> None:
+        counts = np.zeros((thread_count(threads), 2), np.int64)
+        data, described, counted = self.placed.data, batch.ctypes.data, [c.ctypes.data for c in counts]
 
         def work(chunk: int, worker: int) -> None:
-            kernel(self.placed, rays, answers, chunk * CHUNK, min(n, (chunk + 1) * CHUNK), counts[worker])
+            query.call(data, described, chunk * CHUNK, min(n, (chunk + 1) * CHUNK), counted[worker])
 
         for_each_chunk(work, -(-n // CHUNK), len(counts))
 
     def bounds(self) -> NDArray[np.float32]:
         """Box (6,) around everything that is there now; inverted for an empty world."""
-        return self._structure.bounds(self.placed)
+        return self.structure.bounds()

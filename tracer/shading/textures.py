@@ -40,6 +40,12 @@ def pack_textures(
 
 
 @inlined
+def _around(i, n):
+    """i modulo n, for -1 <= i <= n: a division would cost more than all the rest."""
+    return i + n if i < 0 else (i - n if i >= n else i)
+
+
+@inlined
 def _bilinear(texels, start, width, height, u, v):
     """(r, g, b) in 0 to 255 of one level, repeating; v = 0 is the bottom of the picture."""
     if not (abs(u) < np.float32(1e9) and abs(v) < np.float32(1e9)):  # nothing is left behind the point, or NaN
@@ -47,8 +53,8 @@ def _bilinear(texels, start, width, height, u, v):
     x, y = (u - math.floor(u)) * width - 0.5, (1.0 - (v - math.floor(v))) * height - 0.5
     x0, y0 = math.floor(x), math.floor(y)
     fx, fy = np.float32(x - x0), np.float32(y - y0)
-    left, right = x0 % width, (x0 + 1) % width
-    upper, lower = start + (y0 % height) * width * 3, start + ((y0 + 1) % height) * width * 3
+    left, right = _around(x0, width), _around(x0 + 1, width)
+    upper, lower = start + _around(y0, height) * width * 3, start + _around(y0 + 1, height) * width * 3
     a, b, c, d = upper + left * 3, upper + right * 3, lower + left * 3, lower + right * 3
     one = np.float32(1)
     wa, wb, wc, wd = (one - fx) * (one - fy), fx * (one - fy), (one - fx) * fy, fx * fy

@@ -13,11 +13,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.shadow import LIT, NOT_DUE, RAYS, SHADOW_COUNTERS, lifted, shadow_testing
+from tracer.culling.shadow import RAYS, SHADOW_COUNTERS, answers_for, lifted, shadow_testing
 from tracer.geometry.camera import primary_ray
 from tracer.geometry.memory import borrowed
 from tracer.geometry.queries import closest_hits
-from tracer.geometry.rays import MISS, Hits, Rays, empty_hits, empty_rays
+from tracer.geometry.rays import MISS, Hits, Rays, empty_hits, empty_rays, padded
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.shading.look import IOR, SPECULAR, TRANSMISSION
 from tracer.shading.phong import add_ambient, add_light
@@ -49,11 +49,12 @@ class Buffers(NamedTuple):
 
 
 class Wave(NamedTuple):
-    """n rays, what they hit, the pixel (n,) int32 they count for, with which weight (3, n) float32, and
-    reach (n,) float32, the length of the path from the eye to where they start."""
+    """`size` rays, in rows of n, whole vectors: what they hit, the pixel (n,) int32 they count for, with which
+    weight (3, n) float32, and reach (n,) float32, the length of the path from the eye to where they start."""
 
     rays: Rays
     hits: Hits
+    size: int
     pixel: NDArray[np.int32]
     weight: NDArray[np.float32]
     reach: NDArray[np.float32]
@@ -61,8 +62,9 @@ class Wave(NamedTuple):
 
 @inlined
 def _empty_wave(n):
-    weight, reach = np.empty((3, n), np.float32), np.empty(n, np.float32)
-    return Wave(empty_rays(n), empty_hits(n), np.empty(n, np.int32), weight, reach)
+    m = padded(n)
+    weight, reach = np.empty((3, m), np.float32), np.empty(m, np.float32)
+    return Wave(empty_rays(n), empty_hits(n), n, np.empty(m, np.int32), weight, reach)
 
 
 @inlined
@@ -128,22 +130,17 @@ def _copy_ray(source, i, target, k):
     target.pixel[k], target.reach[k] = source.pixel[i], source.reach[i]
 
 
-@subkernel
-def _shortened(wave, n):
-    """The first n rays of a wave, in rows of that length."""
-    if n == len(wave.pixel):
-        return wave
-    out = _empty_wave(n)
-    for i in range(n):
-        _copy_ray(wave, i, out, i)
-    return out
+@inlined
+def _counted(wave, n):
+    """The first n rays of a wave."""
+    return Wave(wave.rays, wave.hits, n, wave.pixel, wave.weight, wave.reach)
 
 
 @subkernel
 def _without_misses(wave, look, buffers):
     """The wave's rays that hit; the others bring home the background."""
     n = 0
-    for i in range(len(wave.pixel)):
+    for i in range(wave.size):
         if wave.hits.primitive[i] == MISS:
             for c in range(3):
                 light = wave.weight[c, i] * look.background[c]
@@ -154,7 +151,7 @@ def _without_misses(wave, look, buffers):
         if n < i:
             _copy_ray(wave, i, wave, n)
         n += 1
-    return _shortened(wave, n)
+    return _counted(wave, n)
 
 
 @inlined
@@ -191,9 +188,9 @@ def _send(wave, n, origin, direction, pixel, reach, weight, scale):
 @subkernel
 def _next_wave(points, look, wave):
     """Reflected rays, scaled by the specular colour, and refracted ones, scaled by the transmission."""
-    out = _empty_wave(2 * len(wave.pixel))
+    out = _empty_wave(2 * wave.size)
     n = 0
-    for i in range(len(wave.pixel)):
+    for i in range(wave.size):
         material = look.materials[points.material[i]]
         d = (wave.rays.direction[0, i], wave.rays.direction[1, i], wave.rays.direction[2, i])
         normal = (points.normal[0, i], points.normal[1, i], points.normal[2, i])
@@ -210,31 +207,54 @@ def _next_wave(points, look, wave):
             else:  # total internal reflection takes the refracted ray's share
                 mirror = (mirror[0] + through, mirror[1] + through, mirror[2] + through)
         n = _send(out, n, above, _reflected(d, normal), wave.pixel[i], reach, weight, mirror)
-    return _shortened(out, n)
+    return _counted(out, n)
+
+
+@subkernel
+def _bring_home(wave, light, color):
+    """Add what came from a wave's points, (3, n), to their pixels."""
+    for i in range(wave.size):
+        for c in range(3):
+            color[wave.pixel[i], c] += wave.weight[c, i] * light[c, i]
 
 
 @subkernel
 def _shade(world, look, wave, points, knowledge, first, buffers, counts):
     """Local light of a wave, with shadow testing for every light; `first` for the wave of primary rays."""
-    add_ambient(points, look, wave, buffers.color)
-    answer, truth = np.empty(len(wave.pixel), np.uint8), np.empty(len(wave.pixel), np.uint8)
-    if knowledge.verify:
-        add_ambient(points, look, wave, buffers.reference)
+    light = np.zeros(points.position.shape, np.float32)
+    reference = np.zeros((3, points.position.shape[1] if knowledge.verify else 0), np.float32)
+    answers = answers_for(points, wave.size, knowledge)
+    add_ambient(points, look, light)
+    add_ambient(points, look, reference)
     for number in range(len(look.lights)):
-        shadow_testing(world, points, look.lights[number], number, knowledge, answer, truth, counts[SHADOW:])
-        add_light(points, look, number, answer, wave, buffers.color)
+        shadow_testing(world, points, wave.size, look.lights[number], number, knowledge, answers, counts[SHADOW:])
+        add_light(points, look, number, answers.lit, wave.rays, light)
         if knowledge.verify:
-            add_light(points, look, number, truth, wave, buffers.reference)
-            for i in range(len(answer)):
-                buffers.wrong[wave.pixel[i]] += answer[i] != truth[i]
+            add_light(points, look, number, answers.truth, wave.rays, reference)
+            _note_wrong(wave, answers, buffers.wrong)
         if first and len(buffers.due) > 0:
-            for i in range(len(answer)):
-                buffers.due[wave.pixel[i], number] = answer[i] != NOT_DUE
-                buffers.lit[wave.pixel[i], number] = answer[i] == LIT
+            _record(wave, number, answers, buffers)
+    _bring_home(wave, light, buffers.color)
+    if knowledge.verify:
+        _bring_home(wave, reference, buffers.reference)
     if first:
-        for i in range(len(wave.pixel)):
+        for i in range(wave.size):
             for axis in range(3):
                 buffers.normal[wave.pixel[i], axis] = points.normal[axis, i]
+
+
+@subkernel
+def _note_wrong(wave, answers, wrong):
+    for i in range(wave.size):
+        wrong[wave.pixel[i]] += ((answers.lit[i >> 4] ^ answers.truth[i >> 4]) >> (i & 15)) & 1
+
+
+@subkernel
+def _record(wave, number, answers, buffers):
+    """Which shadow rays of primary hits are due, and their answers."""
+    for i in range(wave.size):
+        buffers.due[wave.pixel[i], number] = (answers.due[i >> 4] >> (i & 15)) & 1
+        buffers.lit[wave.pixel[i], number] = (answers.lit[i >> 4] >> (i & 15)) & 1
 
 
 @kernel
@@ -243,16 +263,16 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts):
     world, look, knowledge, buffers = borrowed(world), borrowed(look), borrowed(knowledge), borrowed(buffers)
     wave = _without_misses(_first_wave(camera, tile, buffers), look, buffers)
     for bounce in range(depth + 1):
-        points = points_at(world, look, wave.rays, wave.hits, wave.reach, camera.spread)
+        points = points_at(world, look, wave.size, wave.rays, wave.hits, wave.reach, camera.spread)
         _shade(world, look, wave, points, knowledge, bounce == 0, buffers, counts)
         if bounce == depth:
             break
         wave = _next_wave(points, look, wave)
-        n = len(wave.pixel)
+        n = wave.size
         if n == 0:
             break
         closest_hits(world, wave.rays, wave.hits, 0, n, counts[SECONDARY:])
         counts[SECONDARY + RAYS] += n
         wave = _without_misses(wave, look, buffers)
-        if len(wave.pixel) == 0:
+        if wave.size == 0:
             break

@@ -18,6 +18,10 @@ vectors that are wider than the processor's, so that everything runs everywhere.
 
 from tracer.simd.addresses import (
     address_of,
+    call_entry,
+    f32_at,
+    i32_at,
+    i64_at,
     load_f32,
     load_f32x8,
     load_f32x16,
@@ -30,9 +34,10 @@ from tracer.simd.addresses import (
     store,
     store_mask,
     store_where,
+    u8_at,
 )
 from tracer.simd.bits import as_f32, as_i32, leading_zeros, lowest_bit, ones
-from tracer.simd.functions import power
+from tracer.simd.functions import load_three, power
 from tracer.simd.vectors import (
     F32x8,
     F32x16,
@@ -72,6 +77,11 @@ __all__ = [
     "address_of",
     "all_lanes",
     "any_lane",
+    "u8_at",
+    "call_entry",
+    "f32_at",
+    "i32_at",
+    "i64_at",
     "as_f32",
     "as_i32",
     "bits_of",
@@ -92,6 +102,7 @@ __all__ = [
     "load_i32x16",
     "load_i64",
     "load_mask16",
+    "load_three",
     "local_memory",
     "lowest_bit",
     "mask8",

@@ -132,3 +132,31 @@ def store_mask(typingctx, address, mask):
         return context.get_dummy_value()
 
     return types.void(types.int64, mask), codegen
+
+
+@operation
+def call_entry(typingctx, entry, a, b, c, d, e):
+    """Call machine code (see `tracer.kernels.Entry`) at an address, with five int64."""
+
+    def codegen(context, builder, sig, args):
+        kind = ir.FunctionType(ir.VoidType(), [ir.IntType(64)] * 5)
+        builder.call(builder.inttoptr(args[0], kind.as_pointer()), args[1:])
+        return context.get_dummy_value()
+
+    return types.void(*[types.int64] * 6), codegen
+
+
+def _pointing(kind: types.Type) -> Any:
+    @operation
+    def pointer_at(typingctx, address):
+        """An address as numba's pointer, read and written like a flat array."""
+
+        def codegen(context, builder, sig, args):
+            return builder.inttoptr(args[0], context.get_value_type(sig.return_type))
+
+        return types.CPointer(kind)(types.int64), codegen
+
+    return pointer_at
+
+
+f32_at, i32_at, i64_at, u8_at = (_pointing(kind) for kind in (types.float32, types.int32, types.int64, types.uint8))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.kernels import inlined
+from tracer.simd.addresses import address_of, load_f32x16
 from tracer.simd.bits import as_f32, as_i32
 from tracer.simd.vectors import fma, maximum, minimum, select, to_f32, to_i32
 
@@ -49,3 +50,10 @@ def power(x, y):
     result = _exp2(maximum(y * _log2(maximum(x, tiny)), np.float32(-127)))
     result = select(x < tiny, np.float32(0), result)
     return select(y == np.float32(0), ONE, result)
+
+
+@inlined
+def load_three(rows, v):
+    """The v-th vector of sixteen of each of three rows, (3, n) float32."""
+    a, stride = address_of(rows) + 64 * v, 4 * rows.shape[1]
+    return load_f32x16(a), load_f32x16(a + stride), load_f32x16(a + 2 * stride)

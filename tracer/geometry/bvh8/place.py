@@ -11,12 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.building import watched
+from tracer.geometry.bvh8 import traverse
 from tracer.geometry.bvh8.build import build_shape, build_tree
 from tracer.geometry.bvh8.collapse import Shape
 from tracer.geometry.bvh8.forest import crown, gather, move, plant
-from tracer.geometry.bvh8.tree import CHILDREN, WIDTH, Placed8, Tree
+from tracer.geometry.bvh8.tree import CHILDREN, WIDTH, Tree
 from tracer.geometry.poses import Poses, products
 from tracer.geometry.primitives import Primitives, triangle_rows
+from tracer.geometry.queries import Placed
 from tracer.parallel import thread_count
 from tracer.scene.animation import deformed
 from tracer.scene.model import Float32, Float64, Progress
@@ -27,12 +29,14 @@ STEPS, MOST_KEYS = 8, 64  # from a key of a deforming object to the next; in all
 class Trees8:
     """Built over all primitives of a scene; raises Cancelled if `progress` does meanwhile."""
 
+    closest, any_static, any_dynamic = traverse.closest, traverse.any_static, traverse.any_dynamic
+
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
         self._primitives, self._objects = primitives, objects
         triangles, quadrics = primitives.triangles_of(0), primitives.quadrics_of(0)
         boxes = primitives.quadric_boxes(quadrics, primitives.to_object[quadrics])
         count = triangles.stop + quadrics.stop
-        self._static = watched(
+        self.static = watched(
             lambda control: build_tree(primitives.triangles[triangles], boxes, control, thread_count()),
             "building the tree",
             count,
@@ -43,7 +47,7 @@ class Trees8:
         self._at = dict.fromkeys(self._keys, 0)
         self._shapes: dict[tuple[int, int], Shape] = {}
         self._plant(progress)
-        self._world_quadrics = primitives.quadrics.copy()
+        self.world_quadrics = primitives.quadrics.copy()
         self._quadric_boxes = np.zeros((len(primitives.quadrics), 6), np.float32)
 
     def _shape(self, index: int, progress: Progress | None = None) -> Shape:
@@ -81,7 +85,7 @@ class Trees8:
         for index in self._keys:
             gather(self._forest, self._primitives.corners.reshape(-1, 9), index, index + 1)
 
-    def place(self, poses: Poses) -> Placed8:
+    def place(self, poses: Poses) -> Placed:
         """Move all that is present, as the primitives are now, to where it is."""
         primitives, present = self._primitives, poses.present.copy()
         present[0] = False
@@ -90,15 +94,20 @@ class Trees8:
         to_world = poses.to_world.reshape(-1, 12).astype(np.float32)
         move(self._forest, to_world, present, self._quadric_boxes)
         crown(self._forest, present)
-        return Placed8(
+        self.dynamic = self._forest.tree
+        static, dynamic, moves = self.static, self.dynamic, bool(present.any())
+        trees = (static.nodes, static.blocks, dynamic.nodes, dynamic.blocks, self.world_quadrics)
+        self._data = np.array([*(a.ctypes.data for a in trees), len(primitives.triangles), moves], np.int64)
+        return Placed(
             primitives.triangles,
             primitives.quadrics,
             poses.to_object.reshape(-1, 12).astype(np.float32),
             primitives.object_of,
-            self._world_quadrics,
-            self._static,
-            self._forest.tree,
-            bool(present.any()),
+            self.closest.address,
+            self.any_static.address,
+            self.any_dynamic.address,
+            self._data.ctypes.data,
+            moves,
         )
 
     def _move_quadrics(self, poses: Poses) -> None:
@@ -109,14 +118,13 @@ class Trees8:
             return
         owners = primitives.object_of[len(primitives.triangles) :][which]
         maps = products(primitives.to_canonical[which], poses.to_object[owners])
-        self._world_quadrics[which, :12] = maps.reshape(-1, 12)
+        self.world_quadrics[which, :12] = maps.reshape(-1, 12)
         maps = products(poses.to_world[owners], primitives.to_object[which])
         self._quadric_boxes[which] = primitives.quadric_boxes(which, maps)
 
-    @staticmethod
-    def bounds(placed: Placed8) -> Float32:
+    def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""
-        boxes = np.stack([tree_box(placed.static), tree_box(placed.dynamic)])
+        boxes = np.stack([tree_box(self.static), tree_box(self.dynamic)])
         boxes = boxes[boxes[:, 0] <= boxes[:, 3]]
         if not len(boxes):
             return np.array([1, 1, 1, -1, -1, -1], np.float32)

@@ -40,26 +40,6 @@ class Tree(NamedTuple):
     blocks: NDArray[np.float32]
 
 
-class Placed8(NamedTuple):
-    """What rays can meet, placed for one moment.
-
-    triangles (t, 9) and quadrics (q, 16) float32 are in the space of their object, to which to_object
-    (objects, 12) float32 leads from the world: triangle i is primitive i, quadric j primitive t + j, and
-    object_of (t + q,) int32 tells whose they are; object 0 is static.  Both trees are in world space,
-    and so are the maps of world_quadrics (q, 16) float32; has_dynamic tells whether `dynamic` is more
-    than empty.
-    """
-
-    triangles: NDArray[np.float32]
-    quadrics: NDArray[np.float32]
-    to_object: NDArray[np.float32]
-    object_of: NDArray[np.int32]
-    world_quadrics: NDArray[np.float32]
-    static: Tree
-    dynamic: Tree
-    has_dynamic: bool
-
-
 def aligned(rows: int, size: int) -> NDArray[np.float32]:
     """Uninitialised (rows, size) float32 whose memory begins at a multiple of 64 bytes."""
     memory = np.empty(4 * rows * size + 64, np.uint8)

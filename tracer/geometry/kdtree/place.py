@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.building import watched
+from tracer.geometry.kdtree import traverse
 from tracer.geometry.kdtree.build import bounds_of, build_tree
-from tracer.geometry.kdtree.traverse import Placed
-from tracer.geometry.kdtree.tree import LEAF, Trees
+from tracer.geometry.kdtree.tree import LEAF, Parts, Trees
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
+from tracer.geometry.queries import Placed
 from tracer.scene.model import Float32, Float64, Progress
 
 Tree = tuple[Trees, NDArray[np.float32]]  # with the box around it
@@ -40,6 +41,8 @@ def transform_boxes(boxes: Float64, affine: Float64) -> Float64:
 
 class KdTrees:
     """Built over all primitives of a scene; raises Cancelled if `progress` does meanwhile."""
+
+    closest, any_static, any_dynamic = traverse.closest, traverse.any_static, traverse.any_dynamic
 
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
         self._primitives, self._objects = primitives, objects
@@ -95,7 +98,7 @@ class KdTrees:
         boxes = np.stack([box for _, box in self._trees])
         top_boxes = transform_boxes(boxes[present].astype(np.float64), poses.to_world[present]).astype(np.float32)
         top, top_box = build_tree(top_boxes, primitives.triangles[:0])
-        return Placed(
+        self.parts = parts = Parts(
             primitives.triangles,
             primitives.quadrics,
             self._static,
@@ -105,11 +108,23 @@ class KdTrees:
             boxes,
             poses.to_object.reshape(-1, 12).astype(np.float32),
             top_box,
+        )
+        trees = (array for tree in (parts.static, parts.dynamic, parts.top) for array in (tree.words, tree.items))
+        arrays = (parts.triangles, parts.quadrics, *trees, parts.roots, parts.boxes, parts.to_object, parts.top_box)
+        self._data = np.array([*(a.ctypes.data for a in arrays), len(primitives.triangles)], np.int64)
+        return Placed(
+            primitives.triangles,
+            primitives.quadrics,
+            parts.to_object,
             primitives.object_of,
+            self.closest.address,
+            self.any_static.address,
+            self.any_dynamic.address,
+            self._data.ctypes.data,
+            len(present) > 0,
         )
 
-    @staticmethod
-    def bounds(placed: Placed) -> Float32:
+    def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""
-        boxes = np.stack([placed.boxes[0], placed.top_box])
+        boxes = np.stack([self.parts.boxes[0], self.parts.top_box])
         return bounds_of(boxes[boxes[:, 0] <= boxes[:, 3]])

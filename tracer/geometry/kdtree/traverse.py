@@ -11,37 +11,24 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracer.geometry.intersect import ZERO, hit_box, hit_quadric, hit_triangle, transform_ray
-from tracer.geometry.kdtree.tree import STACK_SIZE, Stack, Trees, next_leaf, pointers_to, push
-from tracer.geometry.memory import local_float32, local_int32, pointer
-from tracer.geometry.rays import INFINITY, MISS, Ray, ray_at, ray_pointers
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.geometry.kdtree.tree import STACK_SIZE, Stack, Trees, next_leaf, push
+from tracer.geometry.memory import local_float32, local_int32
+from tracer.geometry.queries import BLOCKED, HIT_PRIMITIVE, HIT_T, HIT_U, HIT_V, rays_of
+from tracer.geometry.rays import INFINITY, MISS, Ray, ray_at
+from tracer.kernels import entry, inlined, subkernel
+from tracer.simd import f32_at, i32_at, i64_at, load_i64, u8_at
 
 STEPS, TESTS = 0, 1  # what a query adds to its counts
 SLACK = np.float32(1e-5)  # relative; by so much an object's interval is wider than that of its leaf
 
 
-class Placed(NamedTuple):
-    """What rays can meet, placed for one moment.
-
-    triangles (t, 9) and quadrics (q, 16) float32 are in the space of their object: triangle i is
-    primitive i, quadric j primitive t + j, and object_of (t + q,) int32 tells whose they are.
-    static and dynamic are trees over primitives, top is one over the dynamic objects, inside top_box (6,).
-    roots (objects,) int32, boxes (objects, 6) and to_object (objects, 12) float32; object 0 is static.
-    """
-
-    triangles: NDArray[np.float32]
-    quadrics: NDArray[np.float32]
-    static: Trees
-    dynamic: Trees
-    top: Trees
-    roots: NDArray[np.int32]
-    boxes: NDArray[np.float32]
-    to_object: NDArray[np.float32]
-    top_box: NDArray[np.float32]
-    object_of: NDArray[np.int32]
+# A placed world as the entries get it: addresses, each an int64, then the number of triangles.
+(
+    TRIANGLES, QUADRICS, STATIC_WORDS, STATIC_ITEMS, DYNAMIC_WORDS, DYNAMIC_ITEMS, TOP_WORDS, TOP_ITEMS,
+    ROOTS, BOXES, TO_OBJECT, TOP_BOX, TRIANGLE_COUNT,
+) = range(0, 104, 8)  # fmt: skip
 
 
 class _Search(NamedTuple):
@@ -72,21 +59,26 @@ class _Best(NamedTuple):
 
 
 @inlined
-def _search(world, stack, top_stack, counts):
+def _trees(data, words, items):
+    return Trees(i32_at(load_i64(data + words)), f32_at(load_i64(data + words)), i32_at(load_i64(data + items)))
+
+
+@inlined
+def _search(data, stack, top_stack, counts):
     return _Search(
-        pointer(world.triangles),
-        len(world.triangles),
-        pointer(world.quadrics),
-        pointers_to(world.static),
-        pointers_to(world.dynamic),
-        pointers_to(world.top),
-        pointer(world.roots),
-        pointer(world.boxes),
-        pointer(world.to_object),
-        pointer(world.top_box),
+        f32_at(load_i64(data + TRIANGLES)),
+        load_i64(data + TRIANGLE_COUNT),
+        f32_at(load_i64(data + QUADRICS)),
+        _trees(data, STATIC_WORDS, STATIC_ITEMS),
+        _trees(data, DYNAMIC_WORDS, DYNAMIC_ITEMS),
+        _trees(data, TOP_WORDS, TOP_ITEMS),
+        i32_at(load_i64(data + ROOTS)),
+        f32_at(load_i64(data + BOXES)),
+        f32_at(load_i64(data + TO_OBJECT)),
+        f32_at(load_i64(data + TOP_BOX)),
         stack,
         top_stack,
-        pointer(counts),
+        i64_at(counts),
     )
 
 
@@ -183,61 +175,42 @@ def _any_dynamic(s, ray):
     return False
 
 
-@kernel
-def closest_hits(world, rays, hits, first, last, counts):
-    """Nearest hits of rays first to last - 1, into `hits`; counts[STEPS] and counts[TESTS] grow."""
+@entry
+def closest(data, batch, first, last, counts):
+    """Nearest hits of rays first to last - 1; counts[STEPS] and counts[TESTS] grow."""
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
     top_stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
-    s = _search(world, stack, top_stack, counts)
-    batch = ray_pointers(rays)
+    s = _search(data, stack, top_stack, counts)
+    rays = rays_of(batch)
+    hit_t, hit_primitive = f32_at(load_i64(batch + HIT_T)), i32_at(load_i64(batch + HIT_PRIMITIVE))
+    hit_u, hit_v = f32_at(load_i64(batch + HIT_U)), f32_at(load_i64(batch + HIT_V))
     for i in range(first, last):
-        ray = ray_at(batch, i)
+        ray = ray_at(rays, i)
         best = _Best(ray.t_max, np.int32(MISS), ZERO, ZERO)
         best = _closest_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max, best)
         best = _closest_dynamic(s, ray, best)
-        hits.t[i] = best.t if best.primitive != MISS else INFINITY
-        hits.primitive[i], hits.u[i], hits.v[i] = best.primitive, best.u, best.v
+        hit_t[i] = best.t if best.primitive != MISS else INFINITY
+        hit_primitive[i], hit_u[i], hit_v[i] = best.primitive, best.u, best.v
 
 
-@subkernel
-def any_static_hits(world, rays, blocked, first, last, counts):
-    """blocked[i] for rays first to last - 1: whether static geometry lies in their interval."""
+@entry
+def any_static(data, batch, first, last, counts):
+    """Whether static geometry lies in the interval of rays first to last - 1."""
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
-    s = _search(world, stack, stack, counts)
-    batch = ray_pointers(rays)
+    s = _search(data, stack, stack, counts)
+    rays, blocked = rays_of(batch), u8_at(load_i64(batch + BLOCKED))
     for i in range(first, last):
-        ray = ray_at(batch, i)
-        blocked[i] = _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max)
+        ray = ray_at(rays, i)
+        blocked[i] = np.uint8(ray.t_min < ray.t_max and _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max))
 
 
-@subkernel
-def any_dynamic_hits(world, rays, blocked, first, last, counts):
-    """blocked[i] for rays first to last - 1: whether a dynamic object lies in their interval."""
-    stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
-    top_stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
-    s = _search(world, stack, top_stack, counts)
-    batch = ray_pointers(rays)
-    for i in range(first, last):
-        blocked[i] = _any_dynamic(s, ray_at(batch, i))
-
-
-@kernel
-def any_hits(world, rays, blocked, first, last, counts):
-    """blocked[i] for rays first to last - 1: whether anything lies in their interval, static geometry asked first."""
-    any_static_hits(world, rays, blocked, first, last, counts)
+@entry
+def any_dynamic(data, batch, first, last, counts):
+    """Whether a dynamic object lies in the interval of rays first to last - 1."""
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
     top_stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
-    s = _search(world, stack, top_stack, counts)
-    batch = ray_pointers(rays)
+    s = _search(data, stack, top_stack, counts)
+    rays, blocked = rays_of(batch), u8_at(load_i64(batch + BLOCKED))
     for i in range(first, last):
-        blocked[i] = blocked[i] or _any_dynamic(s, ray_at(batch, i))
-
-
-@subkernel
-def hits_alone(world, ray, primitive):
-    """Whether a ray in world space meets this primitive, nothing else asked."""
-    o = world.object_of[primitive]
-    if o != 0:
-        ray = transform_ray(ray, pointer(world.to_object), o, 12)
-    triangles, quadrics = pointer(world.triangles), pointer(world.quadrics)
-    return _hit_primitive(triangles, len(world.triangles), quadrics, ray, primitive)[0] < INFINITY
+        ray = ray_at(rays, i)
+        blocked[i] = np.uint8(ray.t_min < ray.t_max and _any_dynamic(s, ray))
