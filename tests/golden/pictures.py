@@ -65,7 +65,7 @@ class Golden:
 
 GOLDEN = (
     Golden("default", "default", 20, 28, (0, 3), stray=57),  # 0.3 % of the pixels
-    Golden("figure3", "figure3", 0, 1, (0, 1), stray=2),
+    Golden("figure3", "figure3", 0, 1, (0, 1), stray=4),
     Golden("figure4-before-zooming", "figure4", 0, 20, (0,), stray=2),  # its shadow is not known of
     Golden("figure4", "figure4", 0, 40, (0,), stray=2),
 )
