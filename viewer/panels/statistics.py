@@ -82,7 +82,10 @@ def _work(ui: Ui) -> None:
     for title in ("", "rays", "steps", "tests"):
         imgui.table_next_column()
         imgui.text_colored(QUIET, title)
-    tooltip("traversal steps: nodes of the tree entered; tests: rays against primitives")
+    told = "traversal steps: nodes of the tree entered; tests: rays against primitives"
+    if frame.settings.accelerator != "kdtree":
+        told += "; of whole packets of rays where these are coherent (an experiment counts each ray's, in a kd-tree)"
+    tooltip(told)
     total = [0, 0, 0]
     for name, part in (("primary", s.primary), ("secondary", s.secondary), ("shadow", s.shadow)):
         numbers = (part.rays, part.traversal_steps, part.intersection_tests)
