@@ -501,7 +501,7 @@ def _saved(d: Driver, panel: str) -> dict[str, Path]:
 
 def closing_while_loading(d: Driver) -> None:
     """The window goes at once, whatever is being loaded."""
-    d.wait(lambda: d.c.opener.warm_up_job is None, "the kernels")
+    d.wait(lambda: d.c.session.scene is not None, "the first scene")
     d.drop(d.folder / "big.aff")
     d.wait(lambda: d.c.opener.load_job is not None, "a load")
     _close(d)
