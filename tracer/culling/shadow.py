@@ -118,12 +118,19 @@ def _due(points, light, v):
 
 
 @inlined
-def _known(answers, number, v):
-    """Bits of the points that are known to be in full shadow, and of those known to be in none."""
+def _words(answers, number, v):
+    """Words of the v-th vector of points, the halves of them that hold a light's modes, and by how many bits in."""
     word = load_i32x16(address_of(answers.low) + 64 * v)
-    trusted = (word & 3) == FULLY_RENDERED
     field = word if 2 + 2 * number < 32 else load_i32x16(address_of(answers.high) + 64 * v)
     shift = (2 + 2 * number) % 32
+    return word, field, shift
+
+
+@inlined
+def _known(answers, number, v):
+    """Bits of the points that are known to be in full shadow, and of those known to be in none."""
+    word, field, shift = _words(answers, number, v)
+    trusted = (word & 3) == FULLY_RENDERED
     field = field & np.int32(3 << shift)
     return (
         bits_of(trusted & (field == np.int32(FULL_SHADOW << shift))),
@@ -187,9 +194,7 @@ def _blocked(answers, k):
 @subkernel
 def _learn(points, v, number, knowledge, answers, asked, blocked):
     """OR what rays have met into the shadow modes of their primitives, where it is news."""
-    word = load_i32x16(address_of(answers.low) + 64 * v)
-    field = word if 2 + 2 * number < 32 else load_i32x16(address_of(answers.high) + 64 * v)
-    shift = (2 + 2 * number) % 32
+    word, field, shift = _words(answers, number, v)
     moves = bits_of((word & 3) == DYNAMIC)
     seen_blocked = bits_of((field & np.int32(FULL_SHADOW << shift)) == 0)
     seen_free = bits_of((field & np.int32(NON_SHADOW << shift)) == 0)

@@ -8,7 +8,7 @@ is compiled without them, and does not know which it calls.  A structure gives t
     any_dynamic(data, batch, first, last, counts)
 
 of int64 each: data is the address of whatever describes the structure to itself, batch that of the
-addresses listed in `Batch`, first and last say which of the batch's rays are meant, and counts is the
+addresses listed below, first and last say which of the batch's rays are meant, and counts is the
 address of two int64, of steps and tests, that grow.
 """
 
@@ -29,6 +29,7 @@ from tracer.simd import address_of, call_entry, f32_at, load_i64, local_memory, 
 # what is asked for (t, primitive, u and v of the nearest hits, or whether there is any), and the stride.
 ORIGIN, DIRECTION, T_MIN, T_MAX, STRIDE, HIT_T, HIT_PRIMITIVE, HIT_U, HIT_V, BLOCKED = range(0, 80, 8)
 BATCH = 80  # bytes
+STEPS, TESTS = 0, 1  # what a query adds to its counts
 
 
 class Placed(NamedTuple):
@@ -73,21 +74,23 @@ def closest_hits(world, rays, hits, first, last, counts):
 
 
 @inlined
-def any_static_hits(world, rays, blocked, first, last, counts):
-    """blocked[i] for rays first to last - 1: whether static geometry lies in their interval."""
+def _any_hits(entry, data, rays, blocked, first, last, counts):
     batch = local_memory(BATCH)
     _describe(batch, rays)
     store(batch + BLOCKED, address_of(blocked))
-    call_entry(world.any_static, world.data, batch, first, last, address_of(counts))
+    call_entry(entry, data, batch, first, last, address_of(counts))
+
+
+@inlined
+def any_static_hits(world, rays, blocked, first, last, counts):
+    """blocked[i] for rays first to last - 1: whether static geometry lies in their interval."""
+    _any_hits(world.any_static, world.data, rays, blocked, first, last, counts)
 
 
 @inlined
 def any_dynamic_hits(world, rays, blocked, first, last, counts):
     """blocked[i] for rays first to last - 1: whether a dynamic object lies in their interval."""
-    batch = local_memory(BATCH)
-    _describe(batch, rays)
-    store(batch + BLOCKED, address_of(blocked))
-    call_entry(world.any_dynamic, world.data, batch, first, last, address_of(counts))
+    _any_hits(world.any_dynamic, world.data, rays, blocked, first, last, counts)
 
 
 @inlined

@@ -31,8 +31,9 @@ OFFSET = np.float32(2e-5)  # of the largest coordinate at hand: some 300 float32
 
 class Points(NamedTuple):
     """n points: position, geometric normal (towards the viewer), shading normal (in the geometric one's
-    half space) and texture colour, each (3, n) float32; offset (n,), how far above the surface rays
-    start; unit and material (n,) int32; entering (n,), whether the ray came from outside."""
+    half space) and texture colour, each (3, n) float32; surface (SHINE + 1, n), a material's columns and
+    the largest of its specular colour; offset (n,), how far above the surface rays start; unit and
+    material (n,) int32; entering (n,), whether the ray came from outside."""
 
     position: NDArray[np.float32]
     geometric: NDArray[np.float32]

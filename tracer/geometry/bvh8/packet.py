@@ -17,9 +17,11 @@ import numpy as np
 from numba.core import types
 from numba.extending import overload
 
+from tracer.geometry.bvh8 import tree
 from tracer.geometry.bvh8.intersect import ZERO, Terms, crossing, may_cross, terms_of, triangle_of, triangles_of
-from tracer.geometry.bvh8.tree import QUADRIC
+from tracer.geometry.bvh8.tree import BLOCK_SIZE, NODE_SIZE, QUADRIC
 from tracer.geometry.intersect import hit_quadric
+from tracer.geometry.queries import STEPS, TESTS
 from tracer.geometry.rays import Ray
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
@@ -48,12 +50,10 @@ from tracer.simd import (
 
 LANES = 16
 PACKET = 128  # rays
-VECTORS = PACKET // LANES
 ROW = 4 * PACKET  # bytes of one number of each ray
-STEPS, TESTS = 0, 1  # what a query adds to its counts
-NODE, BLOCK = 256, 384  # bytes
-CHILDREN = 192  # offset of the children's codes in a node
-NUMBERS, BOX, COUNT = 288, 320, 344  # offsets in a block
+NODE, BLOCK = 4 * NODE_SIZE, 4 * BLOCK_SIZE  # bytes
+CHILDREN = 4 * tree.CHILDREN  # offset of the children's codes in a node
+NUMBERS, BOX, COUNT = 4 * tree.PRIMITIVES, 4 * tree.BOX, 4 * tree.COUNT  # offsets in a block
 STACK = 8 * 512
 FAR = np.float32(1e30)  # no hit is farther, and every empty child is
 TINY = np.float32(1e-20)
@@ -322,6 +322,16 @@ def _terms_at(origin, memory, block, v, k):
 
 
 @inlined
+def _crossing(origin, memory, block, v, k):
+    """`crossing` of the rays of the v-th vector and the k-th triangle of a block, and the height of its terms."""
+    a = memory + 64 * v
+    m = terms_at(origin, memory, block, v, k)
+    dx, dy, dz = load_f32x16(a + DX * ROW), load_f32x16(a + DY * ROW), load_f32x16(a + DZ * ROW)
+    crosses, sign, u, w, area = crossing(dx, dy, dz, m)
+    return crosses, sign, u, w, area, m.height
+
+
+@inlined
 def _distance(memory, v, crosses, height, sign, area):
     """(mask, t, 1 / area) of those crossings that lie where the rays are in the block's box."""
     a = memory + 64 * v
@@ -346,12 +356,10 @@ def _closest_in_block(origin, memory, s, block, active):
             v = lowest_bit(rest)
             rest &= rest - 1
             a = memory + 64 * v
-            m = terms_at(origin, memory, block, v, k)
-            dx, dy, dz = load_f32x16(a + DX * ROW), load_f32x16(a + DY * ROW), load_f32x16(a + DZ * ROW)
-            crosses, sign, u, w, area = crossing(dx, dy, dz, m)
+            crosses, sign, u, w, area, height = _crossing(origin, memory, block, v, k)
             if not any_lane(crosses):
                 continue
-            mask, t, scale = _distance(memory, v, crosses, m.height, sign, area)
+            mask, t, scale = _distance(memory, v, crosses, height, sign, area)
             best = load_f32x16(a + T * ROW)
             mask = mask & ((t < best) | ((t == best) & (i32x16(number) < load_i32x16(a + NUMBER * ROW))))
             if any_lane(mask):
@@ -377,12 +385,10 @@ def _any_in_block(origin, memory, s, block, active):
             v = lowest_bit(rest)
             rest &= rest - 1
             a = memory + 64 * v
-            m = terms_at(origin, memory, block, v, k)
-            dx, dy, dz = load_f32x16(a + DX * ROW), load_f32x16(a + DY * ROW), load_f32x16(a + DZ * ROW)
-            crosses, sign, _u, _w, area = crossing(dx, dy, dz, m)
+            crosses, sign, _u, _w, area, height = _crossing(origin, memory, block, v, k)
             if not any_lane(crosses):
                 continue
-            mask, t, _scale = _distance(memory, v, crosses, m.height, sign, area)
+            mask, t, _scale = _distance(memory, v, crosses, height, sign, area)
             before = load_f32x16(a + T * ROW)
             mask = mask & (t < before)
             if any_lane(mask):
@@ -394,7 +400,6 @@ def _any_in_block(origin, memory, s, block, active):
 @inlined
 def _lane_origin(origin, memory, lane):
     """Origin of one ray."""
-    store(memory + SCRATCH, f32x16(ZERO))
     ox, oy, oz = origin_of(origin, memory, lane >> 4)
     x, y, z = f32x16(ZERO) + ox, f32x16(ZERO) + oy, f32x16(ZERO) + oz
     return lane_of(x, lane & 15), lane_of(y, lane & 15), lane_of(z, lane & 15)

@@ -15,12 +15,11 @@ import numpy as np
 from tracer.geometry.intersect import ZERO, hit_box, hit_quadric, hit_triangle, transform_ray
 from tracer.geometry.kdtree.tree import STACK_SIZE, Stack, Trees, next_leaf, push
 from tracer.geometry.memory import local_float32, local_int32
-from tracer.geometry.queries import BLOCKED, HIT_PRIMITIVE, HIT_T, HIT_U, HIT_V, rays_of
+from tracer.geometry.queries import BLOCKED, HIT_PRIMITIVE, HIT_T, HIT_U, HIT_V, STEPS, TESTS, rays_of
 from tracer.geometry.rays import INFINITY, MISS, Ray, ray_at
 from tracer.kernels import entry, inlined, subkernel
 from tracer.simd import f32_at, i32_at, i64_at, load_i64, u8_at
 
-STEPS, TESTS = 0, 1  # what a query adds to its counts
 SLACK = np.float32(1e-5)  # relative; by so much an object's interval is wider than that of its leaf
 
 

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.intersect import ZERO, inverse
-from tracer.geometry.memory import pointer
 from tracer.kernels import inlined
 
 LEAF = 3
@@ -108,9 +107,3 @@ def next_leaf(trees, ray, stack, pending):
             pending = push(stack, pending, far, t, leave)
             node, leave = near, t
         steps += 1
-
-
-@inlined
-def pointers_to(trees):
-    """The same trees as pointers."""
-    return Trees(pointer(trees.words), pointer(trees.planes), pointer(trees.items))
