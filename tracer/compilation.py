@@ -83,8 +83,7 @@ def warm_up(progress: Progress | None = None, lights: int = 1, accelerator: str 
         report("nearest hits")
         structure.closest.compile()
         report("shadow rays")
-        structure.any_static.compile()
-        structure.any_dynamic.compile()
+        structure.any_hit.compile()
         report("the builder")
         # As many lights as make a word of that size, no more: each is traced.
         scene = _tiny_scene(1 if lights <= 15 else 16)

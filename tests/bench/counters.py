@@ -65,10 +65,18 @@ EDITS = (
     Edit("tracer/geometry/kdtree/tree.py", "        steps += 1\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "    steps: int\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "leave, steps, pending)", 1, "leave, pending)"),
-    *(
-        Edit(f"tracer/geometry/bvh8/{file}.py", f"{indent * ' '}counts[{what}] += 1\n", 2)
-        for file in ("packet", "single")
-        for indent, what in ((16, "TESTS"), (12, "TESTS"), (8, "STEPS"))  # the deepest first: it ends like the others
+    *(  # the deepest first: they end like the others
+        Edit(f"tracer/geometry/bvh8/{file}.py", f"{indent * ' '}counts[{what}] += {by}\n", times)
+        for file, indent, what, by, times in (
+            ("packet_tree", 12, "TESTS", "1", 4),
+            ("packet_tree", 8, "STEPS", "1", 2),
+            ("packet_tree", 4, "TESTS", "1", 1),
+            ("single", 16, "TESTS", "1", 2),
+            ("single", 12, "TESTS", "1", 2),
+            ("single", 12, "STEPS", "1", 1),
+            ("single", 8, "STEPS", "1", 1),
+            ("single", 8, "STEPS", "count", 2),
+        )
     ),
 )
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 import tracer
-from tracer.geometry.queries import batch_of
+from tracer.geometry.queries import DYNAMIC, STATIC, batch_of
 from tracer.geometry.rays import Hits, Rays
 
 UNTOUCHED = 77
@@ -43,9 +43,9 @@ def ask(world: tracer.World, rays: Rays, first: int = 0, last: int | None = None
     structure, data = world.structure, world.placed.data
     batch = batch_of(rays, Hits(*numbers))
     structure.closest.call(data, batch.ctypes.data, first, last, counts.ctypes.data)
-    for query, blocked in zip((structure.any_static, structure.any_dynamic), flags, strict=True):
-        batch = batch_of(rays, blocked=blocked)
-        query.call(data, batch.ctypes.data, first, last, counts.ctypes.data)
+    for which, blocked in zip((STATIC, DYNAMIC), flags, strict=True):
+        batch = batch_of(rays, blocked=blocked, which=which)
+        structure.any_hit.call(data, batch.ctypes.data, first, last, counts.ctypes.data)
         assert (blocked[first:last] <= 1).all()
     for array in (*numbers, *flags):
         assert (array[:first] == UNTOUCHED).all() and (array[last:] == UNTOUCHED).all()

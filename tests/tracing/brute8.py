@@ -13,8 +13,9 @@ import tracer
 from tests.tracing.brute import Meetings
 from tests.tracing.trees8 import walk
 from tracer.geometry.bvh8.intersect import crossing, terms_of, triangle_of
-from tracer.geometry.bvh8.packet import BLOCK, FAR, NUMBERS, inverse
+from tracer.geometry.bvh8.packet import FAR, inverse
 from tracer.geometry.bvh8.tree import BOX, COUNT, Tree
+from tracer.geometry.bvh8.trees import BLOCK, NUMBERS
 from tracer.geometry.intersect import hit_quadric
 from tracer.geometry.memory import pointer
 from tracer.geometry.rays import INFINITY, Ray, Rays, ray_at, ray_pointers

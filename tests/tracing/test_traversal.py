@@ -39,9 +39,7 @@ def assert_same_way(world: tracer.World, rays: Rays, there: np.ndarray, edges: b
     for i in range(n):
         counts = np.zeros((2, 2), np.int64)
         structure.closest.call(placed.data, nearest.ctypes.data, i, i + 1, counts[0].ctypes.data)
-        structure.any_static.call(placed.data, whether.ctypes.data, i, i + 1, counts[1].ctypes.data)
-        if not blocked[i]:
-            structure.any_dynamic.call(placed.data, whether.ctypes.data, i, i + 1, counts[1].ctypes.data)
+        structure.any_hit.call(placed.data, whether.ctypes.data, i, i + 1, counts[1].ctypes.data)
         line = Line(tuple(rays.origin[:, i]), tuple(rays.direction[:, i]))
         near, whatever = (Traversal(structure.parts, line, rays.t_min[i], rays.t_max[i], met.t[i]) for _ in range(2))
         assert (hits.t[i], hits.primitive[i]) == near.closest()

@@ -23,7 +23,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.modes import DYNAMIC, FULL_SHADOW, FULLY_RENDERED, MAX_CULLED_LIGHTS, NON_SHADOW, add_shadow
-from tracer.geometry.queries import any_dynamic_hits, any_static_hits
+from tracer.geometry.queries import DYNAMIC as ANY_DYNAMIC
+from tracer.geometry.queries import STATIC as ANY_STATIC
+from tracer.geometry.queries import any_hits
 from tracer.geometry.rays import Rays, empty_rays
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
@@ -210,7 +212,7 @@ def _learn(points, v, number, knowledge, answers, asked, blocked):
 def _ask_static(world, points, light, number, knowledge, vectors, answers, counts):
     """Ask static geometry and set shadow modes; answers.lit grows by the points where nothing blocks."""
     packed = _rays_from_light(points, light, vectors, answers)
-    any_static_hits(world, answers.rays, answers.blocked, 0, 16 * packed, counts)
+    any_hits(world, answers.rays, ANY_STATIC, answers.blocked, 0, 16 * packed, counts)
     for k in range(packed):
         v = np.int64(answers.source[k])
         asked, blocked = np.int64(answers.live[v]), _blocked(answers, k)
@@ -226,7 +228,7 @@ def _ask_dynamic(world, points, light, vectors, answers, counts):
     for v in range(vectors):
         answers.live[v] = answers.lit[v]
     packed = _rays_from_light(points, light, vectors, answers)
-    any_dynamic_hits(world, answers.rays, answers.blocked, 0, 16 * packed, counts)
+    any_hits(world, answers.rays, ANY_DYNAMIC, answers.blocked, 0, 16 * packed, counts)
     for k in range(packed):
         v = answers.source[k]
         answers.lit[v] &= ~_blocked(answers, k)
@@ -239,13 +241,9 @@ def _verify(world, points, light, vectors, answers, counts):
     for v in range(vectors):
         answers.live[v], answers.truth[v] = answers.due[v], answers.due[v]
     packed = _rays_from_light(points, light, vectors, answers)
-    for moving in range(2):
-        if moving == 0:
-            any_static_hits(world, answers.rays, answers.blocked, 0, 16 * packed, scratch)
-        else:
-            any_dynamic_hits(world, answers.rays, answers.blocked, 0, 16 * packed, scratch)
-        for k in range(packed):
-            answers.truth[answers.source[k]] &= ~_blocked(answers, k)
+    any_hits(world, answers.rays, ANY_STATIC | ANY_DYNAMIC, answers.blocked, 0, 16 * packed, scratch)
+    for k in range(packed):
+        answers.truth[answers.source[k]] &= ~_blocked(answers, k)
     for v in range(vectors):
         counts[WRONG] += ones(np.int64(answers.truth[v] ^ answers.lit[v]))
 

@@ -1,11 +1,10 @@
 """The queries that everything above geometry asks of a placed world, whichever structure is below.
 
 A structure's queries are machine code, compiled once for all who ask, and called by address: shading
-is compiled without them, and does not know which it calls.  A structure gives three entries
+is compiled without them, and does not know which it calls.  A structure gives two entries
 
     closest(data, batch, first, last, counts)
-    any_static(data, batch, first, last, counts)
-    any_dynamic(data, batch, first, last, counts)
+    any_hit(data, batch, first, last, counts)
 
 of int64 each: data is the address of whatever describes the structure to itself, batch that of the
 addresses listed below, first and last say which of the batch's rays are meant, and counts is the
@@ -26,9 +25,11 @@ from tracer.kernels import inlined, subkernel
 from tracer.simd import address_of, call_entry, f32_at, load_i64, local_memory, store
 
 # A batch as entries get it: addresses of origins and directions, (3, stride) float32, of t_min and t_max, of
-# what is asked for (t, primitive, u and v of the nearest hits, or whether there is any), and the stride.
-ORIGIN, DIRECTION, T_MIN, T_MAX, STRIDE, HIT_T, HIT_PRIMITIVE, HIT_U, HIT_V, BLOCKED = range(0, 80, 8)
-BATCH = 80  # bytes
+# what is asked for (t, primitive, u and v of the nearest hits, or whether there is any), and the stride; and
+# whether static geometry, dynamic objects or both are asked for any hit.
+ORIGIN, DIRECTION, T_MIN, T_MAX, STRIDE, HIT_T, HIT_PRIMITIVE, HIT_U, HIT_V, BLOCKED, WHICH = range(0, 88, 8)
+BATCH = 88  # bytes
+STATIC, DYNAMIC = 1, 2
 STEPS, TESTS = 0, 1  # what a query adds to its counts
 
 
@@ -37,8 +38,8 @@ class Placed(NamedTuple):
 
     triangles (t, 9) and quadrics (q, 16) float32 are in the space of their object, to which to_object
     (objects, 12) float32 leads from the world: triangle i is primitive i, quadric j primitive t + j, and
-    object_of (t + q,) int32 tells whose they are; object 0 is static.  closest, any_static and
-    any_dynamic are the addresses of a structure's entries, and data what they are given.
+    object_of (t + q,) int32 tells whose they are; object 0 is static.  closest and any_hit are the
+    addresses of a structure's entries, and data what they are given.
     """
 
     triangles: NDArray[np.float32]
@@ -46,8 +47,7 @@ class Placed(NamedTuple):
     to_object: NDArray[np.float32]
     object_of: NDArray[np.int32]
     closest: int
-    any_static: int
-    any_dynamic: int
+    any_hit: int
     data: int
     has_dynamic: bool
 
@@ -74,23 +74,14 @@ def closest_hits(world, rays, hits, first, last, counts):
 
 
 @inlined
-def _any_hits(entry, data, rays, blocked, first, last, counts):
+def any_hits(world, rays, which, blocked, first, last, counts):
+    """blocked[i] for rays first to last - 1: whether anything lies in their interval, of STATIC geometry, of
+    DYNAMIC objects or, for the sum, of either."""
     batch = local_memory(BATCH)
     _describe(batch, rays)
     store(batch + BLOCKED, address_of(blocked))
-    call_entry(entry, data, batch, first, last, address_of(counts))
-
-
-@inlined
-def any_static_hits(world, rays, blocked, first, last, counts):
-    """blocked[i] for rays first to last - 1: whether static geometry lies in their interval."""
-    _any_hits(world.any_static, world.data, rays, blocked, first, last, counts)
-
-
-@inlined
-def any_dynamic_hits(world, rays, blocked, first, last, counts):
-    """blocked[i] for rays first to last - 1: whether a dynamic object lies in their interval."""
-    _any_hits(world.any_dynamic, world.data, rays, blocked, first, last, counts)
+    store(batch + WHICH, np.int64(which))
+    call_entry(world.any_hit, world.data, batch, first, last, address_of(counts))
 
 
 @inlined
@@ -105,12 +96,14 @@ def rays_of(batch):
     )
 
 
-def batch_of(rays: Rays, hits: Hits | None = None, blocked: NDArray[np.bool_] | None = None) -> NDArray[np.int64]:
+def batch_of(
+    rays: Rays, hits: Hits | None = None, blocked: NDArray[np.bool_] | None = None, which: int = STATIC | DYNAMIC
+) -> NDArray[np.int64]:
     """The description of a batch for an entry that is called from Python; its arrays must live as long."""
     arrays = [rays.origin, rays.direction, rays.t_min, rays.t_max]
     results = [0, 0, 0, 0] if hits is None else [a.ctypes.data for a in (hits.t, hits.primitive, hits.u, hits.v)]
     answer = 0 if blocked is None else blocked.ctypes.data
-    return np.array([*(a.ctypes.data for a in arrays), rays.origin.shape[1], *results, answer], np.int64)
+    return np.array([*(a.ctypes.data for a in arrays), rays.origin.shape[1], *results, answer, which], np.int64)
 
 
 @subkernel

@@ -75,13 +75,7 @@ class World:
         """(n,) whether anything, static or dynamic, lies in each ray's interval."""
         n = len(rays.t_min)
         blocked = np.zeros(n, np.bool_)
-        self._ask(self.structure.any_static, batch_of(rays, blocked=blocked), n, threads)
-        if self.placed.has_dynamic:
-            still = np.flatnonzero(~blocked)
-            rest = Rays(*(np.ascontiguousarray(a[..., still]) for a in rays))
-            more = np.zeros(len(still), np.bool_)
-            self._ask(self.structure.any_dynamic, batch_of(rest, blocked=more), len(still), threads)
-            blocked[still] = more
+        self._ask(self.structure.any_hit, batch_of(rays, blocked=blocked), n, threads)
         return blocked
 
     def _ask(self, query: Entry, batch: NDArray[np.int64], n: int, threads: int) -> None:

@@ -68,6 +68,22 @@ load_f32x8, load_f32x16, load_i32x8, load_i32x16, load_f32, load_i32, load_i64 =
 
 
 @operation
+def prefetch(typingctx, address):
+    """Ask for the cache line of an address, which will be read soon: of no effect but on time."""
+
+    def codegen(context, builder, sig, args):
+        kind, number = ir.IntType(8).as_pointer(), ir.IntType(32)
+        name = "llvm.prefetch.p0"
+        function = cgutils.get_or_insert_function(
+            builder.module, ir.FunctionType(ir.VoidType(), [kind, number, number, number]), name
+        )
+        builder.call(function, [builder.inttoptr(args[0], kind), *(ir.Constant(number, k) for k in (0, 3, 1))])
+        return context.get_dummy_value()
+
+    return types.void(types.int64), codegen
+
+
+@operation
 def store(typingctx, address, value):
     """Write a vector, a float32, an int32 or an int64 to an address."""
     if not isinstance(value, (Vector, types.Float, types.Integer)):

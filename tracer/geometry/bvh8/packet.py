@@ -1,12 +1,7 @@
-"""Up to 128 rays through a BVH8 together: what one has read, all have.
+"""A packet: up to 128 rays in local memory, as eight vectors of sixteen, and the frusta that bound these.
 
-A packet is eight vectors of sixteen rays.  At a node one interval test asks which of the eight children
-any ray could enter at all (Wald et al. 2007, and for eight boxes at once); only those are tested
-exactly, vector by vector.  A pending child is one int64: above, the bits of the distance where the
-packet enters it, their lowest eight replaced by the set of vectors that do (which only makes the
-distance less); below, its code.
-
-Rays from one point are by far the cheaper: what is subtracted from that point is subtracted once.
+Each of a ray's numbers has a row.  What is found is written into the rows too, whether the rays go
+through a tree together (`packet_tree`) or one by one (`single`), so that `traverse` need not know.
 """
 
 from __future__ import annotations
@@ -17,21 +12,31 @@ import numpy as np
 from numba.core import types
 from numba.extending import overload
 
-from tracer.geometry.bvh8 import tree
-from tracer.geometry.bvh8.intersect import ZERO, Terms, crossing, may_cross, terms_of, triangle_of, triangles_of
-from tracer.geometry.bvh8.tree import BLOCK_SIZE, NODE_SIZE, QUADRIC
-from tracer.geometry.intersect import hit_quadric
-from tracer.geometry.queries import STEPS, TESTS
-from tracer.geometry.rays import Ray
+from tracer.geometry.bvh8.frustum import NO_RAYS, Frustum, axes_of, wider
+from tracer.geometry.bvh8.intersect import ZERO
+from tracer.geometry.queries import (
+    BLOCKED,
+    DIRECTION,
+    HIT_PRIMITIVE,
+    HIT_T,
+    HIT_U,
+    HIT_V,
+    ORIGIN,
+    STRIDE,
+    T_MAX,
+)
+from tracer.geometry.queries import T_MIN as BATCH_T_MIN
+from tracer.geometry.rays import INFINITY, MISS
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
+    all_lanes,
     any_lane,
     as_f32,
     as_i32,
     bits_of,
+    f32x8,
     f32x16,
     i32x16,
-    lane_of,
     largest,
     load_f32,
     load_f32x8,
@@ -42,69 +47,45 @@ from tracer.simd import (
     lowest_bit,
     maximum,
     minimum,
+    prefetch,
     select,
     smallest,
     store,
-    store_where,
+    store_mask,
+    u8_at,
 )
 
 LANES = 16
 PACKET = 128  # rays
 ROW = 4 * PACKET  # bytes of one number of each ray
-NODE, BLOCK = 4 * NODE_SIZE, 4 * BLOCK_SIZE  # bytes
-CHILDREN = 4 * tree.CHILDREN  # offset of the children's codes in a node
-NUMBERS, BOX, COUNT = 4 * tree.PRIMITIVES, 4 * tree.BOX, 4 * tree.COUNT  # offsets in a block
-STACK = 8 * 512
 FAR = np.float32(1e30)  # no hit is farther, and every empty child is
+LARGEST = np.float32(1e29)  # of t_max, short of what stands for a blocked ray
 TINY = np.float32(1e-20)
 BLOCKED_T = -FAR  # t of a ray that is known to be blocked, and of none
+WIDE = np.float32(4)  # slopes of sixteen rays that differ by more are not worth a frustum
+NARROW = np.float32(0.02)  # by less, and the frustum alone will do
+HUGE = np.float32(1e18)
 
-# Rows of a packet's memory.
+# Rows of a packet's memory: of all rays, of their eight frusta, and room to work in.
 DX, DY, DZ, IX, IY, IZ, T_MIN, T, NUMBER, U, V, ENTER, LEAVE, OX, OY, OZ = range(16)
-SCRATCH = 16 * ROW
+FRUSTA = 16 * ROW
+START, SLOPE, NEAR, REACH = 0, 6, 10, 11  # rows of eight: of starts there are six, of slopes four
+SCRATCH = FRUSTA + 12 * 32
 TERMS = SCRATCH + 64
 MEMORY = TERMS + 320
 
 
-class Trees(NamedTuple):
-    """A tree as a packet needs it: addresses of nodes and blocks, a pointer to quadrics as seen from the
-    world, and the number of triangles, which is that of the first quadric."""
+class Group(NamedTuple):
+    """Vectors of a packet that go together: which, as bits, and which of those have so wide a frustum that
+    rays had better be asked too; their frusta's axes, a frustum around them all but for where it ends, and
+    the box of their directions."""
 
-    nodes: Any
-    blocks: Any
-    quadrics: Any
-    triangles: Any
-
-
-class Interval(NamedTuple):
-    """What all rays of a packet have in common: intervals of origins and inverse directions, by axis,
-    offsets of the near and far planes in a node, and which axes have one sign of direction."""
-
-    near_x: Any
-    near_y: Any
-    near_z: Any
-    low_x: Any
-    low_y: Any
-    low_z: Any
-    high_x: Any
-    high_y: Any
-    high_z: Any
-    least_x: Any
-    least_y: Any
-    least_z: Any
-    most_x: Any
-    most_y: Any
-    most_z: Any
-    dx0: Any
-    dy0: Any
-    dz0: Any
-    dx1: Any
-    dy1: Any
-    dz1: Any
-    t_min: Any
-    mixed_x: Any
-    mixed_y: Any
-    mixed_z: Any
+    vectors: Any
+    wide: Any
+    axes: Any
+    frustum: Any
+    low: Any
+    high: Any
 
 
 def origin_of(origin, memory, v):
@@ -137,64 +118,223 @@ def inverse(x):
 
 
 @inlined
-def _axis(memory, row, vectors):
-    """Least and greatest inverse of a packet's directions along an axis, and whether their signs are mixed."""
-    low = high = load_f32x16(memory + row * ROW)
-    for v in range(1, vectors):
-        x = load_f32x16(memory + row * ROW + 64 * v)
-        low, high = minimum(low, x), maximum(high, x)
-    least, most = smallest(low), largest(high)
-    return least, most, (least < ZERO) != (most < ZERO)
+def _row(memory, row, source, count, rest):
+    """Copy a row of `count` numbers into a packet's memory, and fill its last vector up with `rest`; what the
+    next packet will copy is asked for."""
+    for line in range(ROW, 2 * ROW, 64):
+        prefetch(source + line)
+    i = 0
+    while i + LANES <= count:
+        store(memory + row * ROW + 4 * i, load_f32x16(source + 4 * i))
+        i += LANES
+    while i < count:
+        store(memory + row * ROW + 4 * i, load_f32(source + 4 * i))
+        i += 1
+    while i % LANES != 0:
+        store(memory + row * ROW + 4 * i, rest)
+        i += 1
+
+
+@subkernel
+def fill(memory, batch, first, count):
+    """Rays first to first + count - 1 as a packet; how many vectors they are, the box of their origins, and whether
+    all are finite: of others no bounds can be told."""
+    n, at, last = 4 * load_i64(batch + STRIDE), 4 * first, 4 * (count - 1)
+    o, d = load_i64(batch + ORIGIN) + at, load_i64(batch + DIRECTION) + at
+    t_min, t_max = load_i64(batch + BATCH_T_MIN) + at, load_i64(batch + T_MAX) + at
+    for axis in range(3):
+        _row(memory, OX + axis, o + axis * n, count, load_f32(o + axis * n + last))
+        _row(memory, DX + axis, d + axis * n, count, load_f32(d + axis * n + last))
+    _row(memory, T_MIN, t_min, count, load_f32(t_min + last))
+    _row(memory, T, t_max, count, BLOCKED_T)
+    vectors = (count + LANES - 1) // LANES
+    lx = hx = load_f32x16(memory + OX * ROW)
+    ly = hy = load_f32x16(memory + OY * ROW)
+    lz = hz = load_f32x16(memory + OZ * ROW)
+    nothing = f32x16(ZERO)
+    for v in range(vectors):
+        a = memory + 64 * v
+        dx, dy, dz = load_f32x16(a + DX * ROW), load_f32x16(a + DY * ROW), load_f32x16(a + DZ * ROW)
+        store(a + IX * ROW, inverse(dx))
+        store(a + IY * ROW, inverse(dy))
+        store(a + IZ * ROW, inverse(dz))
+        store(a + T * ROW, minimum(load_f32x16(a + T * ROW), LARGEST))
+        store(a + NUMBER * ROW, i32x16(MISS))
+        x, y, z = load_f32x16(a + OX * ROW), load_f32x16(a + OY * ROW), load_f32x16(a + OZ * ROW)
+        lx, ly, lz = minimum(lx, x), minimum(ly, y), minimum(lz, z)
+        hx, hy, hz = maximum(hx, x), maximum(hy, y), maximum(hz, z)
+        nothing = nothing + ((x + y + z) + (dx + dy + dz)) * ZERO
+    low = (smallest(lx), smallest(ly), smallest(lz))
+    high = (largest(hx), largest(hy), largest(hz))
+    return vectors, low, high, all_lanes(nothing == ZERO)
 
 
 @inlined
-def interval_of(memory, vectors, low, high):
-    """The interval of a packet whose rows are filled; low and high are the box of its origins."""
-    lx, mx, bx = _axis(memory, IX, vectors)
-    ly, my, by = _axis(memory, IY, vectors)
-    lz, mz, bz = _axis(memory, IZ, vectors)
-    dx0, dx1, _ = _axis(memory, DX, vectors)
-    dy0, dy1, _ = _axis(memory, DY, vectors)
-    dz0, dz1, _ = _axis(memory, DZ, vectors)
-    t_min = load_f32x16(memory + T_MIN * ROW)
-    for v in range(1, vectors):
-        t_min = minimum(t_min, load_f32x16(memory + T_MIN * ROW + 64 * v))
-    return Interval(
-        np.int64(96 if lx < ZERO else 0), np.int64(96 if ly < ZERO else 0), np.int64(96 if lz < ZERO else 0),
-        low[0], low[1], low[2], high[0], high[1], high[2],
-        lx, ly, lz, mx, my, mz, dx0, dy0, dz0, dx1, dy1, dz1, maximum(smallest(t_min), ZERO), bx, by, bz,
+def open_vectors(memory, vectors):
+    """The vectors, of so many, that hold a ray to trace."""
+    result = np.int64(0)
+    for v in range(vectors):
+        a = memory + 64 * v
+        result |= np.int64(any_lane(load_f32x16(a + T * ROW) > load_f32x16(a + T_MIN * ROW))) << v
+    return result
+
+
+@inlined
+def _slopes(memory, v, axis, way):
+    """Least and greatest slopes of the v-th vector along the other axes; HUGE where some ray does not go that way."""
+    a = memory + 64 * v
+    if smallest(load_f32x16(a + (DX + axis) * ROW) * way) <= ZERO:
+        return -HUGE, HUGE, -HUGE, HUGE
+    scale = load_f32x16(a + (IX + axis) * ROW) * way
+    slope_u = load_f32x16(a + (DX + (axis + 1) % 3) * ROW) * scale
+    slope_v = load_f32x16(a + (DX + (axis + 2) % 3) * ROW) * scale
+    return smallest(slope_u), largest(slope_u), smallest(slope_v), largest(slope_v)
+
+
+@subkernel
+def lead_of(memory, v):
+    """The axis, and which way along it, that suit the v-th vector best; whether its frustum is worth having."""
+    best, axis, way = ZERO, 0, ZERO
+    for k in range(3):
+        d = load_f32x16(memory + (DX + k) * ROW + 64 * v)
+        up, down = smallest(d), -largest(d)
+        if up > best:
+            best, axis, way = up, k, np.float32(1)
+        if down > best:
+            best, axis, way = down, k, np.float32(-1)
+    u0, u1, v0, v1 = _slopes(memory, v, axis, way)
+    return axis, way, maximum(u1 - u0, v1 - v0) <= WIDE
+
+
+@inlined
+def _put(memory, row, v, value):
+    store(memory + FRUSTA + 32 * row + 4 * v, value)
+
+
+@inlined
+def _put_starts(memory, v, axes):
+    """Where the rays of the v-th vector start."""
+    u, w = (axes.along + 1) % 3, (axes.along + 2) % 3
+    a = memory + 64 * v
+    k = load_f32x16(a + (OX + axes.along) * ROW) * axes.way
+    _put(memory, START, v, smallest(k))
+    _put(memory, START + 1, v, largest(k))
+    x = load_f32x16(a + (OX + u) * ROW)
+    _put(memory, START + 2, v, smallest(x))
+    _put(memory, START + 3, v, largest(x))
+    x = load_f32x16(a + (OX + w) * ROW)
+    _put(memory, START + 4, v, smallest(x))
+    _put(memory, START + 5, v, largest(x))
+
+
+@inlined
+def _put_reach(memory, v, axes):
+    """Note up to where along the axis the rays of the v-th vector are still looking."""
+    a = memory + 64 * v
+    k = load_f32x16(a + (DX + axes.along) * ROW) * axes.way
+    reach = largest(load_f32x16(a + T * ROW) * k)
+    _put(memory, REACH, v, reach + np.float32(2e-6) * reach)
+
+
+@subkernel
+def put_reaches(memory, vectors, axes):
+    """The same for several vectors, given as bits."""
+    while vectors != 0:
+        _put_reach(memory, lowest_bit(vectors), axes)
+        vectors &= vectors - 1
+
+
+@inlined
+def _put_frustum(memory, v, axes):
+    """Bound the v-th vector along an axis, if that is worth it; by how much its slopes differ."""
+    u0, u1, v0, v1 = _slopes(memory, v, axes.along, axes.way)
+    width = maximum(u1 - u0, v1 - v0)
+    if width > WIDE:
+        return width
+    u0, u1 = wider(u0, u1)
+    v0, v1 = wider(v0, v1)
+    _put(memory, SLOPE, v, u0)
+    _put(memory, SLOPE + 1, v, u1)
+    _put(memory, SLOPE + 2, v, v0)
+    _put(memory, SLOPE + 3, v, v1)
+    a = memory + 64 * v
+    near = smallest(load_f32x16(a + T_MIN * ROW) * load_f32x16(a + (DX + axes.along) * ROW) * axes.way)
+    _put(memory, NEAR, v, maximum(near - np.float32(2e-6) * near, ZERO))
+    _put_reach(memory, v, axes)
+    _put_starts(memory, v, axes)
+    return width
+
+
+@inlined
+def frusta_of(memory):
+    """The frusta of all eight vectors."""
+    a = memory + FRUSTA
+    return Frustum(
+        load_f32x8(a), load_f32x8(a + 32), load_f32x8(a + 64), load_f32x8(a + 96), load_f32x8(a + 128),
+        load_f32x8(a + 160), load_f32x8(a + 192), load_f32x8(a + 224), load_f32x8(a + 256), load_f32x8(a + 288),
+        load_f32x8(a + 320), load_f32x8(a + 352),
     )  # fmt: skip
 
 
 @inlined
-def _axis_interval(node, axis, near, low, high, least, most):
-    """Least entry and greatest exit of eight children along an axis, for origins and inverses in these intervals."""
-    first = low if near > 0 else high
-    last = high if near > 0 else low
-    a = load_f32x8(node + 32 * axis + near) - first
-    b = load_f32x8(node + 32 * axis + 96 - near) - last
-    return minimum(a * least, a * most), maximum(b * least, b * most)
+def _around(f):
+    """The frustum around eight."""
+    return Frustum(
+        smallest(f.start0), largest(f.start1), smallest(f.u_start0), largest(f.u_start1),
+        smallest(f.v_start0), largest(f.v_start1), smallest(f.u0), largest(f.u1), smallest(f.v0), largest(f.v1),
+        smallest(f.near), largest(f.far),
+    )  # fmt: skip
 
 
 @inlined
-def _open(node, s, far):
-    """(entry, mask) of the children of a node that some ray of the packet may enter before `far`."""
-    enter, leave = load_f32x8(node) * ZERO + s.t_min, load_f32x8(node) * ZERO + far
-    if not s.mixed_x:
-        a, b = _axis_interval(node, 0, s.near_x, s.low_x, s.high_x, s.least_x, s.most_x)
-        enter, leave = maximum(enter, a), minimum(leave, b)
-    if not s.mixed_y:
-        a, b = _axis_interval(node, 1, s.near_y, s.low_y, s.high_y, s.least_y, s.most_y)
-        enter, leave = maximum(enter, a), minimum(leave, b)
-    if not s.mixed_z:
-        a, b = _axis_interval(node, 2, s.near_z, s.low_z, s.high_z, s.least_z, s.most_z)
-        enter, leave = maximum(enter, a), minimum(leave, b)
-    return enter, bits_of(enter <= leave)
+def _least_and_greatest(memory, row, vectors):
+    first = load_f32x16(memory + row * ROW + 64 * lowest_bit(vectors))
+    low, high, rest = first, first, vectors & (vectors - 1)
+    while rest != 0:
+        x = load_f32x16(memory + row * ROW + 64 * lowest_bit(rest))
+        low, high = minimum(low, x), maximum(high, x)
+        rest &= rest - 1
+    return smallest(low), largest(high)
+
+
+@subkernel
+def group_of(memory, vectors, axis, way):
+    """Those of these vectors (bits) that can go together along an axis; at least one."""
+    for row in (START, START + 2, START + 4, SLOPE, SLOPE + 2):  # bounds of no ray: they leave others' as they are
+        store(memory + FRUSTA + 32 * row, f32x8(HUGE))
+        store(memory + FRUSTA + 32 * row + 32, f32x8(-HUGE))
+    store(memory + FRUSTA + 32 * NEAR, f32x8(HUGE))
+    store(memory + FRUSTA + 32 * REACH, f32x8(NO_RAYS))
+    axes = axes_of(axis, way)
+    members, wide, rest = np.int64(0), np.int64(0), vectors
+    while rest != 0:
+        v = lowest_bit(rest)
+        rest &= rest - 1
+        width = _put_frustum(memory, v, axes)
+        members |= np.int64(width <= WIDE) << v
+        wide |= np.int64(width > NARROW) << v
+    dx = _least_and_greatest(memory, DX, members)
+    dy = _least_and_greatest(memory, DY, members)
+    dz = _least_and_greatest(memory, DZ, members)
+    low, high = (dx[0], dy[0], dz[0]), (dx[1], dy[1], dz[1])
+    return Group(members, wide, axes, _around(frusta_of(memory)), low, high)
 
 
 @inlined
-def _lanes_inside(origin, memory, v, x0, y0, z0, x1, y1, z1):
-    """Where sixteen rays enter and leave a box."""
+def farthest(memory):
+    """Up to where along the axis any frustum goes."""
+    return largest(load_f32x8(memory + FRUSTA + 32 * REACH))
+
+
+@inlined
+def looking(memory, distance):
+    """The vectors that are still looking beyond a distance along the axis."""
+    return bits_of(load_f32x8(memory + FRUSTA + 32 * REACH) >= distance)
+
+
+@inlined
+def lanes_inside(origin, memory, v, x0, y0, z0, x1, y1, z1):
+    """Where the sixteen rays of the v-th vector enter and leave a box."""
     ox, oy, oz = origin_of(origin, memory, v)
     a = memory + 64 * v
     ix, iy, iz = load_f32x16(a + IX * ROW), load_f32x16(a + IY * ROW), load_f32x16(a + IZ * ROW)
@@ -206,338 +346,41 @@ def _lanes_inside(origin, memory, v, x0, y0, z0, x1, y1, z1):
     return enter, leave
 
 
-@inlined
-def _lanes_inside_uniform(origin, memory, v, x0, y0, z0, x1, y1, z1):
-    """The same where all rays meet the planes x0, y0, z0 first."""
-    ox, oy, oz = origin_of(origin, memory, v)
-    a = memory + 64 * v
-    ix, iy, iz = load_f32x16(a + IX * ROW), load_f32x16(a + IY * ROW), load_f32x16(a + IZ * ROW)
-    enter = maximum(maximum((x0 - ox) * ix, (y0 - oy) * iy), maximum((z0 - oz) * iz, load_f32x16(a + T_MIN * ROW)))
-    leave = minimum(minimum((x1 - ox) * ix, (y1 - oy) * iy), minimum((z1 - oz) * iz, load_f32x16(a + T * ROW)))
-    return enter, leave
-
-
-@inlined
-def _vectors_entering(origin, memory, s, node, c, active):
-    """The active vectors of which some lane enters the c-th child of a node."""
-    a = node + 4 * c
-    result = np.int64(0)
-    if s.mixed_x | s.mixed_y | s.mixed_z:
-        x0, y0, z0 = load_f32(a), load_f32(a + 32), load_f32(a + 64)
-        x1, y1, z1 = load_f32(a + 96), load_f32(a + 128), load_f32(a + 160)
-        while active != 0:
-            v = lowest_bit(active)
-            enter, leave = _lanes_inside(origin, memory, v, x0, y0, z0, x1, y1, z1)
-            result |= np.int64(any_lane(enter <= leave)) << v
-            active &= active - 1
-        return result
-    x0, y0, z0 = load_f32(a + s.near_x), load_f32(a + 32 + s.near_y), load_f32(a + 64 + s.near_z)
-    x1, y1, z1 = load_f32(a + 96 - s.near_x), load_f32(a + 128 - s.near_y), load_f32(a + 160 - s.near_z)
-    while active != 0:
-        v = lowest_bit(active)
-        enter, leave = _lanes_inside_uniform(origin, memory, v, x0, y0, z0, x1, y1, z1)
-        result |= np.int64(any_lane(enter <= leave)) << v
-        active &= active - 1
-    return result
-
-
-@inlined
-def _push_sorted(stack, pending, bottom, entry):
-    """Put an entry among those from bottom on, which lie nearest last; the new number of pending ones."""
-    at = pending
-    while at > bottom and load_i64(stack + 8 * (at - 1)) < entry:
-        store(stack + 8 * at, load_i64(stack + 8 * (at - 1)))
-        at -= 1
-    store(stack + 8 * at, entry)
-    return pending + 1
-
-
-@inlined
-def _inside_block(origin, memory, block, active):
-    """Note where the rays of active vectors are in a block's box; the vectors of which some lane is."""
-    x0, y0, z0 = load_f32(block + BOX), load_f32(block + BOX + 4), load_f32(block + BOX + 8)
-    x1, y1, z1 = load_f32(block + BOX + 12), load_f32(block + BOX + 16), load_f32(block + BOX + 20)
-    result = np.int64(0)
-    while active != 0:
-        v = lowest_bit(active)
-        enter, leave = _lanes_inside(origin, memory, v, x0, y0, z0, x1, y1, z1)
-        store(memory + ENTER * ROW + 64 * v, enter)
-        store(memory + LEAVE * ROW + 64 * v, leave)
-        result |= np.int64(any_lane(enter <= leave)) << v
-        active &= active - 1
-    return result
-
-
-def prepare(origin, s, memory, block):
-    """What can be done once for a block; the triangles, as bits, that may be hit."""
-    raise NotImplementedError("only kernels call this")
-
-
-@overload(prepare, jit_options={"forceinline": True, "error_model": "numpy"})
-def _prepare(origin, s, memory, block):
-    if isinstance(origin, types.NoneType):
-        return lambda origin, s, memory, block: (np.int64(1) << load_i32(block + COUNT)) - 1
-
-    def common(origin, s, memory, block):
-        m = terms_of(origin[0], origin[1], origin[2], triangles_of(block))
-        a = memory + TERMS
-        store(a, m.nx)
-        store(a + 32, m.ny)
-        store(a + 64, m.nz)
-        store(a + 96, m.ax)
-        store(a + 128, m.ay)
-        store(a + 160, m.az)
-        store(a + 192, m.bx)
-        store(a + 224, m.by)
-        store(a + 256, m.bz)
-        store(a + 288, m.height)
-        return bits_of(may_cross((s.dx0, s.dy0, s.dz0), (s.dx1, s.dy1, s.dz1), m))
-
-    return common
-
-
-def terms_at(origin, memory, block, v, k):
-    """Terms of the k-th triangle of a block for a packet's v-th vector."""
-    raise NotImplementedError("only kernels call this")
-
-
-@overload(terms_at, jit_options={"forceinline": True, "error_model": "numpy"})
-def _terms_at(origin, memory, block, v, k):
-    if isinstance(origin, types.NoneType):
-
-        def separate(origin, memory, block, v, k):
-            ox, oy, oz = origin_of(origin, memory, v)
-            return terms_of(ox, oy, oz, triangle_of(block, k))
-
-        return separate
-
-    def common(origin, memory, block, v, k):
-        a = memory + TERMS + 4 * k
-        return Terms(
-            load_f32(a), load_f32(a + 32), load_f32(a + 64), load_f32(a + 96), load_f32(a + 128),
-            load_f32(a + 160), load_f32(a + 192), load_f32(a + 224), load_f32(a + 256), load_f32(a + 288),
-        )  # fmt: skip
-
-    return common
-
-
-@inlined
-def _crossing(origin, memory, block, v, k):
-    """`crossing` of the rays of the v-th vector and the k-th triangle of a block, and the height of its terms."""
-    a = memory + 64 * v
-    m = terms_at(origin, memory, block, v, k)
-    dx, dy, dz = load_f32x16(a + DX * ROW), load_f32x16(a + DY * ROW), load_f32x16(a + DZ * ROW)
-    crosses, sign, u, w, area = crossing(dx, dy, dz, m)
-    return crosses, sign, u, w, area, m.height
-
-
-@inlined
-def _distance(memory, v, crosses, height, sign, area):
-    """(mask, t, 1 / area) of those crossings that lie where the rays are in the block's box."""
-    a = memory + 64 * v
-    scale = np.float32(1) / area
-    t = as_f32(as_i32(height) ^ sign) * scale
-    mask = crosses & (t >= load_f32x16(a + ENTER * ROW)) & (t <= load_f32x16(a + LEAVE * ROW))
-    return mask & (t > load_f32x16(a + T_MIN * ROW)), t, scale
+@subkernel
+def keep_hits(memory, batch, first, count):
+    """Write a packet's hits to where the batch wants them."""
+    at = 4 * first
+    t, primitive = load_i64(batch + HIT_T) + at, load_i64(batch + HIT_PRIMITIVE) + at
+    u, v = load_i64(batch + HIT_U) + at, load_i64(batch + HIT_V) + at
+    i = 0
+    while i + LANES <= count:
+        a = memory + 4 * i
+        numbers = load_i32x16(a + NUMBER * ROW)
+        missed = numbers == MISS
+        store(primitive + 4 * i, numbers)
+        store(t + 4 * i, select(missed, INFINITY, load_f32x16(a + T * ROW)))
+        store(u + 4 * i, select(missed, ZERO, load_f32x16(a + U * ROW)))
+        store(v + 4 * i, select(missed, ZERO, load_f32x16(a + V * ROW)))
+        i += LANES
+    while i < count:
+        a = memory + 4 * i
+        missed = load_i32(a + NUMBER * ROW) == MISS
+        store(primitive + 4 * i, load_i32(a + NUMBER * ROW))
+        store(t + 4 * i, INFINITY if missed else load_f32(a + T * ROW))
+        store(u + 4 * i, ZERO if missed else load_f32(a + U * ROW))
+        store(v + 4 * i, ZERO if missed else load_f32(a + V * ROW))
+        i += 1
 
 
 @subkernel
-def _closest_in_block(origin, memory, s, block, active):
-    """Nearest hits in a block of triangles; whether there was a nearer one."""
-    active = _inside_block(origin, memory, block, active)
-    found = False
-    triangles = prepare(origin, s, memory, block)
-    while triangles != 0:
-        k = lowest_bit(triangles)
-        triangles &= triangles - 1
-        number = load_i32(block + NUMBERS + 4 * k)
-        rest = active
-        while rest != 0:
-            v = lowest_bit(rest)
-            rest &= rest - 1
-            a = memory + 64 * v
-            crosses, sign, u, w, area, height = _crossing(origin, memory, block, v, k)
-            if not any_lane(crosses):
-                continue
-            mask, t, scale = _distance(memory, v, crosses, height, sign, area)
-            best = load_f32x16(a + T * ROW)
-            mask = mask & ((t < best) | ((t == best) & (i32x16(number) < load_i32x16(a + NUMBER * ROW))))
-            if any_lane(mask):
-                found = True
-                store(a + T * ROW, select(mask, t, best))
-                store_where(a + NUMBER * ROW, i32x16(number), mask)
-                store_where(a + U * ROW, u * scale, mask)
-                store_where(a + V * ROW, w * scale, mask)
-    return found
-
-
-@subkernel
-def _any_in_block(origin, memory, s, block, active):
-    """Rays that meet any of a block's triangles: their t becomes BLOCKED_T; whether there were any."""
-    active = _inside_block(origin, memory, block, active)
-    found = False
-    triangles = prepare(origin, s, memory, block)
-    while triangles != 0:
-        k = lowest_bit(triangles)
-        triangles &= triangles - 1
-        rest = active
-        while rest != 0:
-            v = lowest_bit(rest)
-            rest &= rest - 1
-            a = memory + 64 * v
-            crosses, sign, _u, _w, area, height = _crossing(origin, memory, block, v, k)
-            if not any_lane(crosses):
-                continue
-            mask, t, _scale = _distance(memory, v, crosses, height, sign, area)
-            before = load_f32x16(a + T * ROW)
-            mask = mask & (t < before)
-            if any_lane(mask):
-                found = True
-                store_where(a + T * ROW, f32x16(BLOCKED_T), mask)
-    return found
-
-
-@inlined
-def _lane_origin(origin, memory, lane):
-    """Origin of one ray."""
-    ox, oy, oz = origin_of(origin, memory, lane >> 4)
-    x, y, z = f32x16(ZERO) + ox, f32x16(ZERO) + oy, f32x16(ZERO) + oz
-    return lane_of(x, lane & 15), lane_of(y, lane & 15), lane_of(z, lane & 15)
-
-
-@subkernel
-def _quadric_in_child(origin, memory, node, c, active, trees, i, nearest):
-    """Rays on the quadric that is a node's c-th child, one by one; whether any hit (nearer than before)."""
-    a = node + 4 * c
-    found = False
-    while active != 0:
-        v = lowest_bit(active)
-        active &= active - 1
-        enter, leave = _lanes_inside(
-            origin, memory, v, load_f32(a), load_f32(a + 32), load_f32(a + 64),
-            load_f32(a + 96), load_f32(a + 128), load_f32(a + 160),
-        )  # fmt: skip
-        rest = bits_of(enter <= leave)
-        while rest != 0:
-            lane = lowest_bit(rest)
-            rest &= rest - 1
-            r = memory + 64 * v + 4 * lane
-            ox, oy, oz = _lane_origin(origin, memory, 16 * v + lane)
-            d = (load_f32(r + DX * ROW), load_f32(r + DY * ROW), load_f32(r + DZ * ROW))
-            ray = Ray(ox, oy, oz, d[0], d[1], d[2], load_f32(r + T_MIN * ROW), FAR)
-            t = hit_quadric(ray, trees.quadrics, i)
-            best, number = load_f32(r + T * ROW), trees.triangles + i
-            inside = t >= lane_of(enter, lane) and t <= lane_of(leave, lane)
-            if not inside or t > best or (t == best and not (nearest and number < load_i32(r + NUMBER * ROW))):
-                continue
-            found = True
-            if nearest:
-                store(r + T * ROW, t)
-                store(r + NUMBER * ROW, np.int32(number))
-                store(r + U * ROW, ZERO)
-                store(r + V * ROW, ZERO)
-            else:
-                store(r + T * ROW, BLOCKED_T)
-    return found
-
-
-@inlined
-def _farthest(memory, vectors):
-    """Greatest t of all rays."""
-    far = load_f32x16(memory + T * ROW)
-    for v in range(1, vectors):
-        far = maximum(far, load_f32x16(memory + T * ROW + 64 * v))
-    return largest(far)
-
-
-@inlined
-def _open_vectors(memory, vectors):
-    """The vectors that still hold a ray to trace."""
-    result = np.int64(0)
-    for v in range(vectors):
-        a = memory + 64 * v
-        result |= np.int64(any_lane(load_f32x16(a + T * ROW) > load_f32x16(a + T_MIN * ROW))) << v
-    return result
-
-
-@subkernel
-def closest_in_tree(origin, memory, vectors, s, trees, stack, counts):
-    """Nearest hits of a packet in a tree."""
-    far = _farthest(memory, vectors)
-    everyone = _open_vectors(memory, vectors)
-    store(stack, everyone << 32)
-    pending = 1
-    while pending > 0:
-        pending -= 1
-        entry = load_i64(stack + 8 * pending)
-        above = entry >> 32
-        active = above & 0xFF
-        if as_f32(np.int32(above & 0xFFFFFF00)) > far:
-            continue
-        code = np.int64(np.int32(entry & 0xFFFFFFFF))
-        if code < 0:
-            counts[TESTS] += 1
-            if _closest_in_block(origin, memory, s, trees.blocks + BLOCK * ~code, active):
-                far = _farthest(memory, vectors)
-            continue
-        counts[STEPS] += 1
-        node = trees.nodes + NODE * code
-        enter, children = _open(node, s, far)
-        store(memory + SCRATCH, enter)
-        bottom = pending
-        while children != 0:
-            c = lowest_bit(children)
-            children &= children - 1
-            entering = _vectors_entering(origin, memory, s, node, c, active)
-            if entering == 0:
-                continue
-            code = np.int64(load_i32(node + CHILDREN + 4 * c))
-            if ~code >= QUADRIC:
-                if _quadric_in_child(origin, memory, node, c, entering, trees, ~code - QUADRIC, True):
-                    far = _farthest(memory, vectors)
-                counts[TESTS] += 1
-                continue
-            bits = np.int64(load_i32(memory + SCRATCH + 4 * c)) & 0x7FFFFF00
-            pending = _push_sorted(stack, pending, bottom, ((bits | entering) << 32) | (code & 0xFFFFFFFF))
-
-
-@subkernel
-def any_in_tree(origin, memory, vectors, s, trees, stack, counts):
-    """Which rays of a packet meet anything in a tree: their t becomes BLOCKED_T."""
-    far = _farthest(memory, vectors)
-    everyone = _open_vectors(memory, vectors)
-    if everyone == 0:
-        return
-    store(stack, everyone << 32)
-    pending = 1
-    while pending > 0:
-        pending -= 1
-        entry = load_i64(stack + 8 * pending)
-        active = (entry >> 32) & everyone
-        if active == 0:
-            continue
-        code = np.int64(np.int32(entry & 0xFFFFFFFF))
-        if code < 0:
-            counts[TESTS] += 1
-            if _any_in_block(origin, memory, s, trees.blocks + BLOCK * ~code, active):
-                everyone = _open_vectors(memory, vectors)
-                if everyone == 0:
-                    return
-            continue
-        counts[STEPS] += 1
-        node = trees.nodes + NODE * code
-        _enter, children = _open(node, s, far)
-        while children != 0:
-            c = lowest_bit(children)
-            children &= children - 1
-            entering = _vectors_entering(origin, memory, s, node, c, active)
-            if entering == 0:
-                continue
-            code = np.int64(load_i32(node + CHILDREN + 4 * c))
-            if ~code >= QUADRIC:
-                if _quadric_in_child(origin, memory, node, c, entering, trees, ~code - QUADRIC, False):
-                    everyone = _open_vectors(memory, vectors)
-                counts[TESTS] += 1
-                continue
-            store(stack + 8 * pending, (entering << 32) | (code & 0xFFFFFFFF))
-            pending += 1
+def keep_blocked(memory, batch, first, count):
+    """Write which rays of a packet are blocked to where the batch wants it."""
+    blocked = load_i64(batch + BLOCKED) + first
+    i = 0
+    while i + LANES <= count:
+        store_mask(blocked + i, load_f32x16(memory + T * ROW + 4 * i) == BLOCKED_T)
+        i += LANES
+    answers = u8_at(blocked)
+    while i < count:
+        answers[i] = np.uint8(load_f32(memory + T * ROW + 4 * i) == BLOCKED_T)
+        i += 1

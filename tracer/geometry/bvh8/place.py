@@ -29,7 +29,7 @@ STEPS, MOST_KEYS = 8, 64  # from a key of a deforming object to the next; in all
 class Trees8:
     """Built over all primitives of a scene; raises Cancelled if `progress` does meanwhile."""
 
-    closest, any_static, any_dynamic = traverse.closest, traverse.any_static, traverse.any_dynamic
+    closest, any_hit = traverse.closest, traverse.any_hit
 
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
         self._primitives, self._objects = primitives, objects
@@ -104,8 +104,7 @@ class Trees8:
             poses.to_object.reshape(-1, 12).astype(np.float32),
             primitives.object_of,
             self.closest.address,
-            self.any_static.address,
-            self.any_dynamic.address,
+            self.any_hit.address,
             self._data.ctypes.data,
             moves,
         )

@@ -1,6 +1,6 @@
 """One ray through a BVH8: its eight children, and a block's eight triangles, are the lanes.
 
-For rays that have nothing in common.  The answers are those of `packet`, bit for bit.
+For rays that have nothing in common.  The answers are those of `packet_tree`, bit for bit.
 """
 
 from __future__ import annotations
@@ -11,20 +11,30 @@ import numpy as np
 
 from tracer.geometry.bvh8.intersect import ZERO, crossing, terms_of, triangles_of
 from tracer.geometry.bvh8.packet import (
-    BLOCK,
-    BOX,
-    CHILDREN,
+    BLOCKED_T,
+    DX,
+    DY,
+    DZ,
     FAR,
-    NODE,
-    NUMBERS,
-    STACK,
-    STEPS,
-    TESTS,
-    _push_sorted,
-    inverse,
+    IX,
+    IY,
+    IZ,
+    NUMBER,
+    OX,
+    OY,
+    OZ,
+    ROW,
+    T_MIN,
+    T,
+    U,
+    V,
+    lanes_inside,
 )
-from tracer.geometry.bvh8.tree import QUADRIC
+from tracer.geometry.bvh8.packet_tree import STACK, code_of, prefetch_child, push_sorted, quadrics_in
+from tracer.geometry.bvh8.tree import QUADRIC, WIDTH
+from tracer.geometry.bvh8.trees import BLOCK, BOX, HAS_DYNAMIC, NODE, NUMBERS, tree_of
 from tracer.geometry.intersect import hit_quadric
+from tracer.geometry.queries import STEPS, TESTS
 from tracer.geometry.rays import Ray
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
@@ -32,6 +42,7 @@ from tracer.simd import (
     as_f32,
     as_i32,
     bits_of,
+    i32x16,
     lane_of,
     load_f32,
     load_f32x8,
@@ -39,6 +50,7 @@ from tracer.simd import (
     load_i32x8,
     load_i64,
     lowest_bit,
+    mask8,
     maximum,
     minimum,
     select,
@@ -47,7 +59,10 @@ from tracer.simd import (
 )
 
 NOBODY = np.int32(0x7FFFFFFF)
-SINGLE_MEMORY = STACK + 64  # scratch, then the stack
+NOTHING = np.int64(-0x80000000)  # code of no child
+DYNAMIC = 1  # in the lowest bit of a pending child's distance: it is one of the dynamic tree
+ROOM = 64 * (WIDTH + 1)  # bytes that hold which children of a root sixteen rays enter, and where
+SINGLE_MEMORY = 2 * ROOM + 64 + STACK  # both roots', scratch, then the stack
 
 
 class Line(NamedTuple):
@@ -78,11 +93,19 @@ class Best(NamedTuple):
 
 
 @inlined
-def line_of(ray):
-    ix, iy, iz = inverse(ray.dx), inverse(ray.dy), inverse(ray.dz)
+def _near(inverse):
+    """Offset, from a box's low plane, of the plane that is met first."""
+    return np.int64(as_i32(inverse) >> 31) & 96
+
+
+@inlined
+def _line_at(a):
+    """The ray whose column in a packet's memory begins at an address."""
+    ix, iy, iz = load_f32(a + IX * ROW), load_f32(a + IY * ROW), load_f32(a + IZ * ROW)
     return Line(
-        ray.ox, ray.oy, ray.oz, ray.dx, ray.dy, ray.dz, ix, iy, iz,
-        np.int64(96 if ix < ZERO else 0), np.int64(96 if iy < ZERO else 0), np.int64(96 if iz < ZERO else 0), ray.t_min,
+        load_f32(a + OX * ROW), load_f32(a + OY * ROW), load_f32(a + OZ * ROW),
+        load_f32(a + DX * ROW), load_f32(a + DY * ROW), load_f32(a + DZ * ROW), ix, iy, iz,
+        _near(ix), _near(iy), _near(iz), load_f32(a + T_MIN * ROW),
     )  # fmt: skip
 
 
@@ -96,41 +119,55 @@ def _children(node, r, far):
 
 
 @inlined
-def _block_interval(block, r, far):
+def _inside_block(block, r, t):
+    """Which of eight distances lie where a ray is in a block's box."""
     x0, y0, z0 = load_f32(block + BOX), load_f32(block + BOX + 4), load_f32(block + BOX + 8)
     x1, y1, z1 = load_f32(block + BOX + 12), load_f32(block + BOX + 16), load_f32(block + BOX + 20)
     ax, bx = (x0 - r.ox) * r.ix, (x1 - r.ox) * r.ix
     ay, by = (y0 - r.oy) * r.iy, (y1 - r.oy) * r.iy
     az, bz = (z0 - r.oz) * r.iz, (z1 - r.oz) * r.iz
-    enter = maximum(maximum(minimum(ax, bx), minimum(ay, by)), maximum(minimum(az, bz), r.t_min))
-    return enter, minimum(minimum(maximum(ax, bx), maximum(ay, by)), minimum(maximum(az, bz), far))
+    enter = maximum(maximum(minimum(ax, bx), minimum(ay, by)), minimum(az, bz))
+    leave = minimum(minimum(maximum(ax, bx), maximum(ay, by)), maximum(az, bz))
+    return (t >= enter) & (t <= leave)
 
 
 @inlined
-def _hits_in_block(block, r, far):
-    """(mask, t, u area, v area, 1 / area) of a ray on eight triangles."""
-    enter, leave = _block_interval(block, r, far)
-    m = terms_of(r.ox, r.oy, r.oz, triangles_of(block))
-    crosses, sign, u, v, area = crossing(r.dx, r.dy, r.dz, m)
-    scale = np.float32(1) / area
-    t = as_f32(as_i32(m.height) ^ sign) * scale
-    return crosses & (t >= enter) & (t <= leave) & (t > r.t_min), t, u, v, scale
+def _first_lane(block, t, bits):
+    """The nearest of several lanes, given as bits; of equals that of the lowest number."""
+    if bits & (bits - 1) == 0:
+        return lowest_bit(bits)
+    mask = mask8(bits)
+    mask = mask & (t == smallest(select(mask, t, FAR)))
+    numbers = load_i32x8(block + NUMBERS)
+    return lowest_bit(bits_of(mask & (numbers == smallest(select(mask, numbers, NOBODY)))))
 
 
 @inlined
 def _nearest_in_block(block, r, best):
-    mask, t, u, v, scale = _hits_in_block(block, r, best.t)
-    mask = mask & (t <= best.t)
-    if not any_lane(mask):
+    m = terms_of(r.ox, r.oy, r.oz, triangles_of(block))
+    crosses, sign, u, v, area = crossing(r.dx, r.dy, r.dz, m)
+    if not any_lane(crosses):
         return best
-    nearest = smallest(select(mask, t, FAR))
-    mask = mask & (t == nearest)
-    numbers = load_i32x8(block + NUMBERS)
-    number = smallest(select(mask, numbers, NOBODY))
+    scale = np.float32(1) / area
+    t = as_f32(as_i32(m.height) ^ sign) * scale
+    bits = bits_of(crosses & (t > r.t_min) & (t <= best.t) & _inside_block(block, r, t))
+    if bits == 0:
+        return best
+    lane = _first_lane(block, t, bits)
+    nearest, number = lane_of(t, lane), load_i32(block + NUMBERS + 4 * lane)
     if nearest == best.t and number >= best.number:
         return best
-    lane = lowest_bit(bits_of(mask & (numbers == number)))
     return Best(nearest, number, lane_of(u * scale, lane), lane_of(v * scale, lane))
+
+
+@inlined
+def _any_in_block(block, r, far):
+    m = terms_of(r.ox, r.oy, r.oz, triangles_of(block))
+    crosses, sign, _u, _v, area = crossing(r.dx, r.dy, r.dz, m)
+    if not any_lane(crosses):
+        return False
+    t = as_f32(as_i32(m.height) ^ sign) * (np.float32(1) / area)
+    return any_lane(crosses & (t > r.t_min) & (t < far) & _inside_block(block, r, t))
 
 
 @inlined
@@ -141,71 +178,173 @@ def _quadric(r, trees, i, enter, leave):
 
 
 @subkernel
-def closest_of_one(r, best, trees, stack, counts):
-    """The nearest of best and what a ray meets in a tree."""
-    store(stack, np.int64(0))
-    pending = 1
-    scratch = stack - 64
+def _nearest_quadric(r, best, trees, node, quadrics, enter, leave):
+    """The nearest of best and those children of a node that are quadrics, given as bits."""
+    while quadrics != 0:
+        c = lowest_bit(quadrics)
+        quadrics &= quadrics - 1
+        i = ~code_of(node, c) - QUADRIC
+        t = _quadric(r, trees, i, lane_of(enter, c), lane_of(leave, c))
+        if t < best.t or (t == best.t and trees.triangles + i < best.number):
+            best = Best(t, np.int32(trees.triangles + i), ZERO, ZERO)
+    return best
+
+
+@subkernel
+def _any_quadric(r, far, trees, node, quadrics, enter, leave):
+    """Whether a ray meets those children of a node that are quadrics nearer than far."""
+    while quadrics != 0:
+        c = lowest_bit(quadrics)
+        quadrics &= quadrics - 1
+        if _quadric(r, trees, ~code_of(node, c) - QUADRIC, lane_of(enter, c), lane_of(leave, c)) < far:
+            return True
+    return False
+
+
+@subkernel
+def _open_root(memory, v, node, room):
+    """Sixteen rays into the children of a root, at which all begin: at what distances, and into which."""
+    entered = i32x16(0)
+    for c in range(WIDTH):
+        box = node + 4 * c
+        enter, leave = lanes_inside(
+            None, memory, v, load_f32(box), load_f32(box + 32), load_f32(box + 64),
+            load_f32(box + 96), load_f32(box + 128), load_f32(box + 160),
+        )  # fmt: skip
+        store(room + 64 * c, maximum(enter, ZERO))
+        entered = entered | select(enter <= leave, np.int32(1) << np.int32(c), np.int32(0))
+    store(room + 64 * WIDTH, entered)
+
+
+@inlined
+def _entry(distance, dynamic, code):
+    """A pending child: the bits of its distance, the lowest saying whose it is, and its code."""
+    return (((np.int64(distance) & ~DYNAMIC) | dynamic) << 32) | (code & 0xFFFFFFFF)
+
+
+@subkernel
+def _closest_of_one(a, room, data, stack, counts):
+    """Into the column of a packet's memory that begins at an address: what its ray meets first."""
+    r = _line_at(a)
+    best = Best(load_f32(a + T * ROW), load_i32(a + NUMBER * ROW), ZERO, ZERO)
+    pending, scratch = np.int64(0), stack - 64
+    for dynamic in range(1 + load_i64(data + HAS_DYNAMIC)):
+        trees, first = tree_of(data, dynamic), room + ROOM * dynamic
+        children, node = np.int64(load_i32(first + 64 * WIDTH)), trees.nodes
+        quadrics = children & quadrics_in(node)
+        if quadrics != 0:
+            enter, leave = _children(node, r, best.t)
+            best = _nearest_quadric(r, best, trees, node, quadrics, enter, leave)
+            children ^= quadrics
+        while children != 0:
+            c = lowest_bit(children)
+            children &= children - 1
+            prefetch_child(trees, code_of(node, c))
+            entry = _entry(load_i32(first + 64 * c), dynamic, code_of(node, c))
+            pending = push_sorted(stack, pending, 0, entry)
     while pending > 0:
         pending -= 1
         entry = load_i64(stack + 8 * pending)
         if as_f32(np.int32(entry >> 32)) > best.t:
             continue
-        code = np.int64(np.int32(entry & 0xFFFFFFFF))
-        if code < 0:
-            counts[TESTS] += 1
-            best = _nearest_in_block(trees.blocks + BLOCK * ~code, r, best)
-            continue
-        counts[STEPS] += 1
-        node = trees.nodes + NODE * code
-        enter, leave = _children(node, r, best.t)
-        children = bits_of(enter <= leave)
-        store(scratch, maximum(enter, ZERO))
-        store(scratch + 32, leave)
-        bottom = pending
-        while children != 0:
+        dynamic, code = (entry >> 32) & 1, np.int64(np.int32(entry & 0xFFFFFFFF))
+        trees = tree_of(data, dynamic)
+        while code >= 0:
+            counts[STEPS] += 1
+            node = trees.nodes + NODE * code
+            enter, leave = _children(node, r, best.t)
+            children = bits_of(enter <= leave)
+            quadrics = children & quadrics_in(node)
+            if quadrics != 0:
+                counts[TESTS] += 1
+                best = _nearest_quadric(r, best, trees, node, quadrics, enter, leave)
+                children ^= quadrics
+            if children == 0:
+                code = NOTHING
+                break
             c = lowest_bit(children)
             children &= children - 1
-            code = np.int64(load_i32(node + CHILDREN + 4 * c))
-            if ~code >= QUADRIC:
-                counts[TESTS] += 1
-                i = ~code - QUADRIC
-                t = _quadric(r, trees, i, lane_of(enter, c), lane_of(leave, c))
-                if t < best.t or (t == best.t and trees.triangles + i < best.number):
-                    best = Best(t, np.int32(trees.triangles + i), ZERO, ZERO)
+            code = code_of(node, c)
+            if children == 0:
                 continue
-            entry = (np.int64(load_i32(scratch + 4 * c)) << 32) | (code & 0xFFFFFFFF)
-            pending = _push_sorted(stack, pending, bottom, entry)
-    return best
+            store(scratch, maximum(enter, ZERO))
+            nearest = _entry(load_i32(scratch + 4 * c), dynamic, code)
+            bottom = pending
+            while children != 0:
+                c = lowest_bit(children)
+                children &= children - 1
+                prefetch_child(trees, code_of(node, c))
+                entry = _entry(load_i32(scratch + 4 * c), dynamic, code_of(node, c))
+                pending = push_sorted(stack, pending, bottom, max(entry, nearest))
+                nearest = min(entry, nearest)
+            code = np.int64(np.int32(nearest & 0xFFFFFFFF))
+        if code != NOTHING:
+            counts[TESTS] += 1
+            best = _nearest_in_block(trees.blocks + BLOCK * ~code, r, best)
+    store(a + T * ROW, best.t)
+    store(a + NUMBER * ROW, best.number)
+    store(a + U * ROW, best.u)
+    store(a + V * ROW, best.v)
 
 
 @subkernel
-def any_of_one(r, far, trees, stack, counts):
-    """Whether a ray meets anything in a tree nearer than far."""
-    store(stack, np.int64(0))
-    pending = 1
-    while pending > 0:
-        pending -= 1
-        code = load_i64(stack + 8 * pending)
-        if code < 0:
+def _any_of_one(a, first, trees, stack, counts):
+    """Whether the ray whose column in a packet's memory begins at an address meets anything in a tree."""
+    r, far = _line_at(a), load_f32(a + T * ROW)
+    pending, node, children = np.int64(0), trees.nodes, np.int64(load_i32(first + 64 * WIDTH))
+    while True:
+        quadrics = children & quadrics_in(node)
+        if quadrics != 0:
             counts[TESTS] += 1
-            mask, t, _u, _v, _scale = _hits_in_block(trees.blocks + BLOCK * ~code, r, far)
-            if any_lane(mask & (t < far)):
+            enter, leave = _children(node, r, far)
+            if _any_quadric(r, far, trees, node, quadrics, enter, leave):
                 return True
-            continue
+            children ^= quadrics
+        while children != 0:
+            store(stack + 8 * pending, code_of(node, lowest_bit(children)))
+            children &= children - 1
+            pending += 1
+        code = np.int64(-1)
+        while code < 0:
+            if pending == 0:
+                return False
+            pending -= 1
+            code = load_i64(stack + 8 * pending)
+            if code < 0:
+                counts[TESTS] += 1
+                if _any_in_block(trees.blocks + BLOCK * ~code, r, far):
+                    return True
         counts[STEPS] += 1
         node = trees.nodes + NODE * code
         enter, leave = _children(node, r, far)
         children = bits_of(enter <= leave)
-        while children != 0:
-            c = lowest_bit(children)
-            children &= children - 1
-            code = np.int64(load_i32(node + CHILDREN + 4 * c))
-            if ~code >= QUADRIC:
-                counts[TESTS] += 1
-                if _quadric(r, trees, ~code - QUADRIC, lane_of(enter, c), lane_of(leave, c)) < far:
-                    return True
-                continue
-            store(stack + 8 * pending, code)
-            pending += 1
-    return False
+
+
+@subkernel
+def closest_one_by_one(memory, v, count, data, stack, counts):
+    """Nearest hits of the first `count` rays of a packet's v-th vector."""
+    room = stack - 64 - 2 * ROOM
+    for dynamic in range(1 + load_i64(data + HAS_DYNAMIC)):
+        _open_root(memory, v, tree_of(data, dynamic).nodes, room + ROOM * dynamic)
+        counts[STEPS] += count
+    for lane in range(count):
+        a = memory + 64 * v + 4 * lane
+        if load_f32(a + T * ROW) > load_f32(a + T_MIN * ROW):
+            _closest_of_one(a, room + 4 * lane, data, stack, counts)
+
+
+@subkernel
+def any_one_by_one(memory, v, count, data, which, stack, counts):
+    """Which of the first `count` rays of a packet's v-th vector meet what is asked for: their t becomes BLOCKED_T."""
+    room = stack - 64 - ROOM
+    for dynamic in range(2):
+        if (which >> dynamic) & 1 == 0:
+            continue
+        trees = tree_of(data, dynamic)
+        _open_root(memory, v, trees.nodes, room)
+        counts[STEPS] += count
+        for lane in range(count):
+            a = memory + 64 * v + 4 * lane
+            if load_f32(a + T * ROW) > load_f32(a + T_MIN * ROW):
+                if _any_of_one(a, room + 4 * lane, trees, stack, counts):
+                    store(a + T * ROW, BLOCKED_T)

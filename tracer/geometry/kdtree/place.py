@@ -42,7 +42,7 @@ def transform_boxes(boxes: Float64, affine: Float64) -> Float64:
 class KdTrees:
     """Built over all primitives of a scene; raises Cancelled if `progress` does meanwhile."""
 
-    closest, any_static, any_dynamic = traverse.closest, traverse.any_static, traverse.any_dynamic
+    closest, any_hit = traverse.closest, traverse.any_hit
 
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
         self._primitives, self._objects = primitives, objects
@@ -118,8 +118,7 @@ class KdTrees:
             parts.to_object,
             primitives.object_of,
             self.closest.address,
-            self.any_static.address,
-            self.any_dynamic.address,
+            self.any_hit.address,
             self._data.ctypes.data,
             len(present) > 0,
         )

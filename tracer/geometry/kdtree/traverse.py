@@ -15,7 +15,19 @@ import numpy as np
 from tracer.geometry.intersect import ZERO, hit_box, hit_quadric, hit_triangle, transform_ray
 from tracer.geometry.kdtree.tree import STACK_SIZE, Stack, Trees, next_leaf, push
 from tracer.geometry.memory import local_float32, local_int32
-from tracer.geometry.queries import BLOCKED, HIT_PRIMITIVE, HIT_T, HIT_U, HIT_V, STEPS, TESTS, rays_of
+from tracer.geometry.queries import (
+    BLOCKED,
+    DYNAMIC,
+    HIT_PRIMITIVE,
+    HIT_T,
+    HIT_U,
+    HIT_V,
+    STATIC,
+    STEPS,
+    TESTS,
+    WHICH,
+    rays_of,
+)
 from tracer.geometry.rays import INFINITY, MISS, Ray, ray_at
 from tracer.kernels import entry, inlined, subkernel
 from tracer.simd import f32_at, i32_at, i64_at, load_i64, u8_at
@@ -193,23 +205,16 @@ def closest(data, batch, first, last, counts):
 
 
 @entry
-def any_static(data, batch, first, last, counts):
-    """Whether static geometry lies in the interval of rays first to last - 1."""
-    stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
-    s = _search(data, stack, stack, counts)
-    rays, blocked = rays_of(batch), u8_at(load_i64(batch + BLOCKED))
-    for i in range(first, last):
-        ray = ray_at(rays, i)
-        blocked[i] = np.uint8(ray.t_min < ray.t_max and _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max))
-
-
-@entry
-def any_dynamic(data, batch, first, last, counts):
-    """Whether a dynamic object lies in the interval of rays first to last - 1."""
+def any_hit(data, batch, first, last, counts):
+    """Whether anything that is asked for lies in the interval of rays first to last - 1."""
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
     top_stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
     s = _search(data, stack, top_stack, counts)
-    rays, blocked = rays_of(batch), u8_at(load_i64(batch + BLOCKED))
+    rays, blocked, which = rays_of(batch), u8_at(load_i64(batch + BLOCKED)), load_i64(batch + WHICH)
     for i in range(first, last):
         ray = ray_at(rays, i)
-        blocked[i] = np.uint8(ray.t_min < ray.t_max and _any_dynamic(s, ray))
+        found = False
+        if ray.t_min < ray.t_max:
+            found = which & STATIC != 0 and _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max)
+            found = found or (which & DYNAMIC != 0 and _any_dynamic(s, ray))
+        blocked[i] = np.uint8(found)

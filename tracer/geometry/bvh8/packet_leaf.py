@@ -1,0 +1,244 @@
+"""Leaves for a packet: a block of eight triangles, or a quadric, against the vectors that come to it.
+
+Rays from one point are by far the cheaper: what is subtracted from that point is subtracted once.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba.core import types
+from numba.extending import overload
+
+from tracer.geometry.bvh8.intersect import ZERO, Terms, crossing, may_cross, terms_of, triangle_of, triangles_of
+from tracer.geometry.bvh8.packet import (
+    BLOCKED_T,
+    DX,
+    DY,
+    DZ,
+    ENTER,
+    FAR,
+    LEAVE,
+    NUMBER,
+    ROW,
+    T_MIN,
+    TERMS,
+    T,
+    U,
+    V,
+    lanes_inside,
+    origin_of,
+)
+from tracer.geometry.bvh8.trees import BOX, COUNT, NUMBERS
+from tracer.geometry.intersect import hit_quadric
+from tracer.geometry.rays import Ray
+from tracer.kernels import inlined, subkernel
+from tracer.simd import (
+    any_lane,
+    as_f32,
+    as_i32,
+    bits_of,
+    f32x16,
+    i32x16,
+    lane_of,
+    load_f32,
+    load_f32x16,
+    load_i32,
+    load_i32x16,
+    lowest_bit,
+    select,
+    store,
+    store_where,
+)
+
+
+@inlined
+def _inside_block(origin, memory, block, active):
+    """Note where the rays of active vectors are in a block's box; the vectors of which some lane is."""
+    x0, y0, z0 = load_f32(block + BOX), load_f32(block + BOX + 4), load_f32(block + BOX + 8)
+    x1, y1, z1 = load_f32(block + BOX + 12), load_f32(block + BOX + 16), load_f32(block + BOX + 20)
+    result = np.int64(0)
+    while active != 0:
+        v = lowest_bit(active)
+        enter, leave = lanes_inside(origin, memory, v, x0, y0, z0, x1, y1, z1)
+        store(memory + ENTER * ROW + 64 * v, enter)
+        store(memory + LEAVE * ROW + 64 * v, leave)
+        result |= np.int64(any_lane(enter <= leave)) << v
+        active &= active - 1
+    return result
+
+
+def prepare(origin, group, memory, block):
+    """What can be done once for a block; the triangles, as bits, that may be hit."""
+    raise NotImplementedError("only kernels call this")
+
+
+@overload(prepare, jit_options={"forceinline": True, "error_model": "numpy"})
+def _prepare(origin, group, memory, block):
+    if isinstance(origin, types.NoneType):
+        return lambda origin, group, memory, block: (np.int64(1) << load_i32(block + COUNT)) - 1
+
+    def common(origin, group, memory, block):
+        m = terms_of(origin[0], origin[1], origin[2], triangles_of(block))
+        a = memory + TERMS
+        store(a, m.nx)
+        store(a + 32, m.ny)
+        store(a + 64, m.nz)
+        store(a + 96, m.ax)
+        store(a + 128, m.ay)
+        store(a + 160, m.az)
+        store(a + 192, m.bx)
+        store(a + 224, m.by)
+        store(a + 256, m.bz)
+        store(a + 288, m.height)
+        return bits_of(may_cross(group.low, group.high, m))
+
+    return common
+
+
+def terms_at(origin, memory, block, v, k):
+    """Terms of the k-th triangle of a block for a packet's v-th vector."""
+    raise NotImplementedError("only kernels call this")
+
+
+@overload(terms_at, jit_options={"forceinline": True, "error_model": "numpy"})
+def _terms_at(origin, memory, block, v, k):
+    if isinstance(origin, types.NoneType):
+
+        def separate(origin, memory, block, v, k):
+            ox, oy, oz = origin_of(origin, memory, v)
+            return terms_of(ox, oy, oz, triangle_of(block, k))
+
+        return separate
+
+    def common(origin, memory, block, v, k):
+        a = memory + TERMS + 4 * k
+        return Terms(
+            load_f32(a), load_f32(a + 32), load_f32(a + 64), load_f32(a + 96), load_f32(a + 128),
+            load_f32(a + 160), load_f32(a + 192), load_f32(a + 224), load_f32(a + 256), load_f32(a + 288),
+        )  # fmt: skip
+
+    return common
+
+
+@inlined
+def _crossing(origin, memory, block, v, k):
+    """`crossing` of the rays of the v-th vector and the k-th triangle of a block, and the height of its terms."""
+    a = memory + 64 * v
+    m = terms_at(origin, memory, block, v, k)
+    dx, dy, dz = load_f32x16(a + DX * ROW), load_f32x16(a + DY * ROW), load_f32x16(a + DZ * ROW)
+    crosses, sign, u, w, area = crossing(dx, dy, dz, m)
+    return crosses, sign, u, w, area, m.height
+
+
+@inlined
+def _distance(memory, v, crosses, height, sign, area):
+    """(mask, t, 1 / area) of those crossings that lie where the rays are in the block's box."""
+    a = memory + 64 * v
+    scale = np.float32(1) / area
+    t = as_f32(as_i32(height) ^ sign) * scale
+    mask = crosses & (t >= load_f32x16(a + ENTER * ROW)) & (t <= load_f32x16(a + LEAVE * ROW))
+    return mask & (t > load_f32x16(a + T_MIN * ROW)), t, scale
+
+
+@subkernel
+def closest_in_block(origin, memory, group, block, active):
+    """Nearest hits in a block of triangles; the vectors in which there were nearer ones."""
+    active = _inside_block(origin, memory, block, active)
+    found = np.int64(0)
+    if active == 0:
+        return found
+    triangles = prepare(origin, group, memory, block)
+    while triangles != 0:
+        k = lowest_bit(triangles)
+        triangles &= triangles - 1
+        number = load_i32(block + NUMBERS + 4 * k)
+        rest = active
+        while rest != 0:
+            v = lowest_bit(rest)
+            rest &= rest - 1
+            a = memory + 64 * v
+            crosses, sign, u, w, area, height = _crossing(origin, memory, block, v, k)
+            if not any_lane(crosses):
+                continue
+            mask, t, scale = _distance(memory, v, crosses, height, sign, area)
+            best = load_f32x16(a + T * ROW)
+            mask = mask & ((t < best) | ((t == best) & (i32x16(number) < load_i32x16(a + NUMBER * ROW))))
+            if any_lane(mask):
+                found |= np.int64(1) << v
+                store(a + T * ROW, select(mask, t, best))
+                store_where(a + NUMBER * ROW, i32x16(number), mask)
+                store_where(a + U * ROW, u * scale, mask)
+                store_where(a + V * ROW, w * scale, mask)
+    return found
+
+
+@subkernel
+def any_in_block(origin, memory, group, block, active):
+    """Rays that meet any of a block's triangles: their t becomes BLOCKED_T; the vectors they are in."""
+    active = _inside_block(origin, memory, block, active)
+    found = np.int64(0)
+    if active == 0:
+        return found
+    triangles = prepare(origin, group, memory, block)
+    while triangles != 0:
+        k = lowest_bit(triangles)
+        triangles &= triangles - 1
+        rest = active
+        while rest != 0:
+            v = lowest_bit(rest)
+            rest &= rest - 1
+            a = memory + 64 * v
+            crosses, sign, _u, _w, area, height = _crossing(origin, memory, block, v, k)
+            if not any_lane(crosses):
+                continue
+            mask, t, _scale = _distance(memory, v, crosses, height, sign, area)
+            before = load_f32x16(a + T * ROW)
+            mask = mask & (t < before)
+            if any_lane(mask):
+                found |= np.int64(1) << v
+                store_where(a + T * ROW, f32x16(BLOCKED_T), mask)
+    return found
+
+
+@inlined
+def _lane_origin(origin, memory, lane):
+    """Origin of one ray."""
+    ox, oy, oz = origin_of(origin, memory, lane >> 4)
+    x, y, z = f32x16(ZERO) + ox, f32x16(ZERO) + oy, f32x16(ZERO) + oz
+    return lane_of(x, lane & 15), lane_of(y, lane & 15), lane_of(z, lane & 15)
+
+
+@subkernel
+def quadric_in_child(origin, memory, a, active, trees, i, nearest):
+    """Rays on a quadric, the planes of whose box lie 32 bytes apart from an address on, one by one; the
+    vectors in which any hit (nearer than before, if the nearest is asked for)."""
+    found = np.int64(0)
+    while active != 0:
+        v = lowest_bit(active)
+        active &= active - 1
+        enter, leave = lanes_inside(
+            origin, memory, v, load_f32(a), load_f32(a + 32), load_f32(a + 64),
+            load_f32(a + 96), load_f32(a + 128), load_f32(a + 160),
+        )  # fmt: skip
+        rest = bits_of(enter <= leave)
+        while rest != 0:
+            lane = lowest_bit(rest)
+            rest &= rest - 1
+            r = memory + 64 * v + 4 * lane
+            ox, oy, oz = _lane_origin(origin, memory, 16 * v + lane)
+            d = (load_f32(r + DX * ROW), load_f32(r + DY * ROW), load_f32(r + DZ * ROW))
+            ray = Ray(ox, oy, oz, d[0], d[1], d[2], load_f32(r + T_MIN * ROW), FAR)
+            t = hit_quadric(ray, trees.quadrics, i)
+            best, number = load_f32(r + T * ROW), trees.triangles + i
+            inside = t >= lane_of(enter, lane) and t <= lane_of(leave, lane)
+            if not inside or t > best or (t == best and not (nearest and number < load_i32(r + NUMBER * ROW))):
+                continue
+            found |= np.int64(1) << v
+            if nearest:
+                store(r + T * ROW, t)
+                store(r + NUMBER * ROW, np.int32(number))
+                store(r + U * ROW, ZERO)
+                store(r + V * ROW, ZERO)
+            else:
+                store(r + T * ROW, BLOCKED_T)
+    return found

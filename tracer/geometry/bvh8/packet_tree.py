@@ -1,0 +1,200 @@
+"""A packet through a BVH8: what one of its rays has read, all have.
+
+At a node the frustum around the packet is tested against the eight children at once, then each child
+that it may enter against the frusta of the packet's eight vectors at once.  Rays themselves are tested
+where something hangs on it, in leaves.  A pending child is one int64: above, the bits of the distance
+where the packet may enter it, their lowest eight replaced by the set of vectors that may (which only makes
+the distance less); below, its code.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracer.geometry.bvh8.frustum import Frustum, box_at, boxes_at, entering
+from tracer.geometry.bvh8.packet import SCRATCH, farthest, frusta_of, lanes_inside, looking, put_reaches
+from tracer.geometry.bvh8.packet_leaf import any_in_block, closest_in_block, quadric_in_child
+from tracer.geometry.bvh8.tree import QUADRIC
+from tracer.geometry.bvh8.trees import BLOCK, CHILDREN, NODE
+from tracer.geometry.queries import STEPS, TESTS
+from tracer.kernels import inlined, subkernel
+from tracer.simd import (
+    any_lane,
+    as_f32,
+    bits_of,
+    load_f32,
+    load_i32,
+    load_i32x8,
+    load_i64,
+    lowest_bit,
+    prefetch,
+    store,
+)
+
+STACK = 8 * 512
+
+
+@inlined
+def quadrics_in(node):
+    """Which children of a node are quadrics, as bits."""
+    return bits_of(load_i32x8(node + CHILDREN) <= np.int32(~QUADRIC))
+
+
+@inlined
+def code_of(node, c):
+    """The code of a node's c-th child."""
+    return np.int64(load_i32(node + CHILDREN + 4 * c))
+
+
+@inlined
+def prefetch_child(trees, code):
+    """Have a child's memory brought near before it is needed."""
+    if code < 0:
+        a = trees.blocks + BLOCK * ~code
+        prefetch(a + 320)
+        for line in range(0, 320, 64):
+            prefetch(a + line)
+    else:
+        a = trees.nodes + NODE * code
+        for line in range(0, NODE, 64):
+            prefetch(a + line)
+
+
+@inlined
+def push_sorted(stack, pending, bottom, entry):
+    """Put an entry among those from bottom on, which lie nearest last; the new number of pending ones."""
+    at = pending
+    while at > bottom and load_i64(stack + 8 * (at - 1)) < entry:
+        store(stack + 8 * at, load_i64(stack + 8 * (at - 1)))
+        at -= 1
+    store(stack + 8 * at, entry)
+    return pending + 1
+
+
+@inlined
+def _open(node, group, far):
+    """(distances, bits) of the children of a node that some ray of the packet may enter."""
+    f = group.frustum
+    f = Frustum(f.start0, f.start1, f.u_start0, f.u_start1, f.v_start0, f.v_start1, f.u0, f.u1, f.v0, f.v1, f.near, far)
+    enter, mask = entering(boxes_at(node, group.axes), f)
+    return enter, bits_of(mask)
+
+
+@inlined
+def _vectors_entering(origin, memory, group, box, active):
+    """The active vectors of which some ray may enter the box at an address."""
+    _enter, mask = entering(box_at(box, group.axes), frusta_of(memory))
+    active &= bits_of(mask)
+    wide = active & group.wide
+    while wide != 0:
+        v = lowest_bit(wide)
+        wide &= wide - 1
+        enter, leave = lanes_inside(
+            origin, memory, v, load_f32(box), load_f32(box + 32), load_f32(box + 64),
+            load_f32(box + 96), load_f32(box + 128), load_f32(box + 160),
+        )  # fmt: skip
+        if not any_lane(enter <= leave):
+            active ^= np.int64(1) << v
+    return active
+
+
+@subkernel
+def closest_in_tree(origin, memory, group, trees, stack, counts):
+    """Nearest hits of a packet in a tree."""
+    far = farthest(memory)
+    store(stack, group.vectors << 32)
+    pending = 1
+    while pending > 0:
+        pending -= 1
+        entry = load_i64(stack + 8 * pending)
+        above = entry >> 32
+        active = above & looking(memory, as_f32(np.int32(above & 0xFFFFFF00)))
+        if active == 0:
+            continue
+        code = np.int64(np.int32(entry & 0xFFFFFFFF))
+        if code < 0:
+            counts[TESTS] += 1
+            found = closest_in_block(origin, memory, group, trees.blocks + BLOCK * ~code, active)
+            if found != 0:
+                put_reaches(memory, found, group.axes)
+                far = farthest(memory)
+            continue
+        counts[STEPS] += 1
+        node = trees.nodes + NODE * code
+        enter, children = _open(node, group, far)
+        quadrics = children & quadrics_in(node)
+        children ^= quadrics
+        while quadrics != 0:
+            c = lowest_bit(quadrics)
+            quadrics &= quadrics - 1
+            on = _vectors_entering(origin, memory, group, node + 4 * c, active)
+            counts[TESTS] += 1
+            found = quadric_in_child(origin, memory, node + 4 * c, on, trees, ~code_of(node, c) - QUADRIC, True)
+            if found != 0:
+                put_reaches(memory, found, group.axes)
+                far = farthest(memory)
+        store(memory + SCRATCH, enter)
+        bottom = pending
+        while children != 0:
+            c = lowest_bit(children)
+            children &= children - 1
+            on = _vectors_entering(origin, memory, group, node + 4 * c, active)
+            if on != 0:
+                prefetch_child(trees, code_of(node, c))
+                above = (np.int64(load_i32(memory + SCRATCH + 4 * c)) & 0x7FFFFF00) | on
+                pending = push_sorted(stack, pending, bottom, (above << 32) | (code_of(node, c) & 0xFFFFFFFF))
+
+
+@subkernel
+def any_in_tree(origin, memory, group, trees, stack, occluder, counts):
+    """Which rays of a packet meet anything in a tree: their t becomes BLOCKED_T.
+
+    The block `occluder`, which the rays before these met, is asked first (Haines and Greenberg 1986); the
+    one that the next had better ask is returned."""
+    counts[TESTS] += 1
+    found = any_in_block(origin, memory, group, trees.blocks + BLOCK * occluder, group.vectors)
+    if found != 0:
+        put_reaches(memory, found, group.axes)
+        if looking(memory, np.float32(0)) == 0:
+            return occluder
+    far = farthest(memory)
+    store(stack, group.vectors << 32)
+    pending = 1
+    while pending > 0:
+        pending -= 1
+        entry = load_i64(stack + 8 * pending)
+        active = (entry >> 32) & looking(memory, np.float32(0))
+        if active == 0:
+            continue
+        code = np.int64(np.int32(entry & 0xFFFFFFFF))
+        if code < 0:
+            counts[TESTS] += 1
+            found = any_in_block(origin, memory, group, trees.blocks + BLOCK * ~code, active)
+            if found != 0:
+                occluder = ~code
+                put_reaches(memory, found, group.axes)
+                far = farthest(memory)
+            continue
+        counts[STEPS] += 1
+        node = trees.nodes + NODE * code
+        _enter, children = _open(node, group, far)
+        quadrics = children & quadrics_in(node)
+        children ^= quadrics
+        while quadrics != 0:
+            c = lowest_bit(quadrics)
+            quadrics &= quadrics - 1
+            on = _vectors_entering(origin, memory, group, node + 4 * c, active)
+            counts[TESTS] += 1
+            found = quadric_in_child(origin, memory, node + 4 * c, on, trees, ~code_of(node, c) - QUADRIC, False)
+            if found != 0:
+                put_reaches(memory, found, group.axes)
+                far = farthest(memory)
+        while children != 0:
+            c = lowest_bit(children)
+            children &= children - 1
+            on = _vectors_entering(origin, memory, group, node + 4 * c, active)
+            if on != 0:
+                prefetch_child(trees, code_of(node, c))
+                store(stack + 8 * pending, (on << 32) | (code_of(node, c) & 0xFFFFFFFF))
+                pending += 1
+    return occluder
