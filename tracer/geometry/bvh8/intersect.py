@@ -118,15 +118,34 @@ def _least_and_greatest(low, high, x, y, z):
 
 
 @inlined
-def may_cross(low, high, m):
-    """Of which triangles some ray with a direction between low and high may make `crossing` true.
+def towards(m):
+    """Terms of triangles whose normals point to the origin of the rays: what lies ahead of them has a positive area."""
+    sign = as_i32(m.height) & SIGN
+    return Terms(
+        as_f32(as_i32(m.nx) ^ sign), as_f32(as_i32(m.ny) ^ sign), as_f32(as_i32(m.nz) ^ sign),
+        as_f32(as_i32(m.ax) ^ sign), as_f32(as_i32(m.ay) ^ sign), as_f32(as_i32(m.az) ^ sign),
+        as_f32(as_i32(m.bx) ^ sign), as_f32(as_i32(m.by) ^ sign), as_f32(as_i32(m.bz) ^ sign),
+        as_f32(as_i32(m.height) ^ sign),
+    )  # fmt: skip
+
+
+@inlined
+def crossing_ahead(dx, dy, dz, m):
+    """(mask, u area, v area, area) of `crossing` for terms `towards` the origin, where t is not negative."""
+    area = dot(dx, dy, dz, m.nx, m.ny, m.nz)
+    u, v = dot(dx, dy, dz, m.ax, m.ay, m.az), dot(dx, dy, dz, m.bx, m.by, m.bz)
+    edge = -EDGE * area
+    return (u >= edge) & (v >= edge) & (u + v <= area - edge) & (area > ZERO), u, v, area
+
+
+@inlined
+def may_cross_ahead(low, high, m):
+    """Of which triangles some ray with a direction between low and high may make `crossing_ahead` true.
 
     Rounding is monotone, so bounds computed in the order of the exact test bound its results exactly.
     """
-    area0, area1 = _least_and_greatest(low, high, m.nx, m.ny, m.nz)
+    _area, area = _least_and_greatest(low, high, m.nx, m.ny, m.nz)
     u0, u1 = _least_and_greatest(low, high, m.ax, m.ay, m.az)
     v0, v1 = _least_and_greatest(low, high, m.bx, m.by, m.bz)
-    edge0, edge1 = -EDGE * area0, -EDGE * area1
-    front = (area1 > ZERO) & (u1 >= edge1) & (v1 >= edge1) & (u0 + v0 <= area1 - edge1)
-    back = (area0 < ZERO) & (u0 <= edge0) & (v0 <= edge0) & (u1 + v1 >= area0 - edge0)
-    return front | back
+    edge = -EDGE * area
+    return (area > ZERO) & (u1 >= edge) & (v1 >= edge) & (u0 + v0 <= area - edge)

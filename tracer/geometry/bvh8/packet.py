@@ -181,9 +181,10 @@ def open_vectors(memory, vectors):
 
 @inlined
 def _slopes(memory, v, axis, way):
-    """Least and greatest slopes of the v-th vector along the other axes; HUGE where some ray does not go that way."""
+    """Least and greatest slopes of the v-th vector along the other axes; HUGE where some ray does not go that way, or
+    looks for hits behind its origin."""
     a = memory + 64 * v
-    if smallest(load_f32x16(a + (DX + axis) * ROW) * way) <= ZERO:
+    if smallest(load_f32x16(a + (DX + axis) * ROW) * way) <= ZERO or smallest(load_f32x16(a + T_MIN * ROW)) < ZERO:
         return -HUGE, HUGE, -HUGE, HUGE
     scale = load_f32x16(a + (IX + axis) * ROW) * way
     slope_u = load_f32x16(a + (DX + (axis + 1) % 3) * ROW) * scale

@@ -9,7 +9,17 @@ import numpy as np
 from numba.core import types
 from numba.extending import overload
 
-from tracer.geometry.bvh8.intersect import ZERO, Terms, crossing, may_cross, terms_of, triangle_of, triangles_of
+from tracer.geometry.bvh8.intersect import (
+    ZERO,
+    Terms,
+    crossing,
+    crossing_ahead,
+    may_cross_ahead,
+    terms_of,
+    towards,
+    triangle_of,
+    triangles_of,
+)
 from tracer.geometry.bvh8.packet import (
     BLOCKED_T,
     DX,
@@ -78,7 +88,7 @@ def _prepare(origin, group, memory, block):
         return lambda origin, group, memory, block: (np.int64(1) << load_i32(block + COUNT)) - 1
 
     def common(origin, group, memory, block):
-        m = terms_of(origin[0], origin[1], origin[2], triangles_of(block))
+        m = towards(terms_of(origin[0], origin[1], origin[2], triangles_of(block)))
         a = memory + TERMS
         store(a, m.nx)
         store(a + 32, m.ny)
@@ -90,52 +100,54 @@ def _prepare(origin, group, memory, block):
         store(a + 224, m.by)
         store(a + 256, m.bz)
         store(a + 288, m.height)
-        return bits_of(may_cross(group.low, group.high, m))
+        return bits_of(may_cross_ahead(group.low, group.high, m))
 
     return common
 
 
-def terms_at(origin, memory, block, v, k):
-    """Terms of the k-th triangle of a block for a packet's v-th vector."""
+def crossing_of(origin, memory, block, v, k):
+    """(mask, t area, u area, v area, area) of the rays of a packet's v-th vector on the k-th triangle of a block."""
     raise NotImplementedError("only kernels call this")
 
 
-@overload(terms_at, jit_options={"forceinline": True, "error_model": "numpy"})
-def _terms_at(origin, memory, block, v, k):
+@overload(crossing_of, jit_options={"forceinline": True, "error_model": "numpy"})
+def _crossing_of(origin, memory, block, v, k):
     if isinstance(origin, types.NoneType):
 
         def separate(origin, memory, block, v, k):
             ox, oy, oz = origin_of(origin, memory, v)
-            return terms_of(ox, oy, oz, triangle_of(block, k))
+            m = terms_of(ox, oy, oz, triangle_of(block, k))
+            dx, dy, dz = _directions(memory, v)
+            crosses, sign, u, w, area = crossing(dx, dy, dz, m)
+            return crosses, as_f32(as_i32(m.height) ^ sign), u, w, area
 
         return separate
 
     def common(origin, memory, block, v, k):
         a = memory + TERMS + 4 * k
-        return Terms(
+        m = Terms(
             load_f32(a), load_f32(a + 32), load_f32(a + 64), load_f32(a + 96), load_f32(a + 128),
             load_f32(a + 160), load_f32(a + 192), load_f32(a + 224), load_f32(a + 256), load_f32(a + 288),
         )  # fmt: skip
+        dx, dy, dz = _directions(memory, v)
+        crosses, u, w, area = crossing_ahead(dx, dy, dz, m)
+        return crosses, f32x16(m.height), u, w, area
 
     return common
 
 
 @inlined
-def _crossing(origin, memory, block, v, k):
-    """`crossing` of the rays of the v-th vector and the k-th triangle of a block, and the height of its terms."""
+def _directions(memory, v):
     a = memory + 64 * v
-    m = terms_at(origin, memory, block, v, k)
-    dx, dy, dz = load_f32x16(a + DX * ROW), load_f32x16(a + DY * ROW), load_f32x16(a + DZ * ROW)
-    crosses, sign, u, w, area = crossing(dx, dy, dz, m)
-    return crosses, sign, u, w, area, m.height
+    return load_f32x16(a + DX * ROW), load_f32x16(a + DY * ROW), load_f32x16(a + DZ * ROW)
 
 
 @inlined
-def _distance(memory, v, crosses, height, sign, area):
+def _distance(memory, v, crosses, height, area):
     """(mask, t, 1 / area) of those crossings that lie where the rays are in the block's box."""
     a = memory + 64 * v
     scale = np.float32(1) / area
-    t = as_f32(as_i32(height) ^ sign) * scale
+    t = height * scale
     mask = crosses & (t >= load_f32x16(a + ENTER * ROW)) & (t <= load_f32x16(a + LEAVE * ROW))
     return mask & (t > load_f32x16(a + T_MIN * ROW)), t, scale
 
@@ -157,10 +169,10 @@ def closest_in_block(origin, memory, group, block, active):
             v = lowest_bit(rest)
             rest &= rest - 1
             a = memory + 64 * v
-            crosses, sign, u, w, area, height = _crossing(origin, memory, block, v, k)
+            crosses, height, u, w, area = crossing_of(origin, memory, block, v, k)
             if not any_lane(crosses):
                 continue
-            mask, t, scale = _distance(memory, v, crosses, height, sign, area)
+            mask, t, scale = _distance(memory, v, crosses, height, area)
             best = load_f32x16(a + T * ROW)
             mask = mask & ((t < best) | ((t == best) & (i32x16(number) < load_i32x16(a + NUMBER * ROW))))
             if any_lane(mask):
@@ -188,10 +200,10 @@ def any_in_block(origin, memory, group, block, active):
             v = lowest_bit(rest)
             rest &= rest - 1
             a = memory + 64 * v
-            crosses, sign, _u, _w, area, height = _crossing(origin, memory, block, v, k)
+            crosses, height, _u, _w, area = crossing_of(origin, memory, block, v, k)
             if not any_lane(crosses):
                 continue
-            mask, t, _scale = _distance(memory, v, crosses, height, sign, area)
+            mask, t, _scale = _distance(memory, v, crosses, height, area)
             before = load_f32x16(a + T * ROW)
             mask = mask & (t < before)
             if any_lane(mask):
