@@ -25,7 +25,7 @@ from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
 from tracer.shading.look import make_look
-from tracer.shading.whitted import COUNTERS, Buffers, shade_tile, trace_primary
+from tracer.shading.whitted import COUNTERS, Buffers, Workspace, shade_tile, trace_primary, workspace
 from tracer.statistics import gather
 
 TILE = 32
@@ -51,8 +51,9 @@ class Renderer:
         self.scene = scene
         self.settings = (settings or Settings()).validated()
         self.world = world or World(scene, scene.time_range[0], self.settings.accelerator, progress)
-        self._look = make_look(scene, self.world.normals)
+        self._look = make_look(scene, self.world.facets)
         self._memories: dict[tuple[int, int], Memory] = {}
+        self._workspaces: list[Workspace] = []
 
     def reset_modes(self) -> None:
         """Forget all modes, at every resolution."""
@@ -84,6 +85,11 @@ class Renderer:
         """A frame whose phases are still to come."""
         return UnfinishedFrame(self, self.settings.validated(), camera or self.scene.camera_at(time), time, cancel)
 
+    def workspaces(self, workers: int) -> list[Workspace]:
+        """One for each worker at least."""
+        self._workspaces += [workspace(TILE * TILE) for _ in range(len(self._workspaces), workers)]
+        return self._workspaces
+
     def _memory(self, settings: Settings, workers: int) -> Memory:
         """The modes at this resolution; made, or given room for more workers, where need be."""
         key = (settings.width, settings.height)
@@ -104,6 +110,7 @@ class UnfinishedFrame:
         self._camera, self._time, self._cancel = camera, time, cancel
         self._workers = thread_count(settings.threads)
         self.memory = renderer._memory(settings, self._workers)
+        self._spaces = renderer.workspaces(self._workers)
         self._counts = np.zeros((self._workers, COUNTERS), np.int64)
         self._occlusion_tests = np.zeros(self._workers, np.int64)
         self._phases: dict[str, float] = {}
@@ -159,8 +166,10 @@ class UnfinishedFrame:
         self._trace_primary(self._rays, self._buffers, self._counts)
 
     def _trace_primary(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
-        placed = self._renderer.world.placed
-        self._for_each_tile(lambda tile, worker: trace_primary(placed, rays, tile, buffers, counts[worker]))
+        placed, spaces = self._renderer.world.placed, self._spaces
+        self._for_each_tile(
+            lambda tile, worker: trace_primary(placed, rays, tile, buffers, counts[worker], spaces[worker])
+        )
 
     def test_occlusion(self) -> None:
         """§2.3: which primitives does a neighbouring pixel show to be hidden?"""
@@ -188,7 +197,7 @@ class UnfinishedFrame:
 
         def work(tile: tuple[int, int, int, int], worker: int) -> None:
             knowledge = Knowledge(memory.words, memory.gained[worker], cull, verify)
-            shade_tile(placed, look, rays, tile, depth, knowledge, buffers, counts[worker])
+            shade_tile(placed, look, rays, tile, depth, knowledge, buffers, counts[worker], self._spaces[worker])
 
         self._for_each_tile(work)
 
