@@ -25,10 +25,10 @@ from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
 from tracer.shading.look import make_look
-from tracer.shading.whitted import COUNTERS, Buffers, Workspace, shade_tile, trace_primary, workspace
+from tracer.shading.whitted import COUNTERS, TILE, Buffers, Workspace, shade_tile, trace_primary, workspace
 from tracer.statistics import gather
 
-TILE = 32
+ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, those used last
 Cancel = Callable[[], bool] | None
 
@@ -87,7 +87,7 @@ class Renderer:
 
     def workspaces(self, workers: int) -> list[Workspace]:
         """One for each worker at least."""
-        self._workspaces += [workspace(TILE * TILE) for _ in range(len(self._workspaces), workers)]
+        self._workspaces += [workspace() for _ in range(len(self._workspaces), workers)]
         return self._workspaces
 
     def _memory(self, settings: Settings, workers: int) -> Memory:
@@ -178,12 +178,12 @@ class UnfinishedFrame:
         placed, height = self._renderer.world.placed, self._settings.height
 
         def work(chunk: int, worker: int) -> None:
-            rows = chunk * TILE, min(height, (chunk + 1) * TILE)
+            rows = chunk * ROWS, min(height, (chunk + 1) * ROWS)
             self._occlusion_tests[worker] += occlusion_testing(
                 placed, self._rays, self._buffers.primitive, self._settings.symmetric, *rows, self.memory.hidden
             )
 
-        for_each_chunk(work, -(-height // TILE), self._workers, self._cancel)
+        for_each_chunk(work, -(-height // ROWS), self._workers, self._cancel)
 
     def shade(self) -> None:
         """§2.4, §2.5: Whitted shading, with shadow testing and shadow-mode setting."""

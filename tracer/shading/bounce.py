@@ -6,6 +6,7 @@ import numpy as np
 
 from tracer.culling.shadow import lifted
 from tracer.kernels import inlined, subkernel
+from tracer.shading.octants import sorted_by_octant
 from tracer.shading.points import IOR_ROW, SPECULAR_ROW, TRANSMISSION_ROW
 from tracer.shading.wave import DIRECTION, HIT_T, ORIGIN, PIXEL, REACH, WEIGHT, room, row_of, wave_in
 from tracer.simd import (
@@ -104,6 +105,12 @@ def _reflect(points, wave, out, n):
 
 @inlined
 def next_wave(points, wave, memory):
-    """Refracted rays and then reflected ones, in this memory or, where they are too many, in more."""
+    """The rays sent on from here, refracted ones first, octant by octant; and memory for the wave after them.
+
+    They lie in this memory or in the wave's own, or in more where they are too many."""
     out = room(memory, 2 * wave.size)
-    return wave_in(out, _reflect(points, wave, out, _refract(points, wave, out)))
+    n = _reflect(points, wave, out, _refract(points, wave, out))
+    spare = room(wave.memory, n)
+    if sorted_by_octant(out, n, spare):
+        out, spare = spare, out
+    return wave_in(out, n), spare

@@ -39,13 +39,13 @@ def make_look(scene: Scene, facets: NDArray[np.float32]) -> Look:
     for row, m in zip(materials, scene.materials, strict=True):
         row[:SHINE] = *m.ambient, *m.diffuse, *m.specular, m.exponent, m.transmission, m.ior
         row[SHINE] = row[SPECULAR : SPECULAR + 3].max()
-    texels, levels, first_levels = pack_textures(scene.textures)
+    texels, levels, numbers = pack_textures(scene.textures)
     triangles = [o.triangles for o in scene.objects]
     uvs = np.concatenate([t.uvs for t in triangles]).reshape(-1, 6)
     return Look(
         facets=facets,
         materials=materials,
-        mappings=mapping_rows(uvs, np.concatenate([t.texture for t in triangles]), levels, first_levels),
+        mappings=mapping_rows(uvs, np.concatenate([t.texture for t in triangles]), levels, numbers),
         texels=texels,
         texture_levels=levels,
         lights=np.array([light.position for light in scene.lights], np.float32).reshape(-1, 3),

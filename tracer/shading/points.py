@@ -12,7 +12,7 @@ from tracer.geometry.intersect import quadric_normal
 from tracer.geometry.memory import pointer
 from tracer.kernels import inlined, subkernel
 from tracer.shading.look import AMBIENT, DIFFUSE, EXPONENT, IOR, MATERIAL_COLUMNS, SHINE, SPECULAR, TRANSMISSION
-from tracer.shading.textures import MAPPING_COLUMNS, SPANNED, first_levels, texture_colors
+from tracer.shading.textures import MAPPING_COLUMNS, SPANNED, texture_colors
 from tracer.shading.wave import HIT_PRIMITIVE, HIT_T, HIT_U, HIT_V, REACH, room, row_of
 from tracer.simd import (
     address_of,
@@ -138,9 +138,7 @@ def _texture(look, textured, primitive, w, u, v, across, cosine, cone):
     cosine = maximum(cosine, np.float32(1e-3))
     area = _length(across) * cosine * square_root(cosine)
     covered = select(area > ZERO, cone * cone * m[SPANNED] / area, ZERO)
-    red, green, blue = texture_colors(
-        look, first_levels(m), w * m[0] + u * m[2] + v * m[4], w * m[1] + u * m[3] + v * m[5], covered
-    )
+    red, green, blue = texture_colors(look, m, w * m[0] + u * m[2] + v * m[4], w * m[1] + u * m[3] + v * m[5], covered)
     return select(textured, red, ONE), select(textured, green, ONE), select(textured, blue, ONE)
 
 

@@ -22,20 +22,23 @@ from tracer.simd import (
     binary_logarithm,
     floor,
     gather_i32x16,
+    load_columns,
+    local_memory,
     maximum,
     minimum,
     select,
+    store,
     to_f32,
     to_i32,
 )
 
 # Columns of a triangle's mapping: three corners' u and v, then how many texels of the texture's first level the
-# triangle spans, twice, and, as the bits of int32, the number of that level.
-SPANNED, FIRST_LEVEL = 6, 7
+# triangle spans, twice, and, as the bits of int32, 32 times the number of that level and how many come after it.
+SPANNED, LEVELS = 6, 7
 MAPPING_COLUMNS = 8
-# Columns of a level: where it starts, its size, and how many levels of the texture come after it.
-START, WIDTH, HEIGHT, REST = 0, 1, 2, 3
-LEVEL_COLUMNS = 4
+# Columns of a level, int32: where it starts, its size, and the same of the level after it, if any, else its own.
+START, WIDTH, HEIGHT, AFTER = 0, 1, 2, 4
+LEVEL_COLUMNS = 8
 ZERO, HALF, ONE = np.float32(0), np.float32(0.5), np.float32(1)
 
 
@@ -43,44 +46,42 @@ def pack_textures(
     textures: tuple[Texture, ...],
 ) -> tuple[NDArray[np.uint32], NDArray[np.int32], NDArray[np.int32]]:
     """All levels of all textures: texels (any,) uint32, red in the lowest byte, then green and blue; levels
-    (l, 4) int32; and the number of each texture's first level."""
+    (l, 8) int32; and of each texture the number of its first level, 32 times, and how many come after it."""
     pieces: list[NDArray[np.uint32]] = [np.empty(0, np.uint32)]
-    levels: list[tuple[int, int, int, int]] = []
-    first_levels, start = [], 0
+    levels: list[tuple[int, ...]] = []
+    numbers, start = [], 0
     for texture in textures:
         image = Image.fromarray(texture.pixels)
         count = max(image.size).bit_length()
-        first_levels.append(len(levels))
-        for rest in range(count - 1, -1, -1):
+        numbers.append(32 * len(levels) + count - 1)
+        own = []
+        for _ in range(count):
             red, green, blue = np.asarray(image, np.uint32).reshape(-1, 3).T
             pieces.append((red | green << 8 | blue << 16).astype(np.uint32))
-            levels.append((start, *image.size, rest))
+            own.append((start, *image.size, 0))
             start += len(pieces[-1])
             image = image.resize((max(1, image.width // 2), max(1, image.height // 2)), Image.Resampling.BOX)
-    rows = (np.array(levels, np.int32).reshape(-1, LEVEL_COLUMNS), np.array(first_levels, np.int32))
+        levels += [level + after for level, after in zip(own, [*own[1:], own[-1]], strict=True)]
+    rows = (np.array(levels, np.int32).reshape(-1, LEVEL_COLUMNS), np.array(numbers, np.int32))
     return np.concatenate(pieces), *rows
 
 
 def mapping_rows(
-    uvs: NDArray[np.float32], texture: NDArray[np.int32], levels: NDArray[np.int32], first_levels: NDArray[np.int32]
+    uvs: NDArray[np.float32], texture: NDArray[np.int32], levels: NDArray[np.int32], numbers: NDArray[np.int32]
 ) -> NDArray[np.float32]:
     """Mappings (t, 8) of triangles, of their corners' uvs (t, 6) and texture (t,), -1 for none."""
     rows = aligned_rows(len(uvs), MAPPING_COLUMNS)
     rows[:, :SPANNED] = uvs
     rows[:, SPANNED:] = 0
     has = texture >= 0
-    first = first_levels[texture[has]]
+    number = numbers[texture[has]]
     u0, v0, u1, v1, u2, v2 = uvs[has].T
     with np.errstate(all="ignore"):  # coordinates may be anything, and so may what they span
         covered = np.abs((u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0))
-    rows[has, SPANNED] = covered * (levels[first, WIDTH] * levels[first, HEIGHT]).astype(np.float32)
-    rows.view(np.int32)[has, FIRST_LEVEL] = first
+    first = levels[number >> 5]
+    rows[has, SPANNED] = covered * (first[:, WIDTH] * first[:, HEIGHT]).astype(np.float32)
+    rows.view(np.int32)[has, LEVELS] = number
     return rows
-
-
-@inlined
-def _level(look, rows, column):
-    return gather_i32x16(address_of(look.texture_levels) + 4 * column, rows << np.int32(2))
 
 
 @inlined
@@ -96,12 +97,16 @@ def _across(u, size):
 
 
 @inlined
-def _bilinear(look, rows, u, v):
-    """(r, g, b) in 0 to 255 of one level each, repeating; v = 0 is the bottom of the picture."""
-    width, height = _level(look, rows, WIDTH), _level(look, rows, HEIGHT)
+def _bilinear(look, level, column, u, v):
+    """(r, g, b) in 0 to 255 of one level each, described from `column` on; v = 0 is the bottom of the picture."""
+    start, width, height = (
+        as_i32(level[column + START]),
+        as_i32(level[column + WIDTH]),
+        as_i32(level[column + HEIGHT]),
+    )
     left, right, fx = _across(u, width)
     upper, lower, fy = _across(-v, height)
-    texels, start = address_of(look.texels), _level(look, rows, START)
+    texels = address_of(look.texels)
     upper, lower = start + upper * width, start + lower * width
     a, b = gather_i32x16(texels, upper + left), gather_i32x16(texels, upper + right)
     c, d = gather_i32x16(texels, lower + left), gather_i32x16(texels, lower + right)
@@ -120,23 +125,20 @@ def _channel(texels, shift):
 
 
 @subkernel
-def texture_colors(look, first_level, u, v, covered):
-    """(r, g, b) in 0 to 1 at (u, v) of textures, averaged over so many texels of their first level."""
-    level = HALF * binary_logarithm(maximum(covered, ONE))
-    rest = _level(look, first_level, REST)
-    level = minimum(level, to_f32(rest))
-    whole = to_i32(level)
-    mix = level - to_f32(whole)  # 0 at the last level
+def texture_colors(look, mapping, u, v, covered):
+    """(r, g, b) in 0 to 1 at (u, v) of textures, averaged over so many texels of their first level; mapping holds
+    columns."""
+    numbers = as_i32(mapping[LEVELS])
+    size = HALF * binary_logarithm(maximum(covered, ONE))
+    size = minimum(size, to_f32(numbers & np.int32(31)))
+    whole = to_i32(size)
+    mix = size - to_f32(whole)  # 0 at the last level
+    rows = local_memory(64)
+    store(rows, (numbers >> np.int32(5)) + whole)
+    level = load_columns(address_of(look.texture_levels), rows, LEVEL_COLUMNS)
     scale = np.float32(1 / 255)
-    red, green, blue = _bilinear(look, first_level + whole, u, v)
-    mixed = mix > ZERO
-    if any_lane(mixed):
-        r, g, b = _bilinear(look, first_level + whole + select(mixed, np.int32(1), np.int32(0)), u, v)
+    red, green, blue = _bilinear(look, level, 0, u, v)
+    if any_lane(mix > ZERO):
+        r, g, b = _bilinear(look, level, AFTER, u, v)
         red, green, blue = red + mix * (r - red), green + mix * (g - green), blue + mix * (b - blue)
     return scale * red, scale * green, scale * blue
-
-
-@inlined
-def first_levels(mapping):
-    """Numbers of the first levels, from the columns of mappings."""
-    return as_i32(mapping[FIRST_LEVEL])

@@ -25,8 +25,9 @@ from tracer.simd import (
     store,
 )
 
-# Rows of a wave's memory; the first MOVED of them follow a ray when it changes places.
-ORIGIN, DIRECTION, WEIGHT, REACH, PIXEL, HIT_T, HIT_U, HIT_V, HIT_PRIMITIVE, MOVED = 0, 3, 6, 9, 10, 11, 12, 13, 14, 15
+# Rows of a wave's memory: MOVING of a ray on its way, MOVED with what it hit, which change places with it.
+ORIGIN, DIRECTION, WEIGHT, REACH, PIXEL, MOVING = 0, 3, 6, 9, 10, 11
+HIT_T, HIT_U, HIT_V, HIT_PRIMITIVE, MOVED = 11, 12, 13, 14, 15
 T_MIN, T_MAX = 15, 16
 WAVE_ROWS = 17
 ZERO = np.float32(0)

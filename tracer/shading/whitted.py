@@ -1,4 +1,4 @@
-"""Whitted's recursive shading (1980), wave by wave over the rays of one tile.
+"""Whitted's recursive shading (1980), wave by wave over the rays of a few pixels.
 
 A wave is a batch of rays that have hit something.  Each is shaded by all lights, with shadow testing
 and shadow-mode setting, and sends out the reflected and refracted rays of the next wave, as long as
@@ -21,6 +21,8 @@ from tracer.shading.phong import add_light
 from tracer.shading.points import POINT_ROWS, points_at
 from tracer.shading.primary import keep_hits, primary_wave, recall_hits
 from tracer.shading.wave import WAVE_ROWS, bring_home, room, trace, without_misses
+
+TILE = 64  # pixels on a side: more would make a few packets more coherent, but leave too little to share among threads
 
 # A worker's counters: primary steps, tests, rays; then secondary; then those of shadow rays.
 PRIMARY, SECONDARY, SHADOW = 0, 3, 6
@@ -66,16 +68,16 @@ class Tile(NamedTuple):
 TILE_ROWS = 7
 
 
-def workspace(pixels: int) -> Workspace:
-    """For tiles of so many pixels, and waves of four times as many rays; larger ones find memory as they go."""
+def workspace() -> Workspace:
+    """For waves of four times as many rays as a tile has pixels; larger ones find memory as they go."""
 
     def rows(count: int, n: int) -> NDArray[np.float32]:
         # A line of the cache more than whole pages, lest all rows meet in the same lines.
         return np.empty((count, -(-n // 1024) * 1024 + 16), np.float32)
 
-    n = 4 * pixels
+    n = 4 * TILE * TILE
     return Workspace(
-        rows(WAVE_ROWS, n), rows(WAVE_ROWS, n), rows(POINT_ROWS, n), rows(ANSWER_ROWS, n), rows(TILE_ROWS, pixels)
+        rows(WAVE_ROWS, n), rows(WAVE_ROWS, n), rows(POINT_ROWS, n), rows(ANSWER_ROWS, n), rows(TILE_ROWS, TILE * TILE)
     )
 
 
@@ -86,7 +88,7 @@ def _tile_in(memory):
 
 @kernel
 def trace_primary(world, camera, tile, buffers, counts, space):
-    """Primary rays of a tile: depth, primitive and barycentric weights into the buffers."""
+    """Primary rays of a tile (left, top, right, bottom): depth, primitive and barycentric weights into the buffers."""
     world, buffers, space = borrowed(world), borrowed(buffers), borrowed(space)
     place = _tile_in(space.tile).place
     wave = primary_wave(camera, tile, buffers.primitive.shape[1], space.wave, place)
@@ -147,8 +149,8 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts, spa
     """Shade a tile whose primary hits the buffers hold, with at most `depth` bounces."""
     world, look, knowledge = borrowed(world), borrowed(look), borrowed(knowledge)
     buffers, space = borrowed(buffers), borrowed(space)
-    pixels, memory, spare = _tile_in(space.tile), space.wave, space.next
-    wave = primary_wave(camera, tile, buffers.primitive.shape[1], memory, pixels.place)
+    pixels, spare = _tile_in(space.tile), space.next
+    wave = primary_wave(camera, tile, buffers.primitive.shape[1], space.wave, pixels.place)
     count = wave.size
     recall_hits(wave, pixels.place, buffers)
     pixels.light[:, :count] = 0
@@ -162,8 +164,7 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts, spa
             _see_normals(wave, points, pixels, buffers)
         if bounce == depth:
             break
-        memory, spare = spare, memory
-        wave = next_wave(points, wave, memory)
+        wave, spare = next_wave(points, wave, spare)
         if wave.size == 0:
             break
         trace(world, wave, counts[SECONDARY:])
