@@ -25,10 +25,10 @@ from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
 from tracer.shading.look import make_look
-from tracer.shading.whitted import COUNTERS, Buffers, shade_tile, trace_primary
+from tracer.shading.whitted import COUNTERS, TILE, Buffers, Workspace, shade_tile, trace_primary, workspace
 from tracer.statistics import gather
 
-TILE = 32
+ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, those used last
 Cancel = Callable[[], bool] | None
 
@@ -51,8 +51,9 @@ class Renderer:
         self.scene = scene
         self.settings = (settings or Settings()).validated()
         self.world = world or World(scene, scene.time_range[0], self.settings.accelerator, progress)
-        self._look = make_look(scene, self.world.normals)
+        self._look = make_look(scene, self.world.facets)
         self._memories: dict[tuple[int, int], Memory] = {}
+        self._workspaces: list[Workspace] = []
 
     def reset_modes(self) -> None:
         """Forget all modes, at every resolution."""
@@ -84,6 +85,11 @@ class Renderer:
         """A frame whose phases are still to come."""
         return UnfinishedFrame(self, self.settings.validated(), camera or self.scene.camera_at(time), time, cancel)
 
+    def workspaces(self, workers: int) -> list[Workspace]:
+        """One for each worker at least."""
+        self._workspaces += [workspace() for _ in range(len(self._workspaces), workers)]
+        return self._workspaces
+
     def _memory(self, settings: Settings, workers: int) -> Memory:
         """The modes at this resolution; made, or given room for more workers, where need be."""
         key = (settings.width, settings.height)
@@ -104,6 +110,7 @@ class UnfinishedFrame:
         self._camera, self._time, self._cancel = camera, time, cancel
         self._workers = thread_count(settings.threads)
         self.memory = renderer._memory(settings, self._workers)
+        self._spaces = renderer.workspaces(self._workers)
         self._counts = np.zeros((self._workers, COUNTERS), np.int64)
         self._occlusion_tests = np.zeros(self._workers, np.int64)
         self._phases: dict[str, float] = {}
@@ -159,8 +166,10 @@ class UnfinishedFrame:
         self._trace_primary(self._rays, self._buffers, self._counts)
 
     def _trace_primary(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
-        placed = self._renderer.world.placed
-        self._for_each_tile(lambda tile, worker: trace_primary(placed, rays, tile, buffers, counts[worker]))
+        placed, spaces = self._renderer.world.placed, self._spaces
+        self._for_each_tile(
+            lambda tile, worker: trace_primary(placed, rays, tile, buffers, counts[worker], spaces[worker])
+        )
 
     def test_occlusion(self) -> None:
         """§2.3: which primitives does a neighbouring pixel show to be hidden?"""
@@ -169,12 +178,12 @@ class UnfinishedFrame:
         placed, height = self._renderer.world.placed, self._settings.height
 
         def work(chunk: int, worker: int) -> None:
-            rows = chunk * TILE, min(height, (chunk + 1) * TILE)
+            rows = chunk * ROWS, min(height, (chunk + 1) * ROWS)
             self._occlusion_tests[worker] += occlusion_testing(
                 placed, self._rays, self._buffers.primitive, self._settings.symmetric, *rows, self.memory.hidden
             )
 
-        for_each_chunk(work, -(-height // TILE), self._workers, self._cancel)
+        for_each_chunk(work, -(-height // ROWS), self._workers, self._cancel)
 
     def shade(self) -> None:
         """§2.4, §2.5: Whitted shading, with shadow testing and shadow-mode setting."""
@@ -188,7 +197,7 @@ class UnfinishedFrame:
 
         def work(tile: tuple[int, int, int, int], worker: int) -> None:
             knowledge = Knowledge(memory.words, memory.gained[worker], cull, verify)
-            shade_tile(placed, look, rays, tile, depth, knowledge, buffers, counts[worker])
+            shade_tile(placed, look, rays, tile, depth, knowledge, buffers, counts[worker], self._spaces[worker])
 
         self._for_each_tile(work)
 

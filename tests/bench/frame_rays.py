@@ -24,7 +24,7 @@ from tracer.geometry.rays import Rays, ray_batch
 from tracer.geometry.world import World
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera
-from tracer.shading.whitted import MIN_WEIGHT
+from tracer.shading.bounce import MIN_WEIGHT
 
 
 @dataclass(frozen=True)

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from tracer.culling.shadow import LIGHT_MARGIN
 from tracer.geometry.camera import pinhole
 from tracer.geometry.rays import Hits, Rays, ray_batch
-from tracer.renderer import TILE
 from tracer.scene.animation import deformed
 from tracer.scene.model import Camera, Scene, empty_quadrics
 from tracer.shading.points import OFFSET
+from tracer.shading.whitted import TILE
 
 Vectors = NDArray[np.float32]
 

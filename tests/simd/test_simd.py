@@ -21,15 +21,21 @@ from tracer.simd import (
     any_lane,
     as_f32,
     as_i32,
+    binary_logarithm,
     bits_of,
     f32_at,
+    floor,
     fma,
+    gather_f32x16,
+    gather_i32x16,
     i32_at,
     i64_at,
     lane_numbers_x16,
     lane_of,
+    lanes_below,
     largest,
     leading_zeros,
+    load_columns,
     load_f32,
     load_f32x16,
     load_i32,
@@ -43,12 +49,15 @@ from tracer.simd import (
     maximum,
     minimum,
     ones,
+    pack,
+    pack_three,
     power,
     select,
     smallest,
     square_root,
     store,
     store_mask,
+    store_three,
     store_where,
     to_f32,
     to_i32,
@@ -454,6 +463,60 @@ def test_a_masked_store_leaves_the_other_lanes_memory_alone(kind: Kind):
     assert same(memory[:5], before[:5]) and same(memory[N + 5 :], before[N + 5 :])
 
 
+@of_each_kind
+def test_packed_lanes_keep_their_order(kind: Kind):
+    load, mask, lanes = kind.load, kind.mask, kind.lanes
+
+    @compiled
+    def run(a, bits, out):
+        n = 0
+        for v in range(len(bits)):
+            store(address_of(out) + 4 * n, pack(load(address_of(a) + 4 * lanes * v), mask(bits[v])))
+            n += ones(bits[v])
+        return n
+
+    a = numbers(25, kind.dtype)
+    bits = np.random.default_rng(26).integers(0, 1 << lanes, len(a) // lanes)
+    bits[:3] = 0, (1 << lanes) - 1, 1 << (lanes - 1)
+    kept = np.array([int(b) >> lane & 1 for b in bits for lane in range(lanes)], np.bool_)
+    out = np.zeros(len(a) + lanes, kind.dtype)
+    assert run(a, bits, out) == kept.sum()
+    assert same(out[: kept.sum()], a[kept])
+
+
+@pytest.mark.parametrize("gather, dtype", [(gather_f32x16, F32), (gather_i32x16, I32)])
+def test_gathered_numbers(gather: Any, dtype: type):
+    load = simd.load_i32x16
+
+    @compiled
+    def run(a, places, out):
+        for at in range(0, 4 * len(out), 64):
+            store(address_of(out) + at, gather(address_of(a), load(address_of(places) + at)))
+
+    a, out = numbers(27, dtype, 70), np.zeros(N, dtype)
+    places = np.random.default_rng(28).integers(0, len(a), N).astype(I32)
+    places[:16] = [0, 69] * 8
+    run(a, places, out)
+    assert same(out, a[places])
+
+
+@pytest.mark.parametrize("columns", [8, 16])
+def test_rows_of_a_table_become_columns(columns: int):
+    @compiled
+    def run(table, numbers, out):
+        for v in range(len(numbers) // 16):
+            loaded = load_columns(address_of(table), address_of(numbers) + 64 * v, columns)
+            for c in range(columns):
+                store(address_of(out) + 4 * (len(numbers) * c + 16 * v), loaded[c])
+
+    table = numbers(29, F32, 50 * columns).reshape(50, columns)
+    chosen = np.random.default_rng(30).integers(0, len(table), N).astype(I32)
+    chosen[:16] = range(34, 50)
+    out = np.zeros((columns, N), F32)
+    run(table, chosen, out)
+    assert same(out, table[chosen].T.copy())
+
+
 def test_single_numbers_in_memory():
     @compiled
     def run(floats, integers, longs, octets, out):
@@ -510,6 +573,44 @@ def test_numbers_of_lanes_and_rows_of_three():
     run(rows, out, lanes)
     assert np.array_equal(out, rows[0] + 2 * rows[1] + 4 * rows[2])
     assert lanes.tolist() == list(range(16))
+
+
+@pytest.mark.parametrize("count", [0, 1, 15, 16, 33])
+def test_three_rows_are_packed_together_up_to_their_end(count: int):
+    @compiled
+    def run(rows, count, out):
+        n, stride = 0, 4 * out.shape[1]
+        for v in range((count + 15) // 16):
+            there = lanes_below(count, v)
+            store_three(address_of(out) + 4 * n, stride, pack_three(load_three(rows, v), mask16(there & 0x5FFF)))
+            n += ones(there & 0x5FFF)
+        return n
+
+    rows, out = numbers(31, F32, 3 * 48).reshape(3, 48), np.zeros((3, 64), F32)
+    kept = [i for i in range(count) if i % 16 not in (13, 15)]
+    assert run(rows, count, out) == len(kept)
+    assert same(out[:, : len(kept)], rows[:, kept])
+
+
+def test_whole_numbers_that_are_no_more_and_logarithms():
+    @compiled
+    def run(x, below, y, logarithm):
+        for at in range(0, 4 * len(x), 64):
+            store(address_of(below) + at, floor(load_f32x16(address_of(x) + at)))
+            store(address_of(logarithm) + at, binary_logarithm(load_f32x16(address_of(y) + at)))
+
+    rng = np.random.default_rng(32)
+    x = (rng.normal(size=N) * 10.0 ** rng.uniform(-3, 8, N)).astype(F32)
+    x[: N // 3] = rng.integers(-9, 9, N // 3)
+    x[N // 3 : N // 2] = np.nextafter(x[: N // 2 - N // 3], F32(-np.inf))
+    y = (10.0 ** rng.uniform(-37, 38, N)).astype(F32)
+    y[:32] = 2.0 ** np.arange(-16, 16)
+    below, logarithm = np.zeros(N, F32), np.zeros(N, F32)
+    run(x, below, y, logarithm)
+    assert np.array_equal(below, np.floor(x))
+    right = np.log2(y.astype(np.float64))
+    assert (np.abs(logarithm - right) < 3e-7 * np.maximum(1, np.abs(right))).all()
+    assert np.array_equal(logarithm[:32], np.arange(-16, 16))
 
 
 @cache

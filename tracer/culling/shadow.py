@@ -26,13 +26,15 @@ from tracer.culling.modes import DYNAMIC, FULL_SHADOW, FULLY_RENDERED, MAX_CULLE
 from tracer.geometry.queries import DYNAMIC as ANY_DYNAMIC
 from tracer.geometry.queries import STATIC as ANY_STATIC
 from tracer.geometry.queries import any_hits
-from tracer.geometry.rays import Rays, empty_rays
+from tracer.geometry.rays import Rays
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     bits_of,
     f32x16,
+    gather_i32x16,
     lane_of,
+    lanes_below,
     load_f32x16,
     load_i32x16,
     load_mask16,
@@ -66,8 +68,9 @@ class Answers(NamedTuple):
     """What is known of the shadow rays of n points to one light, 16 points a row, as bits of int32:
     which are due, which of those reach the light and, where knowledge asks to verify, which truly do.
 
-    For asking: low and high (n,) int32, halves of the points' words; rays, source (n / 16,) int32, the
-    vectors that its own come from, live, the bits of those to be traced, and blocked (n,) bool."""
+    For asking: low and high (n,) int32, halves of the points' words where anything is culled; rays, source
+    (n / 16,) int32, the vectors that its own come from, live, the bits of those to be traced, and blocked,
+    a byte for each ray."""
 
     due: NDArray[np.int32]
     lit: NDArray[np.int32]
@@ -77,38 +80,53 @@ class Answers(NamedTuple):
     rays: Rays
     source: NDArray[np.int32]
     live: NDArray[np.int32]
-    blocked: NDArray[np.bool_]
+    blocked: NDArray[np.float32]
+
+
+# Rows of the memory that answers lie in, the first eight of which are the rays.
+DUE_ROW, LIT_ROW, TRUTH_ROW, LOW_ROW, HIGH_ROW, SOURCE_ROW, LIVE_ROW, BLOCKED_ROW = range(8, 16)
+ANSWER_ROWS = 16
 
 
 @inlined
-def lifted(position, geometric, offset, i):
-    """Where a ray to or from the i-th surface point ends or starts: so far off the surface, on the viewer's side."""
-    return (
-        position[0, i] + offset * geometric[0, i],
-        position[1, i] + offset * geometric[1, i],
-        position[2, i] + offset * geometric[2, i],
+def answers_in(memory):
+    """Answers for n points at most, in memory (ANSWER_ROWS, n) float32."""
+    return Answers(
+        memory[DUE_ROW].view(np.int32),
+        memory[LIT_ROW].view(np.int32),
+        memory[TRUTH_ROW].view(np.int32),
+        memory[LOW_ROW].view(np.int32),
+        memory[HIGH_ROW].view(np.int32),
+        Rays(memory[0:3], memory[3:6], memory[6], memory[7]),
+        memory[SOURCE_ROW].view(np.int32),
+        memory[LIVE_ROW].view(np.int32),
+        memory[BLOCKED_ROW],
     )
 
 
 @subkernel
-def answers_for(points, count, knowledge):
-    """Room for the answers of `count` points, with what is known of them."""
-    n = len(points.unit)
-    vectors = n // 16
-    low, high = np.zeros(n, np.int32), np.zeros(n, np.int32)
-    for i in range(count):
-        word = np.uint64(knowledge.words[points.unit[i]])
-        low[i], high[i] = np.int32(word & np.uint64(0xFFFFFFFF)), np.int32(word >> np.uint64(32))
-    due, lit, truth = np.zeros(vectors, np.int32), np.zeros(vectors, np.int32), np.zeros(vectors, np.int32)
-    source, live = np.empty(vectors, np.int32), np.empty(vectors, np.int32)
-    return Answers(due, lit, truth, low, high, empty_rays(n), source, live, np.empty(n, np.bool_))
+def look_up(points, count, knowledge, answers):
+    """Put the words of `count` points side by side, where anything is to be culled."""
+    if not knowledge.cull:
+        return
+    words, low, high = address_of(knowledge.words), address_of(answers.low), address_of(answers.high)
+    for at in range(0, 4 * count, 64):
+        unit = load_i32x16(address_of(points.unit) + at)
+        if knowledge.words.itemsize == 4:
+            store(low + at, gather_i32x16(words, unit))
+        else:
+            store(low + at, gather_i32x16(words, unit << np.int32(1)))
+            store(high + at, gather_i32x16(words + 4, unit << np.int32(1)))
 
 
 @inlined
-def lanes_below(count, v):
-    """Bits of those points of the v-th vector that there are."""
-    rest = count - 16 * v
-    return np.int64(0xFFFF) if rest >= 16 else (np.int64(1) << rest) - 1
+def lifted(points, v, side):
+    """Where rays to or from the v-th vector of points end or start: a little off the surface, on the viewer's side
+    of it for side 1 and on the other for -1."""
+    x, y, z = load_three(points.position, v)
+    gx, gy, gz = load_three(points.geometric, v)
+    offset = side * load_f32x16(address_of(points.offset) + 64 * v)
+    return x + offset * gx, y + offset * gy, z + offset * gz
 
 
 @inlined
@@ -169,14 +187,12 @@ def _rays_from_light(points, light, vectors, answers):
         if live == 0:
             continue
         answers.source[packed] = v
-        px, py, pz = load_three(points.position, v)
-        gx, gy, gz = load_three(points.geometric, v)
-        offset = load_f32x16(address_of(points.offset) + 64 * v)
+        x, y, z = lifted(points, v, ONE)
         at = 64 * packed
         store(origin + at, f32x16(light[0]))
         store(origin + at + stride, f32x16(light[1]))
         store(origin + at + 2 * stride, f32x16(light[2]))
-        dx, dy, dz = px + offset * gx - light[0], py + offset * gy - light[1], pz + offset * gz - light[2]
+        dx, dy, dz = x - light[0], y - light[1], z - light[2]
         on, one = mask16(np.int64(live)), lowest_bit(np.int64(live))
         store(direction + at, select(on, dx, lane_of(dx, one)))
         store(direction + at + stride, select(on, dy, lane_of(dy, one)))
@@ -212,6 +228,8 @@ def _learn(points, v, number, knowledge, answers, asked, blocked):
 def _ask_static(world, points, light, number, knowledge, vectors, answers, counts):
     """Ask static geometry and set shadow modes; answers.lit grows by the points where nothing blocks."""
     packed = _rays_from_light(points, light, vectors, answers)
+    if packed == 0:
+        return
     any_hits(world, answers.rays, ANY_STATIC, answers.blocked, 0, 16 * packed, counts)
     for k in range(packed):
         v = np.int64(answers.source[k])
@@ -228,6 +246,8 @@ def _ask_dynamic(world, points, light, vectors, answers, counts):
     for v in range(vectors):
         answers.live[v] = answers.lit[v]
     packed = _rays_from_light(points, light, vectors, answers)
+    if packed == 0:
+        return
     any_hits(world, answers.rays, ANY_DYNAMIC, answers.blocked, 0, 16 * packed, counts)
     for k in range(packed):
         v = answers.source[k]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tracer.geometry.rays import INFINITY, Ray
 from tracer.kernels import inlined
 from tracer.scene.model import Camera
+from tracer.simd import square_root
 
 
 class Pinhole(NamedTuple):
@@ -35,20 +36,17 @@ def pinhole(camera: Camera, width: int, height: int, shift: tuple[float, float] 
 
 
 @inlined
+def primary_direction(camera, x, y):
+    """Unit direction of the ray of the pixel in column x and row y, float32 or vectors of them."""
+    dx = camera.corner[0] + x * camera.column[0] + y * camera.row[0]
+    dy = camera.corner[1] + x * camera.column[1] + y * camera.row[1]
+    dz = camera.corner[2] + x * camera.column[2] + y * camera.row[2]
+    scale = np.float32(1) / square_root(dx * dx + dy * dy + dz * dz)
+    return dx * scale, dy * scale, dz * scale
+
+
+@inlined
 def primary_ray(camera, x, y):
     """The ray of pixel (x, y), of unit direction."""
-    fx, fy = np.float32(x), np.float32(y)
-    dx = camera.corner[0] + fx * camera.column[0] + fy * camera.row[0]
-    dy = camera.corner[1] + fx * camera.column[1] + fy * camera.row[1]
-    dz = camera.corner[2] + fx * camera.column[2] + fy * camera.row[2]
-    scale = np.float32(1) / np.sqrt(dx * dx + dy * dy + dz * dz)
-    return Ray(
-        camera.origin[0],
-        camera.origin[1],
-        camera.origin[2],
-        dx * scale,
-        dy * scale,
-        dz * scale,
-        np.float32(0),
-        INFINITY,
-    )
+    dx, dy, dz = primary_direction(camera, np.float32(x), np.float32(y))
+    return Ray(camera.origin[0], camera.origin[1], camera.origin[2], dx, dy, dz, np.float32(0), INFINITY)

@@ -11,9 +11,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic
+from numpy.typing import NDArray
+
+
+def aligned_rows(rows: int, columns: int) -> NDArray[np.float32]:
+    """Uninitialised (rows, columns) float32 whose memory begins at a multiple of 64 bytes: a line of the cache."""
+    memory = np.empty(4 * rows * columns + 64, np.uint8)
+    start = -memory.ctypes.data % 64
+    return memory[start : start + 4 * rows * columns].view(np.float32).reshape(rows, columns)
 
 
 def _intrinsic(function: Callable) -> Any:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.geometry.facets import ACROSS, NORMALS, OBJECT, across, facet_rows
 from tracer.geometry.poses import inverses
 from tracer.scene.animation import deformed
 from tracer.scene.model import SPHERE, Float32, Float64, Int32, Scene
@@ -20,18 +21,18 @@ def triangle_rows(corners: Float32) -> Float32:
 class Primitives:
     """All primitives of a scene's n objects, in the space of their object.
 
-    triangles (t, 9) float32, corner and two edges, and normals (t, 9) float32, of the corners; corners
-    (d, 3, 3) float32 are those of dynamic triangles.  quadrics (q, 16) float32: map to canonical space,
-    kind, radii and side; the same map in float64 is to_canonical (q, 3, 4), its inverse to_object.
-    Those of object i begin at triangle_starts[i] and quadric_starts[i], (n + 1,) int32, and end before the
-    next object's; object_of (t + q,) int32 tells whose each is.
+    triangles (t, 9) float32, corner and two edges; facets (t + q, 16) float32 (`tracer.geometry.facets`), of
+    which normals (t, 9) are the corners'; corners (d, 3, 3) float32 are those of dynamic triangles.
+    quadrics (q, 16) float32: map to canonical space, kind, radii and side; the same map in float64 is
+    to_canonical (q, 3, 4), its inverse to_object.  Those of object i begin at triangle_starts[i] and
+    quadric_starts[i], (n + 1,) int32, and end before the next object's; object_of (t + q,) int32 tells whose
+    each is.
     """
 
     def __init__(self, scene: Scene) -> None:
         objects = scene.objects
         corners = np.concatenate([o.triangles.corners for o in objects])
         self.triangles = triangle_rows(corners)
-        self.normals = np.concatenate([o.triangles.normals for o in objects]).reshape(-1, 9)
         self.corners = corners[scene.triangle_offsets[1] :].copy()
         quadrics = [o.quadrics for o in objects]
         self.to_object = np.concatenate([q.to_object for q in quadrics])
@@ -45,6 +46,8 @@ class Primitives:
         self.quadric_starts: Int32 = scene.quadric_offsets - scene.quadric_offsets[0]
         counts = np.diff(self.triangle_starts), np.diff(self.quadric_starts)
         self.object_of = np.concatenate([np.repeat(np.arange(len(objects)), n) for n in counts]).astype(np.int32)
+        self.facets = facet_rows(scene, self.triangles, self.object_of)
+        self.normals = self.facets[: len(corners), NORMALS:ACROSS]
         self.empty: NDArray[np.bool_] = counts[0] + counts[1] == 0
         self.deformations = {i: o.deformation for i, o in enumerate(objects) if o.deformation is not None}
 
@@ -63,6 +66,7 @@ class Primitives:
             corners, normals = deformed(deformation, time)
             self.corners[rows.start - first_dynamic : rows.stop - first_dynamic] = corners
             self.triangles[rows], self.normals[rows] = triangle_rows(corners), normals.reshape(-1, 9)
+            self.facets[rows, ACROSS:OBJECT] = across(self.triangles[rows])
 
     def quadric_boxes(self, which: slice, maps: Float64) -> NDArray[np.float32]:
         """Boxes (n, 6) around quadrics whose canonical space is taken by maps (n, 3, 4) to where they are wanted."""

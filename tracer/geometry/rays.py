@@ -66,21 +66,6 @@ def padded(n):
     return (n + 15) & ~15
 
 
-@inlined
-def empty_rays(n):
-    """Room for n rays, in rows of whole vectors."""
-    n = padded(n)
-    return Rays(
-        np.empty((3, n), np.float32), np.empty((3, n), np.float32), np.empty(n, np.float32), np.empty(n, np.float32)
-    )
-
-
-@inlined
-def empty_hits(n):
-    n = padded(n)
-    return Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
-
-
 class RayPointers(NamedTuple):
     """A batch of `size` rays as pointers, to be read one ray at a time."""
 

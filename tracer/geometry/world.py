@@ -32,9 +32,10 @@ class World:
     """A scene's geometry for rays: `place` it for a time, then ask.
 
     Raises Cancelled if `progress` does while trees are being built, ValueError for an accelerator
-    that does not exist.  `placed` is what kernels are given; `normals` (t, 9) float32 holds the
-    corners' normals in the space of each triangle's object, `object_of` (primitives,) int32 whose each
-    primitive is.  Placing overwrites what was placed before.
+    that does not exist.  `placed` is what kernels are given; `facets` (primitives, 16) float32 what shading
+    reads (`tracer.geometry.facets`), of which `normals` (t, 9) are the corners' normals in the space of each
+    triangle's object; `object_of` (primitives,) int32 tells whose each primitive is.  Placing overwrites what
+    was placed before.
     """
 
     def __init__(
@@ -44,7 +45,8 @@ class World:
             raise ValueError(f"there is no accelerator {accelerator!r}; there is {', '.join(ACCELERATORS)}")
         self._accelerator = accelerator
         self._primitives = Primitives(scene)
-        self.normals, self.object_of = self._primitives.normals, self._primitives.object_of
+        self.facets, self.normals = self._primitives.facets, self._primitives.normals
+        self.object_of = self._primitives.object_of
         self.scene = scene
         self.structure = STRUCTURES[accelerator](self._primitives, len(scene.objects), progress)
         self.place(time)

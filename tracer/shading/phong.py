@@ -1,14 +1,13 @@
-"""Local light: ambient, and Phong's diffuse and specular terms of each light that reaches a point."""
+"""Local light: Phong's diffuse and specular terms of each light that reaches a point."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from tracer.kernels import inlined, subkernel
-from tracer.shading.look import AMBIENT, DIFFUSE, EXPONENT, SPECULAR
-from tracer.shading.points import SHINE
+from tracer.shading.points import DIFFUSE_ROW, EXPONENT_ROW, SHINE_ROW, SPECULAR_ROW
+from tracer.shading.wave import row_of
 from tracer.simd import (
-    address_of,
     any_lane,
     f32x16,
     load_f32x16,
@@ -25,36 +24,21 @@ ZERO, ONE = np.float32(0), np.float32(1)
 
 
 @inlined
-def _row(rows, row, v):
-    return load_f32x16(address_of(rows) + 4 * rows.shape[1] * row + 64 * v)
-
-
-@inlined
-def _add(light, channel, v, amount):
-    """Add to a channel of the v-th vector of points."""
-    a = address_of(light) + 4 * light.shape[1] * channel + 64 * v
-    store(a, load_f32x16(a) + amount)
+def _row(points, row, v):
+    return load_f32x16(row_of(points.memory, row) + 64 * v)
 
 
 @subkernel
-def add_ambient(points, look, light):
-    """Add what every point of the batch has without any light; a texture scales it.  light (3, n) float32."""
-    for v in range(light.shape[1] // 16):
-        for c in range(3):
-            ambient = look.ambient[c] * _row(points.surface, AMBIENT + c, v) * _row(points.texture, c, v)
-            _add(light, c, v, ambient)
-
-
-@subkernel
-def add_light(points, look, number, lit, rays, light):
-    """Add light `number` where bits of lit (n / 16,) say so: diffuse N.L, and (R.V)^exponent (Phong 1975)."""
+def add_light(points, look, number, lit, wave, light):
+    """Add light `number` to light (3, n) where bits of lit (n / 16,) say so: diffuse N.L, and (R.V)^exponent
+    (Phong 1975)."""
     place, strength = look.lights[number], look.light_colors[number]
-    for v in range(len(lit)):
+    for v in range((wave.size + 15) // 16):
         if lit[v] == 0:
             continue
         px, py, pz = load_three(points.position, v)
         nx, ny, nz = load_three(points.normal, v)
-        dx, dy, dz = load_three(rays.direction, v)
+        dx, dy, dz = load_three(wave.rays.direction, v)
         lx, ly, lz = place[0] - px, place[1] - py, place[2] - pz
         scale = ONE / square_root(lx * lx + ly * ly + lz * lz)
         cosine = (nx * lx + ny * ly + nz * lz) * scale
@@ -64,11 +48,11 @@ def add_light(points, look, number, lit, rays, light):
         nv = nx * dx + ny * dy + nz * dz
         lv = (lx * dx + ly * dy + lz * dz) * scale
         rv = maximum(lv - np.float32(2) * cosine * nv, ZERO)  # the mirrored light's direction against the viewer's
-        shines = reached & (_row(points.surface, SHINE, v) > ZERO) & (rv > ZERO)
+        shines = reached & (_row(points, SHINE_ROW, v) > ZERO) & (rv > ZERO)
         highlight = f32x16(ZERO)
         if any_lane(shines):
-            highlight = select(shines, power(rv, _row(points.surface, EXPONENT, v)), ZERO)
+            highlight = select(shines, power(rv, _row(points, EXPONENT_ROW, v)), ZERO)
         for c in range(3):
-            diffuse = _row(points.surface, DIFFUSE + c, v) * _row(points.texture, c, v) * cosine
-            local = diffuse + _row(points.surface, SPECULAR + c, v) * highlight
-            _add(light, c, v, select(reached, strength[c] * local, ZERO))
+            local = _row(points, DIFFUSE_ROW + c, v) * cosine + _row(points, SPECULAR_ROW + c, v) * highlight
+            at = row_of(light, c) + 64 * v
+            store(at, load_f32x16(at) + select(reached, strength[c] * local, ZERO))

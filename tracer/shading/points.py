@@ -1,246 +1,255 @@
-"""Surface points: what shading and shadow testing need to know of a batch of hits."""
+"""Surface points: what shading and shadow testing need to know of a wave's hits, sixteen at a time."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.geometry.facets import ACROSS, MATERIAL, NORMALS, OBJECT, TEXTURE
 from tracer.geometry.intersect import quadric_normal
 from tracer.geometry.memory import pointer
-from tracer.geometry.rays import padded
 from tracer.kernels import inlined, subkernel
-from tracer.shading.look import SPECULAR
-from tracer.shading.textures import texture_color
+from tracer.shading.look import AMBIENT, DIFFUSE, EXPONENT, IOR, MATERIAL_COLUMNS, SHINE, SPECULAR, TRANSMISSION
+from tracer.shading.textures import MAPPING_COLUMNS, SPANNED, texture_colors
+from tracer.shading.wave import HIT_PRIMITIVE, HIT_T, HIT_U, HIT_V, REACH, room, row_of
 from tracer.simd import (
     address_of,
+    any_lane,
+    as_i32,
+    bits_of,
     f32x16,
+    gather_f32x16,
+    i32x16,
+    lanes_below,
+    load_columns,
     load_f32x16,
+    load_i32x16,
     load_three,
+    local_memory,
+    lowest_bit,
+    mask16,
     maximum,
     select,
     square_root,
     store,
-    store_mask,
+    store_three,
 )
 
-SHINE = 10  # row of a surface; before it those of a material
 OFFSET = np.float32(2e-5)  # of the largest coordinate at hand: some 300 float32 roundings
+FACET_COLUMNS = 16
+ZERO, ONE = np.float32(0), np.float32(1)
+
+# Rows of the points' memory.
+POSITION_ROW, GEOMETRIC_ROW, NORMAL_ROW, DIFFUSE_ROW, SPECULAR_ROW, LIGHT_ROW, REFERENCE_ROW = range(0, 21, 3)
+EXPONENT_ROW, SHINE_ROW, TRANSMISSION_ROW, IOR_ROW, OFFSET_ROW, UNIT_ROW, ENTERING_ROW = range(21, 28)
+POINT_ROWS = 28
 
 
 class Points(NamedTuple):
-    """n points: position, geometric normal (towards the viewer), shading normal (in the geometric one's
-    half space) and texture colour, each (3, n) float32; surface (SHINE + 1, n), a material's columns and
-    the largest of its specular colour; offset (n,), how far above the surface rays start; unit and
-    material (n,) int32; entering (n,), whether the ray came from outside."""
+    """n points, in rows of `memory` (POINT_ROWS, n) float32: position, geometric normal (towards the viewer), shading
+    normal (in the geometric one's half space), the material's diffuse colour under the texture's, its specular colour,
+    and the light that goes from there to the viewer, of which there is the ambient at first, each (3, n); reference
+    like light; offset (n,), how far above the surface rays start; unit (n,) int32; entering (n / 16,) int32, the bits
+    of those whose ray came from outside."""
 
+    memory: NDArray[np.float32]
     position: NDArray[np.float32]
     geometric: NDArray[np.float32]
     normal: NDArray[np.float32]
-    texture: NDArray[np.float32]
-    surface: NDArray[np.float32]
+    specular: NDArray[np.float32]
+    light: NDArray[np.float32]
+    reference: NDArray[np.float32]
     offset: NDArray[np.float32]
     unit: NDArray[np.int32]
-    material: NDArray[np.int32]
-    entering: NDArray[np.bool_]
+    entering: NDArray[np.int32]
 
 
 @inlined
-def _empty_points(n):
-    n = padded(n)
-    vectors = np.empty((4, 3, n), np.float32)
+def _points_in(memory):
     return Points(
-        vectors[0],
-        vectors[1],
-        vectors[2],
-        vectors[3],
-        np.empty((SHINE + 1, n), np.float32),
-        np.empty(n, np.float32),
-        np.empty(n, np.int32),
-        np.empty(n, np.int32),
-        np.empty(n, np.bool_),
+        memory,
+        memory[POSITION_ROW:GEOMETRIC_ROW],
+        memory[GEOMETRIC_ROW:NORMAL_ROW],
+        memory[NORMAL_ROW:DIFFUSE_ROW],
+        memory[SPECULAR_ROW:LIGHT_ROW],
+        memory[LIGHT_ROW:REFERENCE_ROW],
+        memory[REFERENCE_ROW:EXPONENT_ROW],
+        memory[OFFSET_ROW],
+        memory[UNIT_ROW].view(np.int32),
+        memory[ENTERING_ROW].view(np.int32),
     )
 
 
-class _Source(NamedTuple):
-    """What points are made from, as pointers: passing arrays by the dozen costs more than a point."""
-
-    triangles: Any
-    normals: Any
-    uvs: Any
-    texture: Any
-    to_object: Any
-    object_of: Any
-
-
-class _Raw(NamedTuple):
-    """Rows of points under way: addresses of x; y and z follow at `stride`."""
-
-    geometric: Any
-    normal: Any
-    texture: Any
-    stride: Any
+@inlined
+def _length(a):
+    return square_root(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
 @inlined
-def _store3(row, stride, i, x, y, z):
-    store(row + 4 * i, x)
-    store(row + stride + 4 * i, y)
-    store(row + 2 * stride + 4 * i, z)
+def _unit(a):
+    length = _length(a)
+    scale = select(length > ZERO, ONE / length, ZERO)
+    return a[0] * scale, a[1] * scale, a[2] * scale
 
 
 @inlined
-def _to_world(m, a, x, y, z):
-    """A normal carried out of an object's space: by the transposed map into it, at m[a:a + 12], of any length."""
+def _chosen(mask, a, b):
+    return select(mask, a[0], b[0]), select(mask, a[1], b[1]), select(mask, a[2], b[2])
+
+
+@inlined
+def _opposite(a):
+    return -a[0], -a[1], -a[2]
+
+
+@inlined
+def _to_world(maps, objects, a):
+    """Normals carried out of their objects' spaces: by the transposed maps (objects, 12) into them, to any length."""
+    at, first = address_of(maps), objects * np.int32(12)
+    x, y, z = a
     return (
-        m[a] * x + m[a + 4] * y + m[a + 8] * z,
-        m[a + 1] * x + m[a + 5] * y + m[a + 9] * z,
-        m[a + 2] * x + m[a + 6] * y + m[a + 10] * z,
+        gather_f32x16(at, first) * x + gather_f32x16(at + 16, first) * y + gather_f32x16(at + 32, first) * z,
+        gather_f32x16(at + 4, first) * x + gather_f32x16(at + 20, first) * y + gather_f32x16(at + 36, first) * z,
+        gather_f32x16(at + 8, first) * x + gather_f32x16(at + 24, first) * y + gather_f32x16(at + 40, first) * z,
     )
 
 
 @inlined
-def _footprint(source, primitive, cx, cy, cz, cosine, cone):
-    """Part of a texture that a cone of rays of that width covers; (cx, cy, cz) spans twice the triangle."""
-    q = 6 * primitive
-    uv = source.uvs
-    covered = abs((uv[q + 2] - uv[q]) * (uv[q + 5] - uv[q + 1]) - (uv[q + 4] - uv[q]) * (uv[q + 3] - uv[q + 1]))
-    cosine = max(cosine, np.float32(1e-3))
-    area = np.sqrt(cx * cx + cy * cy + cz * cz) * cosine * np.sqrt(cosine)
-    return cone * cone * covered / area if area > np.float32(0) else np.float32(0)
+def _mixed(facet, first, w, u, v):
+    """Three columns from `first` on, and those three and six after them, weighted by corner."""
+    return (
+        w * facet[first] + u * facet[first + 3] + v * facet[first + 6],
+        w * facet[first + 1] + u * facet[first + 4] + v * facet[first + 7],
+        w * facet[first + 2] + u * facet[first + 5] + v * facet[first + 8],
+    )
 
 
-@inlined
-def _triangle_point(source, look, raw, i, primitive, u, v, dx, dy, dz, cone):
-    """Geometric and shading normal, in world space and of any length, and the texture's colour."""
-    t, n, r = source.triangles, source.normals, 9 * primitive
-    o = source.object_of[primitive]
-    cx = t[r + 4] * t[r + 8] - t[r + 5] * t[r + 7]
-    cy = t[r + 5] * t[r + 6] - t[r + 3] * t[r + 8]
-    cz = t[r + 3] * t[r + 7] - t[r + 4] * t[r + 6]
-    w = np.float32(1) - u - v
-    nx = w * n[r] + u * n[r + 3] + v * n[r + 6]
-    ny = w * n[r + 1] + u * n[r + 4] + v * n[r + 7]
-    nz = w * n[r + 2] + u * n[r + 5] + v * n[r + 8]
-    gx, gy, gz = cx, cy, cz
-    if o != 0:
-        gx, gy, gz = _to_world(source.to_object, 12 * o, cx, cy, cz)
-        nx, ny, nz = _to_world(source.to_object, 12 * o, nx, ny, nz)
-    if nx * nx + ny * ny + nz * nz < np.float32(1e-24):
-        nx, ny, nz = gx, gy, gz
-    _store3(raw.geometric, raw.stride, i, gx, gy, gz)
-    _store3(raw.normal, raw.stride, i, nx, ny, nz)
-    texture = source.texture[primitive]
-    if texture < 0:
-        return
-    q, uv = 6 * primitive, source.uvs
-    s, r = w * uv[q] + u * uv[q + 2] + v * uv[q + 4], w * uv[q + 1] + u * uv[q + 3] + v * uv[q + 5]
-    length = np.sqrt(gx * gx + gy * gy + gz * gz)
-    cosine = abs(gx * dx + gy * dy + gz * dz) / length if length > np.float32(0) else np.float32(0)
-    footprint = _footprint(source, primitive, cx, cy, cz, cosine, cone)
-    red, green, blue = texture_color(look, texture, s, r, footprint)
-    _store3(raw.texture, raw.stride, i, red, green, blue)
+@subkernel
+def _texture(look, textured, primitive, w, u, v, across, cosine, cone):
+    """Colours that textures have in the lanes of a mask, 1 in the others.
+
+    across spans twice the triangle; cosine is that of the rays against it, and cone their width.
+    """
+    rows = local_memory(64)
+    store(rows, select(textured, primitive, i32x16(0)))
+    m = load_columns(address_of(look.mappings), rows, MAPPING_COLUMNS)
+    cosine = maximum(cosine, np.float32(1e-3))
+    area = _length(across) * cosine * square_root(cosine)
+    covered = select(area > ZERO, cone * cone * m[SPANNED] / area, ZERO)
+    red, green, blue = texture_colors(look, m, w * m[0] + u * m[2] + v * m[4], w * m[1] + u * m[3] + v * m[5], covered)
+    return select(textured, red, ONE), select(textured, green, ONE), select(textured, blue, ONE)
 
 
 @subkernel
 def _quadric_point(world, points, i, primitive):
-    m = world.to_object[world.object_of[primitive]]
+    """Normal of the i-th point, in world space and of any length, into its rows."""
+    m, to_object = pointer(world.to_object), 12 * world.object_of[primitive]
     p = points.position
-    x = m[0] * p[0, i] + m[1] * p[1, i] + m[2] * p[2, i] + m[3]
-    y = m[4] * p[0, i] + m[5] * p[1, i] + m[6] * p[2, i] + m[7]
-    z = m[8] * p[0, i] + m[9] * p[1, i] + m[10] * p[2, i] + m[11]
+    a = to_object
+    x = m[a] * p[0, i] + m[a + 1] * p[1, i] + m[a + 2] * p[2, i] + m[a + 3]
+    y = m[a + 4] * p[0, i] + m[a + 5] * p[1, i] + m[a + 6] * p[2, i] + m[a + 7]
+    z = m[a + 8] * p[0, i] + m[a + 9] * p[1, i] + m[a + 10] * p[2, i] + m[a + 11]
     nx, ny, nz = quadric_normal(world.quadrics, primitive - len(world.triangles), x, y, z)
-    nx, ny, nz = _to_world(pointer(world.to_object), 12 * world.object_of[primitive], nx, ny, nz)
-    for rows in (points.geometric, points.normal):
-        rows[0, i], rows[1, i], rows[2, i] = nx, ny, nz
+    for axis in range(3):
+        normal = m[a + axis] * nx + m[a + 4 + axis] * ny + m[a + 8 + axis] * nz
+        points.geometric[axis, i], points.normal[axis, i] = normal, normal
 
 
 @inlined
-def _unit(x, y, z):
-    length = square_root(x * x + y * y + z * z)
-    scale = select(length > np.float32(0), np.float32(1) / length, np.float32(0))
-    return x * scale, y * scale, z * scale
+def _quadrics(world, points, v, there, primitive, geometric, normal):
+    """Normals of the v-th vector of points, those on quadrics made good."""
+    rest = bits_of(primitive > np.int32(len(world.triangles) - 1)) & there
+    if rest == 0:
+        return geometric, normal
+    stride = 4 * points.memory.shape[1]
+    store_three(address_of(points.geometric) + 64 * v, stride, geometric)
+    store_three(address_of(points.normal) + 64 * v, stride, normal)
+    while rest != 0:
+        i = 16 * v + lowest_bit(rest)
+        rest &= rest - 1
+        _quadric_point(world, points, i, np.int64(points.unit[i]))
+    return load_three(points.geometric, v), load_three(points.normal, v)
 
 
 @inlined
-def _store_vector(rows, v, x, y, z):
-    a, stride = address_of(rows) + 64 * v, 4 * rows.shape[1]
-    store(a, x)
-    store(a + stride, y)
-    store(a + 2 * stride, z)
+def _put_surface(points, look, v, material, color, verify):
+    """What the materials are made of, seen through the textures' colours."""
+    rows = local_memory(64)
+    store(rows, material)
+    m = load_columns(address_of(look.materials), rows, MATERIAL_COLUMNS)
+    stride = 4 * points.memory.shape[1]
+    at = address_of(points.memory) + 64 * v
+    ambient = (
+        look.ambient[0] * m[AMBIENT] * color[0],
+        look.ambient[1] * m[AMBIENT + 1] * color[1],
+        look.ambient[2] * m[AMBIENT + 2] * color[2],
+    )
+    store_three(at + stride * LIGHT_ROW, stride, ambient)
+    if verify:
+        store_three(at + stride * REFERENCE_ROW, stride, ambient)
+    diffuse = (m[DIFFUSE] * color[0], m[DIFFUSE + 1] * color[1], m[DIFFUSE + 2] * color[2])
+    store_three(at + stride * DIFFUSE_ROW, stride, diffuse)
+    store_three(at + stride * SPECULAR_ROW, stride, (m[SPECULAR], m[SPECULAR + 1], m[SPECULAR + 2]))
+    store(at + stride * EXPONENT_ROW, m[EXPONENT])
+    store(at + stride * SHINE_ROW, m[SHINE])
+    store(at + stride * TRANSMISSION_ROW, m[TRANSMISSION])
+    store(at + stride * IOR_ROW, m[IOR])
+
+
+@inlined
+def _hit(wave, row, v):
+    return load_f32x16(row_of(wave.memory, row) + 64 * v)
 
 
 @subkernel
-def _place(points, rays, hits):
-    """Where the points are, how far off rays start there, and white where nothing else is known."""
-    white = f32x16(np.float32(1))
-    for v in range(len(points.offset) // 16):
-        ox, oy, oz = load_three(rays.origin, v)
-        dx, dy, dz = load_three(rays.direction, v)
-        t = load_f32x16(address_of(hits.t) + 64 * v)
-        x, y, z = ox + t * dx, oy + t * dy, oz + t * dz
-        _store_vector(points.position, v, x, y, z)
-        _store_vector(points.texture, v, white, white, white)
-        largest = maximum(t, maximum(maximum(x, -x), maximum(maximum(y, -y), maximum(z, -z))))
-        store(address_of(points.offset) + 64 * v, OFFSET * largest)
+def points_at(world, look, wave, memory, spread, verify):
+    """The surface points of a wave each of whose rays hits something, in this memory or, where they are many, in more.
 
-
-@subkernel
-def _face_viewer(points, rays):
-    """Make normals unit vectors on the side the ray came from, and note whether that was the outside."""
-    for v in range(len(points.offset) // 16):
-        gx, gy, gz = load_three(points.geometric, v)
-        nx, ny, nz = load_three(points.normal, v)
-        dx, dy, dz = load_three(rays.direction, v)
-        gx, gy, gz = _unit(gx, gy, gz)
-        nx, ny, nz = _unit(nx, ny, nz)
-        entering = gx * dx + gy * dy + gz * dz <= np.float32(0)
-        store_mask(address_of(points.entering) + 16 * v, entering)
-        gx, gy, gz = select(entering, gx, -gx), select(entering, gy, -gy), select(entering, gz, -gz)
-        behind = gx * nx + gy * ny + gz * nz < np.float32(0)
-        _store_vector(points.geometric, v, gx, gy, gz)
-        _store_vector(points.normal, v, select(behind, -nx, nx), select(behind, -ny, ny), select(behind, -nz, nz))
-
-
-@subkernel
-def _surfaces(points, look, n):
-    """The points' materials, row by row."""
-    columns = look.materials.shape[1]
-    materials, surface = pointer(look.materials), pointer(points.surface)
-    stride = points.surface.shape[1]
-    for i in range(n):
-        m = columns * points.material[i]
-        for row in range(SHINE):
-            surface[row * stride + i] = materials[m + row]
-        highlight = max(materials[m + SPECULAR], max(materials[m + SPECULAR + 1], materials[m + SPECULAR + 2]))
-        surface[SHINE * stride + i] = highlight
-
-
-@subkernel
-def points_at(world, look, n, rays, hits, reach, spread):
-    """The surface points of a batch of n rays each of which hits something.
-
-    reach (n,) float32 is how far each ray's ancestors came; spread is the width of a pixel at distance 1.
+    spread is the width of a pixel at distance 1; with `verify` there is a reference for the light.
     """
-    points = _empty_points(n)
-    _place(points, rays, hits)
-    source = _Source(
-        pointer(world.triangles), pointer(look.normals), pointer(look.uvs), pointer(look.texture),
-        pointer(world.to_object), pointer(world.object_of),
-    )  # fmt: skip
-    stride = 4 * points.position.shape[1]
-    raw = _Raw(address_of(points.geometric), address_of(points.normal), address_of(points.texture), stride)
-    hit_t, hit_primitive, hit_u, hit_v = pointer(hits.t), pointer(hits.primitive), pointer(hits.u), pointer(hits.v)
-    d, m, come, material = pointer(rays.direction), rays.direction.shape[1], pointer(reach), pointer(look.material)
-    for i in range(n):
-        primitive = hit_primitive[i]
-        points.unit[i], points.material[i] = primitive, material[primitive]
-        if primitive < len(world.triangles):
-            cone = spread * (come[i] + hit_t[i])
-            _triangle_point(source, look, raw, i, primitive, hit_u[i], hit_v[i], d[i], d[m + i], d[2 * m + i], cone)
-        else:
-            _quadric_point(world, points, i, primitive)
-    _face_viewer(points, rays)
-    _surfaces(points, look, n)
+    points = _points_in(room(memory, wave.size))
+    stride = 4 * points.memory.shape[1]
+    for k in range((wave.size + 15) // 16):
+        there = lanes_below(wave.size, k)
+        o, d = load_three(wave.rays.origin, k), load_three(wave.rays.direction, k)
+        t, u, v = _hit(wave, HIT_T, k), _hit(wave, HIT_U, k), _hit(wave, HIT_V, k)
+        numbers = row_of(wave.memory, HIT_PRIMITIVE) + 64 * k
+        primitive = load_i32x16(numbers)
+        x, y, z = o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]
+        at = address_of(points.memory) + 64 * k
+        store_three(at + stride * POSITION_ROW, stride, (x, y, z))
+        largest = maximum(t, maximum(maximum(x, -x), maximum(maximum(y, -y), maximum(z, -z))))
+        store(at + stride * OFFSET_ROW, OFFSET * largest)
+        store(at + stride * UNIT_ROW, primitive)
+
+        facet = load_columns(address_of(look.facets), numbers, FACET_COLUMNS)
+        w = ONE - u - v
+        across = facet[ACROSS], facet[ACROSS + 1], facet[ACROSS + 2]
+        geometric, normal = across, _mixed(facet, NORMALS, w, u, v)
+        objects = as_i32(facet[OBJECT])
+        moves = objects > np.int32(0)
+        if any_lane(moves):
+            geometric = _chosen(moves, _to_world(world.to_object, objects, geometric), geometric)
+            normal = _chosen(moves, _to_world(world.to_object, objects, normal), normal)
+        shrunk = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2] < np.float32(1e-24)
+        normal = _chosen(shrunk, geometric, normal)
+        geometric, normal = _quadrics(world, points, k, there, primitive, geometric, normal)
+
+        geometric, normal = _unit(geometric), _unit(normal)
+        against = geometric[0] * d[0] + geometric[1] * d[1] + geometric[2] * d[2]
+        entering = against <= ZERO
+        points.entering[k] = bits_of(entering)
+        geometric = _chosen(entering, geometric, _opposite(geometric))
+        behind = geometric[0] * normal[0] + geometric[1] * normal[1] + geometric[2] * normal[2] < ZERO
+        store_three(at + stride * GEOMETRIC_ROW, stride, geometric)
+        store_three(at + stride * NORMAL_ROW, stride, _chosen(behind, _opposite(normal), normal))
+
+        color = f32x16(ONE), f32x16(ONE), f32x16(ONE)
+        textured = (as_i32(facet[TEXTURE]) > np.int32(-1)) & mask16(there)
+        if any_lane(textured):
+            cone = spread * (_hit(wave, REACH, k) + t)
+            color = _texture(look, textured, primitive, w, u, v, across, maximum(against, -against), cone)
+        _put_surface(points, look, k, as_i32(facet[MATERIAL]), color, verify)
     return points

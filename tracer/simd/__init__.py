@@ -9,6 +9,7 @@ like a number; a comparison gives a mask.  What is written is what runs, and rea
 
 - `vectors`: the types, arithmetic, comparison, masks, selection, reduction;
 - `addresses`: memory as integers, loading and storing;
+- `rearranging`: packing lanes, gathering, rows of a table as columns;
 - `bits`: counting and finding bits, and numbers as their bits.
 
 Lanes never touch each other, but in reductions.  `fma` rounds once where the processor can, else
@@ -38,7 +39,8 @@ from tracer.simd.addresses import (
     u8_at,
 )
 from tracer.simd.bits import as_f32, as_i32, leading_zeros, lowest_bit, ones
-from tracer.simd.functions import load_three, power
+from tracer.simd.functions import binary_logarithm, floor, lanes_below, load_three, pack_three, power, store_three
+from tracer.simd.rearranging import gather_f32x16, gather_i32x16, load_columns, pack
 from tracer.simd.vectors import (
     F32x8,
     F32x16,
@@ -85,16 +87,22 @@ __all__ = [
     "i64_at",
     "as_f32",
     "as_i32",
+    "binary_logarithm",
     "bits_of",
     "f32x8",
     "f32x16",
+    "floor",
     "fma",
+    "gather_f32x16",
+    "gather_i32x16",
     "i32x8",
     "i32x16",
     "lane_numbers_x16",
     "lane_of",
+    "lanes_below",
     "largest",
     "leading_zeros",
+    "load_columns",
     "load_f32",
     "load_f32x8",
     "load_f32x16",
@@ -111,6 +119,8 @@ __all__ = [
     "maximum",
     "minimum",
     "ones",
+    "pack",
+    "pack_three",
     "power",
     "select",
     "smallest",
@@ -118,6 +128,7 @@ __all__ = [
     "prefetch",
     "store",
     "store_mask",
+    "store_three",
     "store_where",
     "to_f32",
     "to_i32",

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.kernels import inlined
-from tracer.simd.addresses import address_of, load_f32x16
+from tracer.simd.addresses import address_of, load_f32x16, store
 from tracer.simd.bits import as_f32, as_i32
+from tracer.simd.rearranging import pack
 from tracer.simd.vectors import fma, maximum, minimum, select, to_f32, to_i32
 
 ONE, HALF = np.float32(1), np.float32(0.5)
@@ -14,7 +15,7 @@ ROOT_HALF = np.float32(0.70710678)
 
 
 @inlined
-def _log2(x):
+def binary_logarithm(x):
     """Logarithm to base 2 of sixteen normal, positive float32; to some 2e-7 of max(1, itself)."""
     bits = as_i32(x)
     exponent = to_f32((bits >> np.int32(23)) - np.int32(127))
@@ -47,9 +48,16 @@ def _exp2(x):
 def power(x, y):
     """x to the power of y, sixteen float32 each, x >= 0 and y >= 0; 0 for what is below 2^-126, 1 where y is 0."""
     tiny = np.float32(1.1754944e-38)
-    result = _exp2(maximum(y * _log2(maximum(x, tiny)), np.float32(-127)))
+    result = _exp2(maximum(y * binary_logarithm(maximum(x, tiny)), np.float32(-127)))
     result = select(x < tiny, np.float32(0), result)
     return select(y == np.float32(0), ONE, result)
+
+
+@inlined
+def floor(x):
+    """The largest whole number that is no more, of sixteen float32 between -2^31 and 2^31."""
+    towards_zero = to_f32(to_i32(x))
+    return select(towards_zero > x, towards_zero - ONE, towards_zero)
 
 
 @inlined
@@ -57,3 +65,24 @@ def load_three(rows, v):
     """The v-th vector of sixteen of each of three rows, (3, n) float32."""
     a, stride = address_of(rows) + 64 * v, 4 * rows.shape[1]
     return load_f32x16(a), load_f32x16(a + stride), load_f32x16(a + 2 * stride)
+
+
+@inlined
+def store_three(address, stride, a):
+    """Write three vectors to an address and to those one and two strides (bytes) further on."""
+    store(address, a[0])
+    store(address + stride, a[1])
+    store(address + 2 * stride, a[2])
+
+
+@inlined
+def pack_three(a, mask):
+    """`pack` of three vectors."""
+    return pack(a[0], mask), pack(a[1], mask), pack(a[2], mask)
+
+
+@inlined
+def lanes_below(count, v):
+    """Bits of those lanes of the v-th vector of sixteen that a row of `count` has."""
+    rest = count - 16 * v
+    return np.int64(0xFFFF) if rest >= 16 else (np.int64(1) << rest) - 1

@@ -1,0 +1,92 @@
+"""Primary rays of a tile, in an order that keeps neighbours together.
+
+A vector of sixteen is a block of 4 x 4 pixels, and blocks follow each other in Morton's order, which
+makes 128 rays a block of 16 x 8.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracer.geometry.camera import primary_direction
+from tracer.geometry.memory import pointer
+from tracer.kernels import inlined, subkernel
+from tracer.shading.wave import DIRECTION, ORIGIN, PIXEL, REACH, WEIGHT, row_of, wave_in
+from tracer.simd import (
+    address_of,
+    any_lane,
+    bits_of,
+    f32x16,
+    lane_numbers_x16,
+    ones,
+    pack,
+    pack_three,
+    store,
+    store_three,
+    to_f32,
+)
+
+BLOCK = 4  # pixels
+
+
+@inlined
+def _block(number):
+    """Column and row of a block in Morton's order: the even bits of its number and the odd ones."""
+    column = row = 0
+    for bit in range(8):
+        column |= ((number >> (2 * bit)) & 1) << bit
+        row |= ((number >> (2 * bit + 1)) & 1) << bit
+    return column, row
+
+
+@inlined
+def _blocks_of(tile):
+    """How many blocks make the square, of a power of two, that a tile (left, top, right, bottom) fits in."""
+    side = BLOCK
+    while side < max(tile[2] - tile[0], tile[3] - tile[1]):
+        side *= 2
+    return (side // BLOCK) ** 2
+
+
+@subkernel
+def primary_wave(camera, tile, width, memory, place):
+    """A tile's primary rays in a wave's memory, and in place (n,) int32 where each one's pixel is in the picture."""
+    n, stride = 0, 4 * memory.shape[1]
+    across, down = lane_numbers_x16() & np.int32(BLOCK - 1), lane_numbers_x16() >> np.int32(2)
+    for number in range(_blocks_of(tile)):
+        column, row = _block(number)
+        x, y = across + np.int32(tile[0] + BLOCK * column), down + np.int32(tile[1] + BLOCK * row)
+        inside = (x < np.int32(tile[2])) & (y < np.int32(tile[3]))
+        if not any_lane(inside):
+            continue
+        direction = primary_direction(camera, to_f32(x), to_f32(y))
+        at = row_of(memory, 0) + 4 * n
+        for axis in range(3):
+            store(at + stride * (ORIGIN + axis), f32x16(camera.origin[axis]))
+            store(at + stride * (WEIGHT + axis), f32x16(np.float32(1)))
+        store_three(at + stride * DIRECTION, stride, pack_three(direction, inside))
+        store(at + stride * REACH, f32x16(np.float32(0)))
+        store(at + stride * PIXEL, lane_numbers_x16() + np.int32(n))
+        store(address_of(place) + 4 * n, pack(y * np.int32(width) + x, inside))
+        n += ones(bits_of(inside))
+    return wave_in(memory, n)
+
+
+@inlined
+def keep_hits(wave, place, buffers):
+    """Write what primary rays hit into the picture."""
+    depth, primitive = pointer(buffers.depth), pointer(buffers.primitive)
+    u, v = pointer(buffers.u), pointer(buffers.v)
+    for i in range(wave.size):
+        depth[place[i]], primitive[place[i]] = wave.hits.t[i], wave.hits.primitive[i]
+        u[place[i]], v[place[i]] = wave.hits.u[i], wave.hits.v[i]
+
+
+@inlined
+def recall_hits(wave, place, buffers):
+    """Read what primary rays hit from the picture."""
+    depth, primitive = pointer(buffers.depth), pointer(buffers.primitive)
+    u, v = pointer(buffers.u), pointer(buffers.v)
+    for i in range(wave.size):
+        wave.hits.t[i], wave.hits.primitive[i] = depth[place[i]], primitive[place[i]]
+        wave.hits.u[i], wave.hits.v[i] = u[place[i]], v[place[i]]
