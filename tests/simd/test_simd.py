@@ -35,12 +35,12 @@ from tracer.simd import (
     lanes_below,
     largest,
     leading_zeros,
+    load_bytes16,
     load_columns,
     load_f32,
     load_f32x16,
     load_i32,
     load_i64,
-    load_mask16,
     load_three,
     local_memory,
     lowest_bit,
@@ -56,6 +56,7 @@ from tracer.simd import (
     smallest,
     square_root,
     store,
+    store_bytes,
     store_mask,
     store_three,
     store_where,
@@ -317,20 +318,23 @@ def test_masks(lanes: int, mask: Any):
     assert np.array_equal(any_all, [a != 0, a == full])
 
 
-def test_masks_in_memory_are_bools():
+def test_masks_and_bytes_in_memory():
     @compiled
-    def run(source, target, out):
+    def run(source, bytes_, bools, out):
         for i in range(0, len(source), 16):
-            m = load_mask16(address_of(source) + i)
-            out[i // 16] = bits_of(m)
-            store_mask(address_of(target) + i + 3, m)
+            x = load_bytes16(address_of(source) + i)
+            store(address_of(out) + 4 * i, x)
+            store_bytes(address_of(bytes_) + i + 3, x + 0x7F00)
+            store_mask(address_of(bools) + i + 3, x < 100)
 
-    truths = np.random.default_rng(15).random(N) < 0.5
-    target, out = np.full(N + 8, 9, np.uint8), np.zeros(N // 16, np.int64)
-    run(truths, target, out)
-    assert out.tolist() == [int(row @ (1 << np.arange(16))) for row in truths.reshape(-1, 16)]
-    assert np.array_equal(target[3 : N + 3], truths)
-    assert (target[:3] == 9).all() and (target[N + 3 :] == 9).all()
+    source = np.random.default_rng(15).integers(0, 256, N).astype(np.uint8)
+    bytes_, bools = (np.full(N + 8, 9, np.uint8) for _ in range(2))
+    out = np.zeros(N, np.int32)
+    run(source, bytes_, bools, out)
+    assert np.array_equal(out, source)
+    for written, right in ((bytes_, source), (bools, source < 100)):
+        assert np.array_equal(written[3:-5], right)
+        assert (written[:3] == 9).all() and (written[-5:] == 9).all()
 
 
 @of_each_kind

@@ -5,8 +5,8 @@ is known to be, as the last frame left it, decides the ray's fate:
 
 - FULLY_RENDERED and FULL_SHADOW: culled, the point is in shadow;
 - FULLY_RENDERED and NON_SHADOW: dynamic objects alone are asked;
-- anything else: static geometry is asked, and the answer is OR-ed into the shadow mode; where
-  nothing static blocks the light, dynamic objects are asked.
+- anything else: static geometry is asked and, where nothing static blocks the light, dynamic objects
+  are; what static geometry answers is OR-ed into the shadow mode.
 
 Shadow rays start at the light.  They end a little above the surface (`lifted`), so that it does not
 shadow itself.
@@ -23,9 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.modes import DYNAMIC, FULL_SHADOW, FULLY_RENDERED, MAX_CULLED_LIGHTS, NON_SHADOW, add_shadow
-from tracer.geometry.queries import DYNAMIC as ANY_DYNAMIC
-from tracer.geometry.queries import STATIC as ANY_STATIC
-from tracer.geometry.queries import any_hits
+from tracer.geometry.queries import DYNAMIC as MOVING
+from tracer.geometry.queries import STATIC, any_hits
 from tracer.geometry.rays import Rays
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
@@ -35,9 +34,9 @@ from tracer.simd import (
     gather_i32x16,
     lane_of,
     lanes_below,
+    load_bytes16,
     load_f32x16,
     load_i32x16,
-    load_mask16,
     load_three,
     lowest_bit,
     mask16,
@@ -174,8 +173,8 @@ def _choose_fates(points, light, number, knowledge, count, answers, counts):
 
 
 @subkernel
-def _rays_from_light(points, light, vectors, answers):
-    """Shadow rays, from the light to the points that answers.live names; how many vectors of them there are.
+def _rays_from_light(points, light, vectors, bits, answers):
+    """Shadow rays, from the light to the points that `bits` names, 16 a row; how many vectors of them there are.
 
     At t = 1 is the point; lanes that are not to be traced go the way of one that is, and end before they begin."""
     rays = answers.rays
@@ -183,7 +182,7 @@ def _rays_from_light(points, light, vectors, answers):
     origin, direction = address_of(rays.origin), address_of(rays.direction)
     packed = 0
     for v in range(vectors):
-        live = answers.live[v]
+        live = bits[v]
         if live == 0:
             continue
         answers.source[packed] = v
@@ -203,12 +202,6 @@ def _rays_from_light(points, light, vectors, answers):
     return packed
 
 
-@inlined
-def _blocked(answers, k):
-    """Bits of the rays of the k-th vector that something blocks."""
-    return bits_of(load_mask16(address_of(answers.blocked) + 16 * k))
-
-
 @subkernel
 def _learn(points, v, number, knowledge, answers, asked, blocked):
     """OR what rays have met into the shadow modes of their primitives, where it is news."""
@@ -224,34 +217,43 @@ def _learn(points, v, number, knowledge, answers, asked, blocked):
         add_shadow(knowledge.gained, points.unit[16 * v + lane], number, mode)
 
 
+@inlined
+def _ask(world, points, light, vectors, bits, which, answers, counts):
+    """Ask `which` geometry is between the light and the points that `bits` names; how many vectors answer.
+
+    The k-th is that of points answers.source[k]; `_blocked` reads it."""
+    packed = _rays_from_light(points, light, vectors, bits, answers)
+    if packed > 0:
+        any_hits(world, answers.rays, which, answers.blocked, 0, 16 * packed, counts)
+    return packed
+
+
+@inlined
+def _blocked(answers, k):
+    """Bits of the rays of the k-th vector that anything blocks, and of those that something static does."""
+    found = load_bytes16(address_of(answers.blocked) + 16 * k)
+    return bits_of(found > 0), bits_of(found == STATIC)
+
+
 @subkernel
-def _ask_static(world, points, light, number, knowledge, vectors, answers, counts):
-    """Ask static geometry and set shadow modes; answers.lit grows by the points where nothing blocks."""
-    packed = _rays_from_light(points, light, vectors, answers)
-    if packed == 0:
-        return
-    any_hits(world, answers.rays, ANY_STATIC, answers.blocked, 0, 16 * packed, counts)
-    for k in range(packed):
+def _ask_about_known(world, points, light, vectors, answers, counts):
+    """Ask dynamic objects alone about the points that are known to be lit by all that is static."""
+    for k in range(_ask(world, points, light, vectors, answers.lit, MOVING, answers, counts)):
+        blocked, _ = _blocked(answers, k)
+        answers.lit[answers.source[k]] &= ~blocked
+
+
+@subkernel
+def _ask_about_others(world, points, light, number, knowledge, vectors, answers, counts):
+    """Ask everything about the points of which nothing is known, and set shadow modes by what is static."""
+    for k in range(_ask(world, points, light, vectors, answers.live, STATIC | MOVING, answers, counts)):
         v = np.int64(answers.source[k])
-        asked, blocked = np.int64(answers.live[v]), _blocked(answers, k)
+        asked = np.int64(answers.live[v])
+        blocked, for_good = _blocked(answers, k)
         counts[RAYS] += ones(asked)
         if knowledge.cull and number < MAX_CULLED_LIGHTS:
-            _learn(points, v, number, knowledge, answers, asked, blocked)
+            _learn(points, v, number, knowledge, answers, asked, for_good)
         answers.lit[v] |= asked & ~blocked
-
-
-@subkernel
-def _ask_dynamic(world, points, light, vectors, answers, counts):
-    """Ask dynamic objects where nothing static blocks."""
-    for v in range(vectors):
-        answers.live[v] = answers.lit[v]
-    packed = _rays_from_light(points, light, vectors, answers)
-    if packed == 0:
-        return
-    any_hits(world, answers.rays, ANY_DYNAMIC, answers.blocked, 0, 16 * packed, counts)
-    for k in range(packed):
-        v = answers.source[k]
-        answers.lit[v] &= ~_blocked(answers, k)
 
 
 @subkernel
@@ -259,11 +261,10 @@ def _verify(world, points, light, vectors, answers, counts):
     """Trace every due ray, its steps uncounted, and count the answers that differ."""
     scratch = np.zeros(SHADOW_COUNTERS, np.int64)
     for v in range(vectors):
-        answers.live[v], answers.truth[v] = answers.due[v], answers.due[v]
-    packed = _rays_from_light(points, light, vectors, answers)
-    any_hits(world, answers.rays, ANY_STATIC | ANY_DYNAMIC, answers.blocked, 0, 16 * packed, scratch)
-    for k in range(packed):
-        answers.truth[answers.source[k]] &= ~_blocked(answers, k)
+        answers.truth[v] = answers.due[v]
+    for k in range(_ask(world, points, light, vectors, answers.due, STATIC | MOVING, answers, scratch)):
+        blocked, _ = _blocked(answers, k)
+        answers.truth[answers.source[k]] &= ~blocked
     for v in range(vectors):
         counts[WRONG] += ones(np.int64(answers.truth[v] ^ answers.lit[v]))
 
@@ -275,9 +276,9 @@ def shadow_testing(world, points, count, light, number, knowledge, answers, coun
     before = counts[DYNAMIC_ONLY]
     _choose_fates(points, light, number, knowledge, count, answers, counts)
     known_lit = counts[DYNAMIC_ONLY] - before
-    _ask_static(world, points, light, number, knowledge, vectors, answers, counts)
-    if world.has_dynamic:  # those known to be lit were not counted yet
+    if world.has_dynamic and known_lit > 0:
         counts[RAYS] += known_lit
-        _ask_dynamic(world, points, light, vectors, answers, counts)
+        _ask_about_known(world, points, light, vectors, answers, counts)
+    _ask_about_others(world, points, light, number, knowledge, vectors, answers, counts)
     if knowledge.verify:
         _verify(world, points, light, vectors, answers, counts)

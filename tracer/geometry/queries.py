@@ -25,8 +25,8 @@ from tracer.kernels import inlined, subkernel
 from tracer.simd import address_of, call_entry, f32_at, load_i64, local_memory, store
 
 # A batch as entries get it: addresses of origins and directions, (3, stride) float32, of t_min and t_max, of
-# what is asked for (t, primitive, u and v of the nearest hits, or whether there is any), and the stride; and
-# whether static geometry, dynamic objects or both are asked for any hit.
+# what is asked for (t, primitive, u and v of the nearest hits, or what kind of thing there is any hit with), and the
+# stride; and whether static geometry, dynamic objects or both are asked for any hit.
 ORIGIN, DIRECTION, T_MIN, T_MAX, STRIDE, HIT_T, HIT_PRIMITIVE, HIT_U, HIT_V, BLOCKED, WHICH = range(0, 88, 8)
 BATCH = 88  # bytes
 STATIC, DYNAMIC = 1, 2
@@ -75,8 +75,8 @@ def closest_hits(world, rays, hits, first, last, counts):
 
 @inlined
 def any_hits(world, rays, which, blocked, first, last, counts):
-    """blocked[i] for rays first to last - 1: whether anything lies in their interval, of STATIC geometry, of
-    DYNAMIC objects or, for the sum, of either."""
+    """blocked[i] (uint8) for rays first to last - 1: what lies in their interval, STATIC geometry or DYNAMIC objects,
+    or 0 where nothing does.  Only `which` of these is asked for; for the sum of both, static geometry first."""
     batch = local_memory(BATCH)
     _describe(batch, rays)
     store(batch + BLOCKED, address_of(blocked))
@@ -97,7 +97,7 @@ def rays_of(batch):
 
 
 def batch_of(
-    rays: Rays, hits: Hits | None = None, blocked: NDArray[np.bool_] | None = None, which: int = STATIC | DYNAMIC
+    rays: Rays, hits: Hits | None = None, blocked: NDArray[np.uint8] | None = None, which: int = STATIC | DYNAMIC
 ) -> NDArray[np.int64]:
     """The description of a batch for an entry that is called from Python; its arrays must live as long."""
     arrays = [rays.origin, rays.direction, rays.t_min, rays.t_max]

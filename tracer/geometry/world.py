@@ -76,9 +76,9 @@ class World:
     def any_hits(self, rays: Rays, threads: int = 0) -> NDArray[np.bool_]:
         """(n,) whether anything, static or dynamic, lies in each ray's interval."""
         n = len(rays.t_min)
-        blocked = np.zeros(n, np.bool_)
+        blocked = np.zeros(n, np.uint8)
         self._ask(self.structure.any_hit, batch_of(rays, blocked=blocked), n, threads)
-        return blocked
+        return blocked != 0
 
     def _ask(self, query: Entry, batch: NDArray[np.int64], n: int, threads: int) -> None:
         counts = np.zeros((thread_count(threads), 2), np.int64)

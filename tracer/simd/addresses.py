@@ -116,23 +116,32 @@ def store_where(typingctx, address, value, mask):
     return types.void(types.int64, value, mask), codegen
 
 
-def _truths(lanes: int) -> Any:
-    @operation
-    def load(typingctx, address):
-        """A mask from as many bools in memory."""
+@operation
+def load_bytes16(typingctx, address):
+    """Sixteen bytes, each 0 to 255, as int32."""
 
-        def codegen(context, builder, sig, args):
-            kind = ir.VectorType(ir.IntType(8), lanes)
-            value = builder.load(builder.inttoptr(args[0], kind.as_pointer()))
-            value.align = 1
-            return builder.trunc(value, ir.VectorType(ir.IntType(1), lanes))
+    def codegen(context, builder, sig, args):
+        kind = ir.VectorType(ir.IntType(8), 16)
+        value = builder.load(builder.inttoptr(args[0], kind.as_pointer()))
+        value.align = 1  # type: ignore[attr-defined]
+        return builder.zext(value, context.get_data_type(I32x16))
 
-        return Mask(lanes)(types.int64), codegen
-
-    return load
+    return I32x16(types.int64), codegen
 
 
-load_mask16 = _truths(16)
+@operation
+def store_bytes(typingctx, address, value):
+    """Write the lowest eight bits of every int32 of a vector as bytes."""
+    if not isinstance(value, Vector) or value.floating:
+        return None
+
+    def codegen(context, builder, sig, args):
+        kind = ir.VectorType(ir.IntType(8), value.lanes)
+        written = builder.store(builder.trunc(args[1], kind), builder.inttoptr(args[0], kind.as_pointer()))
+        written.align = 1
+        return context.get_dummy_value()
+
+    return types.void(types.int64, value), codegen
 
 
 @operation

@@ -17,11 +17,13 @@ from tracer.geometry.bvh8.intersect import ZERO
 from tracer.geometry.queries import (
     BLOCKED,
     DIRECTION,
+    DYNAMIC,
     HIT_PRIMITIVE,
     HIT_T,
     HIT_U,
     HIT_V,
     ORIGIN,
+    STATIC,
     STRIDE,
     T_MAX,
 )
@@ -51,7 +53,7 @@ from tracer.simd import (
     select,
     smallest,
     store,
-    store_mask,
+    store_bytes,
     u8_at,
 )
 
@@ -62,6 +64,7 @@ FAR = np.float32(1e30)  # no hit is farther, and every empty child is
 LARGEST = np.float32(1e29)  # of t_max, short of what stands for a blocked ray
 TINY = np.float32(1e-20)
 BLOCKED_T = -FAR  # t of a ray that is known to be blocked, and of none
+STATIC_T = np.float32(2) * BLOCKED_T  # of one that something static blocks, once the static tree is done
 WIDE = np.float32(4)  # slopes of sixteen rays that differ by more are not worth a frustum
 NARROW = np.float32(0.02)  # by less, and the frustum alone will do
 HUGE = np.float32(1e18)
@@ -374,14 +377,26 @@ def keep_hits(memory, batch, first, count):
 
 
 @subkernel
+def mark_static(memory, vectors):
+    """Note of the rays of these vectors, given as bits, that are blocked that it was by something static."""
+    while vectors != 0:
+        a = memory + T * ROW + 64 * lowest_bit(vectors)
+        vectors &= vectors - 1
+        t = load_f32x16(a)
+        store(a, select(t == BLOCKED_T, STATIC_T, t))
+
+
+@subkernel
 def keep_blocked(memory, batch, first, count):
-    """Write which rays of a packet are blocked to where the batch wants it."""
-    blocked = load_i64(batch + BLOCKED) + first
+    """Write what blocks the rays of a packet to where the batch wants it."""
+    blocked, a = load_i64(batch + BLOCKED) + first, memory + T * ROW
     i = 0
     while i + LANES <= count:
-        store_mask(blocked + i, load_f32x16(memory + T * ROW + 4 * i) == BLOCKED_T)
+        t = load_f32x16(a + 4 * i)
+        store_bytes(blocked + i, select(t == STATIC_T, STATIC, select(t == BLOCKED_T, DYNAMIC, 0)))
         i += LANES
     answers = u8_at(blocked)
     while i < count:
-        answers[i] = np.uint8(load_f32(memory + T * ROW + 4 * i) == BLOCKED_T)
+        t = load_f32(a + 4 * i)
+        answers[i] = np.uint8(STATIC if t == STATIC_T else (DYNAMIC if t == BLOCKED_T else 0))
         i += 1

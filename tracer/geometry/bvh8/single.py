@@ -24,6 +24,7 @@ from tracer.geometry.bvh8.packet import (
     OY,
     OZ,
     ROW,
+    STATIC_T,
     T_MIN,
     T,
     U,
@@ -335,7 +336,7 @@ def closest_one_by_one(memory, v, count, data, stack, counts):
 
 @subkernel
 def any_one_by_one(memory, v, count, data, which, stack, counts):
-    """Which of the first `count` rays of a packet's v-th vector meet what is asked for: their t becomes BLOCKED_T."""
+    """Which of the first `count` rays of a packet's v-th vector meet what is asked for; t tells it."""
     room = stack - 64 - ROOM
     for dynamic in range(2):
         if (which >> dynamic) & 1 == 0:
@@ -347,4 +348,4 @@ def any_one_by_one(memory, v, count, data, which, stack, counts):
             a = memory + 64 * v + 4 * lane
             if load_f32(a + T * ROW) > load_f32(a + T_MIN * ROW):
                 if _any_of_one(a, room + 4 * lane, trees, stack, counts):
-                    store(a + T * ROW, BLOCKED_T)
+                    store(a + T * ROW, BLOCKED_T if dynamic else STATIC_T)

@@ -18,6 +18,7 @@ from tracer.geometry.bvh8.packet import (
     keep_blocked,
     keep_hits,
     lead_of,
+    mark_static,
     open_vectors,
 )
 from tracer.geometry.bvh8.packet_tree import STACK, any_in_tree, closest_in_tree
@@ -63,7 +64,7 @@ def closest(data, batch, first, last, counts):
 
 @entry
 def any_hit(data, batch, first, last, counts):
-    """Whether anything that is asked for lies in the interval of rays first to last - 1."""
+    """What of that which is asked for lies in the interval of rays first to last - 1."""
     memory, stack, count = local_memory(MEMORY), local_memory(STACK), i64_at(counts)
     single_stack = local_memory(SINGLE_MEMORY) + SINGLE_MEMORY - STACK
     which = load_i64(batch + WHICH) & (STATIC | DYNAMIC * load_i64(data + HAS_DYNAMIC))
@@ -92,5 +93,7 @@ def any_hit(data, batch, first, last, counts):
                 else:
                     occluder = any_in_tree(None, memory, group, tree, stack, occluder, count)
                 store(occluders + 8 * dynamic, occluder)
+                if dynamic == 0:
+                    mark_static(memory, group.vectors)
             todo &= ~group.vectors
         keep_blocked(memory, batch, start, n)

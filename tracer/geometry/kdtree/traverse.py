@@ -206,15 +206,17 @@ def closest(data, batch, first, last, counts):
 
 @entry
 def any_hit(data, batch, first, last, counts):
-    """Whether anything that is asked for lies in the interval of rays first to last - 1."""
+    """What of that which is asked for lies in the interval of rays first to last - 1."""
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
     top_stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
     s = _search(data, stack, top_stack, counts)
     rays, blocked, which = rays_of(batch), u8_at(load_i64(batch + BLOCKED)), load_i64(batch + WHICH)
     for i in range(first, last):
         ray = ray_at(rays, i)
-        found = False
+        found = 0
         if ray.t_min < ray.t_max:
-            found = which & STATIC != 0 and _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max)
-            found = found or (which & DYNAMIC != 0 and _any_dynamic(s, ray))
+            if which & STATIC and _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max):
+                found = STATIC
+            elif which & DYNAMIC and _any_dynamic(s, ray):
+                found = DYNAMIC
         blocked[i] = np.uint8(found)
