@@ -41,6 +41,7 @@ from tracer.simd import (
     load_i32,
     load_i64,
     load_mask16,
+    load_spread_mask16,
     load_three,
     local_memory,
     lowest_bit,
@@ -482,6 +483,24 @@ def test_packed_lanes_keep_their_order(kind: Kind):
     out = np.zeros(len(a) + lanes, kind.dtype)
     assert run(a, bits, out) == kept.sum()
     assert same(out[: kept.sum()], a[kept])
+
+
+def test_bools_are_spread_over_the_lanes_of_a_mask():
+    @compiled
+    def run(bools, bits, out):
+        n = 0
+        for v in range(len(bits)):
+            out[v] = bits_of(load_spread_mask16(address_of(bools) + n, mask16(bits[v])))
+            n += ones(bits[v])
+
+    rng = np.random.default_rng(33)
+    bits = rng.integers(0, 1 << 16, 50)
+    bits[:3] = 0, 0xFFFF, 0x8000
+    where = (bits[:, None] >> np.arange(16) & 1).astype(np.bool_)
+    bools, right, out = rng.random(where.sum()) < 0.5, np.zeros(where.shape, np.bool_), np.zeros(50, np.int64)
+    right[where] = bools
+    run(bools, bits, out)
+    assert np.array_equal(out, right @ (1 << np.arange(16)))
 
 
 @pytest.mark.parametrize("gather, dtype", [(gather_f32x16, F32), (gather_i32x16, I32)])

@@ -11,8 +11,8 @@ is known to be, as the last frame left it, decides the ray's fate:
 Shadow rays start at the light.  They end a little above the surface (`lifted`), so that it does not
 shadow itself.
 
-Points come in vectors of sixteen.  Vectors without a ray to trace are left out, so that batches
-shrink with what is culled; what is found is kept as bits, one for each point.
+Points come in vectors of sixteen.  Rays are packed, so that batches shrink with what is not due and
+what is culled; what is found is kept as bits, one for each point.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ from tracer.simd import (
     bits_of,
     f32x16,
     gather_i32x16,
-    lane_of,
     lanes_below,
     load_f32x16,
     load_i32x16,
-    load_mask16,
+    load_spread_mask16,
     load_three,
     lowest_bit,
     mask16,
     ones,
-    select,
+    pack_three,
     store,
+    store_three,
 )
 
 # Shadow counters; the first two are those that queries add to.
@@ -66,9 +66,8 @@ class Answers(NamedTuple):
     """What is known of the shadow rays of n points to one light, 16 points a row, as bits of int32:
     which are due, which of those reach the light and, where knowledge asks to verify, which truly do.
 
-    For asking: low and high (n,) int32, halves of the points' words where anything is culled; rays, source
-    (n / 16,) int32, the vectors that its own come from, live, the bits of those to be traced, and blocked,
-    a byte for each ray."""
+    For asking: low and high (n,) int32, halves of the points' words where anything is culled; live, the bits
+    of those to be traced, their rays, one after the other, and blocked, a byte for each ray."""
 
     due: NDArray[np.int32]
     lit: NDArray[np.int32]
@@ -76,14 +75,13 @@ class Answers(NamedTuple):
     low: NDArray[np.int32]
     high: NDArray[np.int32]
     rays: Rays
-    source: NDArray[np.int32]
     live: NDArray[np.int32]
     blocked: NDArray[np.float32]
 
 
 # Rows of the memory that answers lie in, the first eight of which are the rays.
-DUE_ROW, LIT_ROW, TRUTH_ROW, LOW_ROW, HIGH_ROW, SOURCE_ROW, LIVE_ROW, BLOCKED_ROW = range(8, 16)
-ANSWER_ROWS = 16
+DUE_ROW, LIT_ROW, TRUTH_ROW, LOW_ROW, HIGH_ROW, LIVE_ROW, BLOCKED_ROW = range(8, 15)
+ANSWER_ROWS = 15
 
 
 @inlined
@@ -96,7 +94,6 @@ def answers_in(memory):
         memory[LOW_ROW].view(np.int32),
         memory[HIGH_ROW].view(np.int32),
         Rays(memory[0:3], memory[3:6], memory[6], memory[7]),
-        memory[SOURCE_ROW].view(np.int32),
         memory[LIVE_ROW].view(np.int32),
         memory[BLOCKED_ROW],
     )
@@ -173,38 +170,30 @@ def _choose_fates(points, light, number, knowledge, count, answers, counts):
 
 @subkernel
 def _rays_from_light(points, light, vectors, answers):
-    """Shadow rays, from the light to the points that answers.live names; how many vectors of them there are.
+    """Shadow rays, from the light to the points that answers.live names, one after the other; how many there are.
 
-    At t = 1 is the point; lanes that are not to be traced go the way of one that is, and end before they begin."""
+    At t = 1 is the point."""
     rays = answers.rays
-    stride = 4 * rays.origin.shape[1]
-    origin, direction = address_of(rays.origin), address_of(rays.direction)
-    packed = 0
+    stride, n = 4 * rays.origin.shape[1], 0
     for v in range(vectors):
-        live = answers.live[v]
+        live = np.int64(answers.live[v])
         if live == 0:
             continue
-        answers.source[packed] = v
         x, y, z = lifted(points, v, ONE)
-        at = 64 * packed
-        store(origin + at, f32x16(light[0]))
-        store(origin + at + stride, f32x16(light[1]))
-        store(origin + at + 2 * stride, f32x16(light[2]))
-        dx, dy, dz = x - light[0], y - light[1], z - light[2]
-        on, one = mask16(np.int64(live)), lowest_bit(np.int64(live))
-        store(direction + at, select(on, dx, lane_of(dx, one)))
-        store(direction + at + stride, select(on, dy, lane_of(dy, one)))
-        store(direction + at + 2 * stride, select(on, dz, lane_of(dz, one)))
+        direction = pack_three((x - light[0], y - light[1], z - light[2]), mask16(live))
+        store_three(address_of(rays.direction) + 4 * n, stride, direction)
+        n += ones(live)
+    for at in range(0, 4 * n, 64):
+        store_three(address_of(rays.origin) + at, stride, (f32x16(light[0]), f32x16(light[1]), f32x16(light[2])))
         store(address_of(rays.t_min) + at, f32x16(LIGHT_MARGIN))
-        store(address_of(rays.t_max) + at, select(on, ONE, ZERO))
-        packed += 1
-    return packed
+        store(address_of(rays.t_max) + at, f32x16(ONE))
+    return n
 
 
 @inlined
-def _blocked(answers, k):
-    """Bits of the rays of the k-th vector that something blocks."""
-    return bits_of(load_mask16(address_of(answers.blocked) + 16 * k))
+def _blocked(answers, live, n):
+    """Bits of the lanes of `live` whose rays, from the n-th on, something blocks."""
+    return bits_of(load_spread_mask16(address_of(answers.blocked) + n, mask16(live)))
 
 
 @subkernel
@@ -225,17 +214,31 @@ def _learn(points, v, number, knowledge, answers, asked, blocked):
 @subkernel
 def _ask_static(world, points, light, number, knowledge, vectors, answers, counts):
     """Ask static geometry and set shadow modes; answers.lit grows by the points where nothing blocks."""
-    packed = _rays_from_light(points, light, vectors, answers)
-    if packed == 0:
+    count = _rays_from_light(points, light, vectors, answers)
+    if count == 0:
         return
-    any_static_hits(world, answers.rays, answers.blocked, 0, 16 * packed, counts)
-    for k in range(packed):
-        v = np.int64(answers.source[k])
-        asked, blocked = np.int64(answers.live[v]), _blocked(answers, k)
-        counts[RAYS] += ones(asked)
+    any_static_hits(world, answers.rays, answers.blocked, 0, count, counts)
+    counts[RAYS] += count
+    n = 0
+    for v in range(vectors):
+        asked = np.int64(answers.live[v])
+        if asked == 0:
+            continue
+        blocked = _blocked(answers, asked, n)
+        n += ones(asked)
         if knowledge.cull and number < MAX_CULLED_LIGHTS:
             _learn(points, v, number, knowledge, answers, asked, blocked)
         answers.lit[v] |= asked & ~blocked
+
+
+@inlined
+def _take_blocked(bits, vectors, answers):
+    """Clear the bits (vectors,) of points whose rays were blocked."""
+    n = 0
+    for v in range(vectors):
+        asked = np.int64(answers.live[v])
+        bits[v] &= ~_blocked(answers, asked, n)
+        n += ones(asked)
 
 
 @subkernel
@@ -243,13 +246,10 @@ def _ask_dynamic(world, points, light, vectors, answers, counts):
     """Ask dynamic objects where nothing static blocks."""
     for v in range(vectors):
         answers.live[v] = answers.lit[v]
-    packed = _rays_from_light(points, light, vectors, answers)
-    if packed == 0:
-        return
-    any_dynamic_hits(world, answers.rays, answers.blocked, 0, 16 * packed, counts)
-    for k in range(packed):
-        v = answers.source[k]
-        answers.lit[v] &= ~_blocked(answers, k)
+    count = _rays_from_light(points, light, vectors, answers)
+    if count > 0:
+        any_dynamic_hits(world, answers.rays, answers.blocked, 0, count, counts)
+        _take_blocked(answers.lit, vectors, answers)
 
 
 @subkernel
@@ -258,14 +258,11 @@ def _verify(world, points, light, vectors, answers, counts):
     scratch = np.zeros(SHADOW_COUNTERS, np.int64)
     for v in range(vectors):
         answers.live[v], answers.truth[v] = answers.due[v], answers.due[v]
-    packed = _rays_from_light(points, light, vectors, answers)
-    for moving in range(2):
-        if moving == 0:
-            any_static_hits(world, answers.rays, answers.blocked, 0, 16 * packed, scratch)
-        else:
-            any_dynamic_hits(world, answers.rays, answers.blocked, 0, 16 * packed, scratch)
-        for k in range(packed):
-            answers.truth[answers.source[k]] &= ~_blocked(answers, k)
+    count = _rays_from_light(points, light, vectors, answers)
+    any_static_hits(world, answers.rays, answers.blocked, 0, count, scratch)
+    _take_blocked(answers.truth, vectors, answers)
+    any_dynamic_hits(world, answers.rays, answers.blocked, 0, count, scratch)
+    _take_blocked(answers.truth, vectors, answers)
     for v in range(vectors):
         counts[WRONG] += ones(np.int64(answers.truth[v] ^ answers.lit[v]))
 

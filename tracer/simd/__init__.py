@@ -39,7 +39,7 @@ from tracer.simd.addresses import (
 )
 from tracer.simd.bits import as_f32, as_i32, leading_zeros, lowest_bit, ones
 from tracer.simd.functions import binary_logarithm, floor, lanes_below, load_three, pack_three, power, store_three
-from tracer.simd.rearranging import gather_f32x16, gather_i32x16, load_columns, pack
+from tracer.simd.rearranging import gather_f32x16, gather_i32x16, load_columns, load_spread_mask16, pack
 from tracer.simd.vectors import (
     F32x8,
     F32x16,
@@ -110,6 +110,7 @@ __all__ = [
     "load_i32x16",
     "load_i64",
     "load_mask16",
+    "load_spread_mask16",
     "load_three",
     "local_memory",
     "lowest_bit",
