@@ -35,12 +35,12 @@ from tracer.simd import (
     lanes_below,
     largest,
     leading_zeros,
-    load_bytes16,
     load_columns,
     load_f32,
     load_f32x16,
     load_i32,
     load_i64,
+    load_spread_bytes16,
     load_three,
     local_memory,
     lowest_bit,
@@ -320,18 +320,15 @@ def test_masks(lanes: int, mask: Any):
 
 def test_masks_and_bytes_in_memory():
     @compiled
-    def run(source, bytes_, bools, out):
+    def run(source, bytes_, bools):
         for i in range(0, len(source), 16):
-            x = load_bytes16(address_of(source) + i)
-            store(address_of(out) + 4 * i, x)
+            x = simd.load_i32x16(address_of(source) + 4 * i)
             store_bytes(address_of(bytes_) + i + 3, x + 0x7F00)
             store_mask(address_of(bools) + i + 3, x < 100)
 
-    source = np.random.default_rng(15).integers(0, 256, N).astype(np.uint8)
+    source = np.random.default_rng(15).integers(0, 256, N).astype(np.int32)
     bytes_, bools = (np.full(N + 8, 9, np.uint8) for _ in range(2))
-    out = np.zeros(N, np.int32)
-    run(source, bytes_, bools, out)
-    assert np.array_equal(out, source)
+    run(source, bytes_, bools)
     for written, right in ((bytes_, source), (bools, source < 100)):
         assert np.array_equal(written[3:-5], right)
         assert (written[:3] == 9).all() and (written[-5:] == 9).all()
@@ -486,6 +483,25 @@ def test_packed_lanes_keep_their_order(kind: Kind):
     out = np.zeros(len(a) + lanes, kind.dtype)
     assert run(a, bits, out) == kept.sum()
     assert same(out[: kept.sum()], a[kept])
+
+
+def test_bytes_are_spread_over_the_lanes_of_a_mask():
+    @compiled
+    def run(source, bits, out):
+        n = 0
+        for v in range(len(bits)):
+            store(address_of(out) + 64 * v, load_spread_bytes16(address_of(source) + n, mask16(bits[v])))
+            n += ones(bits[v])
+
+    rng = np.random.default_rng(33)
+    bits = rng.integers(0, 1 << 16, 50)
+    bits[:3] = 0, 0xFFFF, 0x8000
+    where = (bits[:, None] >> np.arange(16) & 1).astype(np.bool_)
+    source = rng.integers(0, 256, where.sum()).astype(np.uint8)
+    right, out = np.zeros(where.shape, np.int32), np.full(where.shape, 7, np.int32)
+    right[where] = source
+    run(source, bits, out)
+    assert np.array_equal(out, right)
 
 
 @pytest.mark.parametrize("gather, dtype", [(gather_f32x16, F32), (gather_i32x16, I32)])

@@ -11,8 +11,8 @@ is known to be, as the last frame left it, decides the ray's fate:
 Shadow rays start at the light.  They end a little above the surface (`lifted`), so that it does not
 shadow itself.
 
-Points come in vectors of sixteen.  Vectors without a ray to trace are left out, so that batches
-shrink with what is culled; what is found is kept as bits, one for each point.
+Points come in vectors of sixteen.  Rays are packed, so that batches shrink with what is not due and
+what is culled; what is found is kept as bits, one for each point.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ from tracer.simd import (
     bits_of,
     f32x16,
     gather_i32x16,
-    lane_of,
     lanes_below,
-    load_bytes16,
     load_f32x16,
     load_i32x16,
+    load_spread_bytes16,
     load_three,
     lowest_bit,
     mask16,
     ones,
-    select,
+    pack_three,
     store,
+    store_three,
 )
 
 # Shadow counters; the first two are those that queries add to.
@@ -67,9 +67,8 @@ class Answers(NamedTuple):
     """What is known of the shadow rays of n points to one light, 16 points a row, as bits of int32:
     which are due, which of those reach the light and, where knowledge asks to verify, which truly do.
 
-    For asking: low and high (n,) int32, halves of the points' words where anything is culled; rays, source
-    (n / 16,) int32, the vectors that its own come from, live, the bits of those to be traced, and blocked,
-    a byte for each ray."""
+    For asking: low and high (n,) int32, halves of the points' words where anything is culled; live, the bits
+    of those to be traced, their rays, one after the other, and blocked, a byte for each ray."""
 
     due: NDArray[np.int32]
     lit: NDArray[np.int32]
@@ -77,14 +76,13 @@ class Answers(NamedTuple):
     low: NDArray[np.int32]
     high: NDArray[np.int32]
     rays: Rays
-    source: NDArray[np.int32]
     live: NDArray[np.int32]
     blocked: NDArray[np.float32]
 
 
 # Rows of the memory that answers lie in, the first eight of which are the rays.
-DUE_ROW, LIT_ROW, TRUTH_ROW, LOW_ROW, HIGH_ROW, SOURCE_ROW, LIVE_ROW, BLOCKED_ROW = range(8, 16)
-ANSWER_ROWS = 16
+DUE_ROW, LIT_ROW, TRUTH_ROW, LOW_ROW, HIGH_ROW, LIVE_ROW, BLOCKED_ROW = range(8, 15)
+ANSWER_ROWS = 15
 
 
 @inlined
@@ -97,7 +95,6 @@ def answers_in(memory):
         memory[LOW_ROW].view(np.int32),
         memory[HIGH_ROW].view(np.int32),
         Rays(memory[0:3], memory[3:6], memory[6], memory[7]),
-        memory[SOURCE_ROW].view(np.int32),
         memory[LIVE_ROW].view(np.int32),
         memory[BLOCKED_ROW],
     )
@@ -174,32 +171,41 @@ def _choose_fates(points, light, number, knowledge, count, answers, counts):
 
 @subkernel
 def _rays_from_light(points, light, vectors, bits, answers):
-    """Shadow rays, from the light to the points that `bits` names, 16 a row; how many vectors of them there are.
+    """Shadow rays, from the light to the points that `bits` names, one after the other; how many there are.
 
-    At t = 1 is the point; lanes that are not to be traced go the way of one that is, and end before they begin."""
+    At t = 1 is the point."""
     rays = answers.rays
-    stride = 4 * rays.origin.shape[1]
-    origin, direction = address_of(rays.origin), address_of(rays.direction)
-    packed = 0
+    stride, n = 4 * rays.origin.shape[1], 0
     for v in range(vectors):
-        live = bits[v]
+        live = np.int64(bits[v])
         if live == 0:
             continue
-        answers.source[packed] = v
         x, y, z = lifted(points, v, ONE)
-        at = 64 * packed
-        store(origin + at, f32x16(light[0]))
-        store(origin + at + stride, f32x16(light[1]))
-        store(origin + at + 2 * stride, f32x16(light[2]))
-        dx, dy, dz = x - light[0], y - light[1], z - light[2]
-        on, one = mask16(np.int64(live)), lowest_bit(np.int64(live))
-        store(direction + at, select(on, dx, lane_of(dx, one)))
-        store(direction + at + stride, select(on, dy, lane_of(dy, one)))
-        store(direction + at + 2 * stride, select(on, dz, lane_of(dz, one)))
+        direction = pack_three((x - light[0], y - light[1], z - light[2]), mask16(live))
+        store_three(address_of(rays.direction) + 4 * n, stride, direction)
+        n += ones(live)
+    for at in range(0, 4 * n, 64):
+        store_three(address_of(rays.origin) + at, stride, (f32x16(light[0]), f32x16(light[1]), f32x16(light[2])))
         store(address_of(rays.t_min) + at, f32x16(LIGHT_MARGIN))
-        store(address_of(rays.t_max) + at, select(on, ONE, ZERO))
-        packed += 1
-    return packed
+        store(address_of(rays.t_max) + at, f32x16(ONE))
+    return n
+
+
+@inlined
+def _ask(world, points, light, vectors, bits, which, answers, counts):
+    """Ask `which` geometry is between the light and the points that `bits` names, into answers.blocked, one after
+    the other (`_blocked`); how many they are."""
+    n = _rays_from_light(points, light, vectors, bits, answers)
+    if n > 0:
+        any_hits(world, answers.rays, which, answers.blocked, 0, n, counts)
+    return n
+
+
+@inlined
+def _blocked(answers, asked, n):
+    """Bits of those lanes, of the bits `asked`, whose rays, from the n-th on, anything blocks; and something static."""
+    found = load_spread_bytes16(address_of(answers.blocked) + n, mask16(asked))
+    return bits_of(found > 0), bits_of(found == STATIC)
 
 
 @subkernel
@@ -218,39 +224,37 @@ def _learn(points, v, number, knowledge, answers, asked, blocked):
 
 
 @inlined
-def _ask(world, points, light, vectors, bits, which, answers, counts):
-    """Ask `which` geometry is between the light and the points that `bits` names; how many vectors answer.
-
-    The k-th is that of points answers.source[k]; `_blocked` reads it."""
-    packed = _rays_from_light(points, light, vectors, bits, answers)
-    if packed > 0:
-        any_hits(world, answers.rays, which, answers.blocked, 0, 16 * packed, counts)
-    return packed
-
-
-@inlined
-def _blocked(answers, k):
-    """Bits of the rays of the k-th vector that anything blocks, and of those that something static does."""
-    found = load_bytes16(address_of(answers.blocked) + 16 * k)
-    return bits_of(found > 0), bits_of(found == STATIC)
+def _take_blocked(bits, asked, vectors, answers):
+    """Clear the bits (vectors,) of points, of those `asked` about, whose rays were blocked."""
+    n = 0
+    for v in range(vectors):
+        lanes = np.int64(asked[v])
+        blocked, _ = _blocked(answers, lanes, n)
+        bits[v] &= ~blocked
+        n += ones(lanes)
 
 
 @subkernel
 def _ask_about_known(world, points, light, vectors, answers, counts):
     """Ask dynamic objects alone about the points that are known to be lit by all that is static."""
-    for k in range(_ask(world, points, light, vectors, answers.lit, MOVING, answers, counts)):
-        blocked, _ = _blocked(answers, k)
-        answers.lit[answers.source[k]] &= ~blocked
+    counts[RAYS] += _ask(world, points, light, vectors, answers.lit, MOVING, answers, counts)
+    _take_blocked(answers.lit, answers.lit, vectors, answers)
 
 
 @subkernel
 def _ask_about_others(world, points, light, number, knowledge, vectors, answers, counts):
     """Ask everything about the points of which nothing is known, and set shadow modes by what is static."""
-    for k in range(_ask(world, points, light, vectors, answers.live, STATIC | MOVING, answers, counts)):
-        v = np.int64(answers.source[k])
+    count = _ask(world, points, light, vectors, answers.live, STATIC | MOVING, answers, counts)
+    counts[RAYS] += count
+    if count == 0:
+        return
+    n = 0
+    for v in range(vectors):
         asked = np.int64(answers.live[v])
-        blocked, for_good = _blocked(answers, k)
-        counts[RAYS] += ones(asked)
+        if asked == 0:
+            continue
+        blocked, for_good = _blocked(answers, asked, n)
+        n += ones(asked)
         if knowledge.cull and number < MAX_CULLED_LIGHTS:
             _learn(points, v, number, knowledge, answers, asked, for_good)
         answers.lit[v] |= asked & ~blocked
@@ -262,9 +266,8 @@ def _verify(world, points, light, vectors, answers, counts):
     scratch = np.zeros(SHADOW_COUNTERS, np.int64)
     for v in range(vectors):
         answers.truth[v] = answers.due[v]
-    for k in range(_ask(world, points, light, vectors, answers.due, STATIC | MOVING, answers, scratch)):
-        blocked, _ = _blocked(answers, k)
-        answers.truth[answers.source[k]] &= ~blocked
+    _ask(world, points, light, vectors, answers.due, STATIC | MOVING, answers, scratch)
+    _take_blocked(answers.truth, answers.due, vectors, answers)
     for v in range(vectors):
         counts[WRONG] += ones(np.int64(answers.truth[v] ^ answers.lit[v]))
 
@@ -275,9 +278,7 @@ def shadow_testing(world, points, count, light, number, knowledge, answers, coun
     vectors = (count + 15) // 16
     before = counts[DYNAMIC_ONLY]
     _choose_fates(points, light, number, knowledge, count, answers, counts)
-    known_lit = counts[DYNAMIC_ONLY] - before
-    if world.has_dynamic and known_lit > 0:
-        counts[RAYS] += known_lit
+    if world.has_dynamic and counts[DYNAMIC_ONLY] > before:
         _ask_about_known(world, points, light, vectors, answers, counts)
     _ask_about_others(world, points, light, number, knowledge, vectors, answers, counts)
     if knowledge.verify:

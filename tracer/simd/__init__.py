@@ -23,7 +23,6 @@ from tracer.simd.addresses import (
     f32_at,
     i32_at,
     i64_at,
-    load_bytes16,
     load_f32,
     load_f32x8,
     load_f32x16,
@@ -41,7 +40,7 @@ from tracer.simd.addresses import (
 )
 from tracer.simd.bits import as_f32, as_i32, leading_zeros, lowest_bit, ones
 from tracer.simd.functions import binary_logarithm, floor, lanes_below, load_three, pack_three, power, store_three
-from tracer.simd.rearranging import gather_f32x16, gather_i32x16, load_columns, pack
+from tracer.simd.rearranging import gather_f32x16, gather_i32x16, load_columns, load_spread_bytes16, pack
 from tracer.simd.vectors import (
     F32x8,
     F32x16,
@@ -104,7 +103,6 @@ __all__ = [
     "largest",
     "leading_zeros",
     "load_columns",
-    "load_bytes16",
     "load_f32",
     "load_f32x8",
     "load_f32x16",
@@ -112,6 +110,7 @@ __all__ = [
     "load_i32x8",
     "load_i32x16",
     "load_i64",
+    "load_spread_bytes16",
     "load_three",
     "local_memory",
     "lowest_bit",

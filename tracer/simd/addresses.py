@@ -117,19 +117,6 @@ def store_where(typingctx, address, value, mask):
 
 
 @operation
-def load_bytes16(typingctx, address):
-    """Sixteen bytes, each 0 to 255, as int32."""
-
-    def codegen(context, builder, sig, args):
-        kind = ir.VectorType(ir.IntType(8), 16)
-        value = builder.load(builder.inttoptr(args[0], kind.as_pointer()))
-        value.align = 1  # type: ignore[attr-defined]
-        return builder.zext(value, context.get_data_type(I32x16))
-
-    return I32x16(types.int64), codegen
-
-
-@operation
 def store_bytes(typingctx, address, value):
     """Write the lowest eight bits of every int32 of a vector as bytes."""
     if not isinstance(value, Vector) or value.floating:

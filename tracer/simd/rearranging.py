@@ -38,6 +38,23 @@ def pack(typingctx, value, mask):
     return value(value, mask), codegen
 
 
+@operation
+def load_spread_bytes16(typingctx, address, mask):
+    """int32 that are 0 where a mask is false, and where it is true are bytes from memory, one after the other."""
+    if mask != Mask(LANES):
+        return None
+
+    def codegen(context, builder, sig, args):
+        loaded = ir.VectorType(ir.IntType(8), LANES)
+        pointer = builder.inttoptr(args[0], ir.IntType(8).as_pointer())
+        kind = ir.FunctionType(loaded, [pointer.type, args[1].type, loaded])
+        function = cgutils.get_or_insert_function(builder.module, kind, f"llvm.masked.expandload.v{LANES}i8")
+        value = builder.call(function, [pointer, args[1], ir.Constant(loaded, [0] * LANES)])
+        return builder.zext(value, context.get_data_type(I32x16))
+
+    return I32x16(types.int64, mask), codegen
+
+
 def _gathering(vector: Vector) -> Any:
     @operation
     def gather(typingctx, address, numbers):
