@@ -46,8 +46,12 @@ def ask(world: tracer.World, rays: Rays, first: int = 0, last: int | None = None
     for which, blocked in zip((STATIC, DYNAMIC), flags, strict=True):
         batch = batch_of(rays, blocked=blocked, which=which)
         structure.any_hit.call(data, batch.ctypes.data, first, last, counts.ctypes.data)
-        assert (blocked[first:last] <= 1).all()
-    for array in (*numbers, *flags):
+        assert np.isin(blocked[first:last], (0, which)).all()
+    both = np.full(n, UNTOUCHED, np.uint8)
+    structure.any_hit.call(data, batch_of(rays, blocked=both).ctypes.data, first, last, counts.ctypes.data)
+    static, dynamic = (f[first:last] for f in flags)
+    assert np.array_equal(both[first:last], np.where(static, STATIC, dynamic))
+    for array in (*numbers, *flags, both):
         assert (array[:first] == UNTOUCHED).all() and (array[last:] == UNTOUCHED).all()
     return Answers(*(a[first:last] for a in numbers), *(f[first:last].astype(np.bool_) for f in flags))
 

@@ -18,6 +18,7 @@ from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.shading.bounce import next_wave
 from tracer.shading.phong import add_light
+from tracer.shading.places import sorted_by_place
 from tracer.shading.points import POINT_ROWS, points_at
 from tracer.shading.primary import keep_hits, primary_wave, recall_hits
 from tracer.shading.wave import WAVE_ROWS, bring_home, room, trace, without_misses
@@ -172,6 +173,8 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts, spa
         wave = without_misses(wave, look.background, pixels.light, pixels.reference)
         if wave.size == 0:
             break
+        if len(look.lights) > 1:
+            wave, spare = sorted_by_place(wave, spare)
     _write(buffers.color, pixels.place, count, pixels.light)
     if knowledge.verify:
         _write(buffers.reference, pixels.place, count, pixels.reference)
