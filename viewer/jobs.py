@@ -20,7 +20,7 @@ from viewer.lines import in_one_line
 
 Result = TypeVar("Result")
 
-NICENESS = 2
+NICENESS = 10
 
 
 class Job(Generic[Result]):
@@ -65,8 +65,10 @@ class Job(Generic[Result]):
     def _progress(self, label: str, fraction: float) -> None:
         if self._stop.is_set():
             raise Cancelled(self.title)
+        before = self.label, round(self.fraction, 2)
         self.label, self.fraction = label, min(max(float(fraction), 0.0), 1.0)
-        self._wake()
+        if (self.label, round(self.fraction, 2)) != before:
+            self._wake()
 
     def _run(self) -> None:
         step_back()

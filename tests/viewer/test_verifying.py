@@ -26,7 +26,7 @@ class Desk:
 
     def __init__(self, controller: Controller) -> None:
         self.c, self.renderer = controller, FakeRenderer()
-        controller.show(make_scene(), self.renderer)
+        controller.show(make_scene(), self.renderer, {})
         self.rest()
         controller.trace_again()  # those until now came while the window had just been opened, which is motion
         assert self.rest() == [False, False]
