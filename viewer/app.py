@@ -197,7 +197,7 @@ class App:
         params.docking_params = self._docking()
         params.fps_idling.fps_idle = 8.0
         params.fps_idling.fps_max = 60.0
-        params.fps_idling.time_active_after_last_event = 1.0
+        params.fps_idling.time_active_after_last_event = 0.25
         call = params.callbacks
         call.setup_imgui_config = _configure_imgui
         call.load_additional_fonts = style.load_fonts

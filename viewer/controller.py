@@ -73,7 +73,7 @@ class Controller:
         Returns the frame that has just come, if one has."""
         if size != self.size:
             self.size = size
-            self.moved()
+            self.tracing.glance()
         self.opener.follow()
         self.keeper.follow()
         frame = self._take_frame()

@@ -27,7 +27,7 @@ class Job(Generic[Result]):
     """Runs `work(progress)` on a thread of its own.
 
     `label` and `fraction` tell how far it is; after `done`, `result` is set, or `error` holds one
-    line, or `cancelled` is true.
+    line, or `cancelled` is true.  The end wakes the window; progress is seen often enough as it dozes.
     """
 
     def __init__(self, title: str, work: Callable[[Progress], Result], wake: Callable[[], None] = lambda: None) -> None:
@@ -65,10 +65,7 @@ class Job(Generic[Result]):
     def _progress(self, label: str, fraction: float) -> None:
         if self._stop.is_set():
             raise Cancelled(self.title)
-        before = self.label, round(self.fraction, 2)
         self.label, self.fraction = label, min(max(float(fraction), 0.0), 1.0)
-        if (self.label, round(self.fraction, 2)) != before:
-            self._wake()
 
     def _run(self) -> None:
         step_back()
