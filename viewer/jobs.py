@@ -20,7 +20,7 @@ from viewer.lines import in_one_line
 
 Result = TypeVar("Result")
 
-NICENESS = 10
+JOB, TRACER = 2, 10  # niceness: what a window waits for, and what takes all cores for as long as it is open
 
 
 class Job(Generic[Result]):
@@ -68,7 +68,7 @@ class Job(Generic[Result]):
         self.label, self.fraction = label, min(max(float(fraction), 0.0), 1.0)
 
     def _run(self) -> None:
-        step_back()
+        step_back(JOB)
         try:
             result = self._work(self._progress)
             if self._stop.is_set():
@@ -83,11 +83,11 @@ class Job(Generic[Result]):
             self._wake()
 
 
-def step_back() -> None:
+def step_back(niceness: int) -> None:
     """Let the window go before this thread, and the threads it starts, where cores are short (Linux only)."""
     if sys.platform.startswith("linux"):
         with suppress(OSError):
-            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), NICENESS)
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), niceness)
 
 
 def one_line(error: BaseException) -> str:
