@@ -115,6 +115,7 @@ def test_the_window_is_timed(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     for state in ("tracing", "moving", "at rest"):
         summary = window_times.summary(window["frames"][state])
         assert 0.2 < summary["own"] <= summary["median"] <= summary["high"] <= summary["longest"] < 5000.0
+        assert 0.0 <= window["others"][state] < 1024.0
     assert len(window["frames"]["moving"]) > 5 and window["traced"]["tracing"] >= 1
     printed = capsys.readouterr().out
     assert "the window's frames" in printed and "From the start of the process" in printed

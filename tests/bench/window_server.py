@@ -5,12 +5,14 @@
 Once the picture is there at full resolution, the same picture is traced again and again for so many
 seconds, then the camera turns for as long, then nothing happens, and the window is closed.  Prints one
 line of JSON: what was seen how long after SPAWNED, a `time.time()`, and of each frame what went on, how
-many seconds it took until it was on the screen, and for how many its own thread was at work.
+many seconds it took until it was on the screen, and for how many its own thread was at work; and of all
+that went on how many cores other processes had meanwhile.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import sys
 import time
 from pathlib import Path
@@ -22,7 +24,13 @@ from viewer import navigation
 from viewer.app import App
 
 TURN = 0.01  # radians a frame
-STATES = ("starting", "compiling", "opening", "first picture", "tracing", "moving", "at rest")
+STATES = ("starting", "compiling", "opening", "first picture", "tracing", "moving", "at rest", "closing")
+
+
+def busy() -> float:
+    """Seconds that all cores together have been at work since the system's start."""
+    user, nice, system, _idle, _waiting, *interrupts = map(int, Path("/proc/stat").read_text().split()[1:8])
+    return (user + nice + system + sum(interrupts)) / os.sysconf("SC_CLK_TCK")
 
 
 class Watch:
@@ -35,6 +43,8 @@ class Watch:
         self.seen: dict[str, float] = {}
         self.frames: dict[str, list[tuple[float, float]]] = {state: [] for state in STATES}
         self.traced: dict[str, int] = dict.fromkeys(STATES, 0)
+        self.others: dict[str, float] = {}
+        self._mark = self._now()
         self._before = app.before_widgets
         self._began = self._worked = 0.0
         app.params.callbacks.pre_new_frame = self.before
@@ -55,6 +65,9 @@ class Watch:
             if self.c.traced.request.divisor == 1:
                 self._saw("full picture")
 
+    def _now(self) -> tuple[float, float, float]:
+        return time.perf_counter(), busy(), time.process_time()
+
     def _saw(self, what: str) -> None:
         self.seen.setdefault(what, time.time() - self.spawned)
 
@@ -69,12 +82,16 @@ class Watch:
             state = "at rest"
         elif state == "at rest":
             hello_imgui.request_refresh()
-            self.app.params.app_shall_exit = now - self.since > self.seconds
+            if now - self.since > self.seconds:
+                state, self.app.params.app_shall_exit = "closing", True
         elif state not in ("tracing", "moving"):
             state, c.preferences.keep_tracing = "tracing", True
             c.trace_again()
         if state != self.state:
-            self.state, self.since = state, now
+            mark = self._now()
+            passed, worked, own = (b - a for a, b in zip(self._mark, mark))
+            self.others[self.state] = max(0.0, worked - own) / passed
+            self.state, self.since, self._mark = state, now, mark
         if state == "moving":
             c.move(navigation.look(c.session.camera, TURN, 0.0, c.world_up))
 
@@ -84,6 +101,7 @@ class Watch:
             "seen": self.seen,
             "frames": self.frames,
             "traced": self.traced,
+            "others": self.others,
         }
 
 

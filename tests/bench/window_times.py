@@ -6,7 +6,8 @@
 Each scene is opened in a window of its own, in a new process.  The first is opened once more before
 that with no kernels compiled.  A frame is timed from when the window begins it until it is on the
 screen; beside that stands for how long its thread was at work, which other processes cannot change.
-While the tracer works all cores are busy.  A window that shows no picture, or that draws or traces
+While the tracer works all cores are busy; what other processes had of them meanwhile, the X server and
+those that compile among them, is told.  A window that shows no picture, or that draws or traces
 nothing where it should, ends the benchmark with exit code 1.
 """
 
@@ -95,13 +96,14 @@ def _frames(result: dict[str, Any]) -> Table:
         caption_justify="left",
     )
     made.add_column("while")
-    for heading in ("frames", "traced", "median, ms", "99 %, ms", "longest, ms", "own thread, ms"):
+    for heading in ("frames", "traced", "median, ms", "99 %, ms", "longest, ms", "own thread, ms", "others, cores"):
         made.add_column(heading, justify="right")
-    for state in STATES:
+    for state in STATES[1:-1]:
         if result["frames"][state]:
             s = summary(result["frames"][state])
             times = [f"{s[name]:.1f}" for name in ("median", "high", "longest", "own")]
-            made.add_row(state, str(s["frames"]), str(result["traced"][state]), *times)
+            others = f"{result['others'].get(state, float('nan')):.2f}"
+            made.add_row(state, str(s["frames"]), str(result["traced"][state]), *times, others)
     return made
 
 
