@@ -17,7 +17,7 @@ export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
 export MPLCONFIGDIR := $(CURDIR)/.cache/matplotlib
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run test golden bench frames counters lint format lock clean distclean help
+.PHONY: run test golden bench frames counters window memory growth lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -43,6 +43,18 @@ frames:  ## time frames with and without culling, phase by phase (ARGS="--frames
 counters:  ## time frames with and without counters of steps and tests (ARGS="--frames 10 SCENE")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.counters $(ARGS)
+
+window:  ## time how soon the window shows a picture, and its own frames while tracing (ARGS="--seconds 20 SCENE")
+	@tools/environment.sh dev
+	@$(RUN) tools/with_screen.py $(RUN) -m tests.bench.window_times $(ARGS)
+
+memory:  ## measure the memory of Kitchen and of a million triangles, and build times (ARGS="--triangles 200000 SCENE")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.memory $(ARGS)
+
+growth:  ## measure how the cost of a ray grows from 10,000 to 2,000,000 triangles (ARGS="--most 200000")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.growth $(ARGS)
 
 lint:  ## check style, types and the direction of imports
 	@tools/environment.sh dev

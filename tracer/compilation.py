@@ -1,18 +1,33 @@
 """Compiling, or loading from the cache, every kernel a frame needs, before a scene needs it.
 
-A tiny scene is rendered phase by phase, and each phase named while its kernels are made ready.
+A tiny scene is rendered phase by phase, and each phase named while its kernels are made ready.  Where
+none have been compiled before, processes of their own compile them first, a part each, into the
+cache: numba compiles one kernel at a time in a process, and holds the GIL for most of it.  One that
+fails costs time only, as what the cache lacks is compiled when it is needed.
 """
 
 from __future__ import annotations
 
+import os
+import select
+import subprocess
+import sys
 import threading
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from tracer.culling.modes import word_type
 from tracer.frame import Settings
+from tracer.geometry.poses import Poses
+from tracer.geometry.primitives import Primitives
+from tracer.geometry.queries import HIT_PRIMITIVE, HIT_T, Placed
+from tracer.geometry.rays import INFINITY, MISS
 from tracer.geometry.world import STRUCTURES
+from tracer.kernels import cache_folder, entry
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation
 from tracer.scene.model import (
@@ -26,20 +41,82 @@ from tracer.scene.model import (
     Triangles,
     empty_quadrics,
 )
+from tracer.simd import f32_at, i32_at, load_i64
 
 _lock = threading.Lock()
-_ready: set[tuple[type, str]] = set()
+_ready: set[str] = set()
 
 # What is made ready, with about how much of the whole time it takes when compiled.
 _SHARES = {
-    "the builder": 0.25,
-    "nearest hits": 0.2,
-    "shadow rays": 0.2,
-    "primary rays": 0.05,
-    "occlusion testing": 0.05,
-    "shading and shadow testing": 0.23,
-    "mode setting": 0.02,
+    "nearest hits": 0.28,
+    "shadow rays": 0.12,
+    "the builder": 0.21,
+    "primary rays": 0.03,
+    "occlusion testing": 0.03,
+    "shading and shadow testing": 0.32,
+    "mode setting": 0.01,
 }
+_POLL = 0.1  # seconds from one look at a process to the next
+
+
+def warm_up(progress: Progress | None = None, lights: int = 1, accelerator: str = "bvh8") -> None:
+    """Make every kernel ready for scenes with so many lights; at once where that has been done before.
+
+    `progress` is told what is being compiled; what it raises (Cancelled) passes through.
+    """
+    report = progress or (lambda what, fraction: None)
+    with _lock:
+        name = f"{accelerator}-{word_type(lights).__name__}"
+        if name in _ready:
+            return
+        done: set[str] = set()
+        mark = cache_folder() / f"{name}.ready"
+        if not mark.exists():
+            with suppress(OSError):
+                done = _compile_beside(report, lights, accelerator)
+        for step in (*_queries(accelerator), *_frame(lights, accelerator)):
+            report(f"{'loading' if step in done else 'compiling'} {step}", sum(_SHARES[s] for s in done))
+            done.add(step)
+        report("compiled", 1.0)
+        _ready.add(name)
+        with suppress(OSError):
+            mark.touch()
+
+
+# --- steps: each generator names what comes next, and does it when asked for the one after ---------
+
+
+def _queries(accelerator: str) -> Iterator[str]:
+    structure = STRUCTURES[accelerator]
+    yield "nearest hits"
+    structure.closest.compile()
+    yield "shadow rays"
+    structure.any_hit.compile()
+
+
+def _trees(lights: int, accelerator: str) -> Iterator[str]:
+    yield "the builder"
+    _renderer(lights, accelerator)
+
+
+def _frame(lights: int, accelerator: str) -> Iterator[str]:
+    yield "the builder"
+    frame = _renderer(lights, accelerator).begin(0.0)
+    frame.place_objects_and_lights()
+    for name, phase in (
+        ("primary rays", frame.trace_primary_rays),
+        ("occlusion testing", frame.test_occlusion),
+        ("shading and shadow testing", frame.shade),
+        ("mode setting", frame.set_modes),
+    ):
+        yield name
+        phase()
+
+
+def _renderer(lights: int, accelerator: str) -> Renderer:
+    # As many lights as make a word of that size, no more: each is traced.
+    scene = _tiny_scene(1 if lights <= 15 else 16)
+    return Renderer(scene, Settings(width=4, height=4, threads=1, accelerator=accelerator))
 
 
 def _tiny_scene(lights: int) -> Scene:
@@ -63,41 +140,120 @@ def _tiny_scene(lights: int) -> Scene:
     )
 
 
-def warm_up(progress: Progress | None = None, lights: int = 1, accelerator: str = "bvh8") -> None:
-    """Make every kernel ready for scenes with so many lights; at once where that has been done before.
+# --- parts, in processes of their own ---------------------------------------------------------------
 
-    `progress` is told what is being compiled; what it raises (Cancelled) passes through.
-    """
-    with _lock:
-        if (word_type(lights), accelerator) in _ready:
-            return
-        done = 0.0
+_PARTS = ("queries", "trees", "frame")  # about as long each, and none needs what another compiles
 
-        def report(name: str) -> None:
-            nonlocal done
-            if progress is not None:
-                progress(f"compiling {name}", done)
-            done += _SHARES[name]
 
-        structure = STRUCTURES[accelerator]
-        report("nearest hits")
-        structure.closest.compile()
-        report("shadow rays")
-        structure.any_hit.compile()
-        report("the builder")
-        # As many lights as make a word of that size, no more: each is traced.
-        scene = _tiny_scene(1 if lights <= 15 else 16)
-        renderer = Renderer(scene, Settings(width=4, height=4, threads=1, accelerator=accelerator))
-        frame = renderer.begin(0.0)
-        frame.place_objects_and_lights()
-        for name, phase in (
-            ("primary rays", frame.trace_primary_rays),
-            ("occlusion testing", frame.test_occlusion),
-            ("shading and shadow testing", frame.shade),
-            ("mode setting", frame.set_modes),
-        ):
-            report(name)
-            phase()
-        if progress is not None:
-            progress("compiled", 1.0)
-        _ready.add((word_type(lights), accelerator))
+def _compile_beside(report: Progress, lights: int, accelerator: str) -> set[str]:
+    """Compile all parts at once into the cache; the steps that were done.  What `report` raises ends the processes."""
+    read, write = os.pipe()
+    workers: list[subprocess.Popen] = []
+    under_way: dict[str, str] = {}
+    done: set[str] = set()
+    try:
+        for part in _PARTS:
+            workers.append(_worker(write, part, str(lights), accelerator))
+        os.close(write)
+        write = -1
+        told = b""
+        while True:
+            names = ", ".join(under_way.values()) or "the kernels"
+            report(f"compiling {names}", sum(_SHARES[step] for step in done))
+            if not select.select([read], [], [], _POLL)[0]:
+                continue
+            more = os.read(read, 1 << 12)
+            if not more:  # all have ended
+                return done
+            *lines, told = (told + more).split(b"\n")
+            for part, step in (line.decode().split(":") for line in lines):
+                if part in under_way:
+                    done.add(under_way.pop(part))
+                if step:
+                    under_way[part] = step
+    finally:
+        for worker in workers:
+            worker.kill()
+            worker.wait()
+            assert worker.stdin is not None
+            worker.stdin.close()
+        for end in (read, write):
+            if end >= 0:
+                os.close(end)
+
+
+def _worker(told: int, *arguments: str) -> subprocess.Popen:
+    """A process that compiles one part, and tells of its steps through the pipe `told`."""
+    environment = os.environ | {
+        "PYTHONPATH": os.pathsep.join([str(Path(__file__).parents[1]), *filter(None, sys.path)]),
+        "SHADOWCULL_CACHE_DIR": str(cache_folder().parent),
+    }
+    return subprocess.Popen(
+        [sys.executable, "-m", "tracer.compilation", str(told), *arguments],
+        env=environment,
+        stdin=subprocess.PIPE,  # nothing is written to it: it closes when this process ends, however that happens
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        pass_fds=[told],
+        start_new_session=True,  # Ctrl-C is for the process that asked
+    )
+
+
+def _die_with_parent() -> None:
+    os.read(0, 1)
+    os._exit(1)
+
+
+@entry
+def _no_hit(data, batch, first, last, counts):
+    """Rays first to last - 1 meet nothing."""
+    t, primitive = f32_at(load_i64(batch + HIT_T)), i32_at(load_i64(batch + HIT_PRIMITIVE))
+    for i in range(first, last):
+        t[i], primitive[i] = INFINITY, MISS
+
+
+class _Nowhere:
+    """A structure that no ray meets anything in: frames compile with it as with any other."""
+
+    closest = any_hit = _no_hit
+
+    def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
+        self._primitives = primitives
+
+    def place(self, poses: Poses) -> Placed:
+        primitives, address = self._primitives, _no_hit.address
+        to_object = poses.to_object.reshape(-1, 12).astype(np.float32)
+        arrays = (primitives.triangles, primitives.quadrics, to_object, primitives.object_of)
+        return Placed(*arrays, address, address, 0, False)
+
+
+class _Unasked:
+    """A query that is not compiled, as nobody asks it."""
+
+    address = 0
+
+
+def _steps(part: str, lights: int, accelerator: str) -> Iterator[str]:
+    """The steps of a part, none of which compiles what is another's."""
+    structures: dict[str, Any] = STRUCTURES
+    if part == "queries":
+        return _queries(accelerator)
+    if part == "trees":
+        queries = dict.fromkeys(("closest", "any_hit"), _Unasked)
+        structures[accelerator] = type("Unasked", (structures[accelerator],), queries)
+        return _trees(lights, accelerator)
+    structures[accelerator] = _Nowhere
+    return (step for step in _frame(lights, accelerator) if step != "the builder")
+
+
+def _main(told: str, part: str, lights: str, accelerator: str) -> None:
+    """Compile a part, and say to the pipe `told` which step comes next, and that there is none."""
+    threading.Thread(target=_die_with_parent, daemon=True).start()
+    for step in _steps(part, int(lights), accelerator):
+        os.write(int(told), f"{part}:{step}\n".encode())
+    os.write(int(told), f"{part}:\n".encode())
+    os._exit(0)  # without taking everything down piece by piece: that takes a second
+
+
+if __name__ == "__main__":
+    _main(*sys.argv[1:])

@@ -3,27 +3,36 @@
 numba keys its cache by the file a kernel stands in, and so misses a change in a helper that the
 kernel calls.  The folder here is therefore named by a hash over *all* kernel sources: a changed
 source never meets stale machine code.  It lies in `SHADOWCULL_CACHE_DIR`, else in .cache of a source
-tree, else in the user's cache folder; where that cannot be written, a temporary folder serves for
-the life of the process.
+tree, else in the user's cache folder; where nothing can be written there, a temporary folder serves
+for the life of the process.  Of the folders of other sources those used last are kept.
+
+What goes wrong with the cache costs time and nothing else: what cannot be read is compiled, what
+cannot be written is compiled again next time.
 """
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import os
+import re
+import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
 import numba
 import platformdirs
-from numba import cfunc, njit
-from numba.core import config as _config
-from numba.core import types
+from numba import njit, types
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
+from numba.core.ccallback import CFunc
 
 _KERNEL_FOLDERS = ("simd", "geometry", "culling", "shading")
+_ROOM = 1 << 25  # bytes; all kernels take a tenth of it
+_KEPT = 16  # folders of as many sources, some 3 MB each
 
 
 def _source_hash() -> str:
@@ -38,38 +47,106 @@ def _source_hash() -> str:
     return digest.hexdigest()[:16]
 
 
-@cache
-def cache_folder() -> Path:
-    """The folder of this version's compiled kernels; made, and known to be writable."""
+def _cache_root() -> Path:
     base, source_tree = os.environ.get("SHADOWCULL_CACHE_DIR"), Path(__file__).parents[1]
     if base:
-        root = Path(base).expanduser()
-    elif (source_tree / "pyproject.toml").exists():
-        root = source_tree / ".cache" / "kernels"
-    else:
-        root = Path(platformdirs.user_cache_dir("shadowcull")) / "kernels"
+        return Path(base).expanduser()
+    if (source_tree / "pyproject.toml").exists():
+        return source_tree / ".cache" / "kernels"
+    return Path(platformdirs.user_cache_dir("shadowcull")) / "kernels"
+
+
+@cache
+def cache_folder() -> Path:
+    """The folder of this version's compiled kernels: it is there, and has kernels in it or room for them."""
+    root = _cache_root()
     folder = root / _source_hash()
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return folder
+        if not folder.is_dir():
+            folder.mkdir(parents=True, exist_ok=True)
+            _remove_oldest(root)
+        if not any(folder.iterdir()):
+            if shutil.disk_usage(folder).free < _ROOM:
+                raise OSError("no room")
+            with tempfile.TemporaryFile(dir=folder):
+                pass
     except OSError:
-        return Path(tempfile.mkdtemp(prefix="shadowcull-kernels-"))
+        folder = Path(_temporary_folder().name) / folder.name
+        folder.mkdir(exist_ok=True)
+    with suppress(OSError):
+        os.utime(folder)  # used now
+    return folder
+
+
+@cache
+def _temporary_folder() -> tempfile.TemporaryDirectory:
+    """Removed when the process ends."""
+    return tempfile.TemporaryDirectory(prefix="shadowcull-kernels-", ignore_cleanup_errors=True)
+
+
+def _remove_oldest(root: Path) -> None:
+    """Keep the folders that were used last; a process that still runs with another has all it needs in memory."""
+    with suppress(OSError):
+        folders = [folder for folder in root.iterdir() if re.fullmatch("[0-9a-f]{16}", folder.name)]
+        folders.sort(key=lambda folder: folder.stat().st_mtime, reverse=True)
+        for folder in folders[_KEPT:]:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+class _Locator(UserProvidedCacheLocator):
+    """Where a function's compiled code is kept: in a folder of its source file's folder."""
+
+    def __init__(self, function: Callable, source: str) -> None:
+        super().__init__(function, source)
+        self._cache_path = str(cache_folder() / self.get_suitable_cache_subpath(source))
+
+    @classmethod
+    def from_function(cls, function: Callable, source: str) -> _Locator:
+        return cls(function, source)
+
+    def ensure_cache_path(self) -> None:
+        os.makedirs(self._cache_path, exist_ok=True)
+
+
+class _CacheImpl(CompileResultCacheImpl):
+    _locator_classes: Any = (_Locator,)
+
+
+class _Cache(FunctionCache):
+    """numba's cache of one function, that survives damage and a full disk, and may be written by many at once."""
+
+    _impl_class = _CacheImpl
+
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        try:
+            return super().load_overload(signature, context)
+        except Exception:  # a damaged file may raise anything while it is unpickled
+            with suppress(OSError), self._alone():
+                self.flush()
+            return None
+
+    def save_overload(self, signature: Any, compiled: Any) -> None:
+        with suppress(OSError), self._alone():
+            super().save_overload(signature, compiled)
+
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Save one at a time: two processes that number two signatures at once may give both the same file."""
+        with (cache_folder() / "lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            yield
 
 
 _njit: Any = njit
-_cfunc: Any = cfunc
+_cfunc: Any = CFunc
 _OPTIONS = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 
 def kernel(function: Callable) -> Any:
     """Compile a function that Python calls: cached, free of the GIL, division by zero as in IEEE 754."""
-    config: Any = _config  # its names are made at run time
-    saved, config.CACHE_DIR = config.CACHE_DIR, str(cache_folder())
-    try:
-        return _njit(cache=True, **_OPTIONS)(function)
-    finally:
-        config.CACHE_DIR = saved
+    dispatcher = _njit(**_OPTIONS)(function)
+    dispatcher._cache = _Cache(function)
+    return dispatcher
 
 
 def subkernel(function: Callable) -> Any:
@@ -80,6 +157,9 @@ def subkernel(function: Callable) -> Any:
 def inlined(function: Callable) -> Any:
     """A small subkernel that disappears into its callers."""
     return _njit(no_cpython_wrapper=True, forceinline=True, **_OPTIONS)(function)
+
+
+_ENTRY: Any = types.void(*[types.int64] * 5)
 
 
 class Entry:
@@ -94,13 +174,10 @@ class Entry:
 
     @cached_property
     def _compiled(self) -> Any:
-        config: Any = _config
-        saved, config.CACHE_DIR = config.CACHE_DIR, str(cache_folder())
-        try:
-            signature = types.void(*[types.int64] * 5)
-            return _cfunc(signature, cache=True, error_model="numpy")(self._function)
-        finally:
-            config.CACHE_DIR = saved
+        compiled = _cfunc(self._function, (_ENTRY.args, _ENTRY.return_type), {}, {"error_model": "numpy"})
+        compiled._cache = _Cache(self._function)
+        compiled.compile()
+        return compiled
 
     def compile(self) -> None:
         """Make it ready now."""

@@ -97,6 +97,7 @@ class App:
         """Everything but the widgets: input of the last frame, threads, GL."""
         self._frame_began = time.perf_counter()
         style.follow_density()
+        style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
         self._open_dropped()
         frame = self.controller.tick(self._room_for_picture())
         self._draw(frame)
@@ -105,6 +106,7 @@ class App:
 
     def widgets(self) -> None:
         """What is not a docked panel: keys, and what lies over the panels."""
+        style.fill_windows(True)
         commands.handle_keys(self.ui)
         picture.fly(self.ui)
         dialogs.show(self.ui)
@@ -170,8 +172,8 @@ class App:
             self.controller.keeper.capture(self.ui.display.read_window(*size))
 
     def _stay_awake(self) -> None:
-        """Doze only when nothing is traced, moves or is loaded."""
-        self.params.fps_idling.enable_idling = not self.controller.active
+        """Doze but when something moves: whatever comes from a thread wakes the window, and it needs the processor."""
+        self.params.fps_idling.enable_idling = not self.controller.lively
 
     # --- the window ------------------------------------------------------------------------------
 
@@ -185,6 +187,7 @@ class App:
         window.show_menu_bar = window.show_status_bar = True
         window.show_menu_app = window.show_menu_view = window.show_status_fps = False
         window.remember_theme = window.remember_status_bar_settings = False
+        window.background_color = style.BACKGROUND
         params.renderer_backend_options.open_gl_options = hello_imgui.OpenGlOptions(
             glsl_version="330", major_version=3, minor_version=3, use_core_profile=True, use_forward_compat=True,
             anti_aliasing_samples=0,  # text and widgets are smooth by themselves
@@ -193,7 +196,8 @@ class App:
         params.ini_filename = str(self.layout_file.working_copy)
         params.docking_params = self._docking()
         params.fps_idling.fps_idle = 8.0
-        params.fps_idling.time_active_after_last_event = 1.0
+        params.fps_idling.fps_max = 60.0
+        params.fps_idling.time_active_after_last_event = 0.25
         call = params.callbacks
         call.setup_imgui_config = _configure_imgui
         call.load_additional_fonts = style.load_fonts
@@ -208,6 +212,7 @@ class App:
 
     def _docking(self) -> hello_imgui.DockingParams:
         docking = hello_imgui.DockingParams()
+        docking.main_dock_space_node_flags = 0  # else it would have a background whatever the style
         split, down = hello_imgui.DockingSplit, imgui.Dir.down
         docking.docking_splits = [
             split("MainDockSpace", "Left", imgui.Dir.left, 0.225),
@@ -221,11 +226,22 @@ class App:
         return docking
 
     def _window(self, label: str, space: str, show: Callable[[Ui], None]) -> hello_imgui.DockableWindow:
-        window = hello_imgui.DockableWindow(label, space, lambda: show(self.ui))
+        window = hello_imgui.DockableWindow(label, space)
+        flags = 0
         if label == "Picture":
             window.can_be_closed = False
-            flags = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
-            window.imgui_window_flags = int(flags | imgui.WindowFlags_.no_collapse)
+            scrolling = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
+            flags = int(scrolling | imgui.WindowFlags_.no_collapse)
+
+        def show_panel() -> None:
+            # What lies in the main window is on its background already.  Filling it once more for each panel is
+            # half of all the work where a processor draws.
+            shown = self.params.docking_params.dockable_window_of_name(label)  # the params hold a copy
+            shown.imgui_window_flags = flags | (int(imgui.WindowFlags_.no_background) if _in_main_window() else 0)
+            show(self.ui)
+
+        window.gui_function = show_panel
+        window.imgui_window_flags = flags
         return window
 
     def _menus(self) -> None:
@@ -259,6 +275,11 @@ class App:
 
     def _reset_layout(self) -> None:
         self.params.docking_params.layout_reset = True
+
+
+def _in_main_window() -> bool:
+    """Whether the panel that is being drawn is docked there, and floats neither alone nor with others."""
+    return bool(imgui.internal.get_current_window().root_window_dock_tree.name.startswith("MainDockSpace"))
 
 
 class _LayoutFile:

@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 
 from tracer.renderer import Frame, Renderer
-from tracer.scene.load import scene_info
 from tracer.scene.model import Camera, Scene
 from viewer import navigation
 from viewer.history import History
@@ -74,7 +73,7 @@ class Controller:
         Returns the frame that has just come, if one has."""
         if size != self.size:
             self.size = size
-            self.moved()
+            self.tracing.glance()
         self.opener.follow()
         self.keeper.follow()
         frame = self._take_frame()
@@ -98,10 +97,15 @@ class Controller:
         return self.motion.under_way
 
     @property
+    def lively(self) -> bool:
+        """Whether each of the window's frames shows something else than the last."""
+        return self.moving or self.session.playing
+
+    @property
     def active(self) -> bool:
-        """Whether the window must not doze."""
+        """Whether anything goes on."""
         working = self.render.busy or self.opener.busy or self.keeper.busy or self.runner.current is not None
-        return working or self.moving or self.session.playing
+        return working or self.lively
 
     def _take_frame(self) -> Frame | None:
         error = self.render.take_error()
@@ -146,11 +150,11 @@ class Controller:
         found = self.pick(at)
         self.selected = found if found is not None and found.primitive >= 0 else None
 
-    def show(self, scene: Scene, renderer: Renderer) -> None:
+    def show(self, scene: Scene, renderer: Renderer, info: dict[str, Any]) -> None:
         """Look at another scene: what was learnt and drawn of the old one is gone, settings and view stay."""
         self.runner.stop()
         self.session.open(scene)
-        self.info = scene_info(scene)
+        self.info = info
         self.render.use(renderer)
         self.history.clear()
         self.tracing.forget()

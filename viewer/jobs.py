@@ -20,14 +20,14 @@ from viewer.lines import in_one_line
 
 Result = TypeVar("Result")
 
-NICENESS = 2
+JOB, TRACER = 2, 10  # niceness: what a window waits for, and what takes all cores for as long as it is open
 
 
 class Job(Generic[Result]):
     """Runs `work(progress)` on a thread of its own.
 
     `label` and `fraction` tell how far it is; after `done`, `result` is set, or `error` holds one
-    line, or `cancelled` is true.
+    line, or `cancelled` is true.  The end wakes the window; progress is seen often enough as it dozes.
     """
 
     def __init__(self, title: str, work: Callable[[Progress], Result], wake: Callable[[], None] = lambda: None) -> None:
@@ -66,10 +66,9 @@ class Job(Generic[Result]):
         if self._stop.is_set():
             raise Cancelled(self.title)
         self.label, self.fraction = label, min(max(float(fraction), 0.0), 1.0)
-        self._wake()
 
     def _run(self) -> None:
-        step_back()
+        step_back(JOB)
         try:
             result = self._work(self._progress)
             if self._stop.is_set():
@@ -84,11 +83,11 @@ class Job(Generic[Result]):
             self._wake()
 
 
-def step_back() -> None:
+def step_back(niceness: int) -> None:
     """Let the window go before this thread, and the threads it starts, where cores are short (Linux only)."""
     if sys.platform.startswith("linux"):
         with suppress(OSError):
-            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), NICENESS)
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), niceness)
 
 
 def one_line(error: BaseException) -> str:

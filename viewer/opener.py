@@ -119,7 +119,7 @@ class Opener:
             self._c.say(job.error or "nothing was loaded", error=True)
         else:
             opened = job.result
-            self._c.show(opened.scene, opened.renderer)
+            self._c.show(opened.scene, opened.renderer, opened.info)
             if self._restore_after_load is not None:
                 self._c.restore(self._restore_after_load)
             count = len(opened.scene.warnings)

@@ -6,10 +6,11 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from tracer.compilation import warm_up
 from tracer.renderer import Renderer, Settings
-from tracer.scene.load import load_visible_scene
+from tracer.scene.load import load_visible_scene, scene_info
 from tracer.scene.model import Progress, Scene
 from viewer import resources
 
@@ -19,10 +20,11 @@ CAPTURE_SUFFIXES = (".png",)
 
 @dataclass(frozen=True)
 class Opened:
-    """A scene and the renderer that holds its trees."""
+    """A scene, the renderer that holds its trees, and what `scene_info` tells of it."""
 
     scene: Scene
     renderer: Renderer
+    info: dict[str, Any]
     seconds: float
 
 
@@ -56,7 +58,7 @@ def open_scene(path: Path, settings: Settings, ready: Callable[[], bool], progre
         time.sleep(0.02)
     warm_up(progress, len(scene.lights), settings.accelerator)  # many lights need wider words, and kernels for them
     renderer = Renderer(scene, settings, progress)
-    return Opened(scene, renderer, time.perf_counter() - started)
+    return Opened(scene, renderer, scene_info(scene), time.perf_counter() - started)
 
 
 def find_scene(stored: str, picture: Path) -> Path | None:

@@ -20,7 +20,7 @@ from typing import Protocol
 
 from tracer.renderer import Frame, Settings
 from tracer.scene.model import Camera, Cancelled
-from viewer.jobs import one_line, step_back
+from viewer.jobs import TRACER, one_line, step_back
 
 
 class Traces(Protocol):
@@ -157,7 +157,7 @@ class RenderThread:
         return not self._thread.is_alive()
 
     def _run(self) -> None:
-        step_back()
+        step_back(TRACER)
         while (turn := self._next()) is not None:
             renderer, work, reset = turn
             if isinstance(work, RenderRequest):

@@ -21,10 +21,11 @@ def _rgb(code: str, alpha: float = 1.0) -> ImVec4:
     return ImVec4(red, green, blue, alpha)
 
 
+BACKGROUND = _rgb("1E2127")
 _COLORS = {
     imgui.Col_.text: _rgb("E4E7EC"),
     imgui.Col_.text_disabled: _rgb("7B828E"),
-    imgui.Col_.window_bg: _rgb("1E2127"),
+    imgui.Col_.window_bg: BACKGROUND,
     imgui.Col_.child_bg: _rgb("1E2127", 0.0),
     imgui.Col_.popup_bg: _rgb("262A32", 0.98),
     imgui.Col_.border: _rgb("343A45"),
@@ -82,6 +83,11 @@ def follow_density() -> None:
         _applied_em = em
         _style_widgets(em)
         _style_plots(em)
+
+
+def fill_windows(filled: bool) -> None:
+    """Whether windows that begin from here on have a background: what is drawn over the cleared screen needs none."""
+    imgui.get_style().set_color_(int(imgui.Col_.window_bg), BACKGROUND if filled else ImVec4(0.0, 0.0, 0.0, 0.0))
 
 
 def _style_widgets(em: float) -> None:

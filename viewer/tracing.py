@@ -29,6 +29,8 @@ class Tracing:
         self._settled: RenderRequest | None = None
         self._asked: RenderRequest | None = None
         self._chosen: Settings | None = None
+        self._glance = False
+        self._new = False
 
     @property
     def frame(self) -> Frame | None:
@@ -37,6 +39,7 @@ class Tracing:
     def forget(self) -> None:
         """Another scene: it has no frame yet, and its pixels cost something else."""
         self.traced = self._asked = self._settled = None
+        self._new = True
         self._resolution.forget()
 
     def again(self, modes_are_lost: bool = False) -> None:
@@ -44,6 +47,10 @@ class Tracing:
         self._serial += 1
         if modes_are_lost:
             self._settled = None
+
+    def glance(self) -> None:
+        """The next picture is another: a coarse one of it comes first, and one only."""
+        self._glance = True
 
     def interrupted(self) -> None:
         """What was asked for may never come: it is asked for anew."""
@@ -60,6 +67,7 @@ class Tracing:
         if traced is None:
             return None
         self.traced, frame = traced, traced.frame
+        self._glance = False
         self._resolution.observe(frame.statistics.seconds, frame.width * frame.height)
         if not self._c.moving and not self._c.session.playing:
             self._settle(traced.request)
@@ -79,9 +87,13 @@ class Tracing:
         width, height = self.full_size
         if session.scene is None or width < 1 or height < 1 or c.runner.current is not None:
             return
+        if self._new:  # what the scene brings into the window changes the room for its picture
+            self._new = False
+            c.wake()
+            return
         if self._jumped():
-            c.moved()  # a coarse picture of the new view first
-        moving = c.moving
+            self.glance()
+        moving = c.moving or self._glance
         coarse = moving and c.preferences.dynamic_resolution
         divisor = self._resolution.choose(width, height, c.preferences.target_fps) if coarse else 1
         width, height = divided(width, height, divisor)

@@ -21,7 +21,7 @@ from tests.viewer.conftest import FakeRenderer, make_scene
 from tracer import experiment, zoom
 from tracer.frame import Frame
 from tracer.renderer import Renderer
-from tracer.scene.load import load_scene
+from tracer.scene.load import load_scene, scene_info
 from tracer.scene.model import Camera, Cancelled
 from viewer import exports
 from viewer.controller import Controller
@@ -49,7 +49,7 @@ class Desk:
 
     def open(self, path: Path) -> None:
         scene = load_scene(path)
-        self.c.show(scene, Renderer(scene, self.c.session.settings))
+        self.c.show(scene, Renderer(scene, self.c.session.settings), scene_info(scene))
         self.rest()
 
     def tick(self) -> None:
@@ -299,7 +299,7 @@ def test_a_run_that_is_overtaken_by_another_scene_does_not_trace_it(desk: Desk) 
     assert begun.wait(20.0)
     desk.runner.start_experiment()
     scene = load_scene(embedded_scenes()["figure4"])
-    desk.c.show(scene, Renderer(scene))
+    desk.c.show(scene, Renderer(scene), scene_info(scene))
     hold.set()
     desk.run_to_its_end()
     assert renderer is not desk.c.render._renderer
@@ -334,7 +334,7 @@ def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytes
 
     monkeypatch.setattr(experiment, "run", fail)
     controller = Controller(Preferences(dynamic_resolution=False))
-    controller.show(make_scene(), FakeRenderer())
+    controller.show(make_scene(), FakeRenderer(), {})
     controller.runner.experiment_plan.frames = 2
     controller.runner.start_experiment()
     end = time.monotonic() + 20.0

@@ -26,10 +26,8 @@ class Desk:
 
     def __init__(self, controller: Controller) -> None:
         self.c, self.renderer = controller, FakeRenderer()
-        controller.show(make_scene(), self.renderer)
-        self.rest()
-        controller.trace_again()  # those until now came while the window had just been opened, which is motion
-        assert self.rest() == [False, False]
+        controller.show(make_scene(), self.renderer, {})
+        assert self.rest() == [False, False]  # one that teaches the modes, and one that shows what they save
 
     def rest(self) -> list[bool]:
         """Tick until all has been traced; for each frame asked for meanwhile, whether it was to be verified."""

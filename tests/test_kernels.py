@@ -1,0 +1,235 @@
+"""Where compiled kernels are kept: what is changed, damaged, full, read-only, or used by many at once does no harm."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from tracer import compilation
+from tracer.kernels import cache_folder
+from tracer.scene.model import Cancelled
+
+ROOT = Path(__file__).resolve().parent.parent
+TINY = """
+import sys
+from tracer.geometry.tiny import ask
+from tracer.kernels import cache_folder
+for name in sys.argv[1:]:
+    print(ask(eval(name)), end=" ")
+print(sum(ask.stats.cache_hits.values()), cache_folder())
+"""
+
+# Between reading which versions of a kernel there are and writing that there is one more, others have time to do so.
+SLOW = """
+import time
+from numba.core.caching import IndexDataCacheFile
+save = IndexDataCacheFile._save_index
+IndexDataCacheFile._save_index = lambda *a: (time.sleep(0.2), save(*a))
+"""
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """A folder with a copy of the tracer, and in it a kernel that asks a helper of another file for a number."""
+    shutil.copytree(ROOT / "tracer", tmp_path / "tracer", ignore=shutil.ignore_patterns("__pycache__"))
+    (tmp_path / "tracer" / "geometry" / "tiny.py").write_text(
+        "from tracer.kernels import kernel\nfrom tracer.simd.tiny import value\n\n"
+        "@kernel\ndef ask(x):\n    return value() + x\n"
+    )
+    write_helper(tmp_path, 1)
+    return tmp_path
+
+
+def write_helper(package: Path, value: int) -> None:
+    (package / "tracer" / "simd" / "tiny.py").write_text(
+        f"from tracer.kernels import subkernel\n\n@subkernel\ndef value():\n    return {value}\n"
+    )
+
+
+def start(package: Path, folder: Path, *numbers: str, before: str = "") -> subprocess.Popen:
+    environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(folder), "PYTHONPATH": str(package)}
+    command = [sys.executable, "-c", before + TINY, *numbers]
+    return subprocess.Popen(
+        command, cwd=package, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+def finish(process: subprocess.Popen) -> tuple[list[float], int, Path]:
+    """What a process printed: the kernel's answers, how many versions of it came from the cache, and from where."""
+    out, err = process.communicate(timeout=120)
+    assert process.returncode == 0, err
+    *answers, hits, folder = out.split()
+    return [float(answer) for answer in answers], int(hits), Path(folder)
+
+
+def ask(package: Path, folder: Path, *numbers: str) -> tuple[list[float], int, Path]:
+    return finish(start(package, folder, *numbers))
+
+
+def test_a_changed_helper_never_meets_a_stale_kernel(package: Path) -> None:
+    cached = package / "cache"
+    assert ask(package, cached, "1")[:2] == ([2.0], 0)
+    answers, hits, folder = ask(package, cached, "1")
+    assert (answers, hits) == ([2.0], 1)
+    write_helper(package, 10)
+    answers, hits, other = ask(package, cached, "1")
+    assert (answers, hits) == ([11.0], 0)
+    assert folder != other and folder.parent == other.parent == cached
+    write_helper(package, 1)
+    assert ask(package, cached, "1") == ([2.0], 1, folder)
+
+
+def test_processes_that_compile_at_once_lose_and_mix_up_nothing(package: Path) -> None:
+    cached = package / "cache"
+    numbers = [f"__import__('numpy').{kind}(3)" for kind in ("int8", "uint8", "int16", "uint16")]
+    processes = [start(package, cached, *half, before=SLOW) for half in (numbers[:2], numbers[2:])]
+    assert [finish(process)[0] for process in processes] == [[4.0] * 2] * 2
+    assert ask(package, cached, *numbers)[:2] == ([4.0] * 4, 4)
+
+
+def test_a_damaged_cache_is_compiled_anew(package: Path) -> None:
+    cached = package / "cache"
+    folder = ask(package, cached, "1")[2]
+    for pattern in ("*.nbc", "*.nbi"):
+        (damaged,) = folder.rglob(f"tiny.ask{pattern}")
+        damaged.write_bytes(damaged.read_bytes()[:100])
+        assert ask(package, cached, "1")[:2] == ([2.0], 0), pattern
+        assert ask(package, cached, "1")[:2] == ([2.0], 1), pattern
+
+
+def test_without_a_folder_a_temporary_one_serves_and_goes(package: Path) -> None:
+    cached = package / "cache"
+    cached.write_text("a file is in its place")
+    answers, hits, folder = ask(package, cached, "1", "1.5")
+    assert (answers, hits) == ([2.0, 2.5], 0)
+    assert cached not in folder.parents and not folder.exists()
+
+
+@contextmanager
+def mounted(folder: Path, size: str) -> Iterator[None]:
+    """A file system of its own; skips the test where that is not allowed."""
+    folder.mkdir()
+    command = ["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(folder)]
+    if os.geteuid() != 0 or not shutil.which("mount") or subprocess.run(command, capture_output=True).returncode:
+        pytest.skip("only root may mount a file system, and not everywhere")
+    try:
+        yield
+    finally:
+        subprocess.run(["umount", str(folder)], check=True)
+
+
+def test_a_full_disk_is_survived(package: Path) -> None:
+    cached = package / "cache"
+    with mounted(cached, "64k"):
+        answers, _, folder = ask(package, cached, "1")
+        assert answers == [2.0] and cached not in folder.parents
+        tight = {"SHADOWCULL_CACHE_DIR": str(cached), "TMPDIR": str(cached), "PYTHONPATH": str(package)}
+        (cached / "filling").write_bytes(bytes(40_000))
+        command = [sys.executable, "-c", TINY, "1", "1.5"]
+        done = subprocess.run(command, cwd=package, env=os.environ | tight, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        assert done.stdout.split()[:2] == ["2", "2.5"]
+
+
+def test_a_folder_that_may_only_be_read_is_read(package: Path) -> None:
+    cached = package / "cache"
+    with mounted(cached, "64m"):
+        folder = ask(package, cached, "1")[2]
+        subprocess.run(["mount", "-o", "remount,ro", str(cached)], check=True)
+        assert ask(package, cached, "1", "1.5") == ([2.0, 2.5], 1, folder)
+        write_helper(package, 10)
+        answers, _, other = ask(package, cached, "1")
+        assert answers == [11.0] and cached not in other.parents
+
+
+def test_kernels_of_old_sources_are_removed_at_last(package: Path) -> None:
+    cached = package / "cache"
+    for age in range(20):
+        old = cached / f"{age:016x}"
+        old.mkdir(parents=True)
+        (old / "kernel.nbc").write_bytes(b"code")
+        os.utime(old, (time.time() - 100 * age - 100,) * 2)
+    others = cached / "notes", cached / "0123"
+    for other in others:
+        other.mkdir()
+    folder = ask(package, cached, "1")[2]
+    kept = {f"{age:016x}" for age in range(15)} | {folder.name}
+    assert {path.name for path in cached.iterdir()} == kept | {other.name for other in others}
+    assert ask(package, cached, "1")[1] == 1
+
+
+# --- compiling in processes of their own ------------------------------------------------------------
+
+
+@pytest.mark.parametrize("accelerator", ["bvh8", "kdtree"])
+@pytest.mark.parametrize("lights", [1, 16])
+def test_what_is_compiled_beside_is_what_a_frame_needs(lights: int, accelerator: str) -> None:
+    """All steps are done, and with all kernels there nothing is compiled: so each is compiled as it is called."""
+    compilation.warm_up(lights=lights, accelerator=accelerator)
+    before = sorted(path.name for path in cache_folder().rglob("*.nbc"))
+    told: list[tuple[str, float]] = []
+    done = compilation._compile_beside(lambda *what: told.append(what), lights, accelerator)
+    assert done == set(compilation._SHARES)
+    assert sorted(path.name for path in cache_folder().rglob("*.nbc")) == before
+    fractions = [fraction for _, fraction in told]
+    assert fractions == sorted(fractions) and fractions[-1] > 0.7
+    assert sum(compilation._SHARES.values()) == pytest.approx(1.0)
+
+
+def test_cancelling_ends_the_processes(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[subprocess.Popen] = []
+    make = compilation._worker
+    monkeypatch.setattr(compilation, "_worker", lambda *a: made.append(make(*a)) or made[-1])
+
+    def report(what: str, fraction: float) -> None:
+        if len(made) == 3:
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        compilation._compile_beside(report, 1, "bvh8")
+    assert [process.returncode for process in made] == [-signal.SIGKILL] * 3
+
+
+def test_processes_that_cannot_be_had_cost_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    assert compilation._compile_beside(lambda *what: None, 1, "bvh8") == set()
+
+
+def test_processes_end_with_the_one_that_wants_them(tmp_path: Path) -> None:
+    code = (
+        "from tracer import compilation\n"
+        "make = compilation._worker\n"
+        "def worker(*a):\n    made = make(*a)\n    print(made.pid, flush=True)\n    return made\n"
+        "compilation._worker = worker\n"
+        "compilation.warm_up()\n"
+    )
+    environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(tmp_path)}
+    parent = subprocess.Popen(
+        [sys.executable, "-c", code], cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True
+    )
+    assert parent.stdout is not None
+    workers = [Path("/proc") / parent.stdout.readline().strip() for _ in range(3)]
+    assert all(worker.exists() for worker in workers)
+    parent.kill()
+    parent.wait()
+    parent.stdout.close()
+    end = time.monotonic() + 20.0
+    while any(_lives(worker) for worker in workers):
+        assert time.monotonic() < end, "a process outlives the one that wants its kernels"
+        time.sleep(0.05)
+
+
+def _lives(process: Path) -> bool:
+    try:
+        return process.joinpath("stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
