@@ -54,7 +54,7 @@ def ask(world: World, kind: str, rays: Rays, repeats: int) -> tuple[dict[str, fl
     hits = Hits(np.zeros(n, np.float32), np.zeros(n, np.int32), np.zeros(n, np.float32), np.zeros(n, np.float32))
     blocked = np.zeros(n, np.bool_)
     batch = batch_of(rays, blocked=blocked) if kind == "shadow" else batch_of(rays, hits)
-    query = world.structure.any_static if kind == "shadow" else world.structure.closest
+    query = world.structure.any_hit if kind == "shadow" else world.structure.closest
     took = []
     for _ in range(repeats):
         counts = np.zeros(2, np.int64)

@@ -19,18 +19,20 @@ from tracer.geometry.bvh8.packet import (
     IX,
     IY,
     IZ,
+    LANES,
     NUMBER,
     OX,
     OY,
     OZ,
     ROW,
-    STATIC_T,
     T_MIN,
     T,
     U,
     V,
     lanes_inside,
+    mark_static,
 )
+from tracer.geometry.bvh8.packet_leaf import quadric_in_child
 from tracer.geometry.bvh8.packet_tree import STACK, code_of, prefetch_child, push_sorted, quadrics_in
 from tracer.geometry.bvh8.tree import QUADRIC, WIDTH
 from tracer.geometry.bvh8.trees import BLOCK, BOX, HAS_DYNAMIC, NODE, NUMBERS, tree_of
@@ -47,8 +49,10 @@ from tracer.simd import (
     lane_of,
     load_f32,
     load_f32x8,
+    load_f32x16,
     load_i32,
     load_i32x8,
+    load_i32x16,
     load_i64,
     lowest_bit,
     mask8,
@@ -61,9 +65,9 @@ from tracer.simd import (
 
 NOBODY = np.int32(0x7FFFFFFF)
 NOTHING = np.int64(-0x80000000)  # code of no child
-DYNAMIC = 1  # in the lowest bit of a pending child's distance: it is one of the dynamic tree
-ROOM = 64 * (WIDTH + 1)  # bytes that hold which children of a root sixteen rays enter, and where
-SINGLE_MEMORY = 2 * ROOM + 64 + STACK  # both roots', scratch, then the stack
+CLOSED = np.int32(0x7FFFFFFF)  # key of a child that a ray does not enter: no distance at all
+ROOM = 64 * (2 * WIDTH + 1)  # bytes of the keys of both roots' children, and of those last chosen, for sixteen rays
+SINGLE_MEMORY = ROOM + 64 + STACK  # keys, scratch, then the stack
 
 
 class Line(NamedTuple):
@@ -202,54 +206,52 @@ def _any_quadric(r, far, trees, node, quadrics, enter, leave):
     return False
 
 
-@subkernel
-def _open_root(memory, v, node, room):
-    """Sixteen rays into the children of a root, at which all begin: at what distances, and into which."""
-    entered = i32x16(0)
-    for c in range(WIDTH):
-        box = node + 4 * c
-        enter, leave = lanes_inside(
-            None, memory, v, load_f32(box), load_f32(box + 32), load_f32(box + 64),
-            load_f32(box + 96), load_f32(box + 128), load_f32(box + 160),
-        )  # fmt: skip
-        store(room + 64 * c, maximum(enter, ZERO))
-        entered = entered | select(enter <= leave, np.int32(1) << np.int32(c), np.int32(0))
-    store(room + 64 * WIDTH, entered)
+@inlined
+def _entry(distance, code):
+    """A pending child: the bits of its distance, and its code."""
+    return (np.int64(distance) << 32) | (code & 0xFFFFFFFF)
 
 
 @inlined
-def _entry(distance, dynamic, code):
-    """A pending child: the bits of its distance, the lowest saying whose it is, and its code."""
-    return (((np.int64(distance) & ~DYNAMIC) | dynamic) << 32) | (code & 0xFFFFFFFF)
+def _open_root(memory, v, trees, first, room, nearest):
+    """Sixteen rays into the children of a root, at which all begin: into rows of keys, one for each child.
+
+    A key is the bits of the distance, the lowest four replaced by first and the child's number (which only makes
+    the distance less), or CLOSED.  Quadrics among the children are asked at once."""
+    quadrics = quadrics_in(trees.nodes)
+    for c in range(WIDTH):
+        box, key = trees.nodes + 4 * c, i32x16(CLOSED)
+        if (quadrics >> c) & 1:
+            quadric_in_child(None, memory, box, np.int64(1) << v, trees, ~code_of(trees.nodes, c) - QUADRIC, nearest)
+        else:
+            enter, leave = lanes_inside(
+                None, memory, v, load_f32(box), load_f32(box + 32), load_f32(box + 64),
+                load_f32(box + 96), load_f32(box + 128), load_f32(box + 160),
+            )  # fmt: skip
+            distance = as_i32(maximum(enter, ZERO)) & np.int32(~15)
+            key = select(enter <= leave, distance | np.int32(first + c), CLOSED)
+        store(room + 64 * (first + c), key)
+
+
+@inlined
+def _next_children(memory, v, room, children):
+    """Of sixteen rays, one after `room`'s rows of keys, the next nearest child of the roots that each has still to
+    visit: into the row after them; the rays that have one, as bits."""
+    last, best = load_i32x16(room + 64 * children), i32x16(CLOSED)
+    for c in range(children):
+        key = load_i32x16(room + 64 * c)
+        best = minimum(best, select(key > last, key, CLOSED))
+    store(room + 64 * children, best)
+    return bits_of(as_f32(best & np.int32(~15)) <= load_f32x16(memory + T * ROW + 64 * v))
 
 
 @subkernel
-def _closest_of_one(a, room, data, stack, counts):
-    """Into the column of a packet's memory that begins at an address: what its ray meets first."""
+def _closest_below(a, code, trees, stack, counts):
+    """Into the column of a packet's memory that begins at an address: what its ray meets first below a child."""
     r = _line_at(a)
-    best = Best(load_f32(a + T * ROW), load_i32(a + NUMBER * ROW), ZERO, ZERO)
+    best = Best(load_f32(a + T * ROW), load_i32(a + NUMBER * ROW), load_f32(a + U * ROW), load_f32(a + V * ROW))
     pending, scratch = np.int64(0), stack - 64
-    for dynamic in range(1 + load_i64(data + HAS_DYNAMIC)):
-        trees, first = tree_of(data, dynamic), room + ROOM * dynamic
-        children, node = np.int64(load_i32(first + 64 * WIDTH)), trees.nodes
-        quadrics = children & quadrics_in(node)
-        if quadrics != 0:
-            enter, leave = _children(node, r, best.t)
-            best = _nearest_quadric(r, best, trees, node, quadrics, enter, leave)
-            children ^= quadrics
-        while children != 0:
-            c = lowest_bit(children)
-            children &= children - 1
-            prefetch_child(trees, code_of(node, c))
-            entry = _entry(load_i32(first + 64 * c), dynamic, code_of(node, c))
-            pending = push_sorted(stack, pending, 0, entry)
-    while pending > 0:
-        pending -= 1
-        entry = load_i64(stack + 8 * pending)
-        if as_f32(np.int32(entry >> 32)) > best.t:
-            continue
-        dynamic, code = (entry >> 32) & 1, np.int64(np.int32(entry & 0xFFFFFFFF))
-        trees = tree_of(data, dynamic)
+    while code != NOTHING:
         while code >= 0:
             counts[STEPS] += 1
             node = trees.nodes + NODE * code
@@ -269,19 +271,25 @@ def _closest_of_one(a, room, data, stack, counts):
             if children == 0:
                 continue
             store(scratch, maximum(enter, ZERO))
-            nearest = _entry(load_i32(scratch + 4 * c), dynamic, code)
+            nearest = _entry(load_i32(scratch + 4 * c), code)
             bottom = pending
             while children != 0:
                 c = lowest_bit(children)
                 children &= children - 1
                 prefetch_child(trees, code_of(node, c))
-                entry = _entry(load_i32(scratch + 4 * c), dynamic, code_of(node, c))
+                entry = _entry(load_i32(scratch + 4 * c), code_of(node, c))
                 pending = push_sorted(stack, pending, bottom, max(entry, nearest))
                 nearest = min(entry, nearest)
             code = np.int64(np.int32(nearest & 0xFFFFFFFF))
         if code != NOTHING:
             counts[TESTS] += 1
             best = _nearest_in_block(trees.blocks + BLOCK * ~code, r, best)
+        code = NOTHING
+        while pending > 0 and code == NOTHING:
+            pending -= 1
+            entry = load_i64(stack + 8 * pending)
+            if as_f32(np.int32(entry >> 32)) <= best.t:
+                code = np.int64(np.int32(entry & 0xFFFFFFFF))
     store(a + T * ROW, best.t)
     store(a + NUMBER * ROW, best.number)
     store(a + U * ROW, best.u)
@@ -289,15 +297,26 @@ def _closest_of_one(a, room, data, stack, counts):
 
 
 @subkernel
-def _any_of_one(a, first, trees, stack, counts):
-    """Whether the ray whose column in a packet's memory begins at an address meets anything in a tree."""
+def _any_below(a, code, trees, stack, counts):
+    """Whether the ray whose column in a packet's memory begins at an address meets anything below a child."""
     r, far = _line_at(a), load_f32(a + T * ROW)
-    pending, node, children = np.int64(0), trees.nodes, np.int64(load_i32(first + 64 * WIDTH))
-    while True:
+    store(stack, code)
+    pending = np.int64(1)
+    while pending > 0:
+        pending -= 1
+        code = load_i64(stack + 8 * pending)
+        if code < 0:
+            counts[TESTS] += 1
+            if _any_in_block(trees.blocks + BLOCK * ~code, r, far):
+                return True
+            continue
+        counts[STEPS] += 1
+        node = trees.nodes + NODE * code
+        enter, leave = _children(node, r, far)
+        children = bits_of(enter <= leave)
         quadrics = children & quadrics_in(node)
         if quadrics != 0:
             counts[TESTS] += 1
-            enter, leave = _children(node, r, far)
             if _any_quadric(r, far, trees, node, quadrics, enter, leave):
                 return True
             children ^= quadrics
@@ -305,47 +324,49 @@ def _any_of_one(a, first, trees, stack, counts):
             store(stack + 8 * pending, code_of(node, lowest_bit(children)))
             children &= children - 1
             pending += 1
-        code = np.int64(-1)
-        while code < 0:
-            if pending == 0:
-                return False
-            pending -= 1
-            code = load_i64(stack + 8 * pending)
-            if code < 0:
-                counts[TESTS] += 1
-                if _any_in_block(trees.blocks + BLOCK * ~code, r, far):
-                    return True
-        counts[STEPS] += 1
-        node = trees.nodes + NODE * code
-        enter, leave = _children(node, r, far)
-        children = bits_of(enter <= leave)
+    return False
 
 
 @subkernel
-def closest_one_by_one(memory, v, count, data, stack, counts):
-    """Nearest hits of the first `count` rays of a packet's v-th vector."""
-    room = stack - 64 - 2 * ROOM
-    for dynamic in range(1 + load_i64(data + HAS_DYNAMIC)):
-        _open_root(memory, v, tree_of(data, dynamic).nodes, room + ROOM * dynamic)
-        counts[STEPS] += count
-    for lane in range(count):
-        a = memory + 64 * v + 4 * lane
-        if load_f32(a + T * ROW) > load_f32(a + T_MIN * ROW):
-            _closest_of_one(a, room + 4 * lane, data, stack, counts)
+def closest_one_by_one(memory, v, data, stack, counts):
+    """Nearest hits of the rays of a packet's v-th vector."""
+    room, trees = stack - 64 - ROOM, 1 + load_i64(data + HAS_DYNAMIC)
+    for dynamic in range(trees):
+        counts[STEPS] += LANES
+        _open_root(memory, v, tree_of(data, dynamic), WIDTH * dynamic, room, True)
+    keys = room + 64 * WIDTH * trees
+    store(keys, i32x16(-1))
+    rest = _next_children(memory, v, room, WIDTH * trees)
+    while rest != 0:
+        while rest != 0:
+            lane = lowest_bit(rest)
+            rest &= rest - 1
+            key = np.int64(load_i32(keys + 4 * lane))
+            tree = tree_of(data, (key >> 3) & 1)
+            _closest_below(memory + 64 * v + 4 * lane, code_of(tree.nodes, key & 7), tree, stack, counts)
+        rest = _next_children(memory, v, room, WIDTH * trees)
 
 
 @subkernel
-def any_one_by_one(memory, v, count, data, which, stack, counts):
-    """Which of the first `count` rays of a packet's v-th vector meet what is asked for; t tells it."""
+def any_one_by_one(memory, v, data, which, stack, counts):
+    """Which rays of a packet's v-th vector meet what is asked for: t tells it."""
     room = stack - 64 - ROOM
     for dynamic in range(2):
         if (which >> dynamic) & 1 == 0:
             continue
-        trees = tree_of(data, dynamic)
-        _open_root(memory, v, trees.nodes, room)
-        counts[STEPS] += count
-        for lane in range(count):
-            a = memory + 64 * v + 4 * lane
-            if load_f32(a + T * ROW) > load_f32(a + T_MIN * ROW):
-                if _any_of_one(a, room + 4 * lane, trees, stack, counts):
-                    store(a + T * ROW, BLOCKED_T if dynamic else STATIC_T)
+        tree = tree_of(data, dynamic)
+        counts[STEPS] += LANES
+        _open_root(memory, v, tree, 0, room, False)
+        keys = room + 64 * WIDTH
+        store(keys, i32x16(-1))
+        rest = _next_children(memory, v, room, WIDTH)
+        while rest != 0:
+            while rest != 0:
+                lane = lowest_bit(rest)
+                rest &= rest - 1
+                a = memory + 64 * v + 4 * lane
+                if _any_below(a, code_of(tree.nodes, np.int64(load_i32(keys + 4 * lane)) & 7), tree, stack, counts):
+                    store(a + T * ROW, BLOCKED_T)
+            rest = _next_children(memory, v, room, WIDTH)
+        if dynamic == 0:
+            mark_static(memory, np.int64(1) << v)

@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.geometry.bvh8.packet import (
-    LANES,
     MEMORY,
     PACKET,
     fill,
@@ -48,7 +47,7 @@ def closest(data, batch, first, last, counts):
             v = lowest_bit(todo)
             axis, way, together = lead_of(memory, v)
             if not (finite and together):
-                closest_one_by_one(memory, v, min(n - LANES * v, LANES), data, single_stack, count)
+                closest_one_by_one(memory, v, data, single_stack, count)
                 todo &= todo - 1
                 continue
             group = group_of(memory, todo, axis, way)
@@ -79,7 +78,7 @@ def any_hit(data, batch, first, last, counts):
             v = lowest_bit(todo)
             axis, way, together = lead_of(memory, v)
             if not (finite and together):
-                any_one_by_one(memory, v, min(n - LANES * v, LANES), data, which, single_stack, count)
+                any_one_by_one(memory, v, data, which, single_stack, count)
                 todo &= todo - 1
                 continue
             group = group_of(memory, todo, axis, way)
