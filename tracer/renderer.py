@@ -175,13 +175,12 @@ class UnfinishedFrame:
         """§2.3: which primitives does a neighbouring pixel show to be hidden?"""
         if self._settings.method == "none":
             return
-        placed, height = self._renderer.world.placed, self._settings.height
+        height, memory = self._settings.height, self.memory
+        seen = self._renderer.world.placed, self._rays, self._buffers.primitive, self._settings.symmetric
 
         def work(chunk: int, worker: int) -> None:
             rows = chunk * ROWS, min(height, (chunk + 1) * ROWS)
-            self._occlusion_tests[worker] += occlusion_testing(
-                placed, self._rays, self._buffers.primitive, self._settings.symmetric, *rows, self.memory.hidden
-            )
+            self._occlusion_tests[worker] += occlusion_testing(*seen, *rows, memory.words, memory.hidden)
 
         for_each_chunk(work, -(-height // ROWS), self._workers, self._cancel)
 

@@ -123,7 +123,15 @@ def test_occlusion_testing_asks_what_the_naive_twin_asks(seed, symmetric):
     alone = [tracer.World(scene(c[None])) for c in corners]
     met = np.array([w.any_hits(tracer.RayBatch(origins, directions)) for w in alone]).reshape(-1, 18, 24)
     expected, tests = naive.hidden_primitives(ids, lambda px, py, p: met[p, py, px], symmetric)
-    hidden = np.zeros(len(corners), np.bool_)
-    counted = sum(occlusion_testing(world.placed, camera, ids, symmetric, row, row + 6, hidden) for row in (0, 6, 12))
-    assert set(np.flatnonzero(hidden)) == expected
-    assert counted == tests
+    nothing = np.zeros(len(corners), np.uint32)
+    for words in (
+        nothing,
+        np.where(np.arange(len(corners)) % 4 == 3, np.uint32(OcclusionMode.FULLY_RENDERED), nothing),
+    ):
+        hidden = np.zeros(len(corners), np.bool_)
+        counted = [
+            occlusion_testing(world.placed, camera, ids, symmetric, row, row + 6, words, hidden) for row in (0, 6, 12)
+        ]
+        assert sum(counted) == tests
+        asked = words != OcclusionMode.FULLY_RENDERED
+        assert set(np.flatnonzero(hidden & asked)) == expected & set(np.flatnonzero(asked))

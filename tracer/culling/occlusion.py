@@ -12,44 +12,83 @@ import numpy as np
 
 from tracer.culling.modes import DYNAMIC, FULLY_RENDERED, INIT, PARTIALLY_OCCLUDED, occlusion_bits
 from tracer.geometry.camera import primary_ray
+from tracer.geometry.memory import borrowed
 from tracer.geometry.queries import hits_alone
 from tracer.geometry.rays import MISS
 from tracer.kernels import inlined, kernel
+from tracer.simd import address_of, bits_of, i32x16, lanes_below, load_i32, load_i32x16, local_memory, lowest_bit, store
 
 
 @inlined
-def _test(world, camera, x, y, primitive, hidden):
-    """Occlusion test: is `primitive` hidden where pixel (x, y) sees another one?"""
+def _test(world, camera, x, y, primitive, words, hidden):
+    """Occlusion test: is `primitive` hidden where pixel (x, y) sees another one?
+
+    It is left out, though counted as published, where the answer is known or would change nothing."""
+    mode = occlusion_bits(words[primitive])
+    if hidden[primitive] or mode in (FULLY_RENDERED, DYNAMIC):
+        return
     if hits_alone(world, primary_ray(camera, x, y), primitive):
         hidden[primitive] = True
 
 
-@kernel
-def occlusion_testing(world, camera, primitives, symmetric, first_row, last_row, hidden):
-    """Mark in hidden (units,) bool what rows first_row to last_row - 1 find occluded; returns the tests made.
+@inlined
+def _sixteen(row, x, width, spare):
+    """Primitives from the x-th of a row on, MISS where the row has none; `spare` is memory to put them together in."""
+    if x >= 0 and x + 16 <= width:
+        return load_i32x16(row + 4 * x)
+    store(spare, i32x16(MISS))
+    for i in range(max(0, -x), min(16, width - x)):
+        store(spare + 4 * i, load_i32(row + 4 * (x + i)))
+    return load_i32x16(spare)
 
-    primitives (height, width) int32 are the nearest along the primary rays.  With `symmetric` the
-    reference pixel's ray is also tested against the current primitive.
+
+@inlined
+def _compare(world, camera, primitives, x, y, rx, ry, symmetric, words, hidden):
+    """Occlusion tests of two pixels that see different primitives, (rx, ry) the reference; how many."""
+    reference, current, tests = primitives[ry, rx], primitives[y, x], 0
+    if reference != MISS:
+        _test(world, camera, x, y, reference, words, hidden)
+        tests += 1
+    if symmetric and current != MISS:
+        _test(world, camera, rx, ry, current, words, hidden)
+        tests += 1
+    return tests
+
+
+@kernel
+def occlusion_testing(world, camera, primitives, symmetric, first_row, last_row, words, hidden):
+    """Mark in hidden (units,) bool what rows first_row to last_row - 1 find occluded; returns the tests asked for.
+
+    primitives (height, width) int32 are the nearest along the primary rays, words (units,) their modes as
+    the last frame left them: what is hidden matters of those alone that are not FULLY_RENDERED.  With
+    `symmetric` the reference pixel's ray is also tested against the current primitive.
     """
+    world, primitives, words, hidden = borrowed(world), borrowed(primitives), borrowed(words), borrowed(hidden)
     height, width = primitives.shape
-    tests = 0
+    spare, tests = local_memory(64), 0
     for y in range(first_row, last_row):
-        for x in range(width):
-            current = primitives[y, x]
-            if current != MISS and (x == 0 or y == 0 or x == width - 1 or y == height - 1):
-                hidden[current] = True  # it may go on beyond the screen's edge
-            for rx, ry in ((x - 1, y), (x, y - 1)):
-                if rx < 0 or ry < 0:
-                    continue
-                reference = primitives[ry, rx]
-                if reference == current:
-                    continue
-                if reference != MISS:
-                    _test(world, camera, x, y, reference, hidden)
-                    tests += 1
-                if symmetric and current != MISS:
-                    _test(world, camera, rx, ry, current, hidden)
-                    tests += 1
+        row = address_of(primitives) + 4 * width * y
+        step = 1 if y == 0 or y == height - 1 else max(1, width - 1)
+        for x in range(0, width, step):
+            if primitives[y, x] != MISS:
+                hidden[primitives[y, x]] = True  # it may go on beyond the screen's edge
+        for start in range(0, width, 16):
+            there = lanes_below(width - start, 0)
+            current = _sixteen(row, start, width, spare)
+            left = there & ~bits_of(current == _sixteen(row, start - 1, width, spare))
+            if start == 0:
+                left &= ~1
+            while left != 0:
+                x = start + lowest_bit(left)
+                left &= left - 1
+                tests += _compare(world, camera, primitives, x, y, x - 1, y, symmetric, words, hidden)
+            if y == 0:
+                continue
+            above = there & ~bits_of(current == _sixteen(row - 4 * width, start, width, spare))
+            while above != 0:
+                x = start + lowest_bit(above)
+                above &= above - 1
+                tests += _compare(world, camera, primitives, x, y, x, y - 1, symmetric, words, hidden)
     return tests
 
 

@@ -67,52 +67,56 @@ class Answers(NamedTuple):
     """What is known of the shadow rays of n points to one light, 16 points a row, as bits of int32:
     which are due, which of those reach the light and, where knowledge asks to verify, which truly do.
 
-    For asking: low and high (n,) int32, halves of the points' words where anything is culled; live, the bits
-    of those to be traced, their rays, one after the other, and blocked, a byte for each ray."""
+    For asking: low and high (n,) int32, halves of the points' words, and whether these have been looked up,
+    vector by vector; live, the bits of those to be traced, their rays, one after the other, and blocked, a
+    byte for each ray."""
 
     due: NDArray[np.int32]
     lit: NDArray[np.int32]
     truth: NDArray[np.int32]
     low: NDArray[np.int32]
     high: NDArray[np.int32]
+    looked_up: NDArray[np.int32]
     rays: Rays
     live: NDArray[np.int32]
     blocked: NDArray[np.float32]
 
 
 # Rows of the memory that answers lie in, the first eight of which are the rays.
-DUE_ROW, LIT_ROW, TRUTH_ROW, LOW_ROW, HIGH_ROW, LIVE_ROW, BLOCKED_ROW = range(8, 15)
-ANSWER_ROWS = 15
+DUE_ROW, LIT_ROW, TRUTH_ROW, LOW_ROW, HIGH_ROW, LOOKED_UP_ROW, LIVE_ROW, BLOCKED_ROW = range(8, 16)
+ANSWER_ROWS = 16
 
 
 @inlined
-def answers_in(memory):
-    """Answers for n points at most, in memory (ANSWER_ROWS, n) float32."""
+def answers_in(memory, count):
+    """Answers for `count` points, of which nothing has been looked up, in memory (ANSWER_ROWS, n) float32."""
+    memory[LOOKED_UP_ROW, : (count + 15) // 16] = 0
     return Answers(
         memory[DUE_ROW].view(np.int32),
         memory[LIT_ROW].view(np.int32),
         memory[TRUTH_ROW].view(np.int32),
         memory[LOW_ROW].view(np.int32),
         memory[HIGH_ROW].view(np.int32),
+        memory[LOOKED_UP_ROW].view(np.int32),
         Rays(memory[0:3], memory[3:6], memory[6], memory[7]),
         memory[LIVE_ROW].view(np.int32),
         memory[BLOCKED_ROW],
     )
 
 
-@subkernel
-def look_up(points, count, knowledge, answers):
-    """Put the words of `count` points side by side, where anything is to be culled."""
-    if not knowledge.cull:
+@inlined
+def _look_up(points, v, knowledge, answers):
+    """Put the words of the v-th vector of points side by side, once for all lights."""
+    if answers.looked_up[v]:
         return
-    words, low, high = address_of(knowledge.words), address_of(answers.low), address_of(answers.high)
-    for at in range(0, 4 * count, 64):
-        unit = load_i32x16(address_of(points.unit) + at)
-        if knowledge.words.itemsize == 4:
-            store(low + at, gather_i32x16(words, unit))
-        else:
-            store(low + at, gather_i32x16(words, unit << np.int32(1)))
-            store(high + at, gather_i32x16(words + 4, unit << np.int32(1)))
+    answers.looked_up[v] = 1
+    words, at = address_of(knowledge.words), 64 * v
+    unit = load_i32x16(address_of(points.unit) + at)
+    if knowledge.words.itemsize == 4:
+        store(address_of(answers.low) + at, gather_i32x16(words, unit))
+    else:
+        store(address_of(answers.low) + at, gather_i32x16(words, unit << np.int32(1)))
+        store(address_of(answers.high) + at, gather_i32x16(words + 4, unit << np.int32(1)))
 
 
 @inlined
@@ -162,6 +166,7 @@ def _choose_fates(points, light, number, knowledge, count, answers, counts):
         due = _due(points, light, v) & lanes_below(count, v)
         full, non = np.int64(0), np.int64(0)
         if knowledge.cull and number < MAX_CULLED_LIGHTS and due != 0:
+            _look_up(points, v, knowledge, answers)
             full, non = _known(answers, number, v)
         answers.due[v], answers.lit[v], answers.live[v] = due, due & non, due & ~(full | non)
         counts[DUE] += ones(due)

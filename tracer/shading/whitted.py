@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.shadow import ANSWER_ROWS, RAYS, SHADOW_COUNTERS, answers_in, look_up, shadow_testing
+from tracer.culling.shadow import ANSWER_ROWS, RAYS, SHADOW_COUNTERS, answers_in, shadow_testing
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.shading.bounce import next_wave
@@ -101,7 +101,6 @@ def trace_primary(world, camera, tile, buffers, counts, space):
 @subkernel
 def _light(world, look, wave, points, knowledge, answers, counts, tile, first, buffers):
     """Local light of a wave, with shadow testing for every light; `first` for the wave of primary rays."""
-    look_up(points, wave.size, knowledge, answers)
     for number in range(len(look.lights)):
         shadow_testing(world, points, wave.size, look.lights[number], number, knowledge, answers, counts[SHADOW:])
         add_light(points, look, number, answers.lit, wave, points.light)
@@ -159,7 +158,7 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts, spa
     wave = without_misses(wave, look.background, pixels.light, pixels.reference)
     for bounce in range(depth + 1):
         points = points_at(world, look, wave, space.points, camera.spread, knowledge.verify)
-        answers = answers_in(room(space.answers, wave.size))
+        answers = answers_in(room(space.answers, wave.size), wave.size)
         _light(world, look, wave, points, knowledge, answers, counts, pixels, bounce == 0, buffers)
         if bounce == 0:
             _see_normals(wave, points, pixels, buffers)
