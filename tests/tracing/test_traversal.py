@@ -59,7 +59,7 @@ def assert_same_way(world: tracer.World, rays: Rays, there: np.ndarray, edges: b
 @pytest.mark.parametrize("n, size", [(20, 0.3), (400, 0.05)])
 def test_rays_go_the_naive_twins_way_through_triangles(seed: int, n: int, size: float):
     rng = np.random.default_rng(seed)
-    world = tracer.World(scene(random_corners(rng, n, size)))
+    world = tracer.World(scene(random_corners(rng, n, size)), accelerator="kdtree")
     (steps, tests), (any_steps, any_tests) = assert_same_way(world, random_rays(rng, 60), np.ones(n, np.bool_))
     assert steps > any_steps > 0
     assert tests > any_tests > 0
@@ -75,7 +75,7 @@ def test_rays_through_edges_and_corners_go_the_naive_twins_way(seed: int):
     for corner, side, axis in zip(low, size, axes, strict=True):
         a, b = np.delete(np.eye(3) * side, axis, axis=0)
         corners += quad(corner, corner + a, corner + a + b, corner + b)
-    world = tracer.World(scene(np.array(corners, np.float32)))
+    world = tracer.World(scene(np.array(corners, np.float32)), accelerator="kdtree")
     directions = rng.integers(-1, 2, (80, 3))
     directions[(directions == 0).all(axis=1)] = 1
     origins = rng.integers(0, 8, (80, 3)) - rng.integers(0, 9, (80, 1)) * directions
@@ -90,7 +90,7 @@ def test_rays_go_the_naive_twins_way_through_random_scenes():
     @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
     def check(made: tracer.Scene, time: float, seed: int) -> None:
         nonlocal sums
-        world = tracer.World(made, time)
+        world = tracer.World(made, time, "kdtree")
         there = brute.primitives_there(made, time)
         sums += assert_same_way(world, random_rays(np.random.default_rng(seed), 25), there)
 

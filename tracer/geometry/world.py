@@ -39,7 +39,7 @@ class World:
     """
 
     def __init__(
-        self, scene: Scene, time: float = 0.0, accelerator: str = "kdtree", progress: Progress | None = None
+        self, scene: Scene, time: float = 0.0, accelerator: str = "bvh8", progress: Progress | None = None
     ) -> None:
         if accelerator not in ACCELERATORS:
             raise ValueError(f"there is no accelerator {accelerator!r}; there is {', '.join(ACCELERATORS)}")

@@ -1,4 +1,4 @@
-"""A packet: up to 128 rays in local memory, as eight vectors of sixteen, and the frusta that bound these.
+"""A packet: up to 128 rays in local memory, as eight vectors of sixteen.
 
 Each of a ray's numbers has a row.  What is found is written into the rows too, whether the rays go
 through a tree together (`packet_tree`) or one by one (`single`), so that `traverse` need not know.
@@ -6,13 +6,10 @@ through a tree together (`packet_tree`) or one by one (`single`), so that `trave
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
 import numpy as np
 from numba.core import types
 from numba.extending import overload
 
-from tracer.geometry.bvh8.frustum import NO_RAYS, Frustum, axes_of, wider
 from tracer.geometry.bvh8.intersect import ZERO
 from tracer.geometry.queries import (
     BLOCKED,
@@ -35,13 +32,10 @@ from tracer.simd import (
     any_lane,
     as_f32,
     as_i32,
-    bits_of,
-    f32x8,
     f32x16,
     i32x16,
     largest,
     load_f32,
-    load_f32x8,
     load_f32x16,
     load_i32,
     load_i32x16,
@@ -65,30 +59,13 @@ LARGEST = np.float32(1e29)  # of t_max, short of what stands for a blocked ray
 TINY = np.float32(1e-20)
 BLOCKED_T = -FAR  # t of a ray that is known to be blocked, and of none
 STATIC_T = np.float32(2) * BLOCKED_T  # of one that something static blocks, once the static tree is done
-WIDE = np.float32(4)  # slopes of sixteen rays that differ by more are not worth a frustum
-NARROW = np.float32(0.02)  # by less, and the frustum alone will do
-HUGE = np.float32(1e18)
 
-# Rows of a packet's memory: of all rays, of their eight frusta, and room to work in.
+# Rows of a packet's memory: of all rays, of their eight frusta (`packet_group`), and room to work in.
 DX, DY, DZ, IX, IY, IZ, T_MIN, T, NUMBER, U, V, ENTER, LEAVE, OX, OY, OZ = range(16)
 FRUSTA = 16 * ROW
-START, SLOPE, NEAR, REACH = 0, 6, 10, 11  # rows of eight: of starts there are six, of slopes four
-SCRATCH = FRUSTA + 12 * 32
+SCRATCH = FRUSTA + 12 * 32  # twelve rows of eight
 TERMS = SCRATCH + 64
 MEMORY = TERMS + 320
-
-
-class Group(NamedTuple):
-    """Vectors of a packet that go together: which, as bits, and which of those have so wide a frustum that
-    rays had better be asked too; their frusta's axes, a frustum around them all but for where it ends, and
-    the box of their directions."""
-
-    vectors: Any
-    wide: Any
-    axes: Any
-    frustum: Any
-    low: Any
-    high: Any
 
 
 def origin_of(origin, memory, v):
@@ -180,160 +157,6 @@ def open_vectors(memory, vectors):
         a = memory + 64 * v
         result |= np.int64(any_lane(load_f32x16(a + T * ROW) > load_f32x16(a + T_MIN * ROW))) << v
     return result
-
-
-@inlined
-def _slopes(memory, v, axis, way):
-    """Least and greatest slopes of the v-th vector along the other axes; HUGE where some ray does not go that way, or
-    looks for hits behind its origin."""
-    a = memory + 64 * v
-    if smallest(load_f32x16(a + (DX + axis) * ROW) * way) <= ZERO or smallest(load_f32x16(a + T_MIN * ROW)) < ZERO:
-        return -HUGE, HUGE, -HUGE, HUGE
-    scale = load_f32x16(a + (IX + axis) * ROW) * way
-    slope_u = load_f32x16(a + (DX + (axis + 1) % 3) * ROW) * scale
-    slope_v = load_f32x16(a + (DX + (axis + 2) % 3) * ROW) * scale
-    return smallest(slope_u), largest(slope_u), smallest(slope_v), largest(slope_v)
-
-
-@subkernel
-def lead_of(memory, v):
-    """The axis, and which way along it, that suit the v-th vector best; whether its frustum is worth having."""
-    best, axis, way = ZERO, 0, ZERO
-    for k in range(3):
-        d = load_f32x16(memory + (DX + k) * ROW + 64 * v)
-        up, down = smallest(d), -largest(d)
-        if up > best:
-            best, axis, way = up, k, np.float32(1)
-        if down > best:
-            best, axis, way = down, k, np.float32(-1)
-    u0, u1, v0, v1 = _slopes(memory, v, axis, way)
-    return axis, way, maximum(u1 - u0, v1 - v0) <= WIDE
-
-
-@inlined
-def _put(memory, row, v, value):
-    store(memory + FRUSTA + 32 * row + 4 * v, value)
-
-
-@inlined
-def _put_starts(memory, v, axes):
-    """Where the rays of the v-th vector start."""
-    u, w = (axes.along + 1) % 3, (axes.along + 2) % 3
-    a = memory + 64 * v
-    k = load_f32x16(a + (OX + axes.along) * ROW) * axes.way
-    _put(memory, START, v, smallest(k))
-    _put(memory, START + 1, v, largest(k))
-    x = load_f32x16(a + (OX + u) * ROW)
-    _put(memory, START + 2, v, smallest(x))
-    _put(memory, START + 3, v, largest(x))
-    x = load_f32x16(a + (OX + w) * ROW)
-    _put(memory, START + 4, v, smallest(x))
-    _put(memory, START + 5, v, largest(x))
-
-
-@inlined
-def _put_reach(memory, v, axes):
-    """Note up to where along the axis the rays of the v-th vector are still looking."""
-    a = memory + 64 * v
-    k = load_f32x16(a + (DX + axes.along) * ROW) * axes.way
-    reach = largest(load_f32x16(a + T * ROW) * k)
-    _put(memory, REACH, v, reach + np.float32(2e-6) * reach)
-
-
-@subkernel
-def put_reaches(memory, vectors, axes):
-    """The same for several vectors, given as bits."""
-    while vectors != 0:
-        _put_reach(memory, lowest_bit(vectors), axes)
-        vectors &= vectors - 1
-
-
-@inlined
-def _put_frustum(memory, v, axes):
-    """Bound the v-th vector along an axis, if that is worth it; by how much its slopes differ."""
-    u0, u1, v0, v1 = _slopes(memory, v, axes.along, axes.way)
-    width = maximum(u1 - u0, v1 - v0)
-    if width > WIDE:
-        return width
-    u0, u1 = wider(u0, u1)
-    v0, v1 = wider(v0, v1)
-    _put(memory, SLOPE, v, u0)
-    _put(memory, SLOPE + 1, v, u1)
-    _put(memory, SLOPE + 2, v, v0)
-    _put(memory, SLOPE + 3, v, v1)
-    a = memory + 64 * v
-    near = smallest(load_f32x16(a + T_MIN * ROW) * load_f32x16(a + (DX + axes.along) * ROW) * axes.way)
-    _put(memory, NEAR, v, maximum(near - np.float32(2e-6) * near, ZERO))
-    _put_reach(memory, v, axes)
-    _put_starts(memory, v, axes)
-    return width
-
-
-@inlined
-def frusta_of(memory):
-    """The frusta of all eight vectors."""
-    a = memory + FRUSTA
-    return Frustum(
-        load_f32x8(a), load_f32x8(a + 32), load_f32x8(a + 64), load_f32x8(a + 96), load_f32x8(a + 128),
-        load_f32x8(a + 160), load_f32x8(a + 192), load_f32x8(a + 224), load_f32x8(a + 256), load_f32x8(a + 288),
-        load_f32x8(a + 320), load_f32x8(a + 352),
-    )  # fmt: skip
-
-
-@inlined
-def _around(f):
-    """The frustum around eight."""
-    return Frustum(
-        smallest(f.start0), largest(f.start1), smallest(f.u_start0), largest(f.u_start1),
-        smallest(f.v_start0), largest(f.v_start1), smallest(f.u0), largest(f.u1), smallest(f.v0), largest(f.v1),
-        smallest(f.near), largest(f.far),
-    )  # fmt: skip
-
-
-@inlined
-def _least_and_greatest(memory, row, vectors):
-    first = load_f32x16(memory + row * ROW + 64 * lowest_bit(vectors))
-    low, high, rest = first, first, vectors & (vectors - 1)
-    while rest != 0:
-        x = load_f32x16(memory + row * ROW + 64 * lowest_bit(rest))
-        low, high = minimum(low, x), maximum(high, x)
-        rest &= rest - 1
-    return smallest(low), largest(high)
-
-
-@subkernel
-def group_of(memory, vectors, axis, way):
-    """Those of these vectors (bits) that can go together along an axis; at least one."""
-    for row in (START, START + 2, START + 4, SLOPE, SLOPE + 2):  # bounds of no ray: they leave others' as they are
-        store(memory + FRUSTA + 32 * row, f32x8(HUGE))
-        store(memory + FRUSTA + 32 * row + 32, f32x8(-HUGE))
-    store(memory + FRUSTA + 32 * NEAR, f32x8(HUGE))
-    store(memory + FRUSTA + 32 * REACH, f32x8(NO_RAYS))
-    axes = axes_of(axis, way)
-    members, wide, rest = np.int64(0), np.int64(0), vectors
-    while rest != 0:
-        v = lowest_bit(rest)
-        rest &= rest - 1
-        width = _put_frustum(memory, v, axes)
-        members |= np.int64(width <= WIDE) << v
-        wide |= np.int64(width > NARROW) << v
-    dx = _least_and_greatest(memory, DX, members)
-    dy = _least_and_greatest(memory, DY, members)
-    dz = _least_and_greatest(memory, DZ, members)
-    low, high = (dx[0], dy[0], dz[0]), (dx[1], dy[1], dz[1])
-    return Group(members, wide, axes, _around(frusta_of(memory)), low, high)
-
-
-@inlined
-def farthest(memory):
-    """Up to where along the axis any frustum goes."""
-    return largest(load_f32x8(memory + FRUSTA + 32 * REACH))
-
-
-@inlined
-def looking(memory, distance):
-    """The vectors that are still looking beyond a distance along the axis."""
-    return bits_of(load_f32x8(memory + FRUSTA + 32 * REACH) >= distance)
 
 
 @inlined

@@ -12,7 +12,8 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.geometry.bvh8.frustum import Frustum, box_at, boxes_at, entering
-from tracer.geometry.bvh8.packet import SCRATCH, farthest, frusta_of, lanes_inside, looking, put_reaches
+from tracer.geometry.bvh8.packet import SCRATCH, lanes_inside
+from tracer.geometry.bvh8.packet_group import farthest, frusta_of, looking, put_reaches
 from tracer.geometry.bvh8.packet_leaf import any_in_block, closest_in_block, quadric_in_child
 from tracer.geometry.bvh8.tree import QUADRIC
 from tracer.geometry.bvh8.trees import BLOCK, CHILDREN, NODE

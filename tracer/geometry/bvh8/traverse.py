@@ -13,13 +13,12 @@ from tracer.geometry.bvh8.packet import (
     MEMORY,
     PACKET,
     fill,
-    group_of,
     keep_blocked,
     keep_hits,
-    lead_of,
     mark_static,
     open_vectors,
 )
+from tracer.geometry.bvh8.packet_group import group_of, lead_of
 from tracer.geometry.bvh8.packet_tree import STACK, any_in_tree, closest_in_tree
 from tracer.geometry.bvh8.single import SINGLE_MEMORY, any_one_by_one, closest_one_by_one
 from tracer.geometry.bvh8.trees import HAS_DYNAMIC, tree_of

@@ -1,0 +1,184 @@
+"""One ray against eight: the children of a node, the triangles of a block.  They are the lanes."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tracer.geometry.bvh8.intersect import ZERO, crossing, terms_of, triangles_of
+from tracer.geometry.bvh8.packet import (
+    DX,
+    DY,
+    DZ,
+    FAR,
+    IX,
+    IY,
+    IZ,
+    OX,
+    OY,
+    OZ,
+    ROW,
+    T_MIN,
+)
+from tracer.geometry.bvh8.packet_tree import code_of
+from tracer.geometry.bvh8.tree import QUADRIC
+from tracer.geometry.bvh8.trees import BOX, NUMBERS
+from tracer.geometry.intersect import hit_quadric
+from tracer.geometry.rays import Ray
+from tracer.kernels import inlined, subkernel
+from tracer.simd import (
+    any_lane,
+    as_f32,
+    as_i32,
+    bits_of,
+    lane_of,
+    load_f32,
+    load_f32x8,
+    load_i32,
+    load_i32x8,
+    lowest_bit,
+    mask8,
+    maximum,
+    minimum,
+    select,
+    smallest,
+)
+
+NOBODY = np.int32(0x7FFFFFFF)
+
+
+class Line(NamedTuple):
+    """A ray with its inverse direction and the offsets of near planes in a node."""
+
+    ox: Any
+    oy: Any
+    oz: Any
+    dx: Any
+    dy: Any
+    dz: Any
+    ix: Any
+    iy: Any
+    iz: Any
+    near_x: Any
+    near_y: Any
+    near_z: Any
+    t_min: Any
+
+
+class Best(NamedTuple):
+    """The nearest hit so far."""
+
+    t: Any
+    number: Any
+    u: Any
+    v: Any
+
+
+@inlined
+def _near(inverse):
+    """Offset, from a box's low plane, of the plane that is met first."""
+    return np.int64(as_i32(inverse) >> 31) & 96
+
+
+@inlined
+def line_at(a):
+    """The ray whose column in a packet's memory begins at an address."""
+    ix, iy, iz = load_f32(a + IX * ROW), load_f32(a + IY * ROW), load_f32(a + IZ * ROW)
+    return Line(
+        load_f32(a + OX * ROW), load_f32(a + OY * ROW), load_f32(a + OZ * ROW),
+        load_f32(a + DX * ROW), load_f32(a + DY * ROW), load_f32(a + DZ * ROW), ix, iy, iz,
+        _near(ix), _near(iy), _near(iz), load_f32(a + T_MIN * ROW),
+    )  # fmt: skip
+
+
+@inlined
+def children_of(node, r, far):
+    """Where a ray enters and leaves eight children."""
+    ax, bx = (load_f32x8(node + r.near_x) - r.ox) * r.ix, (load_f32x8(node + 96 - r.near_x) - r.ox) * r.ix
+    ay, by = (load_f32x8(node + 32 + r.near_y) - r.oy) * r.iy, (load_f32x8(node + 128 - r.near_y) - r.oy) * r.iy
+    az, bz = (load_f32x8(node + 64 + r.near_z) - r.oz) * r.iz, (load_f32x8(node + 160 - r.near_z) - r.oz) * r.iz
+    return maximum(maximum(ax, ay), maximum(az, r.t_min)), minimum(minimum(bx, by), minimum(bz, far))
+
+
+@inlined
+def _inside_block(block, r, t):
+    """Which of eight distances lie where a ray is in a block's box."""
+    x0, y0, z0 = load_f32(block + BOX), load_f32(block + BOX + 4), load_f32(block + BOX + 8)
+    x1, y1, z1 = load_f32(block + BOX + 12), load_f32(block + BOX + 16), load_f32(block + BOX + 20)
+    ax, bx = (x0 - r.ox) * r.ix, (x1 - r.ox) * r.ix
+    ay, by = (y0 - r.oy) * r.iy, (y1 - r.oy) * r.iy
+    az, bz = (z0 - r.oz) * r.iz, (z1 - r.oz) * r.iz
+    enter = maximum(maximum(minimum(ax, bx), minimum(ay, by)), minimum(az, bz))
+    leave = minimum(minimum(maximum(ax, bx), maximum(ay, by)), maximum(az, bz))
+    return (t >= enter) & (t <= leave)
+
+
+@inlined
+def _first_lane(block, t, bits):
+    """The nearest of several lanes, given as bits; of equals that of the lowest number."""
+    if bits & (bits - 1) == 0:
+        return lowest_bit(bits)
+    mask = mask8(bits)
+    mask = mask & (t == smallest(select(mask, t, FAR)))
+    numbers = load_i32x8(block + NUMBERS)
+    return lowest_bit(bits_of(mask & (numbers == smallest(select(mask, numbers, NOBODY)))))
+
+
+@inlined
+def nearest_in_block(block, r, best):
+    m = terms_of(r.ox, r.oy, r.oz, triangles_of(block))
+    crosses, sign, u, v, area = crossing(r.dx, r.dy, r.dz, m)
+    if not any_lane(crosses):
+        return best
+    scale = np.float32(1) / area
+    t = as_f32(as_i32(m.height) ^ sign) * scale
+    bits = bits_of(crosses & (t > r.t_min) & (t <= best.t) & _inside_block(block, r, t))
+    if bits == 0:
+        return best
+    lane = _first_lane(block, t, bits)
+    nearest, number = lane_of(t, lane), load_i32(block + NUMBERS + 4 * lane)
+    if nearest == best.t and number >= best.number:
+        return best
+    return Best(nearest, number, lane_of(u * scale, lane), lane_of(v * scale, lane))
+
+
+@inlined
+def any_in_block(block, r, far):
+    m = terms_of(r.ox, r.oy, r.oz, triangles_of(block))
+    crosses, sign, _u, _v, area = crossing(r.dx, r.dy, r.dz, m)
+    if not any_lane(crosses):
+        return False
+    t = as_f32(as_i32(m.height) ^ sign) * (np.float32(1) / area)
+    return any_lane(crosses & (t > r.t_min) & (t < far) & _inside_block(block, r, t))
+
+
+@inlined
+def _quadric(r, trees, i, enter, leave):
+    """t of a ray on a quadric inside its box, or FAR."""
+    t = hit_quadric(Ray(r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, r.t_min, FAR), trees.quadrics, i)
+    return t if t >= enter and t <= leave else FAR
+
+
+@subkernel
+def nearest_quadric(r, best, trees, node, quadrics, enter, leave):
+    """The nearest of best and those children of a node that are quadrics, given as bits."""
+    while quadrics != 0:
+        c = lowest_bit(quadrics)
+        quadrics &= quadrics - 1
+        i = ~code_of(node, c) - QUADRIC
+        t = _quadric(r, trees, i, lane_of(enter, c), lane_of(leave, c))
+        if t < best.t or (t == best.t and trees.triangles + i < best.number):
+            best = Best(t, np.int32(trees.triangles + i), ZERO, ZERO)
+    return best
+
+
+@subkernel
+def any_quadric(r, far, trees, node, quadrics, enter, leave):
+    """Whether a ray meets those children of a node that are quadrics nearer than far."""
+    while quadrics != 0:
+        c = lowest_bit(quadrics)
+        quadrics &= quadrics - 1
+        if _quadric(r, trees, ~code_of(node, c) - QUADRIC, lane_of(enter, c), lane_of(leave, c)) < far:
+            return True
+    return False
