@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from llvmlite.binding import get_host_cpu_name
 
 from tracer.culling.modes import word_type
 from tracer.frame import Settings
@@ -70,7 +71,7 @@ def warm_up(progress: Progress | None = None, lights: int = 1, accelerator: str 
         if name in _ready:
             return
         done: set[str] = set()
-        mark = cache_folder() / f"{name}.ready"
+        mark = cache_folder() / f"{name}-{sys.implementation.cache_tag}-{get_host_cpu_name()}.ready"
         if not mark.exists():
             with suppress(OSError):
                 done = _compile_beside(report, lights, accelerator)
@@ -80,7 +81,8 @@ def warm_up(progress: Progress | None = None, lights: int = 1, accelerator: str 
         report("compiled", 1.0)
         _ready.add(name)
         with suppress(OSError):
-            mark.touch()
+            if any(cache_folder().rglob("*.nbc")):  # else nothing could be kept
+                mark.touch()
 
 
 # --- steps: each generator names what comes next, and does it when asked for the one after ---------
@@ -185,11 +187,11 @@ def _compile_beside(report: Progress, lights: int, accelerator: str) -> set[str]
 def _worker(told: int, *arguments: str) -> subprocess.Popen:
     """A process that compiles one part, and tells of its steps through the pipe `told`."""
     environment = os.environ | {
-        "PYTHONPATH": os.pathsep.join([str(Path(__file__).parents[1]), *filter(None, sys.path)]),
+        "PYTHONPATH": os.pathsep.join(dict.fromkeys([*filter(None, sys.path), str(Path(__file__).parents[1])])),
         "SHADOWCULL_CACHE_DIR": str(cache_folder().parent),
     }
     return subprocess.Popen(
-        [sys.executable, "-m", "tracer.compilation", str(told), *arguments],
+        [sys.executable, "-P", "-m", "tracer.compilation", str(told), *arguments],
         env=environment,
         stdin=subprocess.PIPE,  # nothing is written to it: it closes when this process ends, however that happens
         stdout=subprocess.DEVNULL,
@@ -212,19 +214,24 @@ def _no_hit(data, batch, first, last, counts):
         t[i], primitive[i] = INFINITY, MISS
 
 
+@entry
+def _nothing(data, batch, first, last, counts):
+    """Nobody asks, as no ray has hit anything."""
+
+
 class _Nowhere:
     """A structure that no ray meets anything in: frames compile with it as with any other."""
 
-    closest = any_hit = _no_hit
+    closest, any_hit = _no_hit, _nothing
 
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
         self._primitives = primitives
 
     def place(self, poses: Poses) -> Placed:
-        primitives, address = self._primitives, _no_hit.address
+        primitives = self._primitives
         to_object = poses.to_object.reshape(-1, 12).astype(np.float32)
         arrays = (primitives.triangles, primitives.quadrics, to_object, primitives.object_of)
-        return Placed(*arrays, address, address, 0, False)
+        return Placed(*arrays, _no_hit.address, _nothing.address, 0, False)
 
 
 class _Unasked:

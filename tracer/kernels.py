@@ -85,7 +85,8 @@ def _temporary_folder() -> tempfile.TemporaryDirectory:
 
 
 def _remove_oldest(root: Path) -> None:
-    """Keep the folders that were used last; a process that still runs with another has all it needs in memory."""
+    """Keep the folders that were used last; a process that still runs with another compiles what
+    it has not loaded yet."""
     with suppress(OSError):
         folders = [folder for folder in root.iterdir() if re.fullmatch("[0-9a-f]{16}", folder.name)]
         folders.sort(key=lambda folder: folder.stat().st_mtime, reverse=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
@@ -23,8 +24,14 @@ def thread_count(wanted: int = 0) -> int:
 
 
 @cache
-def _pool(threads: int) -> ThreadPoolExecutor:
+def _pool(threads: int, priority: int) -> ThreadPoolExecutor:
+    """Threads that inherit the priority of the first thread that asks for them: each priority has its own."""
     return ThreadPoolExecutor(threads, thread_name_prefix="tracer")
+
+
+def _priority() -> int:
+    """Niceness of the calling thread."""
+    return os.getpriority(os.PRIO_PROCESS, threading.get_native_id()) if hasattr(os, "getpriority") else 0
 
 
 def for_each_chunk(
@@ -46,7 +53,8 @@ def for_each_chunk(
                 stopped = True  # nobody need go on
                 raise
 
-    others = [_pool(threads - 1).submit(run, worker) for worker in range(1, threads)] if threads > 1 else []
+    pool = _pool(threads - 1, _priority()) if threads > 1 else None
+    others = [pool.submit(run, worker) for worker in range(1, threads)] if pool else []
     try:
         run(0)
     finally:

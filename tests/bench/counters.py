@@ -72,10 +72,10 @@ EDITS = (
             ("packet_tree", 8, "STEPS", "1", 2),
             ("packet_tree", 4, "TESTS", "1", 1),
             ("single", 16, "TESTS", "1", 1),
-            ("single", 12, "TESTS", "1", 3),
+            ("single", 12, "TESTS", "1", 4),
             ("single", 12, "STEPS", "1", 1),
             ("single", 8, "STEPS", "1", 1),
-            ("single", 8, "STEPS", "LANES", 2),
+            ("single", 8, "STEPS", "rays", 2),
         )
     ),
 )

@@ -52,7 +52,7 @@ def ask(world: World, kind: str, rays: Rays, repeats: int) -> tuple[dict[str, fl
     """What a batch costs a ray on one thread, and its nearest hits; t of a shadow ray is 0 where it is blocked."""
     n = len(rays.t_min)
     hits = Hits(np.zeros(n, np.float32), np.zeros(n, np.int32), np.zeros(n, np.float32), np.zeros(n, np.float32))
-    blocked = np.zeros(n, np.bool_)
+    blocked = np.zeros(n, np.uint8)
     batch = batch_of(rays, blocked=blocked) if kind == "shadow" else batch_of(rays, hits)
     query = world.structure.any_hit if kind == "shadow" else world.structure.closest
     took = []
@@ -61,7 +61,7 @@ def ask(world: World, kind: str, rays: Rays, repeats: int) -> tuple[dict[str, fl
         before = time.thread_time()
         query.call(world.placed.data, batch.ctypes.data, 0, n, counts.ctypes.data)
         took.append(time.thread_time() - before)
-    hits.t[:] = np.where(blocked, 0.0, 1.0) if kind == "shadow" else hits.t
+    hits.t[:] = np.where(blocked != 0, 0.0, 1.0) if kind == "shadow" else hits.t
     return {"ns": 1e9 * min(took) / n, "steps": counts[STEPS] / n, "tests": counts[TESTS] / n}, hits
 
 

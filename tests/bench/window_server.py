@@ -84,7 +84,7 @@ class Watch:
             hello_imgui.request_refresh()
             if now - self.since > self.seconds:
                 state, self.app.params.app_shall_exit = "closing", True
-        elif state not in ("tracing", "moving"):
+        elif state not in ("tracing", "moving", "closing"):
             state, c.preferences.keep_tracing = "tracing", True
             c.trace_again()
         if state != self.state:

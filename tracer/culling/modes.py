@@ -70,11 +70,6 @@ def occlusion_bits(word):
 
 
 @inlined
-def shadow_bits(word, light):
-    return (np.uint64(word) >> np.uint64(2 + 2 * light)) & np.uint64(3)
-
-
-@inlined
 def add_shadow(words, unit, light, mode):
     """OR a shadow mode into a unit's word."""
     words[unit] = np.uint64(words[unit]) | (np.uint64(mode) << np.uint64(2 + 2 * light))

@@ -64,7 +64,7 @@ class Knowledge(NamedTuple):
 
 
 class Answers(NamedTuple):
-    """What is known of the shadow rays of n points to one light, 16 points a row, as bits of int32:
+    """What is known of the shadow rays of n points to one light, as bits of int32, 16 points a number:
     which are due, which of those reach the light and, where knowledge asks to verify, which truly do.
 
     For asking: low and high (n,) int32, halves of the points' words, and whether these have been looked up,

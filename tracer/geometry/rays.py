@@ -15,7 +15,8 @@ INFINITY = np.float32(np.inf)
 
 
 class Ray(NamedTuple):
-    """One ray, float32: origin, direction (of any length: t is in its units) and the open interval of t."""
+    """One ray, float32: origin, direction (of any length: t is in its units) and the open interval of t, which
+    begins at 0 or later."""
 
     ox: Any
     oy: Any
@@ -28,7 +29,7 @@ class Ray(NamedTuple):
 
 
 class Rays(NamedTuple):
-    """n rays: origin and direction (3, n), t_min and t_max (n,), all float32."""
+    """n rays: origin and direction (3, n), t_min, which is never negative, and t_max (n,), all float32."""
 
     origin: NDArray[np.float32]
     direction: NDArray[np.float32]
@@ -49,7 +50,8 @@ class Hits(NamedTuple):
 def ray_batch(origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0, t_max: ArrayLike = np.inf) -> Rays:
     """Turn origins and directions (n, 3) into a batch; t_min and t_max may be one number or (n,).
 
-    Directions keep their length; the batch holds copies.  Raises ValueError where shapes do not fit.
+    Directions keep their length; the batch holds copies.  Raises ValueError where shapes do not fit or a
+    t_min is negative.
     """
     o, d = np.asarray(origins, np.float32), np.asarray(directions, np.float32)
     if o.ndim != 2 or o.shape[1] != 3 or o.shape != d.shape:
@@ -57,6 +59,8 @@ def ray_batch(origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0,
     n = len(o)
     # Copies throughout: a view that cannot be written to is another type, for which kernels would compile anew.
     lo, hi = (np.array(np.broadcast_to(np.asarray(t, np.float32), (n,))) for t in (t_min, t_max))
+    if (lo < 0).any():
+        raise ValueError(f"t_min is {lo.min():g}: rays look ahead, from 0 on")
     return Rays(np.array(o.T, order="C"), np.array(d.T, order="C"), lo, hi)
 
 

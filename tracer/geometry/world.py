@@ -22,7 +22,7 @@ from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.chains import Chains
 from tracer.scene.model import Progress, Scene
 
-CHUNK = 16384  # rays a thread takes at a time
+CHUNK = 8192  # rays a thread takes at a time
 
 STRUCTURES: dict[str, Any] = {"kdtree": kdtree.KdTrees, "bvh8": bvh8.Trees8}
 ACCELERATORS = tuple(STRUCTURES)

@@ -1,7 +1,7 @@
 """Rays sorted by where they point, so that neighbours in a wave travel together.
 
-What a curved mirror sends out goes all ways.  Rays whose directions have the same signs can go through a
-tree as a packet; within an octant they keep their order, and so are near each other as well.
+What a curved mirror sends out goes all ways.  Rays whose directions have the same signs are likelier to go
+through a tree together; within an octant they keep their order, and so are near each other as well.
 """
 
 from __future__ import annotations

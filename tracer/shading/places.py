@@ -15,12 +15,15 @@ from tracer.simd import (
     gather_f32x16,
     i32_at,
     i32x16,
+    lanes_below,
     largest,
     load_f32x16,
     load_i32x16,
     local_memory,
+    mask16,
     maximum,
     minimum,
+    select,
     smallest,
     store,
     to_i32,
@@ -47,14 +50,15 @@ def _spread_bits(x):
 
 
 @subkernel
-def _put_keys(memory, vectors, keys):
-    """Every point's place along the curve, from 0 to BINS - 1."""
+def _put_keys(memory, n, keys):
+    """The place of each of n points along the curve, from 0 to BINS - 1."""
+    vectors = (n + 15) // 16
     for v in range(vectors):
         store(keys + 64 * v, i32x16(0))
     for axis in range(3):
         low = high = _coordinate(memory, axis, 0)
         for v in range(1, vectors):
-            x = _coordinate(memory, axis, v)
+            x = select(mask16(lanes_below(n, v)), _coordinate(memory, axis, v), low)
             low, high = minimum(low, x), maximum(high, x)
         start, end = smallest(low), largest(high)
         scale = np.float32(CELLS) / (end - start) if end > start else np.float32(0)
@@ -90,7 +94,7 @@ def sorted_by_place(wave, spare):
         return wave, spare
     target = room(spare, n)
     order = row_of(target, T_MAX)
-    _put_keys(wave.memory, vectors, row_of(target, T_MIN))
+    _put_keys(wave.memory, n, row_of(target, T_MIN))
     _put_order(row_of(target, T_MIN), n, order)
     for v in range(vectors):
         which = load_i32x16(order + 64 * v)

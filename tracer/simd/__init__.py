@@ -10,7 +10,8 @@ like a number; a comparison gives a mask.  What is written is what runs, and rea
 - `vectors`: the types, arithmetic, comparison, masks, selection, reduction;
 - `addresses`: memory as integers, loading and storing;
 - `rearranging`: packing lanes, gathering, rows of a table as columns;
-- `bits`: counting and finding bits, and numbers as their bits.
+- `bits`: counting and finding bits, and numbers as their bits;
+- `functions`: what is made of these, a power or three rows at a time.
 
 Lanes never touch each other, but in reductions.  `fma` rounds once where the processor can, else
 twice; either way a lane computes exactly what a scalar does with the same operations.  LLVM splits

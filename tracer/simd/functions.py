@@ -11,7 +11,6 @@ from tracer.simd.rearranging import pack
 from tracer.simd.vectors import fma, maximum, minimum, select, to_f32, to_i32
 
 ONE, HALF = np.float32(1), np.float32(0.5)
-ROOT_HALF = np.float32(0.70710678)
 
 
 @inlined

@@ -21,7 +21,6 @@ from tracer.kernels import inlined
 from tracer.simd import load_f32, load_f32x8, maximum, minimum
 
 MARGIN = np.float32(2e-6)
-LEAST_SLOPE = np.float32(1e-18)  # what a direction's component may be that counts as none
 NO_RAYS = np.float32(-1)  # where a frustum ends that holds no ray: before it begins
 
 
@@ -69,7 +68,7 @@ def axes_of(axis, way):
 def wider(low, high):
     """An interval of slopes, by the margin wider."""
     least, greatest = maximum(low, -low), maximum(high, -high)
-    return low - (MARGIN * least + LEAST_SLOPE), high + (MARGIN * greatest + LEAST_SLOPE)
+    return low - MARGIN * least, high + MARGIN * greatest
 
 
 @inlined

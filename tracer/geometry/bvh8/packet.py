@@ -57,7 +57,8 @@ ROW = 4 * PACKET  # bytes of one number of each ray
 FAR = np.float32(1e30)  # no hit is farther, and every empty child is
 LARGEST = np.float32(1e29)  # of t_max, short of what stands for a blocked ray
 TINY = np.float32(1e-20)
-BLOCKED_T = -FAR  # t of a ray that is known to be blocked, and of none
+BLOCKED_T = -FAR  # t of a ray that is known to be blocked
+CLOSED_T = -LARGEST  # of one that asks for nothing
 STATIC_T = np.float32(2) * BLOCKED_T  # of one that something static blocks, once the static tree is done
 
 # Rows of a packet's memory: of all rays, of their eight frusta (`packet_group`), and room to work in.
@@ -126,7 +127,7 @@ def fill(memory, batch, first, count):
         _row(memory, OX + axis, o + axis * n, count, load_f32(o + axis * n + last))
         _row(memory, DX + axis, d + axis * n, count, load_f32(d + axis * n + last))
     _row(memory, T_MIN, t_min, count, load_f32(t_min + last))
-    _row(memory, T, t_max, count, BLOCKED_T)
+    _row(memory, T, t_max, count, CLOSED_T)
     vectors = (count + LANES - 1) // LANES
     lx = hx = load_f32x16(memory + OX * ROW)
     ly = hy = load_f32x16(memory + OY * ROW)
@@ -138,12 +139,13 @@ def fill(memory, batch, first, count):
         store(a + IX * ROW, inverse(dx))
         store(a + IY * ROW, inverse(dy))
         store(a + IZ * ROW, inverse(dz))
-        store(a + T * ROW, minimum(load_f32x16(a + T * ROW), LARGEST))
+        t = load_f32x16(a + T * ROW)
+        store(a + T * ROW, select(t > BLOCKED_T, minimum(t, LARGEST), CLOSED_T))
         store(a + NUMBER * ROW, i32x16(MISS))
         x, y, z = load_f32x16(a + OX * ROW), load_f32x16(a + OY * ROW), load_f32x16(a + OZ * ROW)
         lx, ly, lz = minimum(lx, x), minimum(ly, y), minimum(lz, z)
         hx, hy, hz = maximum(hx, x), maximum(hy, y), maximum(hz, z)
-        nothing = nothing + ((x + y + z) + (dx + dy + dz)) * ZERO
+        nothing = nothing + ((x + y + z) + (dx + dy + dz) + load_f32x16(a + T_MIN * ROW)) * ZERO
     low = (smallest(lx), smallest(ly), smallest(lz))
     high = (largest(hx), largest(hy), largest(hz))
     return vectors, low, high, all_lanes(nothing == ZERO)

@@ -12,7 +12,7 @@ import numpy as np
 
 from tracer.geometry.bvh8.frustum import MARGIN, NO_RAYS, Frustum, axes_of, wider
 from tracer.geometry.bvh8.intersect import ZERO
-from tracer.geometry.bvh8.packet import DX, DY, DZ, FRUSTA, IX, OX, ROW, T_MIN, T
+from tracer.geometry.bvh8.packet import DX, DY, DZ, FRUSTA, IX, OX, ROW, T_MIN, TINY, T
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     bits_of,
@@ -50,15 +50,23 @@ class Group(NamedTuple):
 
 @inlined
 def _slopes(memory, v, axis, way):
-    """Least and greatest slopes of the v-th vector along the other axes; HUGE where some ray does not go that way, or
-    looks for hits behind its origin."""
+    """Least and greatest slopes of the v-th vector along the other axes; HUGE where some ray does not go that way.
+
+    A component so small that its inverse is cut short (`packet.inverse`) may count as much as TINY."""
     a = memory + 64 * v
-    if smallest(load_f32x16(a + (DX + axis) * ROW) * way) <= ZERO or smallest(load_f32x16(a + T_MIN * ROW)) < ZERO:
+    if smallest(load_f32x16(a + (DX + axis) * ROW) * way) <= TINY:
         return -HUGE, HUGE, -HUGE, HUGE
     scale = load_f32x16(a + (IX + axis) * ROW) * way
     slope_u = load_f32x16(a + (DX + (axis + 1) % 3) * ROW) * scale
     slope_v = load_f32x16(a + (DX + (axis + 2) % 3) * ROW) * scale
-    return smallest(slope_u), largest(slope_u), smallest(slope_v), largest(slope_v)
+    least = np.float32(2) * TINY * largest(scale)
+    return smallest(slope_u) - least, largest(slope_u) + least, smallest(slope_v) - least, largest(slope_v) + least
+
+
+@inlined
+def _width(u0, u1, v0, v1):
+    """By how much slopes differ; HUGE for more than is worth a frustum, or for no number at all."""
+    return maximum(u1 - u0, v1 - v0) if u1 - u0 <= WIDE and v1 - v0 <= WIDE else HUGE
 
 
 @subkernel
@@ -73,7 +81,7 @@ def lead_of(memory, v):
         if down > best:
             best, axis, way = down, k, np.float32(-1)
     u0, u1, v0, v1 = _slopes(memory, v, axis, way)
-    return axis, way, maximum(u1 - u0, v1 - v0) <= WIDE
+    return axis, way, _width(u0, u1, v0, v1) <= WIDE
 
 
 @inlined
@@ -118,7 +126,7 @@ def put_reaches(memory, vectors, axes):
 def _put_frustum(memory, v, axes):
     """Bound the v-th vector along an axis, if that is worth it; by how much its slopes differ."""
     u0, u1, v0, v1 = _slopes(memory, v, axes.along, axes.way)
-    width = maximum(u1 - u0, v1 - v0)
+    width = _width(u0, u1, v0, v1)
     if width > WIDE:
         return width
     u0, u1 = wider(u0, u1)

@@ -15,7 +15,7 @@ from tracer.geometry.bvh8.frustum import Frustum, box_at, boxes_at, entering
 from tracer.geometry.bvh8.packet import SCRATCH, lanes_inside
 from tracer.geometry.bvh8.packet_group import farthest, frusta_of, looking, put_reaches
 from tracer.geometry.bvh8.packet_leaf import any_in_block, closest_in_block, quadric_in_child
-from tracer.geometry.bvh8.tree import QUADRIC
+from tracer.geometry.bvh8.tree import MAX_DEPTH, QUADRIC, WIDTH
 from tracer.geometry.bvh8.trees import BLOCK, CHILDREN, NODE
 from tracer.geometry.queries import STEPS, TESTS
 from tracer.kernels import inlined, subkernel
@@ -32,7 +32,7 @@ from tracer.simd import (
     store,
 )
 
-STACK = 8 * 512
+STACK = 8 * (1 + (WIDTH - 1) * MAX_DEPTH)  # bytes
 
 
 @inlined

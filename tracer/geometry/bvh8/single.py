@@ -20,9 +20,9 @@ from tracer.geometry.bvh8.line import (
 )
 from tracer.geometry.bvh8.packet import (
     BLOCKED_T,
-    LANES,
     NUMBER,
     ROW,
+    T_MIN,
     T,
     U,
     V,
@@ -48,6 +48,7 @@ from tracer.simd import (
     lowest_bit,
     maximum,
     minimum,
+    ones,
     select,
     store,
 )
@@ -65,7 +66,7 @@ def _entry(distance, code):
 
 
 @inlined
-def _open_root(memory, v, trees, first, room, nearest):
+def _open_root(memory, v, trees, first, room, nearest, counts):
     """Sixteen rays into the children of a root, at which all begin: into rows of keys, one for each child.
 
     A key is the bits of the distance, the lowest four replaced by first and the child's number (which only makes
@@ -74,6 +75,7 @@ def _open_root(memory, v, trees, first, room, nearest):
     for c in range(WIDTH):
         box, key = trees.nodes + 4 * c, i32x16(CLOSED)
         if (quadrics >> c) & 1:
+            counts[TESTS] += 1
             quadric_in_child(None, memory, box, np.int64(1) << v, trees, ~code_of(trees.nodes, c) - QUADRIC, nearest)
         else:
             enter, leave = lanes_inside(
@@ -179,13 +181,20 @@ def _any_below(a, code, trees, stack, counts):
     return False
 
 
+@inlined
+def _open_rays(memory, v):
+    """How many rays of a vector there are to trace."""
+    a = memory + 64 * v
+    return ones(bits_of(load_f32x16(a + T * ROW) > load_f32x16(a + T_MIN * ROW)))
+
+
 @subkernel
 def closest_one_by_one(memory, v, data, stack, counts):
     """Nearest hits of the rays of a packet's v-th vector."""
-    room, trees = stack - 64 - ROOM, 1 + load_i64(data + HAS_DYNAMIC)
+    room, trees, rays = stack - 64 - ROOM, 1 + load_i64(data + HAS_DYNAMIC), _open_rays(memory, v)
     for dynamic in range(trees):
-        counts[STEPS] += LANES
-        _open_root(memory, v, tree_of(data, dynamic), WIDTH * dynamic, room, True)
+        counts[STEPS] += rays
+        _open_root(memory, v, tree_of(data, dynamic), WIDTH * dynamic, room, True, counts)
     keys = room + 64 * WIDTH * trees
     store(keys, i32x16(-1))
     rest = _nextchildren_of(memory, v, room, WIDTH * trees)
@@ -202,13 +211,13 @@ def closest_one_by_one(memory, v, data, stack, counts):
 @subkernel
 def any_one_by_one(memory, v, data, which, stack, counts):
     """Which rays of a packet's v-th vector meet what is asked for: t tells it."""
-    room = stack - 64 - ROOM
+    room, rays = stack - 64 - ROOM, _open_rays(memory, v)
     for dynamic in range(2):
         if (which >> dynamic) & 1 == 0:
             continue
         tree = tree_of(data, dynamic)
-        counts[STEPS] += LANES
-        _open_root(memory, v, tree, 0, room, False)
+        counts[STEPS] += rays
+        _open_root(memory, v, tree, 0, room, False, counts)
         keys = room + 64 * WIDTH
         store(keys, i32x16(-1))
         rest = _nextchildren_of(memory, v, room, WIDTH)

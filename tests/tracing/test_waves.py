@@ -1,0 +1,106 @@
+"""Waves: every pixel once, and sorting that loses no ray, sorts, and does not look past a wave's end."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tracer.geometry.camera import pinhole
+from tracer.kernels import kernel
+from tracer.scene.model import Camera
+from tracer.shading.octants import sorted_by_octant
+from tracer.shading.places import CELLS, FEWEST, sorted_by_place
+from tracer.shading.primary import primary_wave
+from tracer.shading.wave import DIRECTION, HIT_T, MOVED, MOVING, ORIGIN, PIXEL, WAVE_ROWS, wave_in
+
+
+@kernel
+def _by_place(memory, n, spare):
+    wave, left = sorted_by_place(wave_in(memory, n), spare)
+    return wave.memory, left
+
+
+@kernel
+def _by_octant(memory, n, target):
+    return sorted_by_octant(memory, n, target)
+
+
+@kernel
+def _primary(camera, tile, width, memory, place):
+    return primary_wave(camera, tile, width, memory, place).size
+
+
+def _wave(rng: np.random.Generator, n: int, rest: float) -> np.ndarray:
+    """Rows of n rays far from the world's origin, with `rest` in the lanes past them."""
+    memory = np.full((WAVE_ROWS, n // 16 * 16 + 32), rest, np.float32)
+    memory[:MOVED, :n] = rng.uniform(-1, 1, (MOVED, n))
+    memory[ORIGIN:DIRECTION, :n] += 50
+    memory[HIT_T, :n] = rng.uniform(0, 2, n)
+    memory[PIXEL].view(np.int32)[:n] = rng.permutation(n)
+    return memory
+
+
+def _columns(memory: np.ndarray, rows: int, n: int) -> np.ndarray:
+    """Rays as bits (n, rows), sorted by pixel."""
+    columns = memory[:rows, :n].view(np.int32).T
+    return columns[np.argsort(columns[:, PIXEL])]
+
+
+def _cells(memory: np.ndarray, n: int) -> np.ndarray:
+    """Where points are along a Z curve through the box around them, told anew."""
+    points = memory[ORIGIN:DIRECTION, :n] + memory[HIT_T, :n] * memory[DIRECTION : DIRECTION + 3, :n]
+    low, high = points.min(axis=1, keepdims=True), points.max(axis=1, keepdims=True)
+    cells = np.minimum((points - low) * (np.float32(CELLS) / (high - low)), CELLS - 1).astype(np.int64)
+    return sum(((cells[axis] >> bit) & 1) << (3 * bit + axis) for axis in range(3) for bit in range(4))
+
+
+@pytest.mark.parametrize("n", [FEWEST + 1, 500, 1600])
+def test_points_are_sorted_by_place_whatever_lies_past_them(n: int):
+    orders = []
+    for rest in (0.0, np.nan, 3e38):
+        memory = _wave(np.random.default_rng(3), n, rest)
+        before, keys = memory.copy(), _cells(memory, n)
+        sorted_memory, left = _by_place(memory, n, np.full_like(memory, np.nan))
+        assert np.array_equal(_columns(sorted_memory, MOVED, n), _columns(before, MOVED, n))
+        assert np.array_equal(_cells(sorted_memory, n), np.sort(keys)) and len(np.unique(keys)) > 50
+        assert np.array_equal(left, before, equal_nan=True)
+        orders.append(sorted_memory[PIXEL, :n].view(np.int32).tolist())
+    assert orders[0] == orders[1] == orders[2]
+    assert orders[0] == before[PIXEL, :n].view(np.int32)[np.argsort(keys, kind="stable")].tolist()
+
+
+def test_a_small_wave_is_left_as_it_is():
+    memory = _wave(np.random.default_rng(4), FEWEST, 0.0)
+    before = memory.copy()
+    same, _ = _by_place(memory, FEWEST, np.zeros_like(memory))
+    assert np.array_equal(same, before)
+
+
+@pytest.mark.parametrize("n", [1, 15, 16, 17, 700])
+def test_rays_are_sorted_by_octant_in_the_order_they_had(n: int):
+    memory = _wave(np.random.default_rng(5), n, -1.0)
+    target = np.full_like(memory, np.nan)
+    octants = (memory[DIRECTION : DIRECTION + 3, :n] < 0).T @ [1, 2, 4]
+    assert _by_octant(memory, n, target) == (len(np.unique(octants)) > 1)
+    if n > 1:
+        order = np.argsort(octants, kind="stable")
+        assert np.array_equal(target[:MOVING, :n].view(np.int32), memory[:MOVING, order].view(np.int32))
+
+
+@pytest.mark.parametrize("tile", [(0, 0, 64, 64), (64, 0, 65, 3), (0, 64, 37, 65), (5, 6, 22, 70)])
+def test_a_tile_has_each_of_its_pixels_once(tile: tuple[int, int, int, int]):
+    width, height = 70, 70
+    left, top, right, bottom = tile
+    camera = pinhole(Camera((0.0, 0.0, 5.0), (0.1, 0.2, -1.0)), width, height)
+    memory, place = np.zeros((WAVE_ROWS, 4112), np.float32), np.zeros(4112, np.int32)
+    n = _primary(camera, tile, width, memory, place)
+    y, x = np.divmod(place[:n], width)
+    assert sorted(zip(x.tolist(), y.tolist())) == [(i, j) for i in range(left, right) for j in range(top, bottom)]
+    directions = camera.corner + x[:, None] * camera.column + y[:, None] * camera.row
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    np.testing.assert_allclose(memory[DIRECTION : DIRECTION + 3, :n].T, directions, atol=1e-6)
+    assert memory[PIXEL, :n].view(np.int32).tolist() == list(range(n))
+    if tile == (0, 0, 64, 64):  # a vector is a block of 4 x 4, a packet one of 16 x 8
+        for size, (across, down) in ((16, (4, 4)), (128, (16, 8))):
+            for start in range(0, n, size):
+                assert np.ptp(x[start : start + size]) == across - 1 and np.ptp(y[start : start + size]) == down - 1
