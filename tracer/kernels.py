@@ -78,6 +78,11 @@ def cache_folder() -> Path:
     return folder
 
 
+def is_kept() -> bool:
+    """Whether compiled kernels outlive this process: else no folder could be written to."""
+    return cache_folder().parent == _cache_root()
+
+
 @cache
 def _temporary_folder() -> tempfile.TemporaryDirectory:
     """Removed when the process ends."""

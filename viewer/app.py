@@ -138,20 +138,22 @@ class App:
             return
         if frame is not None:
             display.upload(frame)
-        p = c.preferences
-        display.draw(
-            Look(
-                view=c.tracing.drawn_view,
-                light=c.session.light,
-                shading=p.shading,
-                outlines=p.outlines,
-                selected=c.selected.primitive if c.selected is not None else -1,
-                smooth=p.smooth_upscaling,
-                marked=p.mark_wrong,
-                magnified=c.tracing.magnified,
-                wipe=c.session.wipe,
-                line=not c.tracing.becoming_finer,
-            )
+        display.draw(self._look(c.selected.primitive if c.selected is not None else -1))
+
+    def _look(self, selected: int) -> Look:
+        """How the view is to be drawn, with an outline around a primitive unless it is -1."""
+        c, p = self.controller, self.controller.preferences
+        return Look(
+            view=c.tracing.drawn_view,
+            light=c.session.light,
+            shading=p.shading,
+            outlines=p.outlines,
+            selected=selected,
+            smooth=p.smooth_upscaling,
+            marked=p.mark_wrong,
+            magnified=c.tracing.magnified,
+            wipe=c.session.wipe,
+            line=not c.tracing.becoming_finer,
         )
 
     def _capture_picture(self) -> None:
@@ -160,6 +162,7 @@ class App:
         ready = shown and not c.tracing.becoming_finer  # else the picture is saved when it has come
         if self.ui.capture_wanted is CaptureKind.PICTURE and self.ui.display is not None and ready:
             self.ui.capture_wanted = None
+            self.ui.display.draw(self._look(selected=-1))  # the mark is for the user, not for the picture
             self.controller.keeper.capture(self.ui.display.read() if self.controller.frame is not None else None)
         if self.ui.capture_wanted is CaptureKind.WINDOW:
             self.ui.capture_wanted = None

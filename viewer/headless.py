@@ -19,7 +19,7 @@ from rich.table import Table
 
 from tracer.compilation import warm_up
 from tracer.frame import Frame, Settings
-from tracer.kernels import cache_folder
+from tracer.kernels import cache_folder, is_kept
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, load_visible_scene, scene_info
 from tracer.scene.model import Camera, Scene
@@ -107,7 +107,8 @@ def buffers(frame: Frame) -> dict[str, np.ndarray]:
 def prepare_kernels(work: Work, lights: int, accelerator: str) -> None:
     """Compile or load every kernel that so many lights need; the first time takes a while and says so."""
     if next(cache_folder().rglob("*.nbi"), None) is None:
-        work.note("compiling the kernels, once for this version; this takes a minute or less")
+        often = "once for this version" if is_kept() else "at every start, as the cache folder cannot be written to"
+        work.note(f"compiling the kernels, {often}; this takes a minute or less")
     warm_up(work.progress, lights, accelerator)
 
 

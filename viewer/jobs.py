@@ -20,7 +20,7 @@ from viewer.lines import in_one_line
 
 Result = TypeVar("Result")
 
-JOB, TRACER = 2, 10  # niceness: what a window waits for, and what takes all cores for as long as it is open
+JOB, TRACER = 2, 5  # niceness: what a window waits for, and what takes all cores for as long as it is open
 
 
 class Job(Generic[Result]):

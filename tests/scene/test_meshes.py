@@ -23,6 +23,15 @@ def obj(tmp_path, text, mtl=""):
     return load_scene(tmp_path / "a.obj")
 
 
+@pytest.mark.parametrize(
+    "name, text", [("a.obj", "# M\xfcller\n" + OBJ + "f 1 2 3\n"), ("a.stl", "solid M\xfcller\n{}endsolid\n")]
+)
+def test_text_that_is_not_utf8_is_read_all_the_same(tmp_path, name, text):
+    facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+    (tmp_path / name).write_bytes(text.format(facet).encode("latin-1"))
+    assert load_scene(tmp_path / name).triangle_count == 1
+
+
 @pytest.mark.parametrize("extension", ["obj", "ply", "stl", "gltf", "glb"])
 def test_every_kind(tmp_path, extension):
     box = trimesh.creation.box((1, 2, 3))
