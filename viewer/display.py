@@ -71,7 +71,8 @@ class Display:
 
     def __init__(self) -> None:
         self.context = moderngl.create_context()
-        self.depth_range = (0.0, 1.0)
+        self._depths = (0, (0.0, 1.0))
+        self._brought: dict[str, int] = {}  # which frame's buffers are on the GPU
         self._frame: Frame | None = None
         self._drawn: tuple[int, Look] | None = None
         self._serial = 0
@@ -93,18 +94,36 @@ class Display:
         return (self._frame.width, self._frame.height) if self._frame is not None else (0, 0)
 
     def upload(self, frame: Frame) -> None:
-        """Bring a frame's buffers to the GPU."""
-        size = (frame.width, frame.height)
-        self._write("color_buffer", size, 3, "f4", frame.color)
-        self._write("depth_buffer", size, 1, "f4", frame.depth)
-        self._write("normal_buffer", size, 3, "f4", frame.normal)
-        self._write("primitive_buffer", size, 1, "i4", frame.primitive)
-        self._write_table("mode_table", "u4", _halves(frame.modes))
-        counts = np.stack([frame.pixel_count, frame.highest_count], axis=1).astype(np.int32, copy=False)
-        self._write_table("count_table", "i4", counts)
-        self.depth_range = depth_range(frame)
+        """Show this frame from now on: a view brings to the GPU what it needs of it."""
         self._frame = frame
         self._serial += 1
+
+    @property
+    def depth_range(self) -> tuple[float, float]:
+        """Nearest and farthest of what the frame shows."""
+        if self._depths[0] != self._serial and self._frame is not None:
+            self._depths = self._serial, depth_range(self._frame)
+        return self._depths[1]
+
+    def _bring(self, name: str) -> None:
+        """A buffer of the frame to the GPU, unless it is there."""
+        frame = self._frame
+        if frame is None or self._brought.get(name) == self._serial:
+            return
+        self._brought[name] = self._serial
+        if name == "color_buffer":
+            self._write(name, self.size, 3, "f4", frame.color)
+        elif name == "depth_buffer":
+            self._write(name, self.size, 1, "f4", frame.depth)
+        elif name == "normal_buffer":
+            self._write(name, self.size, 3, "f4", frame.normal)
+        elif name == "primitive_buffer":
+            self._write(name, self.size, 1, "i4", frame.primitive)
+        elif name == "mode_table":
+            self._write_table(name, "u4", _halves(frame.modes))
+        elif name == "count_table":
+            counts = np.stack([frame.pixel_count, frame.highest_count], axis=1).astype(np.int32, copy=False)
+            self._write_table(name, "i4", counts)
 
     def draw(self, look: Look) -> None:
         """Draw the view of the frame into the target, unless it is there already.
@@ -120,6 +139,7 @@ class Display:
         self._set_uniforms(program, look)
         for unit, name in enumerate(_UNITS):
             if name in program:
+                self._bring(name)
                 self._textures[name].use(unit)
         self._target.use()
         self.context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
@@ -204,7 +224,7 @@ class Display:
             "outlines": look.outlines,
             "selected": look.selected,
             "light": look.light if covered else -1,
-            "range": self.depth_range,
+            "range": self.depth_range if look.view is View.DEPTH else (0.0, 1.0),
             "zoom_factor": self._frame.settings.zoom_factor,
             "unknown": GREY,
             "wrong_color": WRONG,
