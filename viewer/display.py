@@ -44,6 +44,14 @@ _UNITS = (
     "color_buffer", "primitive_buffer", "mode_table", "count_table", "depth_buffer", "normal_buffer", "color_map",
     "reference_buffer", "mark_buffer",
 )  # fmt: skip
+# What lies on the GPU as a frame holds it: components, their kind, and the frame's attribute.
+_PIXELS = {
+    "color_buffer": (3, "f4", "color"),
+    "depth_buffer": (1, "f4", "depth"),
+    "normal_buffer": (3, "f4", "normal"),
+    "primitive_buffer": (1, "i4", "primitive"),
+    "reference_buffer": (3, "f4", "reference"),
+}
 
 
 @dataclass(frozen=True)
@@ -76,7 +84,7 @@ class Display:
         self._frame: Frame | None = None
         self._drawn: tuple[int, Look] | None = None
         self._serial = 0
-        self._verified = (0, 1)
+        self._marked = (0, 1)
         self._textures: dict[str, Any] = {}
         self._passes: dict[View, tuple[Any, Any]] = {}
         self._target: Any = None
@@ -108,17 +116,13 @@ class Display:
     def _bring(self, name: str) -> None:
         """A buffer of the frame to the GPU, unless it is there."""
         frame = self._frame
-        if frame is None or self._brought.get(name) == self._serial:
+        assert frame is not None
+        if self._brought.get(name) == self._serial:
             return
         self._brought[name] = self._serial
-        if name == "color_buffer":
-            self._write(name, self.size, 3, "f4", frame.color)
-        elif name == "depth_buffer":
-            self._write(name, self.size, 1, "f4", frame.depth)
-        elif name == "normal_buffer":
-            self._write(name, self.size, 3, "f4", frame.normal)
-        elif name == "primitive_buffer":
-            self._write(name, self.size, 1, "i4", frame.primitive)
+        if name in _PIXELS:
+            components, dtype, attribute = _PIXELS[name]
+            self._write(name, self.size, components, dtype, getattr(frame, attribute))
         elif name == "mode_table":
             self._write_table(name, "u4", _halves(frame.modes))
         elif name == "count_table":
@@ -134,7 +138,7 @@ class Display:
         window = self.context.detect_framebuffer()
         self._ensure_target()
         if look.view.needs_verify:
-            self._upload_verified(look.magnified)
+            self._mark_wrong(look.magnified)
         program, triangle = self._pass(look.view)
         self._set_uniforms(program, look)
         for unit, name in enumerate(_UNITS):
@@ -172,15 +176,12 @@ class Display:
         self._textures.clear()
         self._frame = None
 
-    def _upload_verified(self, magnified: int) -> None:
-        """Bring to the GPU what only the views of verified frames need, once for each frame and size on screen."""
+    def _mark_wrong(self, magnified: int) -> None:
+        """Bring the marks around wrong pixels to the GPU, once for each frame and size on screen."""
         assert self._frame is not None
-        if self._verified != (self._serial, magnified):
-            marks = wrong_marks(self._frame, magnified)
-            assert self._frame.reference is not None
-            self._write("reference_buffer", self.size, 3, "f4", self._frame.reference)
-            self._write("mark_buffer", self.size, 1, "u1", marks)
-            self._verified = self._serial, magnified
+        if self._marked != (self._serial, magnified):
+            self._write("mark_buffer", self.size, 1, "u1", wrong_marks(self._frame, magnified))
+            self._marked = self._serial, magnified
 
     def _write(self, name: str, size: tuple[int, int], components: int, dtype: str, data: NDArray) -> None:
         texture = self._textures.get(name)

@@ -68,7 +68,8 @@ EDITS = (
     *(  # the deepest first: they end like the others
         Edit(f"tracer/geometry/bvh8/{file}.py", f"{indent * ' '}counts[{what}] += {by}\n", times)
         for file, indent, what, by, times in (
-            ("packet_tree", 12, "TESTS", "1", 4),
+            ("packet_tree", 12, "TESTS", "1", 2),
+            ("packet_tree", 8, "TESTS", "1", 1),
             ("packet_tree", 8, "STEPS", "1", 2),
             ("packet_tree", 4, "TESTS", "1", 1),
             ("single", 16, "TESTS", "1", 1),

@@ -57,7 +57,6 @@ from tracer.simd import (
     square_root,
     store,
     store_bytes,
-    store_mask,
     store_three,
     store_where,
     to_f32,
@@ -226,14 +225,14 @@ def test_comparisons(kind: Kind):
         row = len(a)
         for i in range(0, len(a), lanes):
             x, y, o = load(address_of(a) + 4 * i), load(address_of(b) + 4 * i), address_of(out) + i
-            store_mask(o, x < y)
-            store_mask(o + row, x <= y)
-            store_mask(o + 2 * row, x > y)
-            store_mask(o + 3 * row, x >= y)
-            store_mask(o + 4 * row, x == y)
-            store_mask(o + 5 * row, x < scalar)
-            store_mask(o + 6 * row, scalar >= x)
-            store_mask(o + 7 * row, x == 0)
+            store_bytes(o, x < y)
+            store_bytes(o + row, x <= y)
+            store_bytes(o + 2 * row, x > y)
+            store_bytes(o + 3 * row, x >= y)
+            store_bytes(o + 4 * row, x == y)
+            store_bytes(o + 5 * row, x < scalar)
+            store_bytes(o + 6 * row, scalar >= x)
+            store_bytes(o + 7 * row, x == 0)
 
     a, b, s = numbers(6, kind.dtype), numbers(7, kind.dtype), kind.dtype(1)
     out = row_of(a, 8, np.uint8)
@@ -324,7 +323,7 @@ def test_masks_and_bytes_in_memory():
         for i in range(0, len(source), 16):
             x = simd.load_i32x16(address_of(source) + 4 * i)
             store_bytes(address_of(bytes_) + i + 3, x + 0x7F00)
-            store_mask(address_of(bools) + i + 3, x < 100)
+            store_bytes(address_of(bools) + i + 3, x < 100)
 
     source = np.random.default_rng(15).integers(0, 256, N).astype(np.int32)
     bytes_, bools = (np.full(N + 8, 9, np.uint8) for _ in range(2))

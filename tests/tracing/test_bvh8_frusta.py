@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tracer.geometry.bvh8.frustum import Frustum, box_at, boxes_at, entering
+from tracer.geometry.bvh8.frustum import box_at, boxes_at, entering
 from tracer.geometry.bvh8.packet import MEMORY, fill, lanes_inside, open_vectors
-from tracer.geometry.bvh8.packet_group import farthest, frusta_of, group_of, lead_of
+from tracer.geometry.bvh8.packet_group import frusta_of, group_of, lead_of, reaches_of
+from tracer.geometry.bvh8.trees import child_planes
 from tracer.geometry.queries import batch_of
 from tracer.geometry.rays import Rays, ray_batch
 from tracer.kernels import kernel
-from tracer.simd import address_of, any_lane, bits_of, load_f32, local_memory, lowest_bit
+from tracer.simd import address_of, any_lane, bits_of, largest, local_memory, lowest_bit
 
 RAYS = 128
 
@@ -33,26 +34,19 @@ def _refusals(batch, count, boxes, found):
             continue
         group = group_of(memory, todo, axis, way)
         todo &= ~group.vectors
-        f, far = group.frustum, farthest(memory)
-        whole = Frustum(
-            f.start0, f.start1, f.u_start0, f.u_start1, f.v_start0, f.v_start1, f.u0, f.u1, f.v0, f.v1, f.near, far
-        )
         for n in range(len(boxes)):
             node = address_of(boxes) + 256 * n
-            _enter, mask = entering(boxes_at(node, group.axes), whole)
+            _enter, mask = entering(boxes_at(node, group.axes), group.frustum, largest(reaches_of(memory)))
             opened = bits_of(mask)
             for c in range(8):
                 box = node + 4 * c
-                _enter, mask = entering(box_at(box, group.axes), frusta_of(memory))
+                _enter, mask = entering(box_at(box, group.axes), frusta_of(memory), reaches_of(memory))
                 entered = bits_of(mask)
                 rest = group.vectors
                 while rest != 0:
                     v = lowest_bit(rest)
                     rest &= rest - 1
-                    enter, leave = lanes_inside(
-                        None, memory, v, load_f32(box), load_f32(box + 32), load_f32(box + 64),
-                        load_f32(box + 96), load_f32(box + 128), load_f32(box + 160),
-                    )  # fmt: skip
+                    enter, leave = lanes_inside(None, memory, v, child_planes(box))
                     refused = ((entered >> v) & 1) == 0
                     found[0] += c == 0 and n == 0
                     if any_lane(enter <= leave):

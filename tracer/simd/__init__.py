@@ -35,7 +35,6 @@ from tracer.simd.addresses import (
     prefetch,
     store,
     store_bytes,
-    store_mask,
     store_where,
     u8_at,
 )
@@ -129,7 +128,6 @@ __all__ = [
     "prefetch",
     "store",
     "store_bytes",
-    "store_mask",
     "store_three",
     "store_where",
     "to_f32",

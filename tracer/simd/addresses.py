@@ -118,32 +118,18 @@ def store_where(typingctx, address, value, mask):
 
 @operation
 def store_bytes(typingctx, address, value):
-    """Write the lowest eight bits of every int32 of a vector as bytes."""
-    if not isinstance(value, Vector) or value.floating:
+    """Write the lowest eight bits of every int32 of a vector as bytes, or a mask as so many bools."""
+    if not isinstance(value, Mask) and not (isinstance(value, Vector) and not value.floating):
         return None
 
     def codegen(context, builder, sig, args):
         kind = ir.VectorType(ir.IntType(8), value.lanes)
-        written = builder.store(builder.trunc(args[1], kind), builder.inttoptr(args[0], kind.as_pointer()))
+        resized = (builder.zext if isinstance(value, Mask) else builder.trunc)(args[1], kind)
+        written = builder.store(resized, builder.inttoptr(args[0], kind.as_pointer()))
         written.align = 1
         return context.get_dummy_value()
 
     return types.void(types.int64, value), codegen
-
-
-@operation
-def store_mask(typingctx, address, mask):
-    """Write a mask as so many bools."""
-    if not isinstance(mask, Mask):
-        return None
-
-    def codegen(context, builder, sig, args):
-        kind = ir.VectorType(ir.IntType(8), mask.lanes)
-        written = builder.store(builder.zext(args[1], kind), builder.inttoptr(args[0], kind.as_pointer()))
-        written.align = 1
-        return context.get_dummy_value()
-
-    return types.void(types.int64, mask), codegen
 
 
 @operation

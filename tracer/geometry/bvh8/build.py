@@ -16,7 +16,8 @@ from tracer.geometry.bvh8.binary import FIRST, LAST, Items, grow, make_items, pu
 from tracer.geometry.bvh8.collapse import VACANT, Shape, collapse, plan
 from tracer.geometry.bvh8.refit import fill_blocks, make_links, pad_blocks, pad_quadrics, unite_nodes
 from tracer.geometry.bvh8.shape import Offsets, clear, write_shape
-from tracer.geometry.bvh8.tree import BLOCK_SIZE, MAX_DEPTH, NODE_SIZE, PADDING, WIDTH, Tree, aligned
+from tracer.geometry.bvh8.tree import BLOCK_SIZE, MAX_DEPTH, NODE_SIZE, PADDING, WIDTH, Tree
+from tracer.geometry.memory import aligned_rows
 from tracer.parallel import for_each_chunk
 from tracer.scene.model import Cancelled, Float32
 
@@ -118,6 +119,6 @@ def build_tree(rows: Float32, boxes: Float32, control: NDArray[np.int64] | None 
 
 def empty_tree(nodes: int, blocks: int) -> Tree:
     """A tree over nothing, with room for so many nodes, one at least, and blocks beside the empty one."""
-    tree = Tree(aligned(nodes, NODE_SIZE), aligned(1 + blocks, BLOCK_SIZE))
+    tree = Tree(aligned_rows(nodes, NODE_SIZE), aligned_rows(1 + blocks, BLOCK_SIZE))
     clear(tree)
     return tree

@@ -40,7 +40,7 @@ class Axes(NamedTuple):
 
 class Frustum(NamedTuple):
     """Bounds of rays: where they start, along the axis the way they go, and along the other two; slopes;
-    and between which distances along the axis they are still looking."""
+    and from which distance along the axis they look."""
 
     start0: Any
     start1: Any
@@ -53,7 +53,6 @@ class Frustum(NamedTuple):
     v0: Any
     v1: Any
     near: Any
-    far: Any
 
 
 @inlined
@@ -91,10 +90,11 @@ def boxes_at(a, axes):
 
 
 @inlined
-def entering(planes, f):
-    """(least distance along the axis, mask): which boxes some ray of which frustum may enter."""
+def entering(planes, f, reach):
+    """(least distance along the axis, mask): which boxes some ray of which frustum may enter, that looks as far as
+    `reach` along the axis."""
     near, far, low_u, high_u, low_v, high_v = planes
-    enter, leave = maximum(near - f.start1, f.near), minimum(far - f.start0, f.far)
+    enter, leave = maximum(near - f.start1, f.near), minimum(far - f.start0, reach)
     low_side = minimum(enter * f.u0, leave * f.u0) <= high_u - f.u_start0
     high_side = maximum(enter * f.u1, leave * f.u1) >= low_u - f.u_start1
     bottom = minimum(enter * f.v0, leave * f.v0) <= high_v - f.v_start0

@@ -23,7 +23,7 @@ from tracer.geometry.bvh8.packet import (
 )
 from tracer.geometry.bvh8.packet_tree import code_of
 from tracer.geometry.bvh8.tree import QUADRIC
-from tracer.geometry.bvh8.trees import BOX, NUMBERS
+from tracer.geometry.bvh8.trees import NUMBERS, block_planes
 from tracer.geometry.intersect import hit_quadric
 from tracer.geometry.rays import Ray
 from tracer.kernels import inlined, subkernel
@@ -104,8 +104,7 @@ def children_of(node, r, far):
 @inlined
 def _inside_block(block, r, t):
     """Which of eight distances lie where a ray is in a block's box."""
-    x0, y0, z0 = load_f32(block + BOX), load_f32(block + BOX + 4), load_f32(block + BOX + 8)
-    x1, y1, z1 = load_f32(block + BOX + 12), load_f32(block + BOX + 16), load_f32(block + BOX + 20)
+    x0, y0, z0, x1, y1, z1 = block_planes(block)
     ax, bx = (x0 - r.ox) * r.ix, (x1 - r.ox) * r.ix
     ay, by = (y0 - r.oy) * r.iy, (y1 - r.oy) * r.iy
     az, bz = (z0 - r.oz) * r.iz, (z1 - r.oz) * r.iz

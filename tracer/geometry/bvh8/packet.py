@@ -162,8 +162,9 @@ def open_vectors(memory, vectors):
 
 
 @inlined
-def lanes_inside(origin, memory, v, x0, y0, z0, x1, y1, z1):
-    """Where the sixteen rays of the v-th vector enter and leave a box."""
+def lanes_inside(origin, memory, v, planes):
+    """Where the sixteen rays of the v-th vector enter and leave a box, given by its six planes."""
+    x0, y0, z0, x1, y1, z1 = planes
     ox, oy, oz = origin_of(origin, memory, v)
     a = memory + 64 * v
     ix, iy, iz = load_f32x16(a + IX * ROW), load_f32x16(a + IY * ROW), load_f32x16(a + IZ * ROW)

@@ -49,16 +49,21 @@ class Group(NamedTuple):
 
 
 @inlined
+def _along(memory, rows, v, axis):
+    """The v-th vector's numbers along an axis, of three rows."""
+    return load_f32x16(memory + (rows + axis) * ROW + 64 * v)
+
+
+@inlined
 def _slopes(memory, v, axis, way):
     """Least and greatest slopes of the v-th vector along the other axes; HUGE where some ray does not go that way.
 
     A component so small that its inverse is cut short (`packet.inverse`) may count as much as TINY."""
-    a = memory + 64 * v
-    if smallest(load_f32x16(a + (DX + axis) * ROW) * way) <= TINY:
+    if smallest(_along(memory, DX, v, axis) * way) <= TINY:
         return -HUGE, HUGE, -HUGE, HUGE
-    scale = load_f32x16(a + (IX + axis) * ROW) * way
-    slope_u = load_f32x16(a + (DX + (axis + 1) % 3) * ROW) * scale
-    slope_v = load_f32x16(a + (DX + (axis + 2) % 3) * ROW) * scale
+    scale = _along(memory, IX, v, axis) * way
+    slope_u = _along(memory, DX, v, (axis + 1) % 3) * scale
+    slope_v = _along(memory, DX, v, (axis + 2) % 3) * scale
     least = np.float32(2) * TINY * largest(scale)
     return smallest(slope_u) - least, largest(slope_u) + least, smallest(slope_v) - least, largest(slope_v) + least
 
@@ -74,7 +79,7 @@ def lead_of(memory, v):
     """The axis, and which way along it, that suit the v-th vector best; whether its frustum is worth having."""
     best, axis, way = ZERO, 0, ZERO
     for k in range(3):
-        d = load_f32x16(memory + (DX + k) * ROW + 64 * v)
+        d = _along(memory, DX, v, k)
         up, down = smallest(d), -largest(d)
         if up > best:
             best, axis, way = up, k, np.float32(1)
@@ -90,27 +95,24 @@ def _put(memory, row, v, value):
 
 
 @inlined
+def _put_bounds(memory, row, v, x):
+    """The least of sixteen numbers into a row of the v-th vector's, the greatest into the next."""
+    _put(memory, row, v, smallest(x))
+    _put(memory, row + 1, v, largest(x))
+
+
+@inlined
 def _put_starts(memory, v, axes):
     """Where the rays of the v-th vector start."""
-    u, w = (axes.along + 1) % 3, (axes.along + 2) % 3
-    a = memory + 64 * v
-    k = load_f32x16(a + (OX + axes.along) * ROW) * axes.way
-    _put(memory, START, v, smallest(k))
-    _put(memory, START + 1, v, largest(k))
-    x = load_f32x16(a + (OX + u) * ROW)
-    _put(memory, START + 2, v, smallest(x))
-    _put(memory, START + 3, v, largest(x))
-    x = load_f32x16(a + (OX + w) * ROW)
-    _put(memory, START + 4, v, smallest(x))
-    _put(memory, START + 5, v, largest(x))
+    _put_bounds(memory, START, v, _along(memory, OX, v, axes.along) * axes.way)
+    _put_bounds(memory, START + 2, v, _along(memory, OX, v, (axes.along + 1) % 3))
+    _put_bounds(memory, START + 4, v, _along(memory, OX, v, (axes.along + 2) % 3))
 
 
 @inlined
 def _put_reach(memory, v, axes):
     """Note up to where along the axis the rays of the v-th vector are still looking."""
-    a = memory + 64 * v
-    k = load_f32x16(a + (DX + axes.along) * ROW) * axes.way
-    reach = largest(load_f32x16(a + T * ROW) * k)
+    reach = largest(load_f32x16(memory + T * ROW + 64 * v) * _along(memory, DX, v, axes.along) * axes.way)
     _put(memory, REACH, v, reach + MARGIN * reach)
 
 
@@ -135,8 +137,7 @@ def _put_frustum(memory, v, axes):
     _put(memory, SLOPE + 1, v, u1)
     _put(memory, SLOPE + 2, v, v0)
     _put(memory, SLOPE + 3, v, v1)
-    a = memory + 64 * v
-    near = smallest(load_f32x16(a + T_MIN * ROW) * load_f32x16(a + (DX + axes.along) * ROW) * axes.way)
+    near = smallest(load_f32x16(memory + T_MIN * ROW + 64 * v) * _along(memory, DX, v, axes.along) * axes.way)
     _put(memory, NEAR, v, maximum(near - MARGIN * near, ZERO))
     _put_reach(memory, v, axes)
     _put_starts(memory, v, axes)
@@ -150,7 +151,7 @@ def frusta_of(memory):
     return Frustum(
         load_f32x8(a), load_f32x8(a + 32), load_f32x8(a + 64), load_f32x8(a + 96), load_f32x8(a + 128),
         load_f32x8(a + 160), load_f32x8(a + 192), load_f32x8(a + 224), load_f32x8(a + 256), load_f32x8(a + 288),
-        load_f32x8(a + 320), load_f32x8(a + 352),
+        load_f32x8(a + 320),
     )  # fmt: skip
 
 
@@ -160,7 +161,7 @@ def _around(f):
     return Frustum(
         smallest(f.start0), largest(f.start1), smallest(f.u_start0), largest(f.u_start1),
         smallest(f.v_start0), largest(f.v_start1), smallest(f.u0), largest(f.u1), smallest(f.v0), largest(f.v1),
-        smallest(f.near), largest(f.far),
+        smallest(f.near),
     )  # fmt: skip
 
 
@@ -199,12 +200,12 @@ def group_of(memory, vectors, axis, way):
 
 
 @inlined
-def farthest(memory):
-    """Up to where along the axis any frustum goes."""
-    return largest(load_f32x8(memory + FRUSTA + 32 * REACH))
+def reaches_of(memory):
+    """Up to where along the axis each of the eight vectors is still looking."""
+    return load_f32x8(memory + FRUSTA + 32 * REACH)
 
 
 @inlined
 def looking(memory, distance):
     """The vectors that are still looking beyond a distance along the axis."""
-    return bits_of(load_f32x8(memory + FRUSTA + 32 * REACH) >= distance)
+    return bits_of(reaches_of(memory) >= distance)

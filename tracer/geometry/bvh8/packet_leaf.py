@@ -38,7 +38,7 @@ from tracer.geometry.bvh8.packet import (
     lanes_inside,
     origin_of,
 )
-from tracer.geometry.bvh8.trees import BOX, COUNT, NUMBERS
+from tracer.geometry.bvh8.trees import COUNT, NUMBERS, block_planes, child_planes
 from tracer.geometry.intersect import hit_quadric
 from tracer.geometry.rays import Ray
 from tracer.kernels import inlined, subkernel
@@ -64,12 +64,11 @@ from tracer.simd import (
 @inlined
 def _inside_block(origin, memory, block, active):
     """Note where the rays of active vectors are in a block's box; the vectors of which some lane is."""
-    x0, y0, z0 = load_f32(block + BOX), load_f32(block + BOX + 4), load_f32(block + BOX + 8)
-    x1, y1, z1 = load_f32(block + BOX + 12), load_f32(block + BOX + 16), load_f32(block + BOX + 20)
+    planes = block_planes(block)
     result = np.int64(0)
     while active != 0:
         v = lowest_bit(active)
-        enter, leave = lanes_inside(origin, memory, v, x0, y0, z0, x1, y1, z1)
+        enter, leave = lanes_inside(origin, memory, v, planes)
         store(memory + ENTER * ROW + 64 * v, enter)
         store(memory + LEAVE * ROW + 64 * v, leave)
         result |= np.int64(any_lane(enter <= leave)) << v
@@ -228,10 +227,7 @@ def quadric_in_child(origin, memory, a, active, trees, i, nearest):
     while active != 0:
         v = lowest_bit(active)
         active &= active - 1
-        enter, leave = lanes_inside(
-            origin, memory, v, load_f32(a), load_f32(a + 32), load_f32(a + 64),
-            load_f32(a + 96), load_f32(a + 128), load_f32(a + 160),
-        )  # fmt: skip
+        enter, leave = lanes_inside(origin, memory, v, child_planes(a))
         rest = bits_of(enter <= leave)
         while rest != 0:
             lane = lowest_bit(rest)

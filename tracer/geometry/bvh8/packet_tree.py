@@ -11,19 +11,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.geometry.bvh8.frustum import Frustum, box_at, boxes_at, entering
+from tracer.geometry.bvh8.frustum import box_at, boxes_at, entering
 from tracer.geometry.bvh8.packet import SCRATCH, lanes_inside
-from tracer.geometry.bvh8.packet_group import farthest, frusta_of, looking, put_reaches
+from tracer.geometry.bvh8.packet_group import frusta_of, looking, put_reaches, reaches_of
 from tracer.geometry.bvh8.packet_leaf import any_in_block, closest_in_block, quadric_in_child
 from tracer.geometry.bvh8.tree import MAX_DEPTH, QUADRIC, WIDTH
-from tracer.geometry.bvh8.trees import BLOCK, CHILDREN, NODE
+from tracer.geometry.bvh8.trees import BLOCK, CHILDREN, NODE, child_planes
 from tracer.geometry.queries import STEPS, TESTS
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     any_lane,
     as_f32,
     bits_of,
-    load_f32,
+    largest,
     load_i32,
     load_i32x8,
     load_i64,
@@ -73,36 +73,42 @@ def push_sorted(stack, pending, bottom, entry):
 
 
 @inlined
-def _open(node, group, far):
+def _open(memory, node, group):
     """(distances, bits) of the children of a node that some ray of the packet may enter."""
-    f = group.frustum
-    f = Frustum(f.start0, f.start1, f.u_start0, f.u_start1, f.v_start0, f.v_start1, f.u0, f.u1, f.v0, f.v1, f.near, far)
-    enter, mask = entering(boxes_at(node, group.axes), f)
+    enter, mask = entering(boxes_at(node, group.axes), group.frustum, largest(reaches_of(memory)))
     return enter, bits_of(mask)
 
 
 @inlined
 def _vectors_entering(origin, memory, group, box, active):
     """The active vectors of which some ray may enter the box at an address."""
-    _enter, mask = entering(box_at(box, group.axes), frusta_of(memory))
+    _enter, mask = entering(box_at(box, group.axes), frusta_of(memory), reaches_of(memory))
     active &= bits_of(mask)
     wide = active & group.wide
     while wide != 0:
         v = lowest_bit(wide)
         wide &= wide - 1
-        enter, leave = lanes_inside(
-            origin, memory, v, load_f32(box), load_f32(box + 32), load_f32(box + 64),
-            load_f32(box + 96), load_f32(box + 128), load_f32(box + 160),
-        )  # fmt: skip
+        enter, leave = lanes_inside(origin, memory, v, child_planes(box))
         if not any_lane(enter <= leave):
             active ^= np.int64(1) << v
     return active
 
 
 @subkernel
+def _ask_quadrics(origin, memory, group, trees, node, quadrics, active, nearest, counts):
+    """Those children of a node that are quadrics, given as bits; for the nearest hits, or for any."""
+    while quadrics != 0:
+        c = lowest_bit(quadrics)
+        quadrics &= quadrics - 1
+        on = _vectors_entering(origin, memory, group, node + 4 * c, active)
+        counts[TESTS] += 1
+        found = quadric_in_child(origin, memory, node + 4 * c, on, trees, ~code_of(node, c) - QUADRIC, nearest)
+        put_reaches(memory, found, group.axes)
+
+
+@subkernel
 def closest_in_tree(origin, memory, group, trees, stack, counts):
     """Nearest hits of a packet in a tree."""
-    far = farthest(memory)
     store(stack, group.vectors << 32)
     pending = 1
     while pending > 0:
@@ -118,22 +124,14 @@ def closest_in_tree(origin, memory, group, trees, stack, counts):
             found = closest_in_block(origin, memory, group, trees.blocks + BLOCK * ~code, active)
             if found != 0:
                 put_reaches(memory, found, group.axes)
-                far = farthest(memory)
             continue
         counts[STEPS] += 1
         node = trees.nodes + NODE * code
-        enter, children = _open(node, group, far)
+        enter, children = _open(memory, node, group)
         quadrics = children & quadrics_in(node)
         children ^= quadrics
-        while quadrics != 0:
-            c = lowest_bit(quadrics)
-            quadrics &= quadrics - 1
-            on = _vectors_entering(origin, memory, group, node + 4 * c, active)
-            counts[TESTS] += 1
-            found = quadric_in_child(origin, memory, node + 4 * c, on, trees, ~code_of(node, c) - QUADRIC, True)
-            if found != 0:
-                put_reaches(memory, found, group.axes)
-                far = farthest(memory)
+        if quadrics != 0:
+            _ask_quadrics(origin, memory, group, trees, node, quadrics, active, True, counts)
         store(memory + SCRATCH, enter)
         bottom = pending
         while children != 0:
@@ -158,7 +156,6 @@ def any_in_tree(origin, memory, group, trees, stack, occluder, counts):
         put_reaches(memory, found, group.axes)
         if looking(memory, np.float32(0)) == 0:
             return occluder
-    far = farthest(memory)
     store(stack, group.vectors << 32)
     pending = 1
     while pending > 0:
@@ -174,22 +171,14 @@ def any_in_tree(origin, memory, group, trees, stack, occluder, counts):
             if found != 0:
                 occluder = ~code
                 put_reaches(memory, found, group.axes)
-                far = farthest(memory)
             continue
         counts[STEPS] += 1
         node = trees.nodes + NODE * code
-        _enter, children = _open(node, group, far)
+        _enter, children = _open(memory, node, group)
         quadrics = children & quadrics_in(node)
         children ^= quadrics
-        while quadrics != 0:
-            c = lowest_bit(quadrics)
-            quadrics &= quadrics - 1
-            on = _vectors_entering(origin, memory, group, node + 4 * c, active)
-            counts[TESTS] += 1
-            found = quadric_in_child(origin, memory, node + 4 * c, on, trees, ~code_of(node, c) - QUADRIC, False)
-            if found != 0:
-                put_reaches(memory, found, group.axes)
-                far = farthest(memory)
+        if quadrics != 0:
+            _ask_quadrics(origin, memory, group, trees, node, quadrics, active, False, counts)
         while children != 0:
             c = lowest_bit(children)
             children &= children - 1

@@ -32,7 +32,7 @@ from tracer.geometry.bvh8.packet import (
 from tracer.geometry.bvh8.packet_leaf import quadric_in_child
 from tracer.geometry.bvh8.packet_tree import STACK, code_of, prefetch_child, push_sorted, quadrics_in
 from tracer.geometry.bvh8.tree import QUADRIC, WIDTH
-from tracer.geometry.bvh8.trees import BLOCK, HAS_DYNAMIC, NODE, tree_of
+from tracer.geometry.bvh8.trees import BLOCK, HAS_DYNAMIC, NODE, child_planes, tree_of
 from tracer.geometry.queries import STEPS, TESTS
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
@@ -78,17 +78,14 @@ def _open_root(memory, v, trees, first, room, nearest, counts):
             counts[TESTS] += 1
             quadric_in_child(None, memory, box, np.int64(1) << v, trees, ~code_of(trees.nodes, c) - QUADRIC, nearest)
         else:
-            enter, leave = lanes_inside(
-                None, memory, v, load_f32(box), load_f32(box + 32), load_f32(box + 64),
-                load_f32(box + 96), load_f32(box + 128), load_f32(box + 160),
-            )  # fmt: skip
+            enter, leave = lanes_inside(None, memory, v, child_planes(box))
             distance = as_i32(maximum(enter, ZERO)) & np.int32(~15)
             key = select(enter <= leave, distance | np.int32(first + c), CLOSED)
         store(room + 64 * (first + c), key)
 
 
 @inlined
-def _nextchildren_of(memory, v, room, children):
+def _next_children(memory, v, room, children):
     """Of sixteen rays, one after `room`'s rows of keys, the next nearest child of the roots that each has still to
     visit: into the row after them; the rays that have one, as bits."""
     last, best = load_i32x16(room + 64 * children), i32x16(CLOSED)
@@ -197,7 +194,7 @@ def closest_one_by_one(memory, v, data, stack, counts):
         _open_root(memory, v, tree_of(data, dynamic), WIDTH * dynamic, room, True, counts)
     keys = room + 64 * WIDTH * trees
     store(keys, i32x16(-1))
-    rest = _nextchildren_of(memory, v, room, WIDTH * trees)
+    rest = _next_children(memory, v, room, WIDTH * trees)
     while rest != 0:
         while rest != 0:
             lane = lowest_bit(rest)
@@ -205,7 +202,7 @@ def closest_one_by_one(memory, v, data, stack, counts):
             key = np.int64(load_i32(keys + 4 * lane))
             tree = tree_of(data, (key >> 3) & 1)
             _closest_below(memory + 64 * v + 4 * lane, code_of(tree.nodes, key & 7), tree, stack, counts)
-        rest = _nextchildren_of(memory, v, room, WIDTH * trees)
+        rest = _next_children(memory, v, room, WIDTH * trees)
 
 
 @subkernel
@@ -220,7 +217,7 @@ def any_one_by_one(memory, v, data, which, stack, counts):
         _open_root(memory, v, tree, 0, room, False, counts)
         keys = room + 64 * WIDTH
         store(keys, i32x16(-1))
-        rest = _nextchildren_of(memory, v, room, WIDTH)
+        rest = _next_children(memory, v, room, WIDTH)
         while rest != 0:
             while rest != 0:
                 lane = lowest_bit(rest)
@@ -228,6 +225,6 @@ def any_one_by_one(memory, v, data, which, stack, counts):
                 a = memory + 64 * v + 4 * lane
                 if _any_below(a, code_of(tree.nodes, np.int64(load_i32(keys + 4 * lane)) & 7), tree, stack, counts):
                     store(a + T * ROW, BLOCKED_T)
-            rest = _nextchildren_of(memory, v, room, WIDTH)
+            rest = _next_children(memory, v, room, WIDTH)
         if dynamic == 0:
             mark_static(memory, np.int64(1) << v)

@@ -38,10 +38,3 @@ class Tree(NamedTuple):
 
     nodes: NDArray[np.float32]
     blocks: NDArray[np.float32]
-
-
-def aligned(rows: int, size: int) -> NDArray[np.float32]:
-    """Uninitialised (rows, size) float32 whose memory begins at a multiple of 64 bytes."""
-    memory = np.empty(4 * rows * size + 64, np.uint8)
-    start = -memory.ctypes.data % 64
-    return memory[start : start + 4 * rows * size].view(np.float32).reshape(rows, size)

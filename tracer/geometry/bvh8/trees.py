@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from tracer.geometry.bvh8 import tree
 from tracer.kernels import inlined
-from tracer.simd import f32_at, load_i64
+from tracer.simd import f32_at, load_f32, load_i64
 
 NODE, BLOCK = 4 * tree.NODE_SIZE, 4 * tree.BLOCK_SIZE  # bytes
 CHILDREN = 4 * tree.CHILDREN  # offset of the children's codes in a node
@@ -36,3 +36,19 @@ def tree_of(data, dynamic):
         f32_at(load_i64(data + QUADRICS)),
         load_i64(data + TRIANGLE_COUNT),
     )
+
+
+@inlined
+def child_planes(box):
+    """Planes of the box of a node's child: lower x, y and z, then upper; `box` is the address of the first of them."""
+    return (
+        load_f32(box), load_f32(box + 32), load_f32(box + 64),
+        load_f32(box + 96), load_f32(box + 128), load_f32(box + 160),
+    )  # fmt: skip
+
+
+@inlined
+def block_planes(block):
+    """Planes of a block's box."""
+    a = block + BOX
+    return load_f32(a), load_f32(a + 4), load_f32(a + 8), load_f32(a + 12), load_f32(a + 16), load_f32(a + 20)
