@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from tracer.frame import METHODS, Frame, Settings
+from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
+from tracer.method import choice, is_method
 from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled, Progress, Scene
 from tracer.statistics import FrameStatistics
@@ -140,8 +141,8 @@ def path_times(scene: Scene, frames: int | None = None) -> list[float]:
 def with_reference(methods: list[str]) -> list[str]:
     """The methods, each once, the reference first; raises ValueError for one that does not exist."""
     for method in methods:
-        if method not in METHODS:
-            raise ValueError(f"there is no method {method!r}; there are {', '.join(METHODS)}")
+        if not is_method(method):
+            raise ValueError(f"there is no method {method!r}: it is {choice()}")
     return list(dict.fromkeys([REFERENCE, *methods]))
 
 

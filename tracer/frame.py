@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from tracer.culling import modes
 from tracer.geometry.world import ACCELERATORS
+from tracer.method import choice, is_method
 from tracer.scene.model import Camera
 from tracer.statistics import FrameStatistics
 
-METHODS = ("none", "paper")
+METHODS = ("none", "paper")  # that are offered, without what they may take along
 MAX_SIDE = 16384
 
 
@@ -47,7 +48,7 @@ class Settings:
         checks = (
             (1 <= self.width <= MAX_SIDE and 1 <= self.height <= MAX_SIDE, f"width and height lie in 1 to {MAX_SIDE}"),
             (0 <= self.depth <= 100, "depth lies in 0 to 100"),
-            (self.method in METHODS, f"method is one of {', '.join(METHODS)}, not {self.method!r}"),
+            (is_method(self.method), f"method is {choice()}, not {self.method!r}"),
             (math.isfinite(self.zoom_factor) and self.zoom_factor >= 1.0, "zoom_factor is a finite number from 1 up"),
             (self.accelerator in ACCELERATORS, f"accelerator is one of {', '.join(ACCELERATORS)}"),
             (1 <= self.samples <= 4096, "samples lie in 1 to 4096"),
@@ -71,6 +72,11 @@ class Frame:
     Where verified, reference like color is the picture with every shadow answer right, which is that
     of method "none" bit for bit, and wrong (h, w) int32 the number of wrong answers that count for
     each pixel, at all bounces and of all samples.
+
+    cells (h, w) int32 are the units of virtual cells at each pixel, -1 for none, where the method has such;
+    certificates (h, w) packed words like modes, of which the shadow bits are the certificates of the pixel's
+    cell, 0 where it has none.  saved and cost (h, w) int32 count, at all bounces, the shadow rays of each pixel
+    that asked no tree of static geometry, and all rays that were traced for it.
     """
 
     time: float
@@ -88,6 +94,10 @@ class Frame:
     lit: NDArray[np.bool_] | None = None
     reference: NDArray[np.float32] | None = None
     wrong: NDArray[np.int32] | None = None
+    cells: NDArray[np.int32] | None = None
+    certificates: NDArray[np.unsignedinteger] | None = None
+    saved: NDArray[np.int32] | None = None
+    cost: NDArray[np.int32] | None = None
     statistics: FrameStatistics = field(default_factory=FrameStatistics)
 
     @property
@@ -100,8 +110,8 @@ class Frame:
 
     @property
     def cell(self) -> NDArray[np.int32]:
-        """The unit that carries modes at each pixel: the primitive itself."""
-        return self.primitive
+        """The unit that carries modes at each pixel: a virtual cell, or the primitive itself."""
+        return self.primitive if self.cells is None else self.cells
 
     @property
     def occlusion_mode(self) -> NDArray[np.uint8]:

@@ -23,24 +23,29 @@ class RayCounts:
 
 @dataclass
 class ShadowCounts(RayCounts):
-    """Shadow rays: those due, those culled, those that asked dynamic objects alone, and, where culled
-    answers were verified, the wrong ones.  `rays` are those that asked any tree at all."""
+    """Shadow rays: those due and, of these, those culled, those that asked dynamic objects alone, those that asked
+    a few candidates instead of the static tree, and those that a cached occluder blocked; and, where culled answers
+    were verified, the wrong ones.  `rays` are those that asked any tree at all."""
 
     due: int = 0
     culled: int = 0
     dynamic_only: int = 0
     candidates_only: int = 0
+    cache_hits: int = 0
     wrong: int = 0
 
 
 @dataclass
 class FrameStatistics:
-    """Counters and times of one frame; `phases` are seconds by the names of Figure 1's steps."""
+    """Counters and times of one frame; `phases` are seconds by the names of Figure 1's steps.
+
+    `certificates` is how many were made after it, with so many steps through a tree and tests of triangles."""
 
     primary: RayCounts = field(default_factory=RayCounts)
     secondary: RayCounts = field(default_factory=RayCounts)
     shadow: ShadowCounts = field(default_factory=ShadowCounts)
     occlusion_tests: int = 0
+    certificates: int = 0
     certificate_steps: int = 0
     certificate_tests: int = 0
     seconds: float = 0.0
