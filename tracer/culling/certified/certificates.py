@@ -66,6 +66,7 @@ class Certificates:
             shape.order,
             roots,
             np.empty((count, len(shape.children), BOXES), np.float32),
+            np.full((count, len(rows)), np.inf, np.float32),
             np.zeros((count, len(rows)), np.int32),
             np.zeros(count, np.int32),
         )

@@ -26,9 +26,8 @@ from tracer.culling.certified.margins import (
     surely_hit,
     surely_missed,
 )
-from tracer.culling.certified.occluders import BOXES, STACK, children_met
+from tracer.culling.certified.occluders import BOXES, STACK, children_met, near_beam
 from tracer.culling.modes import FULL_SHADOW, NON_SHADOW
-from tracer.geometry.bvh8.tree import WIDTH
 from tracer.kernels import inlined, subkernel
 from tracer.simd import address_of, i64_at, local_memory, lowest_bit
 
@@ -111,14 +110,16 @@ def _behind_plane(b, box):
 
 
 @inlined
-def _meet(s, o, light, i, count, counts):
+def _meet(s, o, number, light, i, count, counts):
     """Take primitive i among the `count` found, if it may come between: how many there are then, or -1 where it hides
     the whole cell and all others are forgotten."""
-    counts[TESTS] += 1
     if i >= len(o.rows):
         if not _behind_plane(s.beam, o.quadric_boxes[i - len(o.rows)]):
             return count
     else:
+        if not near_beam(o, number, i, s.beam):
+            return count
+        counts[TESTS] += 1
         _measured(s.beam, o, light, i)
         if surely_hit(s.beam.functions, s.beam.margin, s.beam.numbers):
             s.found[0] = i
@@ -131,11 +132,11 @@ def _meet(s, o, light, i, count, counts):
 
 
 @subkernel
-def _from_list(s, o, light, given, number, counts):
-    """Take primitives from given (number,) int32."""
+def _from_list(s, o, number, light, given, given_count, counts):
+    """Take primitives from given (given_count,) int32."""
     count = 0
-    for k in range(number):
-        count = _meet(s, o, light, given[k], count, counts)
+    for k in range(given_count):
+        count = _meet(s, o, number, light, given[k], count, counts)
         if count < 0:
             return count
     return count
@@ -146,7 +147,7 @@ def _from_tree(s, o, number, light, counts):
     """Take primitives from the tree; more than MOST where they are too many."""
     count, stack = 0, i64_at(local_memory(STACK))
     for k in range(o.loose_count[number]):
-        count = _meet(s, o, light, o.loose[number, k], count, counts)
+        count = _meet(s, o, number, light, o.loose[number, k], count, counts)
         if count < 0:
             return count
     boxes, pending = address_of(o.boxes[number]), 0
@@ -155,7 +156,7 @@ def _from_tree(s, o, number, light, counts):
         while pending > 0:
             pending -= 1
             node = stack[pending]
-            counts[STEPS] += WIDTH
+            counts[STEPS] += 1
             met = np.int64(children_met(boxes + 4 * BOXES * node, s.beam))
             while met != 0:
                 child = lowest_bit(met)
@@ -165,11 +166,12 @@ def _from_tree(s, o, number, light, counts):
                     stack[pending] = code
                     pending += 1
                     continue
+                counts[STEPS] += 1
                 first = o.leaves[~code, 0]
                 last = first + (o.leaves[~code, 1] if o.order[first] < len(o.rows) else 1)
                 for k in range(first, last):
                     i = o.order[k]
-                    count = _meet(s, o, light, i, count, counts)
+                    count = _meet(s, o, number, light, i, count, counts)
                     if count < 0:
                         return count
                 if count > MOST:
@@ -185,7 +187,7 @@ def certify(s, o, number, light, given, given_count, counts):
     More than MOST make CANDIDATES of TOO_MANY, which are not named."""
     counts[CERTIFICATES] += 1
     if given_count <= MOST:
-        count = _from_list(s, o, light, given, given_count, counts)
+        count = _from_list(s, o, number, light, given, given_count, counts)
     else:
         count = _from_tree(s, o, number, light, counts)
     if count < 0:

@@ -35,7 +35,8 @@ class Occluders(NamedTuple):
     rows (triangles, 9) float32, corner and edges in the world, by number; blurs (triangles,) float32, how far
     their corners may be elsewhere; quadric_boxes (quadrics, 6) float32; children (nodes, 8), leaves (m, 2) and order
     int32 as in a `Shape`, whose items are primitives' numbers; roots (trees,) int32; boxes (lights, nodes,
-    BOXES) float32; loose (lights, n) int32, numbers of those in no box, and how many loose_count (lights,).
+    BOXES) float32; reaches (lights, triangles) float32, how far from each a ray from the light can report a hit, inf for
+    those in no box; loose (lights, n) int32, numbers of those in no box, and how many loose_count (lights,).
     """
 
     rows: NDArray[np.float32]
@@ -46,6 +47,7 @@ class Occluders(NamedTuple):
     order: NDArray[np.int32]
     roots: NDArray[np.int32]
     boxes: NDArray[np.float32]
+    reaches: NDArray[np.float32]
     loose: NDArray[np.int32]
     loose_count: NDArray[np.int32]
 
@@ -141,8 +143,10 @@ def _leaf_box(o, leaf, number, light, farthest, rounded, loose):
             low, high = _around(low, high, (b[0], b[1], b[2]), (b[3], b[4], b[5]))
             continue
         reach = _reach_of(o.rows, i, np.float64(o.blurs[i]), light, farthest)
+        reach += rounded + o.blurs[i]
+        o.reaches[number, i] = reach if reach < 0.5 * farthest else np.inf
         if reach < 0.5 * farthest:
-            low2, high2 = _triangle_box(o.rows, i, reach + rounded + o.blurs[i])
+            low2, high2 = _triangle_box(o.rows, i, reach)
             low, high = _around(low, high, low2, high2)
         else:
             o.loose[number, loose] = i
@@ -172,6 +176,22 @@ def know_light(o, number, light, farthest, largest):
                 low, high, loose = _leaf_box(o, ~code, number, light, farthest, rounded, loose)
             _put_box(boxes[node], child, low, high)
     o.loose_count[number] = loose
+
+
+@inlined
+def near_beam(o, number, i, beam):
+    """Whether triangle i, made larger by its reach, may meet a beam: a quick test, of planes that need no margin."""
+    a, e1, e2 = row_of(o.rows, i)
+    reach = np.float64(o.reaches[number, i])
+    for axis in range(3):
+        low, high = min(0.0, min(e1[axis], e2[axis])), max(0.0, max(e1[axis], e2[axis]))
+        if a[axis] + low - reach > beam.box[3 + axis] or a[axis] + high + reach < beam.box[axis]:
+            return False
+    for k in range(PLANES):
+        n = beam.planes[k, 0], beam.planes[k, 1], beam.planes[k, 2]
+        if dot(n, a) + min(0.0, min(dot(n, e1), dot(n, e2))) - reach > beam.planes[k, 3]:
+            return False
+    return True
 
 
 @inlined
