@@ -13,9 +13,10 @@ from tracer.culling.certified import certify
 from tracer.culling.certified.beam import OFFSET
 from tracer.culling.certified.cells import HIGHEST, Cells, bytes_of, make_cells, put_receivers, with_room
 from tracer.culling.certified.lookup import ROOM, Wanted
-from tracer.culling.certified.occluders import BOXES, Occluders, joined, know_light, shape_of
+from tracer.culling.certified.occluders import BOXES, Occluders, blocks_of, joined, know_light, shape_of
 from tracer.culling.certified.work import Points, commit, counters, gather_roots, make_tasks, work_on
 from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.geometry.bvh8.tree import WIDTH
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
@@ -62,11 +63,10 @@ class Certificates:
             np.zeros(len(rows), np.float32),
             boxes,
             shape.children,
-            shape.leaves,
-            shape.order,
+            *blocks_of(shape, rows),
             roots,
             np.empty((count, len(shape.children), BOXES), np.float32),
-            np.full((count, len(rows)), np.inf, np.float32),
+            np.empty((count, len(shape.leaves), WIDTH), np.float32),
             np.zeros((count, len(rows)), np.int32),
             np.zeros(count, np.int32),
         )
