@@ -75,6 +75,7 @@ class Certificates:
         self._largest = float(np.abs(bounds).max())
         self.highest = np.float32(HIGHEST * OFFSET * self._largest)
         put_receivers(rows, triangles.start, triangles.stop, self._largest, self.cells.receivers)
+        self.left: list[Wanted] = []  # what the last frame's rays wanted and has not been looked into
         self.still = np.zeros(count, np.bool_)
         self.follow_lights(lights)
         self.still[:] = True
@@ -107,14 +108,14 @@ class Certificates:
         shape = (tiles, ROOM)
         return Wanted(np.empty(shape, np.int32), np.empty(shape, np.float32), np.empty(shape, np.float32), of)
 
-    def certify(self, wanted: Wanted, budget: Budget, patience: int, cancel: Callable[[], bool] | None) -> NDArray:
+    def certify(self, lists: list[Wanted], budget: Budget, patience: int, cancel: Callable[[], bool] | None) -> NDArray:
         """Certify what rays wanted, within a budget; counters (COUNTERS,) int64 of what that took."""
         end = clock.perf_counter() + budget.seconds
         counts = counters(self._threads)
-        kept = [wanted.of[tile, 0] for tile in range(len(wanted.of))]
-        key, u, v = (np.concatenate([a[tile, :n] for tile, n in enumerate(kept)]) for a in wanted[:3])
-        if not len(key):
+        kept = [(wanted, tile, n) for wanted in lists for tile, n in enumerate(wanted.of[:, 0]) if n]
+        if not kept:
             return counts.sum(0)
+        key, u, v = (np.concatenate([wanted[k][tile, :n] for wanted, tile, n in kept]) for k in range(3))
         points = Points(np.empty_like(key), np.empty_like(u), np.empty_like(v), np.empty((2, len(key)), np.float32))
         self.cells = with_room(self.cells, min(len(key), 2 * len(self.cells.receivers)), 0)
         todo = gather_roots(self.cells, key, u, v, points)
