@@ -14,7 +14,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from tracer.culling.certified.candidates import FEW
 from tracer.culling.certified.cells import make_cells
 from tracer.culling.certified.certificates import Budget, Certificates
 from tracer.culling.certified.certify import CERTIFICATES, STEPS, TESTS
@@ -37,7 +36,9 @@ from tracer.statistics import gather
 
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, those used last
-PATIENCE = {"kdtree": 4, "bvh8": 32}  # rays that must have wanted a cell before it is divided: what they cost
+# How many rays must have wanted a triangle's first cell, and a part of a cell: that depends on what tracing them costs.
+PATIENCE = {"kdtree": (2, 4), "bvh8": (64, 256)}
+FEW = {"kdtree": 8, "bvh8": 0}  # candidates that are asked instead of the tree, at most
 Cancel = Callable[[], bool] | None
 
 
@@ -121,8 +122,10 @@ _NOT_CERTIFIED = {
         np.empty((0, 9), np.float32),
         np.empty(0, np.float32),
         np.empty(0, np.bool_),
+        0.0,
         np.float32(0),
-        FEW,
+        0,
+        False,
         _NOT_WANTED,
     )
     for lights in (1, MAX_CULLED_LIGHTS)
@@ -253,7 +256,18 @@ class UnfinishedFrame:
         if certificates is None:
             return _NOT_CERTIFIED[self.memory.words.dtype.itemsize]
         o, rows = certificates.occluders, Wanted(*(a[tile] for a in wanted))
-        return Certified(certificates.cells, o.rows, o.blurs, certificates.still, certificates.highest, FEW, rows)
+        few = FEW[self._settings.accelerator]
+        return Certified(
+            certificates.cells,
+            o.rows,
+            o.blurs,
+            certificates.still,
+            o.farthest,
+            certificates.highest,
+            few,
+            few > 0,
+            rows,
+        )
 
     def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
         placed, look, memory = self._renderer.world.placed, self._renderer._look, self.memory

@@ -58,15 +58,18 @@ ZERO, ONE = np.float32(0), np.float32(1)
 
 class Certified(NamedTuple):
     """Certified cells (`tracer.culling.certified`) and what rays ask of them: the triangles, rows (n, 9) float32, and
-    how far these may be elsewhere, blurs (n,); still (lights,) bool, which lights are certified; how high above a
-    cell its rays may end; how many candidates are asked at most; and what a tile wants."""
+    how far these may be elsewhere, blurs (n,); still (lights,) bool, which lights are certified; how long a
+    ray may be to be sure of a hit, and how high above a cell it may end; how many candidates are asked at most; whether
+    rays cost so much that every look-up pays; and what a tile wants."""
 
     cells: Cells
     rows: NDArray[np.float32]
     blurs: NDArray[np.float32]
     still: NDArray[np.bool_]
+    farthest: float
     highest: float
     few: int
+    dear: bool
     wanted: Wanted
 
 

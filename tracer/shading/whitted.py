@@ -119,7 +119,7 @@ def _light(world, look, wave, points, knowledge, answers, counts, tile, first, b
     """Local light of a wave, with shadow testing for every light; `first` for the wave of primary rays."""
     if knowledge.certify:
         certified = knowledge.certified
-        find_cells(certified.cells, certified.highest, points, wave.size)
+        find_cells(certified, points, wave.size)
         if first:
             _record_cells(wave, points, tile, buffers.cell)
     for number in range(len(look.lights)):

@@ -11,8 +11,6 @@ import numpy as np
 from tracer.culling.certified.margins import SURE_HIT, UNSURE, verdict
 from tracer.kernels import subkernel
 
-FEW = 8  # candidates that rays ask, at most
-
 
 @subkernel
 def ask_candidates(certified, cell, number, light, point):
@@ -26,7 +24,7 @@ def ask_candidates(certified, cell, number, light, point):
         i = np.int64(cells.names[k])
         found = UNSURE
         if i < triangles:
-            found = verdict(certified.rows, i, np.float64(certified.blurs[i]), light, point)
+            found = verdict(certified.rows, i, np.float64(certified.blurs[i]), certified.farthest, light, point)
         if found == SURE_HIT:
             return SURE_HIT, k - start + 1
         result = max(result, found)

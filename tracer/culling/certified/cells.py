@@ -34,7 +34,8 @@ class Cells(NamedTuple):
     (n,) int32, twice the triangle's number, plus 1 for its back; place (n, 3) float32, u, v and size; wanted (n,)
     int32, how many rays have; start (n, lights) int32 and count (n, lights) uint8, the primitives that a
     certificate names, in names (m,) int32, of which named (1,) int64 are in use.  receivers
-    (primitives, RECEIVER) float32 lead rays to the roots; those of what has no cells are 0.
+    (primitives, RECEIVER) float32 lead rays to the roots; those of what has no cells are 0.  waiting (2 primitives,)
+    int32 is how many rays have wanted a root that is not there yet; rooted (primitives,) int32 is 1 where there is one.
     """
 
     words: NDArray[np.unsignedinteger]
@@ -49,6 +50,8 @@ class Cells(NamedTuple):
     used: NDArray[np.int64]
     named: NDArray[np.int64]
     receivers: NDArray[np.float32]
+    waiting: NDArray[np.int32]
+    rooted: NDArray[np.int32]
 
 
 def make_cells(primitives: int, lights: int, room: int = 1 << 12) -> Cells:
@@ -68,6 +71,8 @@ def make_cells(primitives: int, lights: int, room: int = 1 << 12) -> Cells:
         np.ones(1, np.int64),
         np.zeros(1, np.int64),
         receivers,
+        np.zeros(2 * len(receivers), np.int32),
+        np.zeros(len(receivers), np.int32),
     )
     return cells
 

@@ -13,10 +13,11 @@ from tracer.culling.certified import certify
 from tracer.culling.certified.beam import OFFSET
 from tracer.culling.certified.cells import HIGHEST, Cells, bytes_of, make_cells, put_receivers, with_room
 from tracer.culling.certified.lookup import ROOM, Wanted
+from tracer.culling.certified.margins import LONGEST
 from tracer.culling.certified.occluders import BOXES, Occluders, blocks_of, joined, know_light, shape_of
 from tracer.culling.certified.work import Points, commit, counters, gather_roots, make_tasks, work_on
 from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.geometry.bvh8.tree import WIDTH
+from tracer.geometry.bvh8.tree import PADDING, WIDTH
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
@@ -69,6 +70,7 @@ class Certificates:
             np.empty((count, len(shape.leaves), WIDTH), np.float32),
             np.zeros((count, len(rows)), np.int32),
             np.zeros(count, np.int32),
+            PADDING * float(np.abs(_bounds(rows[triangles], boxes)).max()) / LONGEST,
         )
         bounds = _bounds(rows[triangles], boxes)
         self._bounds = bounds
@@ -108,7 +110,9 @@ class Certificates:
         shape = (tiles, ROOM)
         return Wanted(np.empty(shape, np.int32), np.empty(shape, np.float32), np.empty(shape, np.float32), of)
 
-    def certify(self, lists: list[Wanted], budget: Budget, patience: int, cancel: Callable[[], bool] | None) -> NDArray:
+    def certify(
+        self, lists: list[Wanted], budget: Budget, patience: tuple[int, int], cancel: Callable[[], bool] | None
+    ) -> NDArray:
         """Certify what rays wanted, within a budget; counters (COUNTERS,) int64 of what that took."""
         end = clock.perf_counter() + budget.seconds
         counts = counters(self._threads)
@@ -118,14 +122,14 @@ class Certificates:
         key, u, v = (np.concatenate([wanted[k][tile, :n] for wanted, tile, n in kept]) for k in range(3))
         points = Points(np.empty_like(key), np.empty_like(u), np.empty_like(v), np.empty((2, len(key)), np.float32))
         self.cells = with_room(self.cells, min(len(key), 2 * len(self.cells.receivers)), 0)
-        todo = gather_roots(self.cells, key, u, v, points)
+        todo = gather_roots(self.cells, key, u, v, patience[0], points)
         while len(todo):
             todo = todo[np.argsort(todo[:, 1] - todo[:, 2], kind="stable")]
             following = []
             for first in range(0, len(todo), BATCH):
                 if clock.perf_counter() >= end or counts[:, certify.CERTIFICATES].sum() >= budget.certificates:
                     return counts.sum(0)
-                following.append(self._certify(todo[first : first + BATCH], points, patience, counts, cancel))
+                following.append(self._certify(todo[first : first + BATCH], points, patience[1], counts, cancel))
             todo = np.concatenate(following)
         return counts.sum(0)
 

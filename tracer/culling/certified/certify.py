@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.certified.beam import PLANES, Beam, make_beam
 from tracer.culling.certified.margins import (
+    INSIDE,
     before_plane,
     depth_of,
     is_past_the_lamp,
@@ -112,7 +113,7 @@ def _meet(s, o, light, i, count, counts):
     else:
         counts[TESTS] += 1
         q = _measured(s.beam, o, light, i)
-        if surely_hit(q):
+        if surely_hit(q) and s.beam.reach[0] < o.farthest:
             s.found[0] = i
             return -1
         if _passes(s.beam, o, i, q):
@@ -211,9 +212,9 @@ def _put_part(s, o, light, i, part):
     if not is_past_the_lamp(q):
         return False
     return (
-        _put_function(s.parts[part, 0], q.u, q.of_u)
-        and _put_function(s.parts[part, 1], q.v, q.of_v)
-        and _put_function(s.parts[part, 2], q.w, q.of_w)
+        _put_function(s.parts[part, 0], q.u, INSIDE * q.of_u)
+        and _put_function(s.parts[part, 1], q.v, INSIDE * q.of_v)
+        and _put_function(s.parts[part, 2], q.w, INSIDE * q.of_w)
         and _put_function(s.parts[part, 3], q.beyond, q.of_beyond)
     )
 
@@ -302,7 +303,7 @@ def _cut_off(s, part, pieces):
 @subkernel
 def _fused(s, o, light, count):
     """How many of the primitives found hide the whole cell together, those first; 0 where they do not."""
-    if count > FUSED or count < 2:
+    if count > FUSED or count < 2 or s.beam.reach[0] >= o.farthest:
         return 0
     parts = 0
     for k in range(count):

@@ -59,17 +59,24 @@ def _at(row, first, x, y, z):
 
 
 @subkernel
-def find_cells(cells, highest, points, count):
+def find_cells(certified, points, count):
     """The cells of points, sixteen by sixteen, into points.unit, which tells their primitives.
 
     points.lifted are where their rays end; points.spots get u, v and, as int32, the key of their root, NOWHERE for
-    none.  No ray ends more than `highest` above a cell."""
+    none.  Unless rays are `dear`, triangles without a root are not looked at any closer."""
+    cells, highest = certified.cells, certified.highest
     child, receivers, lifted, spots = address_of(cells.child), address_of(cells.receivers), points.lifted, points.spots
-    stride = 4 * lifted.shape[1]
+    stride, rooted_at = 4 * lifted.shape[1], address_of(cells.rooted)
     for k in range((count + 15) // 16):
         at = 64 * k
         numbers = address_of(points.unit) + at
         primitive = load_i32x16(numbers)
+        if not certified.dear:
+            rooted = (gather_i32x16(rooted_at, primitive) > np.int32(0)) & mask16(lanes_below(count, k))
+            if not any_lane(rooted):
+                store(numbers, i32x16(0))
+                store(address_of(spots) + 2 * stride + at, i32x16(NOWHERE))
+                continue
         row = load_columns(receivers, numbers, RECEIVER)
         px = load_f32x16(address_of(lifted) + at)
         py = load_f32x16(address_of(lifted) + stride + at)
@@ -172,10 +179,12 @@ def _wanting(cells, lights, still, cell, facing):
 
 @subkernel
 def seek(certified, lights, wave):
-    """Note what primary hits are about to want: those of a wave, found by their coordinates in the triangle."""
+    """Note what primary hits are about to want: those of a wave, found by their coordinates in the triangle.
+
+    Unless rays are dear, a quarter of them will do."""
     cells, receivers, child = certified.cells, address_of(certified.cells.receivers), address_of(certified.cells.child)
     facing, numbers = local_memory(FACING), local_memory(64)
-    for k in range((wave.size + 15) // 16):
+    for k in range(0, (wave.size + 15) // 16, 1 if certified.dear else 4):
         primitive = load_i32x16(address_of(wave.hits.primitive) + 64 * k)
         hit = (primitive > np.int32(NOWHERE)) & mask16(lanes_below(wave.size, k))
         primitive = select(hit, primitive, i32x16(0))

@@ -19,7 +19,11 @@ than D.  The fast structure takes a triangle to be 2e-6 of itself larger.  The m
 sum of all of that, a quarter enlarged.
 
 - *Hit*: where all four functions are greater than m at all corners of the cell, and the light lies off the
-  triangle's plane by more than its own margin and than where rays begin, every ray reports a hit.
+  triangle's plane by more than its own margin and than where rays begin, the test reports a hit for every ray.
+  The structures must let it: they ask only where the ray's t lies in a box, or passes a plane, and t is wrong by
+  up to 13 eps |s| |n| / D.  Across the triangle's plane that is 13 eps |d|, which the fast structure's boxes are
+  padded for if no ray is longer than `farthest`; along it the point must lie so far inside the triangle that
+  it stays there, for which U, V and D - U - V must exceed 13 eps |s| |e| |d| more: 2.5 m in all.
 - *Miss*: where one function is less than -m at all corners, no ray does.  The same holds of any sum of two
   functions with positive factors, as both would have to be at least -m: that is a plane through
   an edge of the triangle, tilted as need be.
@@ -49,6 +53,8 @@ from tracer.simd import address_of, all_lanes, any_lane, largest, load_f64x8, se
 EPSILON = 2.0**-24  # the largest relative error of a float32 rounding
 ENLARGED = 2.5e-6  # of a triangle, by which the fast structure takes it to be larger, and a little
 SURPLUS = 1.25
+INSIDE = 2.5  # margins that a hit is to be inside of a triangle by
+LONGEST = 13 * EPSILON  # times a ray's length: what boxes must be padded by for it to be sure of a hit
 LAMP = 2e-5  # of a segment from the light: what lies in it may be nearer than rays begin
 CORNERS = 8  # of a cell: three below and three above, and the last of them twice more, which makes a vector
 
@@ -154,9 +160,10 @@ def firm_height(s, e1, e2, blur):
 
 @inlined
 def surely_hit(q):
-    """Whether every ray of the cell hits the triangle that was measured."""
+    """Whether every ray of the cell hits the triangle that was measured, none being too long."""
     # D - T is greater than its margin at all corners: so is D, and with T firm its sign is that of every ray.
-    inside = all_lanes((q.u > q.of_u) & (q.v > q.of_v) & (q.w > q.of_w) & (q.beyond > q.of_beyond))
+    inside = (q.u > INSIDE * q.of_u) & (q.v > INSIDE * q.of_v) & (q.w > INSIDE * q.of_w)
+    inside = all_lanes(inside & (q.beyond > q.of_beyond))
     return inside and is_past_the_lamp(q)
 
 
@@ -238,9 +245,9 @@ def _size(a):
 
 
 @subkernel
-def verdict(rows, i, blur, light, point):
+def verdict(rows, i, blur, farthest, light, point):
     """What a shadow ray from a light to a point, both (3,), is certain to find of triangle i of rows (n, 9): SURE_HIT,
-    SURE_MISS, or UNSURE where float32 may say either."""
+    unless it is longer than `farthest`, SURE_MISS, or UNSURE where float32 may say either."""
     a, e1, e2 = row_of(rows, i)
     s = light[0] - a[0], light[1] - a[1], light[2] - a[2]
     d = point[0] - light[0], point[1] - light[1], point[2] - light[2]
@@ -257,7 +264,7 @@ def verdict(rows, i, blur, light, point):
     behind = det - height
     if behind < -SURPLUS * m:
         return SURE_MISS
-    sure = behind > SURPLUS * m and height > LAMP * abs(det)
+    sure = behind > SURPLUS * m and height > LAMP * abs(det) and reach < farthest
     q = cross(s, d)
     u, v = turned * dot(e2, q), -turned * dot(e1, q)
     w = det - u - v
@@ -267,4 +274,4 @@ def verdict(rows, i, blur, light, point):
     mw = mu + mv + SURPLUS * reach * (tilt + 5 * EPSILON * across)
     if u < -mu or v < -mv or w < -mw:
         return SURE_MISS
-    return SURE_HIT if sure and u > mu and v > mv and w > mw else UNSURE
+    return SURE_HIT if sure and u > INSIDE * mu and v > INSIDE * mv and w > INSIDE * mw else UNSURE

@@ -43,6 +43,7 @@ class Occluders(NamedTuple):
     (leaves, 8) int32, NONE for none, or that of a quadric; roots (trees,) int32; boxes (lights, nodes, BOXES) float32;
     reaches (lights, leaves, 8) float32, how far from each triangle a ray from the light can report a hit, negative
     where there is none in the box; loose (lights, n) int32, numbers of those in no box, and loose_count (lights,).
+    Longer rays than `farthest` are never sure of a hit.
     """
 
     rows: NDArray[np.float32]
@@ -56,6 +57,7 @@ class Occluders(NamedTuple):
     reaches: NDArray[np.float32]
     loose: NDArray[np.int32]
     loose_count: NDArray[np.int32]
+    farthest: float
 
 
 def shape_of(rows: NDArray[np.float32], boxes: NDArray[np.float32], numbers: NDArray[np.int32], threads: int) -> Shape:

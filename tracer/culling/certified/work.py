@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.certified.beam import put_cell, put_light
-from tracer.culling.certified.cells import FINAL, LEAF, add_cell, set_below, set_state, state_of
+from tracer.culling.certified.cells import FINAL, LEAF, ROOTS, add_cell, set_below, set_state, state_of
 from tracer.culling.certified.certify import CANDIDATES, COUNTERS, MOST, TOO_MANY, UNTRIED, certify
 from tracer.culling.certified.margins import cross, dot, row_of
 from tracer.geometry.memory import borrowed
@@ -63,33 +63,37 @@ def make_tasks(cell: NDArray[np.int32], first: NDArray[np.int32], last: NDArray[
 
 
 @kernel
-def gather_roots(cells, key, u, v, points):
+def gather_roots(cells, key, u, v, patience, points):
     """Sort points by their roots' keys into points, whose arrays are as long: tasks' (cell, first, last), (n, 3) int32.
 
-    Roots that are not there yet are made; there must be room."""
+    Roots that so many rays have wanted, this time or before, are made; there must be room."""
     receivers = cells.receivers.view(np.int32)
-    starts = np.zeros(2 * len(receivers) + 1, np.int32)
+    starts = np.zeros(len(cells.waiting) + 1, np.int32)
     for i in range(len(key)):
         starts[key[i] + 1] += 1
     roots = 0
-    for k in range(len(starts) - 1):
+    for k in range(len(cells.waiting)):
         roots += starts[k + 1] > 0
         starts[k + 1] += starts[k]
     tasks = np.empty((roots, 3), np.int32)
     n = 0
-    for k in range(len(starts) - 1):
+    for k in range(len(cells.waiting)):
         if starts[k + 1] > starts[k]:
-            root = receivers[k >> 1, 14 + (k & 1)]
+            root = receivers[k >> 1, ROOTS + (k & 1)]
             if root == 0:
+                cells.waiting[k] += starts[k + 1] - starts[k]
+                if cells.waiting[k] < patience:
+                    continue
                 root = add_cell(cells, 0, k, np.float32(0), np.float32(0), np.float32(1))
-                receivers[k >> 1, 14 + (k & 1)] = root
+                receivers[k >> 1, ROOTS + (k & 1)] = root
+                cells.rooted[k >> 1] = 1
             tasks[n, 0], tasks[n, 1], tasks[n, 2] = root, starts[k], starts[k + 1]
             n += 1
     for i in range(len(key)):
         at = starts[key[i]]
         starts[key[i]] += 1
         points.key[at], points.u[at], points.v[at] = key[i], u[i], v[i]
-    return tasks
+    return tasks[:n]
 
 
 @inlined
