@@ -197,7 +197,7 @@ def _choose_fates(points, light, number, knowledge, count, answers, counts):
             _ask_certified(points, light, number, knowledge.certified, answers, v, counts)
 
 
-@subkernel
+@inlined
 def _ask_certified(points, light, number, certified, answers, v, counts):
     """Ask candidates about the live points of a vector, and note which certificates are wanting."""
     live = np.int64(answers.live[v])
@@ -217,7 +217,12 @@ def _ask_certified(points, light, number, certified, answers, v, counts):
         at = points.lifted[0, i], points.lifted[1, i], points.lifted[2, i]
         end = np.float64(at[0]), np.float64(at[1]), np.float64(at[2])
         start = np.float64(light[0]), np.float64(light[1]), np.float64(light[2])
-        found, tests = ask_candidates(certified, np.int64(points.unit[i]), number, start, end)
+        count = np.int64(certified.cells.count[points.unit[i], number])
+        if count > certified.few:
+            continue
+        first = np.int64(certified.cells.start[points.unit[i], number])
+        names, farthest = certified.cells.names, certified.farthest
+        found, tests = ask_candidates(names, first, count, certified.rows, certified.blurs, farthest, start, end)
         counts[TESTS] += tests
         if found == UNSURE:
             continue

@@ -8,24 +8,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.culling.certified.margins import SURE_HIT, UNSURE, verdict
+from tracer.culling.certified.margins import SURE_HIT, SURE_MISS, UNSURE, verdict
 from tracer.kernels import subkernel
 
 
 @subkernel
-def ask_candidates(certified, cell, number, light, point):
-    """(verdict, tests made) of the candidates of a cell on a shadow ray from light `number` to a point (3,)."""
-    cells = certified.cells
-    count = np.int64(cells.count[cell, number])
-    if count > certified.few:
-        return UNSURE, 0
-    start, result, triangles = np.int64(cells.start[cell, number]), 0, len(certified.rows)
-    for k in range(start, start + count):
-        i = np.int64(cells.names[k])
-        found = UNSURE
-        if i < triangles:
-            found = verdict(certified.rows, i, np.float64(certified.blurs[i]), certified.farthest, light, point)
+def ask_candidates(names, first, count, rows, blurs, farthest, light, point):
+    """(verdict, tests made) of the candidates names[first : first + count] on a shadow ray from a light to a point, both
+    (3,): triangles of rows (n, 9) with their blurs (n,), or quadrics, of which nothing is certain."""
+    result = SURE_MISS
+    for k in range(first, first + count):
+        i, found = np.int64(names[k]), UNSURE
+        if i < len(rows):
+            found = verdict(rows, i, np.float64(blurs[i]), farthest, light, point)
         if found == SURE_HIT:
-            return SURE_HIT, k - start + 1
+            return SURE_HIT, k - first + 1
         result = max(result, found)
     return result, count
