@@ -17,10 +17,12 @@ import numpy as np
 from tracer.culling.memory import Memory
 from tracer.culling.modes import merge_words
 from tracer.culling.occlusion import count_pixels, occlusion_testing, set_occlusion_modes
+from tracer.culling.rest import Rest
 from tracer.culling.shadow import Knowledge
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import Pinhole, pinhole
 from tracer.geometry.world import World
+from tracer.method import base_of, takes
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
@@ -37,8 +39,8 @@ class Renderer:
     """Renders a scene frame by frame and remembers the modes between frames.
 
     `settings` may be replaced at any time between frames.  Renderers of one scene may share a
-    `world`, as long as they take turns.  Raises Cancelled if `progress` does while trees are built,
-    ValueError for settings out of range.
+    `world`, as long as they take turns; each has a `rest` of its own, which follows its frames.  Raises
+    Cancelled if `progress` does while trees are built, ValueError for settings out of range.
     """
 
     def __init__(
@@ -51,6 +53,7 @@ class Renderer:
         self.scene = scene
         self.settings = (settings or Settings()).validated()
         self.world = world or World(scene, scene.time_range[0], self.settings.accelerator, progress)
+        self.rest = Rest(len(scene.objects))
         self._look = make_look(scene, self.world.facets)
         self._memories: dict[tuple[int, int], Memory] = {}
         self._workspaces: list[Workspace] = []
@@ -93,7 +96,7 @@ class Renderer:
     def _memory(self, settings: Settings, workers: int) -> Memory:
         """The modes at this resolution; made, or given room for more workers, where need be."""
         key = (settings.width, settings.height)
-        memory = self._memories.pop(key, None) or Memory(self.world.object_of != 0, len(self.scene.lights), workers)
+        memory = self._memories.pop(key, None) or Memory(self.world.object_of, len(self.scene.lights), workers)
         self._memories[key] = memory  # the newest last
         if len(self._memories) > MEMORIES:
             del self._memories[next(iter(self._memories))]
@@ -155,11 +158,18 @@ class UnfinishedFrame:
         for_each_chunk(tile_work, len(self._tiles), self._workers, self._cancel)
 
     def place_objects_and_lights(self) -> None:
-        """Where is everything that moves?  What is known of a light that moved is forgotten."""
-        renderer = self._renderer
-        renderer.world.place(self._time)
-        renderer._look.lights[:] = light_positions(renderer.scene, self._time)
-        self.memory.follow_lights(renderer._look.lights)
+        """Where is everything that moves?  What is known of a light that moved is forgotten, and what depends on an
+        object that has come to rest, or rests no longer."""
+        renderer, method = self._renderer, self._settings.method
+        world, rest, lights = renderer.world, renderer.rest, renderer._look.lights
+        if takes(method, "rest") or base_of(method) == "certified":
+            world.place(self._time, rest)
+        else:
+            rest.forget()
+            world.place(self._time)
+        lights[:] = light_positions(renderer.scene, self._time)
+        self.memory.follow_lights(lights)
+        self.memory.follow_rest(rest.now, world.outlines, self._workers)
 
     def trace_primary_rays(self) -> None:
         """What does each pixel see?"""
@@ -173,7 +183,7 @@ class UnfinishedFrame:
 
     def test_occlusion(self) -> None:
         """§2.3: which primitives does a neighbouring pixel show to be hidden?"""
-        if self._settings.method == "none":
+        if base_of(self._settings.method) == "none":
             return
         height, memory = self._settings.height, self.memory
         seen = self._renderer.world.placed, self._rays, self._buffers.primitive, self._settings.symmetric
@@ -192,7 +202,8 @@ class UnfinishedFrame:
 
     def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
         placed, look, memory = self._renderer.world.placed, self._renderer._look, self.memory
-        depth, cull, verify = self._settings.depth, self._settings.method != "none", self._settings.verify
+        depth, verify = self._settings.depth, self._settings.verify
+        cull = base_of(self._settings.method) != "none"
 
         def work(tile: tuple[int, int, int, int], worker: int) -> None:
             knowledge = Knowledge(memory.words, memory.gained[worker], cull, verify)
@@ -222,7 +233,7 @@ class UnfinishedFrame:
         """§2.5, §2.6: keep what was learnt, and say which primitives have been seen whole."""
         memory = self.memory
         count_pixels(self._buffers.primitive, memory.pixel_count)
-        if self._settings.method != "none":
+        if base_of(self._settings.method) != "none":
             merge_words(memory.words, memory.gained)
             zoom = np.float64(self._settings.zoom_factor)
             set_occlusion_modes(memory.words, memory.hidden, memory.pixel_count, memory.highest_count, zoom)

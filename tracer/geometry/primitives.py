@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.facets import ACROSS, NORMALS, OBJECT, across, facet_rows
-from tracer.geometry.poses import inverses
+from tracer.geometry.poses import Poses, inverses, products
 from tracer.scene.animation import deformed
 from tracer.scene.model import SPHERE, Float32, Float64, Int32, Scene
 
@@ -16,6 +18,20 @@ def triangle_rows(corners: Float32) -> Float32:
     first = corners[:, 0].astype(np.float64)
     edges = [corners[:, i] - first for i in (1, 2)]
     return np.concatenate([first, *edges], axis=1).astype(np.float32)
+
+
+class Outlines(NamedTuple):
+    """Where primitives are in the world.
+
+    triangles (t, 9) float32, corner and edges, are in the space of their object, from which to_world (objects, 12)
+    float64 leads; object_of (t + q,) int32 tells whose each primitive is.  boxes (q, 6) float32 are around quadrics,
+    in the world.
+    """
+
+    triangles: Float32
+    to_world: Float64
+    object_of: Int32
+    boxes: Float32
 
 
 class Primitives:
@@ -59,14 +75,42 @@ class Primitives:
         """Where an object's are."""
         return slice(int(self.quadric_starts[index]), int(self.quadric_starts[index + 1]))
 
+    def corners_of(self, index: int) -> Float32:
+        """Corners (n, 3, 3) of a dynamic object's triangles, as they are now; a view."""
+        rows, first_dynamic = self.triangles_of(index), int(self.triangle_starts[1])
+        return self.corners[rows.start - first_dynamic : rows.stop - first_dynamic]
+
     def deform(self, time: float) -> None:
         """Take all deforming objects to a time."""
         for index, deformation in self.deformations.items():
-            rows, first_dynamic = self.triangles_of(index), int(self.triangle_starts[1])
+            rows = self.triangles_of(index)
             corners, normals = deformed(deformation, time)
-            self.corners[rows.start - first_dynamic : rows.stop - first_dynamic] = corners
+            self.corners_of(index)[:] = corners
             self.triangles[rows], self.normals[rows] = triangle_rows(corners), normals.reshape(-1, 9)
             self.facets[rows, ACROSS:OBJECT] = across(self.triangles[rows])
+
+    def outlines(self, poses: Poses) -> Outlines:
+        """All primitives, as they are now."""
+        boxes = self.placed_quadric_boxes(slice(0, len(self.quadrics)), poses)
+        return Outlines(self.triangles, poses.to_world.reshape(-1, 12), self.object_of, boxes)
+
+    def object_boxes(self, which: NDArray[np.int64], poses: Poses) -> NDArray[np.float32]:
+        """Boxes (k, 6) around objects (k,) that are present, but object 0, where they are."""
+        boxes = np.empty((len(which), 6), np.float32)
+        for box, index in zip(boxes, which.tolist(), strict=True):
+            corners = self.corners_of(index).reshape(-1, 3) @ poses.to_world[index, :, :3].T
+            corners += poses.to_world[index, :, 3]
+            round_ones = self.placed_quadric_boxes(self.quadrics_of(index), poses)
+            low = np.concatenate([corners, round_ones[:, :3]]).min(0)
+            high = np.concatenate([corners, round_ones[:, 3:]]).max(0)
+            slack = 2e-6 * max(np.abs(low).max(), np.abs(high).max())
+            box[:3], box[3:] = low - slack, high + slack
+        return boxes
+
+    def placed_quadric_boxes(self, which: slice, poses: Poses) -> NDArray[np.float32]:
+        """Boxes (n, 6) around quadrics where they are in the world."""
+        owners = self.object_of[len(self.triangles) :][which]
+        return self.quadric_boxes(which, products(poses.to_world[owners], self.to_object[which]))
 
     def quadric_boxes(self, which: slice, maps: Float64) -> NDArray[np.float32]:
         """Boxes (n, 6) around quadrics whose canonical space is taken by maps (n, 3, 4) to where they are wanted."""

@@ -1,9 +1,9 @@
 """The two queries on a placed world, one ray at a time, every step counted.
 
-Static geometry has one tree.  Each dynamic object has its own, in its own space, and a small tree
-over the objects' boxes leads to them; a ray is carried into an object's space rather than the
-object into the world's (Hunt, Mark, Stoll 2006; §3 of the paper).  A step is a node entered, inner
-or leaf, in any of these trees; a test is a ray against a primitive.
+Static geometry has one tree.  Each dynamic object has its own, in its own space, and two small trees
+over the objects' boxes, of those that rest and of those that move, lead to them; a ray is carried into
+an object's space rather than the object into the world's (Hunt, Mark, Stoll 2006; §3 of the paper).  A
+step is a node entered, inner or leaf, in any of these trees; a test is a ray against a primitive.
 """
 
 from __future__ import annotations
@@ -36,11 +36,21 @@ from tracer.simd import f32_at, i32_at, i64_at, load_i64, u8_at
 SLACK = np.float32(1e-5)  # relative; by so much an object's interval is wider than that of its leaf
 
 
-# A placed world as the entries get it: addresses, each an int64, then the number of triangles.
+# A placed world as the entries get it: addresses, each an int64, of all that Parts has; then the number of triangles,
+# and whether there is anything that rests, and anything that moves.
 (
-    TRIANGLES, QUADRICS, STATIC_WORDS, STATIC_ITEMS, DYNAMIC_WORDS, DYNAMIC_ITEMS, TOP_WORDS, TOP_ITEMS,
-    ROOTS, BOXES, TO_OBJECT, TOP_BOX, TRIANGLE_COUNT,
-) = range(0, 104, 8)  # fmt: skip
+    TRIANGLES, QUADRICS, STATIC_WORDS, STATIC_ITEMS, DYNAMIC_WORDS, DYNAMIC_ITEMS, RESTING_WORDS, RESTING_ITEMS,
+    MOVING_WORDS, MOVING_ITEMS, ROOTS, BOXES, TO_OBJECT, RESTING_BOX, MOVING_BOX, TRIANGLE_COUNT,
+    HAS_RESTING, HAS_MOVING,
+) = range(0, 144, 8)  # fmt: skip
+
+
+class _Top(NamedTuple):
+    """A tree over objects, the box around it, and whether there is anything in it."""
+
+    trees: Trees
+    box: Any
+    there: Any
 
 
 class _Search(NamedTuple):
@@ -51,11 +61,11 @@ class _Search(NamedTuple):
     quadrics: Any
     static: Trees
     dynamic: Trees
-    top: Trees
+    resting: _Top
+    moving: _Top
     roots: Any
     boxes: Any
     to_object: Any
-    top_box: Any
     stack: Stack
     top_stack: Stack
     counts: Any
@@ -76,6 +86,11 @@ def _trees(data, words, items):
 
 
 @inlined
+def _top(data, words, items, box, there):
+    return _Top(_trees(data, words, items), f32_at(load_i64(data + box)), load_i64(data + there) != 0)
+
+
+@inlined
 def _search(data, stack, top_stack, counts):
     return _Search(
         f32_at(load_i64(data + TRIANGLES)),
@@ -83,11 +98,11 @@ def _search(data, stack, top_stack, counts):
         f32_at(load_i64(data + QUADRICS)),
         _trees(data, STATIC_WORDS, STATIC_ITEMS),
         _trees(data, DYNAMIC_WORDS, DYNAMIC_ITEMS),
-        _trees(data, TOP_WORDS, TOP_ITEMS),
+        _top(data, RESTING_WORDS, RESTING_ITEMS, RESTING_BOX, HAS_RESTING),
+        _top(data, MOVING_WORDS, MOVING_ITEMS, MOVING_BOX, HAS_MOVING),
         i32_at(load_i64(data + ROOTS)),
         f32_at(load_i64(data + BOXES)),
         f32_at(load_i64(data + TO_OBJECT)),
-        f32_at(load_i64(data + TOP_BOX)),
         stack,
         top_stack,
         i64_at(counts),
@@ -152,36 +167,38 @@ def _piece(leaf):
 
 
 @subkernel
-def _closest_dynamic(s, ray, best):
-    near, far = hit_box(ray, s.top_box, 0)
-    if near > min(far, best.t):
+def _closest_of(s, top, ray, best):
+    """Nearest hit in the objects of a tree, if nearer than `best`."""
+    near, far = hit_box(ray, top.box, 0)
+    if not top.there or near > min(far, best.t):
         return best
     pending = push(s.top_stack, 0, 0, near, far)
     while pending > 0 and s.top_stack.enter[pending - 1] <= best.t:
-        leaf = next_leaf(s.top, ray, s.top_stack, pending)
+        leaf = next_leaf(top.trees, ray, s.top_stack, pending)
         pending = leaf.pending
         s.counts[STEPS] += leaf.steps
         enter, leave = _piece(leaf)
         for i in range(leaf.first, leaf.first + leaf.size):
-            o = s.top.items[i]
+            o = top.trees.items[i]
             local = transform_ray(ray, s.to_object, o, 12)
             best = _closest_in_tree(s, s.dynamic, o, local, enter, min(leave, best.t), best)
     return best
 
 
 @subkernel
-def _any_dynamic(s, ray):
-    near, far = hit_box(ray, s.top_box, 0)
-    if near > far:
+def _any_of(s, top, ray):
+    """The first primitive of the objects of a tree that is found to be hit, or MISS."""
+    near, far = hit_box(ray, top.box, 0)
+    if not top.there or near > far:
         return np.int32(MISS)
     pending = push(s.top_stack, 0, 0, near, far)
     while pending > 0:
-        leaf = next_leaf(s.top, ray, s.top_stack, pending)
+        leaf = next_leaf(top.trees, ray, s.top_stack, pending)
         pending = leaf.pending
         s.counts[STEPS] += leaf.steps
         enter, leave = _piece(leaf)
         for i in range(leaf.first, leaf.first + leaf.size):
-            o = s.top.items[i]
+            o = top.trees.items[i]
             primitive = _any_in_tree(s, s.dynamic, o, transform_ray(ray, s.to_object, o, 12), enter, leave)
             if primitive != MISS:
                 return primitive
@@ -201,7 +218,8 @@ def closest(data, batch, first, last, counts):
         ray = ray_at(rays, i)
         best = _Best(ray.t_max, np.int32(MISS), ZERO, ZERO)
         best = _closest_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max, best)
-        best = _closest_dynamic(s, ray, best)
+        best = _closest_of(s, s.resting, ray, best)
+        best = _closest_of(s, s.moving, ray, best)
         hit_t[i] = best.t if best.primitive != MISS else INFINITY
         hit_primitive[i], hit_u[i], hit_v[i] = best.primitive, best.u, best.v
 
@@ -220,9 +238,11 @@ def any_hit(data, batch, first, last, counts):
         if ray.t_min < ray.t_max:
             if which & STATIC:
                 primitive = _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max)
+                if primitive == MISS:
+                    primitive = _any_of(s, s.resting, ray)
                 found = STATIC if primitive != MISS else 0
             if which & DYNAMIC and found == 0:
-                primitive = _any_dynamic(s, ray)
+                primitive = _any_of(s, s.moving, ray)
                 found = DYNAMIC if primitive != MISS else 0
         blocked[i] = np.uint8(found)
         if named:
