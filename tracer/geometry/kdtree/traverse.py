@@ -166,11 +166,11 @@ def _piece(leaf):
     return leaf.enter - SLACK * abs(leaf.enter), leaf.leave + SLACK * abs(leaf.leave)
 
 
-@subkernel
+@inlined
 def _closest_of(s, top, ray, best):
     """Nearest hit in the objects of a tree, if nearer than `best`."""
     near, far = hit_box(ray, top.box, 0)
-    if not top.there or near > min(far, best.t):
+    if near > min(far, best.t):
         return best
     pending = push(s.top_stack, 0, 0, near, far)
     while pending > 0 and s.top_stack.enter[pending - 1] <= best.t:
@@ -189,7 +189,7 @@ def _closest_of(s, top, ray, best):
 def _any_of(s, top, ray):
     """The first primitive of the objects of a tree that is found to be hit, or MISS."""
     near, far = hit_box(ray, top.box, 0)
-    if not top.there or near > far:
+    if near > far:
         return np.int32(MISS)
     pending = push(s.top_stack, 0, 0, near, far)
     while pending > 0:
@@ -218,8 +218,10 @@ def closest(data, batch, first, last, counts):
         ray = ray_at(rays, i)
         best = _Best(ray.t_max, np.int32(MISS), ZERO, ZERO)
         best = _closest_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max, best)
-        best = _closest_of(s, s.resting, ray, best)
-        best = _closest_of(s, s.moving, ray, best)
+        for number in range(2):
+            top = s.resting if number == 0 else s.moving
+            if top.there:
+                best = _closest_of(s, top, ray, best)
         hit_t[i] = best.t if best.primitive != MISS else INFINITY
         hit_primitive[i], hit_u[i], hit_v[i] = best.primitive, best.u, best.v
 
@@ -238,10 +240,10 @@ def any_hit(data, batch, first, last, counts):
         if ray.t_min < ray.t_max:
             if which & STATIC:
                 primitive = _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max)
-                if primitive == MISS:
+                if primitive == MISS and s.resting.there:
                     primitive = _any_of(s, s.resting, ray)
                 found = STATIC if primitive != MISS else 0
-            if which & DYNAMIC and found == 0:
+            if which & DYNAMIC and s.moving.there and found == 0:
                 primitive = _any_of(s, s.moving, ray)
                 found = DYNAMIC if primitive != MISS else 0
         blocked[i] = np.uint8(found)
