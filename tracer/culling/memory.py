@@ -51,7 +51,9 @@ class Memory:
         if not len(started.which) and not len(stopped.which):
             return
         for changed, mode in ((started, modes.DYNAMIC), (stopped, modes.INIT)):
-            self.words[np.isin(self._object_of, changed.which)] = mode
+            concerned = np.zeros(len(resting.since), np.bool_)
+            concerned[changed.which] = True
+            self.words[concerned[self._object_of]] = mode
         assert self.light_positions is not None
         for changed, mode in ((started, modes.FULL_SHADOW), (stopped, modes.NON_SHADOW)):
             drop_dependent(self.words, outlines(), self.light_positions, changed.boxes, mode, threads)

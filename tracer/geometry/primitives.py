@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from tracer.geometry.facets import ACROSS, NORMALS, OBJECT, across, facet_rows
 from tracer.geometry.poses import Poses, inverses, products
+from tracer.kernels import kernel
 from tracer.scene.animation import deformed
 from tracer.scene.model import SPHERE, Float32, Float64, Int32, Scene
 
@@ -18,6 +19,20 @@ def triangle_rows(corners: Float32) -> Float32:
     first = corners[:, 0].astype(np.float64)
     edges = [corners[:, i] - first for i in (1, 2)]
     return np.concatenate([first, *edges], axis=1).astype(np.float32)
+
+
+@kernel
+def _bound(corners, starts, to_world, which, boxes):
+    """Boxes (k, 6) around the triangles of objects (k,), of whose corners (n, 3) three each are those of
+    triangles starts[1] and on, where they are in the world; inverted for those that have none."""
+    for k in range(len(which)):
+        o = which[k]
+        boxes[k, :3], boxes[k, 3:] = np.inf, -np.inf
+        for i in range(3 * (starts[o] - starts[1]), 3 * (starts[o + 1] - starts[1])):
+            for axis in range(3):
+                m = to_world[o, 4 * axis : 4 * axis + 4]
+                x = m[0] * corners[i, 0] + m[1] * corners[i, 1] + m[2] * corners[i, 2] + m[3]
+                boxes[k, axis], boxes[k, axis + 3] = min(boxes[k, axis], x), max(boxes[k, axis + 3], x)
 
 
 class Outlines(NamedTuple):
@@ -96,16 +111,14 @@ class Primitives:
 
     def object_boxes(self, which: NDArray[np.int64], poses: Poses) -> NDArray[np.float32]:
         """Boxes (k, 6) around objects (k,) that are present, but object 0, where they are."""
-        boxes = np.empty((len(which), 6), np.float32)
-        for box, index in zip(boxes, which.tolist(), strict=True):
-            corners = self.corners_of(index).reshape(-1, 3) @ poses.to_world[index, :, :3].T
-            corners += poses.to_world[index, :, 3]
-            round_ones = self.placed_quadric_boxes(self.quadrics_of(index), poses)
-            low = np.concatenate([corners, round_ones[:, :3]]).min(0)
-            high = np.concatenate([corners, round_ones[:, 3:]]).max(0)
-            slack = 2e-6 * max(np.abs(low).max(), np.abs(high).max())
-            box[:3], box[3:] = low - slack, high + slack
-        return boxes
+        boxes = np.empty((len(which), 6))
+        _bound(self.corners.reshape(-1, 3), self.triangle_starts, poses.to_world.reshape(-1, 12), which, boxes)
+        for k in np.flatnonzero(np.diff(self.quadric_starts)[which]):
+            round_ones = self.placed_quadric_boxes(self.quadrics_of(int(which[k])), poses)
+            boxes[k, :3] = np.minimum(boxes[k, :3], round_ones[:, :3].min(0))
+            boxes[k, 3:] = np.maximum(boxes[k, 3:], round_ones[:, 3:].max(0))
+        slack = 2e-6 * np.abs(boxes).max(axis=1, keepdims=True, initial=0.0)
+        return (boxes + slack * (-1, -1, -1, 1, 1, 1)).astype(np.float32)
 
     def placed_quadric_boxes(self, which: slice, poses: Poses) -> NDArray[np.float32]:
         """Boxes (n, 6) around quadrics where they are in the world."""
