@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 from llvmlite.binding import get_host_cpu_name
+from numpy.typing import NDArray
 
 from tracer.culling.modes import word_type
 from tracer.frame import Settings
@@ -118,7 +119,8 @@ def _frame(lights: int, accelerator: str) -> Iterator[str]:
 def _renderer(lights: int, accelerator: str) -> Renderer:
     # As many lights as make a word of that size, no more: each is traced.
     scene = _tiny_scene(1 if lights <= 15 else 16)
-    return Renderer(scene, Settings(width=4, height=4, threads=1, accelerator=accelerator))
+    settings = Settings(width=4, height=4, threads=1, method="paper+rest", accelerator=accelerator)
+    return Renderer(scene, settings)
 
 
 def _tiny_scene(lights: int) -> Scene:
@@ -227,7 +229,7 @@ class _Nowhere:
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
         self._primitives = primitives
 
-    def place(self, poses: Poses) -> Placed:
+    def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
         primitives = self._primitives
         to_object = poses.to_object.reshape(-1, 12).astype(np.float32)
         arrays = (primitives.triangles, primitives.quadrics, to_object, primitives.object_of)

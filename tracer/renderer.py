@@ -22,11 +22,12 @@ from tracer.culling.certified.lookup import Wanted
 from tracer.culling.memory import Memory
 from tracer.culling.modes import MAX_CULLED_LIGHTS, merge_words, word_type
 from tracer.culling.occlusion import count_pixels, occlusion_testing, set_occlusion_modes
+from tracer.culling.rest import Rest
 from tracer.culling.shadow import Certified, Knowledge
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import Pinhole, pinhole
 from tracer.geometry.world import World
-from tracer.method import base_of
+from tracer.method import base_of, takes
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
@@ -46,8 +47,8 @@ class Renderer:
     """Renders a scene frame by frame and remembers the modes between frames.
 
     `settings` may be replaced at any time between frames.  Renderers of one scene may share a
-    `world`, as long as they take turns.  Raises Cancelled if `progress` does while trees are built,
-    ValueError for settings out of range.
+    `world`, as long as they take turns; each has a `rest` of its own, which follows its frames.  Raises
+    Cancelled if `progress` does while trees are built, ValueError for settings out of range.
     """
 
     def __init__(
@@ -60,6 +61,7 @@ class Renderer:
         self.scene = scene
         self.settings = (settings or Settings()).validated()
         self.world = world or World(scene, scene.time_range[0], self.settings.accelerator, progress)
+        self.rest = Rest(len(scene.objects))
         self._look = make_look(scene, self.world.facets)
         self._memories: dict[tuple[int, int], Memory] = {}
         self._workspaces: list[Workspace] = []
@@ -106,7 +108,7 @@ class Renderer:
     def _memory(self, settings: Settings, workers: int) -> Memory:
         """The modes at this resolution; made, or given room for more workers, where need be."""
         key = (settings.width, settings.height)
-        memory = self._memories.pop(key, None) or Memory(self.world.object_of != 0, len(self.scene.lights), workers)
+        memory = self._memories.pop(key, None) or Memory(self.world.object_of, len(self.scene.lights), workers)
         self._memories[key] = memory  # the newest last
         if len(self._memories) > MEMORIES:
             del self._memories[next(iter(self._memories))]
@@ -193,17 +195,25 @@ class UnfinishedFrame:
         for_each_chunk(tile_work, len(self._tiles), self._workers, self._cancel)
 
     def place_objects_and_lights(self) -> None:
-        """Where is everything that moves?  What is known of a light that moved is forgotten."""
+        """Where is everything that moves?  What is known of a light that moved is forgotten, and what depends on an
+        object that has come to rest, or rests no longer."""
         renderer = self._renderer
-        renderer.world.place(self._time)
-        renderer._look.lights[:] = light_positions(renderer.scene, self._time)
-        self.memory.follow_lights(renderer._look.lights)
+        world, rest, lights = renderer.world, renderer.rest, renderer._look.lights
+        # Certificates speak of what never moves alone: nothing else may be static to rays that go by them.
+        if takes(self._settings.method, "rest") and self._base != "certified":
+            world.place(self._time, rest)
+        else:
+            rest.forget()
+            world.place(self._time)
+        lights[:] = light_positions(renderer.scene, self._time)
+        self.memory.follow_lights(lights)
+        self.memory.follow_rest(rest.now, world.outlines, self._workers)
         self._certificates = None
         if self._base == "certified":
             if renderer.certificates is None:
-                renderer.certificates = Certificates(renderer.world, renderer._look.lights, self._workers)
+                renderer.certificates = Certificates(world, lights, self._workers)
             self._certificates = renderer.certificates
-            self._certificates.follow_lights(renderer._look.lights)
+            self._certificates.follow_lights(lights)
 
     def trace_primary_rays(self) -> None:
         """What does each pixel see?"""

@@ -75,8 +75,9 @@ EDITS = (
             ("single", 16, "TESTS", "1", 1),
             ("single", 12, "TESTS", "1", 4),
             ("single", 12, "STEPS", "1", 1),
+            ("single", 12, "STEPS", "rays", 1),
             ("single", 8, "STEPS", "1", 1),
-            ("single", 8, "STEPS", "rays", 2),
+            ("single", 8, "STEPS", "rays", 1),
         )
     ),
 )

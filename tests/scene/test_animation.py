@@ -75,6 +75,19 @@ def test_full_tension_eases_in_and_out():
         assert x_at(animation, 1 + u) == pytest.approx(u * u * (3 - 2 * u))
 
 
+def test_what_waits_between_two_keys_stands_still_to_the_last_bit():
+    rng = np.random.default_rng(0)
+    places, turns, sizes = rng.normal(size=(4, 3)), rng.normal(size=(4, 4)) * (1, 1, 1, 90), rng.uniform(0.5, 2, (4, 3))
+    for values in (places, turns, sizes):
+        values[2] = values[1]
+    tracks = (keys(range(4), values, [(1, 0, 0)] * 4) for values in (places, turns, sizes))
+    animation = Animation({"a": TrackSet(*tracks)})
+    first = animation.matrix(("a",), 1.0)
+    assert np.array_equal(first[:3, 3], places[1])
+    for time in np.linspace(1, 2, 50):
+        assert animation.matrix(("a",), time).tobytes() == first.tobytes()
+
+
 def test_time_is_clamped_to_the_inner_keys():
     animation = moving(range(5), [(9, 0, 0), (1, 0, 0), (4, 0, 0), (2, 0, 0), (9, 0, 0)])
     assert x_at(animation, -100) == x_at(animation, 1) == 1

@@ -76,7 +76,8 @@ class Traversal:
 
     def _leaves(self, whatever: bool) -> Iterator[list[int]]:
         """Primitives of the leaves in the ray's way, in its order: static geometry's, then those of the dynamic
-        objects whose boxes it crosses.  Unless it asks for whatever is there, nothing beyond `nearest` counts."""
+        objects whose boxes it crosses, of those that rest first.  Unless it asks for whatever is there, nothing beyond
+        `nearest` counts."""
         parts = self.parts
 
         def limit() -> np.float32:
@@ -84,14 +85,17 @@ class Traversal:
 
         enter, leave = self.line.within(parts.boxes[0], self.t_min, self.t_max)
         yield from (items for items, _, _ in self._walk(parts.static, 0, self.line, enter, leave, limit))
-        enter, leave = self.line.within(parts.top_box, self.t_min, self.t_max)
-        for objects, first, last in self._walk(parts.top, 0, self.line, enter, leave, limit):
-            first, last = first - F(1e-5) * abs(first), last + F(1e-5) * abs(last)
-            for o in objects:
-                line = self.line.carried(parts.to_object[o])
-                enter, leave = line.within(parts.boxes[o], first, last if whatever else min(last, self.nearest))
-                walk = self._walk(parts.dynamic, int(parts.roots[o]), line, enter, leave, limit)
-                yield from (items for items, _, _ in walk)
+        for top, box in ((parts.resting, parts.resting_box), (parts.moving, parts.moving_box)):
+            if not len(top.items):
+                continue
+            enter, leave = self.line.within(box, self.t_min, self.t_max)
+            for objects, first, last in self._walk(top, 0, self.line, enter, leave, limit):
+                first, last = first - F(1e-5) * abs(first), last + F(1e-5) * abs(last)
+                for o in objects:
+                    line = self.line.carried(parts.to_object[o])
+                    enter, leave = line.within(parts.boxes[o], first, last if whatever else min(last, self.nearest))
+                    walk = self._walk(parts.dynamic, int(parts.roots[o]), line, enter, leave, limit)
+                    yield from (items for items, _, _ in walk)
 
     def _walk(
         self, trees: Trees, node: int, line: Line, enter: np.float32, leave: np.float32, limit: Callable

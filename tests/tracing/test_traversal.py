@@ -11,7 +11,7 @@ import tracer
 from tests.tracing import brute
 from tests.tracing.naive_tree import Line, Traversal
 from tests.tracing.random_worlds import END, quickly, scenes
-from tests.tracing.worlds import quad, random_corners, scene
+from tests.tracing.worlds import SomeRest, quad, random_corners, scene
 from tracer.geometry.queries import batch_of
 from tracer.geometry.rays import Hits, Rays
 
@@ -90,9 +90,11 @@ def test_rays_go_the_naive_twins_way_through_random_scenes():
     @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
     def check(made: tracer.Scene, time: float, seed: int) -> None:
         nonlocal sums
-        world = tracer.World(made, time, "kdtree")
+        world, rng = tracer.World(made, time, "kdtree"), np.random.default_rng(seed)
         there = brute.primitives_there(made, time)
-        sums += assert_same_way(world, random_rays(np.random.default_rng(seed), 25), there)
+        sums += assert_same_way(world, random_rays(rng, 25), there)
+        world.place(time, SomeRest(rng.random(len(made.objects)) < 0.5))
+        sums += assert_same_way(world, random_rays(rng, 25), there)
 
     check()
     assert (sums[0] > sums[1]).all() and (sums > 0).all()

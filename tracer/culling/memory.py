@@ -1,13 +1,18 @@
-"""What culling remembers between frames: words, counts, and where the lights stood.
+"""What culling remembers between frames: words, counts, where the lights stood, and what rested.
 
 A pixel count means nothing at another resolution, so each resolution has a memory of its own.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from tracer.culling import modes
+from tracer.culling.dependence import drop_dependent
+from tracer.culling.rest import Resting, changes, nothing_rests
+from tracer.geometry.primitives import Outlines
 
 
 class Memory:
@@ -17,15 +22,16 @@ class Memory:
     int32, hidden (units,) bool, gained (workers, units) like words.
     """
 
-    def __init__(self, dynamic: np.ndarray, lights: int, workers: int) -> None:
-        """`dynamic` (units,) bool tells which units belong to dynamic objects."""
-        units, word = len(dynamic), modes.word_type(lights)
-        self.words = np.where(dynamic, word(modes.DYNAMIC), word(modes.INIT)).astype(word)
+    def __init__(self, object_of: np.ndarray, lights: int, workers: int) -> None:
+        """object_of (units,) tells whose each unit is: object 0 is static."""
+        units, word = len(object_of), modes.word_type(lights)
+        self.words = np.where(object_of != 0, word(modes.DYNAMIC), word(modes.INIT)).astype(word)
         self.pixel_count = np.zeros(units, np.int32)
         self.highest_count = np.zeros(units, np.int32)
         self.hidden = np.zeros(units, np.bool_)
         self.gained = np.zeros((workers, units), word)
         self.light_positions: np.ndarray | None = None
+        self._object_of, self._resting = object_of, nothing_rests(0)
 
     def follow_lights(self, positions: np.ndarray) -> None:
         """Forget what is known of lights that are not where the last frame had them; positions (lights, 3)."""
@@ -34,6 +40,23 @@ class Memory:
             moved = np.flatnonzero((before != positions).any(axis=1))
             if len(moved):
                 modes.forget_lights(self.words, [int(i) for i in moved])
+
+    def follow_rest(self, resting: Resting, outlines: Callable[[], Outlines], threads: int) -> None:
+        """Let the units of what rests carry modes, and no others of dynamic objects; after `follow_lights`.
+
+        What depends on objects that have started or stopped since the last frame is forgotten."""
+        before = self._resting if len(self._resting.since) else nothing_rests(len(resting.since))
+        started, stopped = changes(before, resting)
+        self._resting = resting
+        if not len(started.which) and not len(stopped.which):
+            return
+        for changed, mode in ((started, modes.DYNAMIC), (stopped, modes.INIT)):
+            concerned = np.zeros(len(resting.since), np.bool_)
+            concerned[changed.which] = True
+            self.words[concerned[self._object_of]] = mode
+        assert self.light_positions is not None
+        for changed, mode in ((started, modes.FULL_SHADOW), (stopped, modes.NON_SHADOW)):
+            drop_dependent(self.words, outlines(), self.light_positions, changed.boxes, mode, threads)
 
     def discard_frame(self) -> None:
         """Drop what an unfinished frame has gathered."""

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.facets import ACROSS, NORMALS, OBJECT, across, facet_rows
-from tracer.geometry.poses import inverses
+from tracer.geometry.poses import Poses, inverses, products
+from tracer.kernels import kernel
 from tracer.scene.animation import deformed
 from tracer.scene.model import SPHERE, Float32, Float64, Int32, Scene
 
@@ -16,6 +19,34 @@ def triangle_rows(corners: Float32) -> Float32:
     first = corners[:, 0].astype(np.float64)
     edges = [corners[:, i] - first for i in (1, 2)]
     return np.concatenate([first, *edges], axis=1).astype(np.float32)
+
+
+@kernel
+def _bound(corners, starts, to_world, which, boxes):
+    """Boxes (k, 6) around the triangles of objects (k,), of whose corners (n, 3) three each are those of
+    triangles starts[1] and on, where they are in the world; inverted for those that have none."""
+    for k in range(len(which)):
+        o = which[k]
+        boxes[k, :3], boxes[k, 3:] = np.inf, -np.inf
+        for i in range(3 * (starts[o] - starts[1]), 3 * (starts[o + 1] - starts[1])):
+            for axis in range(3):
+                m = to_world[o, 4 * axis : 4 * axis + 4]
+                x = m[0] * corners[i, 0] + m[1] * corners[i, 1] + m[2] * corners[i, 2] + m[3]
+                boxes[k, axis], boxes[k, axis + 3] = min(boxes[k, axis], x), max(boxes[k, axis + 3], x)
+
+
+class Outlines(NamedTuple):
+    """Where primitives are in the world.
+
+    triangles (t, 9) float32, corner and edges, are in the space of their object, from which to_world (objects, 12)
+    float64 leads; object_of (t + q,) int32 tells whose each primitive is.  boxes (q, 6) float32 are around quadrics,
+    in the world.
+    """
+
+    triangles: Float32
+    to_world: Float64
+    object_of: Int32
+    boxes: Float32
 
 
 class Primitives:
@@ -59,14 +90,40 @@ class Primitives:
         """Where an object's are."""
         return slice(int(self.quadric_starts[index]), int(self.quadric_starts[index + 1]))
 
+    def corners_of(self, index: int) -> Float32:
+        """Corners (n, 3, 3) of a dynamic object's triangles, as they are now; a view."""
+        rows, first_dynamic = self.triangles_of(index), int(self.triangle_starts[1])
+        return self.corners[rows.start - first_dynamic : rows.stop - first_dynamic]
+
     def deform(self, time: float) -> None:
         """Take all deforming objects to a time."""
         for index, deformation in self.deformations.items():
-            rows, first_dynamic = self.triangles_of(index), int(self.triangle_starts[1])
+            rows = self.triangles_of(index)
             corners, normals = deformed(deformation, time)
-            self.corners[rows.start - first_dynamic : rows.stop - first_dynamic] = corners
+            self.corners_of(index)[:] = corners
             self.triangles[rows], self.normals[rows] = triangle_rows(corners), normals.reshape(-1, 9)
             self.facets[rows, ACROSS:OBJECT] = across(self.triangles[rows])
+
+    def outlines(self, poses: Poses) -> Outlines:
+        """All primitives, as they are now."""
+        boxes = self.placed_quadric_boxes(slice(0, len(self.quadrics)), poses)
+        return Outlines(self.triangles, poses.to_world.reshape(-1, 12), self.object_of, boxes)
+
+    def object_boxes(self, which: NDArray[np.int64], poses: Poses) -> NDArray[np.float32]:
+        """Boxes (k, 6) around objects (k,) that are present, but object 0, where they are."""
+        boxes = np.empty((len(which), 6))
+        _bound(self.corners.reshape(-1, 3), self.triangle_starts, poses.to_world.reshape(-1, 12), which, boxes)
+        for k in np.flatnonzero(np.diff(self.quadric_starts)[which]):
+            round_ones = self.placed_quadric_boxes(self.quadrics_of(int(which[k])), poses)
+            boxes[k, :3] = np.minimum(boxes[k, :3], round_ones[:, :3].min(0))
+            boxes[k, 3:] = np.maximum(boxes[k, 3:], round_ones[:, 3:].max(0))
+        slack = 2e-6 * np.abs(boxes).max(axis=1, keepdims=True, initial=0.0)
+        return (boxes + slack * (-1, -1, -1, 1, 1, 1)).astype(np.float32)
+
+    def placed_quadric_boxes(self, which: slice, poses: Poses) -> NDArray[np.float32]:
+        """Boxes (n, 6) around quadrics where they are in the world."""
+        owners = self.object_of[len(self.triangles) :][which]
+        return self.quadric_boxes(which, products(poses.to_world[owners], self.to_object[which]))
 
     def quadric_boxes(self, which: slice, maps: Float64) -> NDArray[np.float32]:
         """Boxes (n, 6) around quadrics whose canonical space is taken by maps (n, 3, 4) to where they are wanted."""

@@ -6,15 +6,15 @@ questions in batches: `closest_hits` and `any_hits`.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.bvh8 import place as bvh8
 from tracer.geometry.kdtree import place as kdtree
-from tracer.geometry.poses import poses_at
-from tracer.geometry.primitives import Primitives
+from tracer.geometry.poses import Poses, poses_at
+from tracer.geometry.primitives import Outlines, Primitives
 from tracer.geometry.queries import batch_of
 from tracer.geometry.rays import Hits, Rays
 from tracer.kernels import Entry
@@ -26,6 +26,13 @@ CHUNK = 8192  # rays a thread takes at a time
 
 STRUCTURES: dict[str, Any] = {"kdtree": kdtree.KdTrees, "bvh8": bvh8.Trees8}
 ACCELERATORS = tuple(STRUCTURES)
+
+
+class Follower(Protocol):
+    """Who says, from one place to the next, which objects rest (`tracer.culling.rest`)."""
+
+    def follow(self, poses: Poses, primitives: Primitives) -> NDArray[np.bool_]:
+        """(objects,) whether each rests, as posed and, where it deforms, shaped now; only what is present may."""
 
 
 class World:
@@ -62,10 +69,27 @@ class World:
         self._scene = scene
         self._chains = Chains(scene.animation, [o.chain for o in scene.objects])
 
-    def place(self, time: float) -> None:
-        """Move and deform dynamic objects to where and what they are at `time` seconds."""
+    def place(self, time: float, rest: Follower | None = None) -> None:
+        """Move and deform dynamic objects to where and what they are at `time` seconds.
+
+        Those that rest, by what `rest` says, are static geometry to `any_hits`; without it none does."""
         self._primitives.deform(time)
-        self.placed = self.structure.place(poses_at(self._chains, self._primitives.empty, time))
+        self._poses = poses_at(self._chains, self._primitives.empty, time)
+        resting = np.zeros(len(self._poses.present), np.bool_)
+        if rest is not None:
+            resting[:] = rest.follow(self._poses, self._primitives)
+        self.placed = self.structure.place(self._poses, resting)
+
+    def outlines(self) -> Outlines:
+        """Where each primitive is."""
+        return self._primitives.outlines(self._poses)
+
+    def object_boxes(self) -> NDArray[np.float32]:
+        """Boxes (objects, 6) around dynamic objects; inverted for those that are not there, and object 0."""
+        boxes = np.tile(np.array([1, 1, 1, -1, -1, -1], np.float32), (len(self._poses.present), 1))
+        there = 1 + np.flatnonzero(self._poses.present[1:])
+        boxes[there] = self._primitives.object_boxes(there, self._poses)
+        return boxes
 
     def closest_hits(self, rays: Rays, threads: int = 0) -> Hits:
         """Nearest hits of a batch (see `tracer.geometry.rays`)."""
@@ -80,6 +104,15 @@ class World:
         blocked = np.zeros(n, np.uint8)
         self._ask(self.structure.any_hit, batch_of(rays, blocked=blocked), n, threads)
         return blocked != 0
+
+    def occluders(self, rays: Rays, threads: int = 0) -> NDArray[np.int32]:
+        """(n,) a primitive, not always the nearest, that lies in each ray's interval; MISS where none does.
+
+        The same on every run, and for any number of threads: rays are asked CHUNK by CHUNK."""
+        n = len(rays.t_min)
+        blocked, found = np.empty(n, np.uint8), np.empty(n, np.int32)
+        self._ask(self.structure.any_hit, batch_of(rays, blocked=blocked, occluders=found), n, threads)
+        return found
 
     def _ask(self, query: Entry, batch: NDArray[np.int64], n: int, threads: int) -> None:
         counts = np.zeros((thread_count(threads), 2), np.int64)

@@ -1,7 +1,7 @@
-"""One tree for all dynamic objects: a sub-tree for each, and a small tree over those that are present.
+"""Trees of all dynamic objects: a sub-tree for each, and small ones over those that rest, and those that move.
 
 The shape of a sub-tree is made once, in its object's space.  For a frame its triangles are moved to
-the world, its boxes found from the bottom up, and the small tree written anew into the first nodes.
+the world, its boxes found from the bottom up, and the small trees written anew into the first nodes.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ NODE, BLOCK, TRIANGLE, QUADRIC = 0, 1, 2, 3  # columns of `starts`
 
 
 class Forest(NamedTuple):
-    """Sub-trees of n objects back to back, with room for a tree over them before.
+    """Sub-trees of n objects back to back, with room for trees over them before.
 
     corners (m, 72) float32 are those of the triangles in each block, in their object's space, as
     structure of arrays; starts (n + 1, 4) int32 tell where each object's nodes, blocks, triangles and
@@ -43,7 +43,7 @@ def plant(shapes: Sequence[Shape], triangles: NDArray[np.int32], quadrics: NDArr
     counts = np.diff(triangles)
     sizes = [(len(s.children), count_blocks(s, n)) for s, n in zip(shapes, counts[1:], strict=True)]
     starts = np.zeros((len(triangles), 4), np.int32)
-    starts[:2, :2] = max(1, len(shapes)), 1
+    starts[:2, :2] = max(2, 1 + len(shapes)), 1  # two crowns share these nodes, and either may be empty
     starts[2:, :2] = starts[1, :2] + np.cumsum(sizes, axis=0).reshape(-1, 2)
     starts[:, TRIANGLE], starts[:, QUADRIC] = triangles, quadrics
     tree = empty_tree(starts[-1, NODE], starts[-1, BLOCK] - 1)
@@ -90,26 +90,29 @@ def move(forest, matrices, present, boxes):
 
 
 @kernel
-def _crown(forest, shape, present):
-    """Write the tree over the objects (p,) that are present."""
+def _crown(forest, shape, objects, first):
+    """Write a tree over objects (p,), its nodes from `first` on, all others before the sub-trees' being empty."""
     nodes, roots, links = address_of(forest.tree.nodes), address_of(forest.links.roots), forest.links.nodes
-    clear_nodes(nodes, 0, forest.starts[1, NODE])
-    links[0] = ~0
-    for link in range(WIDTH * len(shape.children)):
-        child = shape.children[link // WIDTH, link % WIDTH]
-        if child >= 0:
-            set_child(nodes, link, child)
-            links[child] = link
-        elif child != VACANT:
-            item = present[shape.order[shape.leaves[~child, 0]]]
-            set_child(nodes, link, forest.starts[item, NODE])
-            pad_box(nodes, roots, link, roots + 24 * item, np.float32(0))
-    unite(nodes, roots, address_of(links), 0, len(shape.children))
+    clear_nodes(nodes, first, forest.starts[1, NODE])
+    links[first] = ~0
+    for i in range(len(shape.children)):
+        for slot in range(WIDTH):
+            child, link = shape.children[i, slot], WIDTH * (first + i) + slot
+            if child >= 0:
+                set_child(nodes, link, first + child)
+                links[first + child] = link
+            elif child != VACANT:
+                item = objects[shape.order[shape.leaves[~child, 0]]]
+                set_child(nodes, link, forest.starts[item, NODE])
+                pad_box(nodes, roots, link, roots + 24 * item, np.float32(0))
+    unite(nodes, roots, address_of(links), first, first + len(shape.children))
 
 
-def crown(forest: Forest, present: NDArray[np.bool_]) -> None:
-    """Make the tree over what is present, (n,) bool, and has been moved."""
-    numbers = np.flatnonzero(present)
+def crown(forest: Forest, objects: NDArray[np.bool_], first: int) -> int:
+    """Make a tree over objects, (n,) bool, that have been moved; its root is node `first`, and what is returned the
+    first node after it."""
+    numbers = np.flatnonzero(objects)
     boxes = forest.links.roots[numbers]
     shape = build_shape(np.empty((0, 9), np.float32), boxes, np.zeros(2, np.int64), depth=CROWN_DEPTH)
-    _crown(forest, shape, numbers)
+    _crown(forest, shape, numbers, first)
+    return first + len(shape.children)

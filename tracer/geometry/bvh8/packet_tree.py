@@ -109,7 +109,7 @@ def _ask_quadrics(origin, memory, group, trees, node, quadrics, active, nearest,
 @subkernel
 def closest_in_tree(origin, memory, group, trees, stack, counts):
     """Nearest hits of a packet in a tree."""
-    store(stack, group.vectors << 32)
+    store(stack, (group.vectors << 32) | trees.root)
     pending = 1
     while pending > 0:
         pending -= 1
@@ -156,7 +156,7 @@ def any_in_tree(origin, memory, group, trees, stack, occluder, counts):
         put_reaches(memory, found, group.axes)
         if looking(memory, np.float32(0)) == 0:
             return occluder
-    store(stack, group.vectors << 32)
+    store(stack, (group.vectors << 32) | trees.root)
     pending = 1
     while pending > 0:
         pending -= 1

@@ -1,4 +1,4 @@
-"""The 8-wide trees of a scene: one of what never moves, one of all dynamic objects, placed for a frame.
+"""The 8-wide trees of a scene: one of what never moves, and those of all dynamic objects, placed for a frame.
 
 Rays are traced in the world alone: what moves is moved there for each frame.  What deforms has a tree of
 the shape that was best at the nearest of some times along its animation.  Shapes are kept; so they
@@ -16,6 +16,7 @@ from tracer.geometry.bvh8.build import build_shape, build_tree
 from tracer.geometry.bvh8.collapse import Shape
 from tracer.geometry.bvh8.forest import crown, gather, move, plant
 from tracer.geometry.bvh8.tree import CHILDREN, WIDTH, Tree
+from tracer.geometry.bvh8.trees import FIXED, MOVING, RESTING
 from tracer.geometry.poses import Poses, products
 from tracer.geometry.primitives import Primitives, triangle_rows
 from tracer.geometry.queries import Placed
@@ -85,19 +86,23 @@ class Trees8:
         for index in self._keys:
             gather(self._forest, self._primitives.corners.reshape(-1, 9), index, index + 1)
 
-    def place(self, poses: Poses) -> Placed:
+    def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
         """Move all that is present, as the primitives are now, to where it is."""
         primitives, present = self._primitives, poses.present.copy()
         present[0] = False
+        moving = present & ~resting
         self._deform(poses.time)
         self._move_quadrics(poses)
         to_world = poses.to_world.reshape(-1, 12).astype(np.float32)
         move(self._forest, to_world, present, self._quadric_boxes)
-        crown(self._forest, present)
+        self.resting_root = crown(self._forest, moving, 0)
+        crown(self._forest, resting, self.resting_root)
         self.dynamic = self._forest.tree
-        static, dynamic, moves = self.static, self.dynamic, bool(present.any())
-        trees = (static.nodes, static.blocks, dynamic.nodes, dynamic.blocks, self.world_quadrics)
-        self._data = np.array([*(a.ctypes.data for a in trees), len(primitives.triangles), moves], np.int64)
+        roots = ((self.static, 0), (self.dynamic, self.resting_root), (self.dynamic, 0))
+        trees = [number for tree, root in roots for number in (tree.nodes.ctypes.data, tree.blocks.ctypes.data, root)]
+        there = 1 << FIXED | bool(resting.any()) << RESTING | bool(moving.any()) << MOVING
+        triangles, quadrics = len(primitives.triangles), self.world_quadrics.ctypes.data
+        self._data = np.array([*trees, quadrics, triangles, there], np.int64)
         return Placed(
             primitives.triangles,
             primitives.quadrics,
@@ -106,7 +111,7 @@ class Trees8:
             self.closest.address,
             self.any_hit.address,
             self._data.ctypes.data,
-            moves,
+            bool(moving.any()),
         )
 
     def _move_quadrics(self, poses: Poses) -> None:
@@ -118,12 +123,11 @@ class Trees8:
         owners = primitives.object_of[len(primitives.triangles) :][which]
         maps = products(primitives.to_canonical[which], poses.to_object[owners])
         self.world_quadrics[which, :12] = maps.reshape(-1, 12)
-        maps = products(poses.to_world[owners], primitives.to_object[which])
-        self._quadric_boxes[which] = primitives.quadric_boxes(which, maps)
+        self._quadric_boxes[which] = primitives.placed_quadric_boxes(which, poses)
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""
-        boxes = np.stack([tree_box(self.static), tree_box(self.dynamic)])
+        boxes = np.stack([tree_box(self.static), *(tree_box(self.dynamic, root) for root in (0, self.resting_root))])
         boxes = boxes[boxes[:, 0] <= boxes[:, 3]]
         if not len(boxes):
             return np.array([1, 1, 1, -1, -1, -1], np.float32)
@@ -138,10 +142,10 @@ def _keys(times: Float64) -> Float64:
     return np.interp(np.arange(STEPS * (len(keys) - 1) + 1) / STEPS, np.arange(len(keys)), keys)
 
 
-def tree_box(tree: Tree) -> NDArray[np.float32]:
-    """Box (6,) around a tree; inverted where there is nothing in it."""
-    used = tree.nodes.view(np.int32)[0, CHILDREN : CHILDREN + WIDTH] != ~0
+def tree_box(tree: Tree, root: int = 0) -> NDArray[np.float32]:
+    """Box (6,) around all below a node of a tree; inverted where there is nothing in it."""
+    used = tree.nodes.view(np.int32)[root, CHILDREN : CHILDREN + WIDTH] != ~0
     if not used.any():
         return np.array([1, 1, 1, -1, -1, -1], np.float32)
-    boxes = tree.nodes[0, : 6 * WIDTH].reshape(6, WIDTH)[:, used]
+    boxes = tree.nodes[root, : 6 * WIDTH].reshape(6, WIDTH)[:, used]
     return np.concatenate([boxes[:3].min(1), boxes[3:].max(1)])

@@ -32,8 +32,9 @@ from tracer.geometry.bvh8.packet import (
 from tracer.geometry.bvh8.packet_leaf import quadric_in_child
 from tracer.geometry.bvh8.packet_tree import STACK, code_of, prefetch_child, push_sorted, quadrics_in
 from tracer.geometry.bvh8.tree import QUADRIC, WIDTH
-from tracer.geometry.bvh8.trees import BLOCK, HAS_DYNAMIC, NODE, child_planes, tree_of
+from tracer.geometry.bvh8.trees import BLOCK, MOVING, NODE, TREES, child_planes, root_of, tree_of, trees_asked
 from tracer.geometry.queries import STEPS, TESTS
+from tracer.geometry.rays import MISS
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     as_f32,
@@ -55,7 +56,7 @@ from tracer.simd import (
 
 NOTHING = np.int64(-0x80000000)  # code of no child
 CLOSED = np.int32(0x7FFFFFFF)  # key of a child that a ray does not enter: no distance at all
-ROOM = 64 * (2 * WIDTH + 1)  # bytes of the keys of both roots' children, and of those last chosen, for sixteen rays
+ROOM = 64 * (2 * WIDTH + 1)  # bytes of the keys of two roots' children, and of those last chosen, for sixteen rays
 SINGLE_MEMORY = ROOM + 64 + STACK  # keys, scratch, then the stack
 
 
@@ -71,12 +72,13 @@ def _open_root(memory, v, trees, first, room, nearest, counts):
 
     A key is the bits of the distance, the lowest four replaced by first and the child's number (which only makes
     the distance less), or CLOSED.  Quadrics among the children are asked at once."""
-    quadrics = quadrics_in(trees.nodes)
+    root = root_of(trees)
+    quadrics = quadrics_in(root)
     for c in range(WIDTH):
-        box, key = trees.nodes + 4 * c, i32x16(CLOSED)
+        box, key = root + 4 * c, i32x16(CLOSED)
         if (quadrics >> c) & 1:
             counts[TESTS] += 1
-            quadric_in_child(None, memory, box, np.int64(1) << v, trees, ~code_of(trees.nodes, c) - QUADRIC, nearest)
+            quadric_in_child(None, memory, box, np.int64(1) << v, trees, ~code_of(root, c) - QUADRIC, nearest)
         else:
             enter, leave = lanes_inside(None, memory, v, child_planes(box))
             distance = as_i32(maximum(enter, ZERO)) & np.int32(~15)
@@ -147,9 +149,16 @@ def _closest_below(a, code, trees, stack, counts):
     store(a + V * ROW, best.v)
 
 
+@inlined
+def _block(a, number):
+    store(a + T * ROW, BLOCKED_T)
+    store(a + NUMBER * ROW, number)
+
+
 @subkernel
 def _any_below(a, code, trees, stack, counts):
-    """Whether the ray whose column in a packet's memory begins at an address meets anything below a child."""
+    """Into the column of a packet's memory that begins at an address: whether its ray meets anything below a child, and
+    what."""
     r, far = line_at(a), load_f32(a + T * ROW)
     store(stack, code)
     pending = np.int64(1)
@@ -158,8 +167,10 @@ def _any_below(a, code, trees, stack, counts):
         code = load_i64(stack + 8 * pending)
         if code < 0:
             counts[TESTS] += 1
-            if any_in_block(trees.blocks + BLOCK * ~code, r, far):
-                return True
+            number = any_in_block(trees.blocks + BLOCK * ~code, r, far)
+            if number != MISS:
+                _block(a, number)
+                return
             continue
         counts[STEPS] += 1
         node = trees.nodes + NODE * code
@@ -168,14 +179,15 @@ def _any_below(a, code, trees, stack, counts):
         quadrics = children & quadrics_in(node)
         if quadrics != 0:
             counts[TESTS] += 1
-            if any_quadric(r, far, trees, node, quadrics, enter, leave):
-                return True
+            number = any_quadric(r, far, trees, node, quadrics, enter, leave)
+            if number != MISS:
+                _block(a, number)
+                return
             children ^= quadrics
         while children != 0:
             store(stack + 8 * pending, code_of(node, lowest_bit(children)))
             children &= children - 1
             pending += 1
-    return False
 
 
 @inlined
@@ -188,31 +200,38 @@ def _open_rays(memory, v):
 @subkernel
 def closest_one_by_one(memory, v, data, stack, counts):
     """Nearest hits of the rays of a packet's v-th vector."""
-    room, trees, rays = stack - 64 - ROOM, 1 + load_i64(data + HAS_DYNAMIC), _open_rays(memory, v)
-    for dynamic in range(trees):
-        counts[STEPS] += rays
-        _open_root(memory, v, tree_of(data, dynamic), WIDTH * dynamic, room, True, counts)
-    keys = room + 64 * WIDTH * trees
-    store(keys, i32x16(-1))
-    rest = _next_children(memory, v, room, WIDTH * trees)
-    while rest != 0:
+    room, rays, todo = stack - 64 - ROOM, _open_rays(memory, v), load_i64(data + TREES)
+    while todo != 0:  # two trees at a time: a key has room for no more
+        first = lowest_bit(todo)
+        todo &= todo - 1
+        last = lowest_bit(todo) if todo != 0 else first
+        todo &= todo - 1
+        children = 0
+        for which in range(first, last + 1, max(1, last - first)):
+            counts[STEPS] += rays
+            _open_root(memory, v, tree_of(data, which), children, room, True, counts)
+            children += WIDTH
+        keys = room + 64 * children
+        store(keys, i32x16(-1))
+        rest = _next_children(memory, v, room, children)
         while rest != 0:
-            lane = lowest_bit(rest)
-            rest &= rest - 1
-            key = np.int64(load_i32(keys + 4 * lane))
-            tree = tree_of(data, (key >> 3) & 1)
-            _closest_below(memory + 64 * v + 4 * lane, code_of(tree.nodes, key & 7), tree, stack, counts)
-        rest = _next_children(memory, v, room, WIDTH * trees)
+            while rest != 0:
+                lane = lowest_bit(rest)
+                rest &= rest - 1
+                key = np.int64(load_i32(keys + 4 * lane))
+                tree = tree_of(data, first if key & WIDTH == 0 else last)
+                _closest_below(memory + 64 * v + 4 * lane, code_of(root_of(tree), key & 7), tree, stack, counts)
+            rest = _next_children(memory, v, room, children)
 
 
 @subkernel
 def any_one_by_one(memory, v, data, which, stack, counts):
     """Which rays of a packet's v-th vector meet what is asked for: t tells it."""
-    room, rays = stack - 64 - ROOM, _open_rays(memory, v)
-    for dynamic in range(2):
-        if (which >> dynamic) & 1 == 0:
-            continue
-        tree = tree_of(data, dynamic)
+    room, rays, todo = stack - 64 - ROOM, _open_rays(memory, v), trees_asked(data, which)
+    while todo != 0:
+        number = lowest_bit(todo)
+        todo &= todo - 1
+        tree = tree_of(data, number)
         counts[STEPS] += rays
         _open_root(memory, v, tree, 0, room, False, counts)
         keys = room + 64 * WIDTH
@@ -223,8 +242,7 @@ def any_one_by_one(memory, v, data, which, stack, counts):
                 lane = lowest_bit(rest)
                 rest &= rest - 1
                 a = memory + 64 * v + 4 * lane
-                if _any_below(a, code_of(tree.nodes, np.int64(load_i32(keys + 4 * lane)) & 7), tree, stack, counts):
-                    store(a + T * ROW, BLOCKED_T)
+                _any_below(a, code_of(root_of(tree), np.int64(load_i32(keys + 4 * lane)) & 7), tree, stack, counts)
             rest = _next_children(memory, v, room, WIDTH)
-        if dynamic == 0:
+        if number != MOVING:
             mark_static(memory, np.int64(1) << v)

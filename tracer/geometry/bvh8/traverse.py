@@ -21,8 +21,8 @@ from tracer.geometry.bvh8.packet import (
 from tracer.geometry.bvh8.packet_group import group_of, lead_of
 from tracer.geometry.bvh8.packet_tree import STACK, any_in_tree, closest_in_tree
 from tracer.geometry.bvh8.single import SINGLE_MEMORY, any_one_by_one, closest_one_by_one
-from tracer.geometry.bvh8.trees import HAS_DYNAMIC, tree_of
-from tracer.geometry.queries import DYNAMIC, STATIC, WHICH
+from tracer.geometry.bvh8.trees import MOVING, TREES, tree_of, trees_asked
+from tracer.geometry.queries import WHICH
 from tracer.kernels import entry, inlined
 from tracer.simd import i64_at, load_i64, local_memory, lowest_bit, store
 
@@ -37,7 +37,7 @@ def closest(data, batch, first, last, counts):
     """Nearest hits of rays first to last - 1."""
     memory, stack, count = local_memory(MEMORY), local_memory(STACK), i64_at(counts)
     single_stack = local_memory(SINGLE_MEMORY) + SINGLE_MEMORY - STACK
-    trees = 1 + load_i64(data + HAS_DYNAMIC)
+    trees = load_i64(data + TREES)
     for start in range(first, last, PACKET):
         n = min(PACKET, last - start)
         vectors, low, high, finite = fill(memory, batch, start, n)
@@ -50,8 +50,10 @@ def closest(data, batch, first, last, counts):
                 todo &= todo - 1
                 continue
             group = group_of(memory, todo, axis, way)
-            for dynamic in range(trees):
-                tree = tree_of(data, dynamic)
+            rest = trees
+            while rest != 0:
+                tree = tree_of(data, lowest_bit(rest))
+                rest &= rest - 1
                 if _from_one_point(low, high):
                     closest_in_tree(low, memory, group, tree, stack, count)
                 else:
@@ -65,10 +67,11 @@ def any_hit(data, batch, first, last, counts):
     """What of that which is asked for lies in the interval of rays first to last - 1."""
     memory, stack, count = local_memory(MEMORY), local_memory(STACK), i64_at(counts)
     single_stack = local_memory(SINGLE_MEMORY) + SINGLE_MEMORY - STACK
-    which = load_i64(batch + WHICH) & (STATIC | DYNAMIC * load_i64(data + HAS_DYNAMIC))
-    occluders = local_memory(16)  # the last block met in either tree; block 0 is empty
-    store(occluders, np.int64(0))
-    store(occluders + 8, np.int64(0))
+    which = load_i64(batch + WHICH)
+    trees = trees_asked(data, which)
+    occluders = local_memory(24)  # the last block met in each tree; block 0 is empty
+    for number in range(3):
+        store(occluders + 8 * number, np.int64(0))
     for start in range(first, last, PACKET):
         n = min(PACKET, last - start)
         vectors, low, high, finite = fill(memory, batch, start, n)
@@ -81,17 +84,18 @@ def any_hit(data, batch, first, last, counts):
                 todo &= todo - 1
                 continue
             group = group_of(memory, todo, axis, way)
-            for dynamic in range(2):
-                if (which >> dynamic) & 1 == 0:
-                    continue
-                tree = tree_of(data, dynamic)
-                occluder = load_i64(occluders + 8 * dynamic)
+            rest = trees
+            while rest != 0:
+                number = lowest_bit(rest)
+                rest &= rest - 1
+                tree = tree_of(data, number)
+                occluder = load_i64(occluders + 8 * number)
                 if _from_one_point(low, high):
                     occluder = any_in_tree(low, memory, group, tree, stack, occluder, count)
                 else:
                     occluder = any_in_tree(None, memory, group, tree, stack, occluder, count)
-                store(occluders + 8 * dynamic, occluder)
-                if dynamic == 0:
+                store(occluders + 8 * number, occluder)
+                if number != MOVING:
                     mark_static(memory, group.vectors)
             todo &= ~group.vectors
         keep_blocked(memory, batch, start, n)

@@ -1,8 +1,8 @@
 """The kd-trees of a scene: one for what never moves, one per dynamic object, placed for a frame.
 
 A rigid object's tree is built once, and rays are carried into the object's space; only the trees of
-objects that deform are built again, and the small one over where the objects are (§3 of the paper;
-Hunt, Mark, Stoll 2006).
+objects that deform are built again, and the small ones over where the objects are (§3 of the paper;
+Hunt, Mark, Stoll 2006): one over those that rest, and one over those that move.
 """
 
 from __future__ import annotations
@@ -87,31 +87,41 @@ class KdTrees:
         flat = np.concatenate(words) if words else np.array([0, LEAF], np.int32)
         return Trees(flat, flat.view(np.float32), np.concatenate(items) if items else np.empty(0, np.int32)), roots
 
-    def place(self, poses: Poses) -> Placed:
+    def _top(self, which: NDArray[np.bool_], boxes: Float32, poses: Poses) -> Tree:
+        """A tree over some objects, (n,) bool, where they are; boxes (n, 6) are in their own spaces."""
+        numbers = np.flatnonzero(which)
+        placed = transform_boxes(boxes[numbers].astype(np.float64), poses.to_world[numbers]).astype(np.float32)
+        tree, box = build_tree(placed, self._primitives.triangles[:0])
+        return Trees(tree.words, tree.planes, numbers.astype(np.int32)[tree.items]), box
+
+    def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
         """Build what deforms again, from the primitives as they are, and place all that is present."""
         primitives = self._primitives
         for index in primitives.deformations:
             self._trees[index] = self._build(index)
         if primitives.deformations:
             self._dynamic, self._roots = self._globalised(range(1, self._objects))
-        present = 1 + np.flatnonzero(poses.present[1:])
+        moving = poses.present & ~resting
+        moving[0] = False
         boxes = np.stack([box for _, box in self._trees])
-        top_boxes = transform_boxes(boxes[present].astype(np.float64), poses.to_world[present]).astype(np.float32)
-        top, top_box = build_tree(top_boxes, primitives.triangles[:0])
+        resting_tree, resting_box = self._top(resting, boxes, poses)
+        moving_tree, moving_box = self._top(moving, boxes, poses)
         self.parts = parts = Parts(
             primitives.triangles,
             primitives.quadrics,
             self._static,
             self._dynamic,
-            Trees(top.words, top.planes, present.astype(np.int32)[top.items]),
+            resting_tree,
+            moving_tree,
             self._roots,
             boxes,
             poses.to_object.reshape(-1, 12).astype(np.float32),
-            top_box,
+            resting_box,
+            moving_box,
         )
-        trees = (array for tree in (parts.static, parts.dynamic, parts.top) for array in (tree.words, tree.items))
-        arrays = (parts.triangles, parts.quadrics, *trees, parts.roots, parts.boxes, parts.to_object, parts.top_box)
-        self._data = np.array([*(a.ctypes.data for a in arrays), len(primitives.triangles)], np.int64)
+        arrays = [a for part in parts for a in ((part.words, part.items) if isinstance(part, Trees) else (part,))]
+        there = len(primitives.triangles), resting.any(), moving.any()
+        self._data = np.array([*(a.ctypes.data for a in arrays), *there], np.int64)
         return Placed(
             primitives.triangles,
             primitives.quadrics,
@@ -120,10 +130,10 @@ class KdTrees:
             self.closest.address,
             self.any_hit.address,
             self._data.ctypes.data,
-            len(present) > 0,
+            bool(moving.any()),
         )
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""
-        boxes = np.stack([self.parts.boxes[0], self.parts.top_box])
+        boxes = np.stack([self.parts.boxes[0], self.parts.resting_box, self.parts.moving_box])
         return bounds_of(boxes[boxes[:, 0] <= boxes[:, 3]])

@@ -1,9 +1,9 @@
 """The two queries on a placed world, one ray at a time, every step counted.
 
-Static geometry has one tree.  Each dynamic object has its own, in its own space, and a small tree
-over the objects' boxes leads to them; a ray is carried into an object's space rather than the
-object into the world's (Hunt, Mark, Stoll 2006; §3 of the paper).  A step is a node entered, inner
-or leaf, in any of these trees; a test is a ray against a primitive.
+Static geometry has one tree.  Each dynamic object has its own, in its own space, and two small trees
+over the objects' boxes, of those that rest and of those that move, lead to them; a ray is carried into
+an object's space rather than the object into the world's (Hunt, Mark, Stoll 2006; §3 of the paper).  A
+step is a node entered, inner or leaf, in any of these trees; a test is a ray against a primitive.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from tracer.geometry.queries import (
     HIT_T,
     HIT_U,
     HIT_V,
+    OCCLUDER,
     STATIC,
     STEPS,
     TESTS,
@@ -35,11 +36,21 @@ from tracer.simd import f32_at, i32_at, i64_at, load_i64, u8_at
 SLACK = np.float32(1e-5)  # relative; by so much an object's interval is wider than that of its leaf
 
 
-# A placed world as the entries get it: addresses, each an int64, then the number of triangles.
+# A placed world as the entries get it: addresses, each an int64, of all that Parts has; then the number of triangles,
+# and whether there is anything that rests, and anything that moves.
 (
-    TRIANGLES, QUADRICS, STATIC_WORDS, STATIC_ITEMS, DYNAMIC_WORDS, DYNAMIC_ITEMS, TOP_WORDS, TOP_ITEMS,
-    ROOTS, BOXES, TO_OBJECT, TOP_BOX, TRIANGLE_COUNT,
-) = range(0, 104, 8)  # fmt: skip
+    TRIANGLES, QUADRICS, STATIC_WORDS, STATIC_ITEMS, DYNAMIC_WORDS, DYNAMIC_ITEMS, RESTING_WORDS, RESTING_ITEMS,
+    MOVING_WORDS, MOVING_ITEMS, ROOTS, BOXES, TO_OBJECT, RESTING_BOX, MOVING_BOX, TRIANGLE_COUNT,
+    HAS_RESTING, HAS_MOVING,
+) = range(0, 144, 8)  # fmt: skip
+
+
+class _Top(NamedTuple):
+    """A tree over objects, the box around it, and whether there is anything in it."""
+
+    trees: Trees
+    box: Any
+    there: Any
 
 
 class _Search(NamedTuple):
@@ -50,11 +61,11 @@ class _Search(NamedTuple):
     quadrics: Any
     static: Trees
     dynamic: Trees
-    top: Trees
+    resting: _Top
+    moving: _Top
     roots: Any
     boxes: Any
     to_object: Any
-    top_box: Any
     stack: Stack
     top_stack: Stack
     counts: Any
@@ -75,6 +86,11 @@ def _trees(data, words, items):
 
 
 @inlined
+def _top(data, words, items, box, there):
+    return _Top(_trees(data, words, items), f32_at(load_i64(data + box)), load_i64(data + there) != 0)
+
+
+@inlined
 def _search(data, stack, top_stack, counts):
     return _Search(
         f32_at(load_i64(data + TRIANGLES)),
@@ -82,11 +98,11 @@ def _search(data, stack, top_stack, counts):
         f32_at(load_i64(data + QUADRICS)),
         _trees(data, STATIC_WORDS, STATIC_ITEMS),
         _trees(data, DYNAMIC_WORDS, DYNAMIC_ITEMS),
-        _trees(data, TOP_WORDS, TOP_ITEMS),
+        _top(data, RESTING_WORDS, RESTING_ITEMS, RESTING_BOX, HAS_RESTING),
+        _top(data, MOVING_WORDS, MOVING_ITEMS, MOVING_BOX, HAS_MOVING),
         i32_at(load_i64(data + ROOTS)),
         f32_at(load_i64(data + BOXES)),
         f32_at(load_i64(data + TO_OBJECT)),
-        f32_at(load_i64(data + TOP_BOX)),
         stack,
         top_stack,
         i64_at(counts),
@@ -128,10 +144,10 @@ def _closest_in_tree(s, trees, o, ray, enter, leave, best):
 
 @subkernel
 def _any_in_tree(s, trees, o, ray, enter, leave):
-    """Whether anything of object o is hit."""
+    """The first primitive of object o that is found to be hit, or MISS."""
     near, far = hit_box(_between(ray, enter, leave), s.boxes, o)
     if near > far:
-        return False
+        return np.int32(MISS)
     pending = push(s.stack, 0, s.roots[o], near, far)
     while pending > 0:
         leaf = next_leaf(trees, ray, s.stack, pending)
@@ -140,8 +156,8 @@ def _any_in_tree(s, trees, o, ray, enter, leave):
         for i in range(leaf.first, leaf.first + leaf.size):
             s.counts[TESTS] += 1
             if _hit_primitive(s.triangles, s.triangle_count, s.quadrics, ray, trees.items[i])[0] < INFINITY:
-                return True
-    return False
+                return trees.items[i]
+    return np.int32(MISS)
 
 
 @inlined
@@ -150,40 +166,43 @@ def _piece(leaf):
     return leaf.enter - SLACK * abs(leaf.enter), leaf.leave + SLACK * abs(leaf.leave)
 
 
-@subkernel
-def _closest_dynamic(s, ray, best):
-    near, far = hit_box(ray, s.top_box, 0)
+@inlined
+def _closest_of(s, top, ray, best):
+    """Nearest hit in the objects of a tree, if nearer than `best`."""
+    near, far = hit_box(ray, top.box, 0)
     if near > min(far, best.t):
         return best
     pending = push(s.top_stack, 0, 0, near, far)
     while pending > 0 and s.top_stack.enter[pending - 1] <= best.t:
-        leaf = next_leaf(s.top, ray, s.top_stack, pending)
+        leaf = next_leaf(top.trees, ray, s.top_stack, pending)
         pending = leaf.pending
         s.counts[STEPS] += leaf.steps
         enter, leave = _piece(leaf)
         for i in range(leaf.first, leaf.first + leaf.size):
-            o = s.top.items[i]
+            o = top.trees.items[i]
             local = transform_ray(ray, s.to_object, o, 12)
             best = _closest_in_tree(s, s.dynamic, o, local, enter, min(leave, best.t), best)
     return best
 
 
 @subkernel
-def _any_dynamic(s, ray):
-    near, far = hit_box(ray, s.top_box, 0)
+def _any_of(s, top, ray):
+    """The first primitive of the objects of a tree that is found to be hit, or MISS."""
+    near, far = hit_box(ray, top.box, 0)
     if near > far:
-        return False
+        return np.int32(MISS)
     pending = push(s.top_stack, 0, 0, near, far)
     while pending > 0:
-        leaf = next_leaf(s.top, ray, s.top_stack, pending)
+        leaf = next_leaf(top.trees, ray, s.top_stack, pending)
         pending = leaf.pending
         s.counts[STEPS] += leaf.steps
         enter, leave = _piece(leaf)
         for i in range(leaf.first, leaf.first + leaf.size):
-            o = s.top.items[i]
-            if _any_in_tree(s, s.dynamic, o, transform_ray(ray, s.to_object, o, 12), enter, leave):
-                return True
-    return False
+            o = top.trees.items[i]
+            primitive = _any_in_tree(s, s.dynamic, o, transform_ray(ray, s.to_object, o, 12), enter, leave)
+            if primitive != MISS:
+                return primitive
+    return np.int32(MISS)
 
 
 @entry
@@ -199,7 +218,10 @@ def closest(data, batch, first, last, counts):
         ray = ray_at(rays, i)
         best = _Best(ray.t_max, np.int32(MISS), ZERO, ZERO)
         best = _closest_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max, best)
-        best = _closest_dynamic(s, ray, best)
+        for number in range(2):
+            top = s.resting if number == 0 else s.moving
+            if top.there:
+                best = _closest_of(s, top, ray, best)
         hit_t[i] = best.t if best.primitive != MISS else INFINITY
         hit_primitive[i], hit_u[i], hit_v[i] = best.primitive, best.u, best.v
 
@@ -211,12 +233,19 @@ def any_hit(data, batch, first, last, counts):
     top_stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
     s = _search(data, stack, top_stack, counts)
     rays, blocked, which = rays_of(batch), u8_at(load_i64(batch + BLOCKED)), load_i64(batch + WHICH)
+    named, occluders = load_i64(batch + OCCLUDER) != 0, i32_at(load_i64(batch + OCCLUDER))
     for i in range(first, last):
         ray = ray_at(rays, i)
-        found = 0
+        found, primitive = 0, np.int32(MISS)
         if ray.t_min < ray.t_max:
-            if which & STATIC and _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max):
-                found = STATIC
-            elif which & DYNAMIC and _any_dynamic(s, ray):
-                found = DYNAMIC
+            if which & STATIC:
+                primitive = _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max)
+                if primitive == MISS and s.resting.there:
+                    primitive = _any_of(s, s.resting, ray)
+                found = STATIC if primitive != MISS else 0
+            if which & DYNAMIC and s.moving.there and found == 0:
+                primitive = _any_of(s, s.moving, ray)
+                found = DYNAMIC if primitive != MISS else 0
         blocked[i] = np.uint8(found)
+        if named:
+            occluders[i] = primitive

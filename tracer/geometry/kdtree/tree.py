@@ -37,19 +37,22 @@ class Parts(NamedTuple):
     """All that a placed world is to its kd-trees.
 
     triangles (t, 9) and quadrics (q, 16) float32 are in the space of their object.  static and dynamic
-    are trees over primitives, top is one over the dynamic objects, inside top_box (6,).  roots
-    (objects,) int32, boxes (objects, 6) and to_object (objects, 12) float32; object 0 is static.
+    are trees over primitives, resting one over those dynamic objects that rest, inside resting_box (6,),
+    and moving one over the others.  roots (objects,) int32, boxes (objects, 6) and to_object (objects, 12)
+    float32; object 0 is static.
     """
 
     triangles: NDArray[np.float32]
     quadrics: NDArray[np.float32]
     static: Trees
     dynamic: Trees
-    top: Trees
+    resting: Trees
+    moving: Trees
     roots: NDArray[np.int32]
     boxes: NDArray[np.float32]
     to_object: NDArray[np.float32]
-    top_box: NDArray[np.float32]
+    resting_box: NDArray[np.float32]
+    moving_box: NDArray[np.float32]
 
 
 class Stack(NamedTuple):
