@@ -14,6 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tracer.culling.cells import first_units, primitives_are_units, units_of
 from tracer.culling.memory import Memory
 from tracer.culling.modes import merge_words
 from tracer.culling.occlusion import count_pixels, occlusion_testing, set_occlusion_modes
@@ -21,6 +22,7 @@ from tracer.culling.shadow import Knowledge
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import Pinhole, pinhole
 from tracer.geometry.world import World
+from tracer.method import base_of
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
@@ -29,7 +31,8 @@ from tracer.shading.whitted import COUNTERS, TILE, Buffers, Workspace, shade_til
 from tracer.statistics import gather
 
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
-MEMORIES = 16  # resolutions whose modes are kept, those used last
+MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
+BY_MODES = ("paper", "cells")  # methods that cull by modes
 Cancel = Callable[[], bool] | None
 
 
@@ -52,7 +55,8 @@ class Renderer:
         self.settings = (settings or Settings()).validated()
         self.world = world or World(scene, scene.time_range[0], self.settings.accelerator, progress)
         self._look = make_look(scene, self.world.facets)
-        self._memories: dict[tuple[int, int], Memory] = {}
+        self._memories: dict[tuple[int, int, bool], Memory] = {}
+        self._first_units = {False: primitives_are_units()}
         self._workspaces: list[Workspace] = []
 
     def reset_modes(self) -> None:
@@ -91,15 +95,32 @@ class Renderer:
         return self._workspaces
 
     def _memory(self, settings: Settings, workers: int) -> Memory:
-        """The modes at this resolution; made, or given room for more workers, where need be."""
-        key = (settings.width, settings.height)
-        memory = self._memories.pop(key, None) or Memory(self.world.object_of != 0, len(self.scene.lights), workers)
+        """The modes at this resolution, of primitives or of cells; made, or given room for more workers, where need
+        be."""
+        key = (settings.width, settings.height, _has_cells(settings))
+        memory = self._memories.pop(key, None) or self._new_memory(settings, workers)
         self._memories[key] = memory  # the newest last
         if len(self._memories) > MEMORIES:
             del self._memories[next(iter(self._memories))]
         if len(memory.gained) < workers:
             memory.gained = np.zeros((workers, len(memory.words)), memory.words.dtype)
         return memory
+
+    def _new_memory(self, settings: Settings, workers: int) -> Memory:
+        dynamic, first = self.world.object_of != 0, self._first(settings)
+        if len(first) > 0:
+            dynamic = np.repeat(dynamic, np.diff(first))
+        return Memory(dynamic, len(self.scene.lights), workers)
+
+    def _first(self, settings: Settings) -> np.ndarray:
+        """The first unit of each primitive (`tracer.culling.cells`)."""
+        if _has_cells(settings) and True not in self._first_units:
+            self._first_units[True] = first_units(self.world.placed.triangles, self.world.object_of)
+        return self._first_units[_has_cells(settings)]
+
+
+def _has_cells(settings: Settings) -> bool:
+    return base_of(settings.method) == "cells"
 
 
 class UnfinishedFrame:
@@ -109,7 +130,8 @@ class UnfinishedFrame:
         self._renderer, self._settings = renderer, settings
         self._camera, self._time, self._cancel = camera, time, cancel
         self._workers = thread_count(settings.threads)
-        self.memory = renderer._memory(settings, self._workers)
+        self.memory, self._first = renderer._memory(settings, self._workers), renderer._first(settings)
+        self._by_modes = base_of(settings.method) in BY_MODES
         self._spaces = renderer.workspaces(self._workers)
         self._counts = np.zeros((self._workers, COUNTERS), np.int64)
         self._occlusion_tests = np.zeros(self._workers, np.int64)
@@ -117,6 +139,7 @@ class UnfinishedFrame:
         self._started = clock.perf_counter()
         self._rays = pinhole(camera, settings.width, settings.height)
         self._buffers = self._empty_buffers()
+        self._units = np.empty_like(self._buffers.primitive) if _has_cells(settings) else self._buffers.primitive
         across, down = -(-settings.width // TILE), -(-settings.height // TILE)
         self._tiles = [(x * TILE, y * TILE) for y in range(down) for x in range(across)]
 
@@ -164,6 +187,9 @@ class UnfinishedFrame:
     def trace_primary_rays(self) -> None:
         """What does each pixel see?"""
         self._trace_primary(self._rays, self._buffers, self._counts)
+        if len(self._first) > 0:
+            seen = (self._buffers.primitive, self._buffers.u, self._buffers.v, self._units)
+            units_of(self._first, *(pixels.reshape(-1) for pixels in seen))
 
     def _trace_primary(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
         placed, spaces = self._renderer.world.placed, self._spaces
@@ -172,11 +198,12 @@ class UnfinishedFrame:
         )
 
     def test_occlusion(self) -> None:
-        """§2.3: which primitives does a neighbouring pixel show to be hidden?"""
-        if self._settings.method == "none":
+        """§2.3: what does a neighbouring pixel show to be hidden?"""
+        if not self._by_modes:
             return
         height, memory = self._settings.height, self.memory
-        seen = self._renderer.world.placed, self._rays, self._buffers.primitive, self._settings.symmetric
+        units = self._buffers.primitive, self._first, self._units
+        seen = self._renderer.world.placed, self._rays, *units, self._settings.symmetric
 
         def work(chunk: int, worker: int) -> None:
             rows = chunk * ROWS, min(height, (chunk + 1) * ROWS)
@@ -192,10 +219,10 @@ class UnfinishedFrame:
 
     def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
         placed, look, memory = self._renderer.world.placed, self._renderer._look, self.memory
-        depth, cull, verify = self._settings.depth, self._settings.method != "none", self._settings.verify
+        depth, verify = self._settings.depth, self._settings.verify
 
         def work(tile: tuple[int, int, int, int], worker: int) -> None:
-            knowledge = Knowledge(memory.words, memory.gained[worker], cull, verify)
+            knowledge = Knowledge(memory.words, memory.gained[worker], self._first, self._by_modes, verify)
             shade_tile(placed, look, rays, tile, depth, knowledge, buffers, counts[worker], self._spaces[worker])
 
         self._for_each_tile(work)
@@ -219,10 +246,10 @@ class UnfinishedFrame:
         self.memory.gained[:] = gained
 
     def set_modes(self) -> None:
-        """§2.5, §2.6: keep what was learnt, and say which primitives have been seen whole."""
+        """§2.5, §2.6: keep what was learnt, and say what has been seen whole."""
         memory = self.memory
-        count_pixels(self._buffers.primitive, memory.pixel_count)
-        if self._settings.method != "none":
+        count_pixels(self._units, memory.pixel_count)
+        if self._by_modes:
             merge_words(memory.words, memory.gained)
             zoom = np.float64(self._settings.zoom_factor)
             set_occlusion_modes(memory.words, memory.hidden, memory.pixel_count, memory.highest_count, zoom)
@@ -253,5 +280,6 @@ class UnfinishedFrame:
             lit=buffers.lit.reshape(*shape, lights) if recorded else None,
             reference=buffers.reference.reshape(*shape, 3) if self._settings.verify else None,
             wrong=buffers.wrong.reshape(shape) if self._settings.verify else None,
+            cells=self._units if _has_cells(self._settings) else None,
             statistics=statistics,
         )

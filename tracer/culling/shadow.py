@@ -55,10 +55,12 @@ ZERO, ONE = np.float32(0), np.float32(1)
 
 class Knowledge(NamedTuple):
     """What culling goes by: words (units,) as the last frame left them, what this worker gains for
-    the next, of the same shape, and whether to cull and to verify what was culled."""
+    the next, of the same shape, the first unit of each primitive (p + 1,), or nothing where primitives
+    are the units, and whether to cull and to verify what was culled."""
 
     words: NDArray[np.unsignedinteger]
     gained: NDArray[np.unsignedinteger]
+    first: NDArray[np.int32]
     cull: bool
     verify: bool
 

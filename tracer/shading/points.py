@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.cells import cells_at
 from tracer.geometry.facets import ACROSS, MATERIAL, NORMALS, OBJECT, TEXTURE
 from tracer.geometry.intersect import quadric_normal
 from tracer.geometry.memory import pointer
@@ -22,6 +23,7 @@ from tracer.simd import (
     f32x16,
     gather_f32x16,
     i32x16,
+    lane_of,
     lanes_below,
     load_columns,
     load_f32x16,
@@ -167,9 +169,9 @@ def _quadrics(world, points, v, there, primitive, geometric, normal):
     store_three(address_of(points.geometric) + 64 * v, stride, geometric)
     store_three(address_of(points.normal) + 64 * v, stride, normal)
     while rest != 0:
-        i = 16 * v + lowest_bit(rest)
+        lane = lowest_bit(rest)
         rest &= rest - 1
-        _quadric_point(world, points, i, np.int64(points.unit[i]))
+        _quadric_point(world, points, 16 * v + lane, np.int64(lane_of(primitive, lane)))
     return load_three(points.geometric, v), load_three(points.normal, v)
 
 
@@ -204,10 +206,10 @@ def _hit(wave, row, v):
 
 
 @subkernel
-def points_at(world, look, wave, memory, spread, verify):
+def points_at(world, look, wave, memory, spread, knowledge):
     """The surface points of a wave each of whose rays hits something, in this memory or, where they are many, in more.
 
-    spread is the width of a pixel at distance 1; with `verify` there is a reference for the light.
+    spread is the width of a pixel at distance 1.  Where knowledge asks to verify, there is a reference for the light.
     """
     points = _points_in(room(memory, wave.size))
     stride = 4 * points.memory.shape[1]
@@ -222,7 +224,8 @@ def points_at(world, look, wave, memory, spread, verify):
         store_three(at + stride * POSITION_ROW, stride, (x, y, z))
         largest = maximum(t, maximum(maximum(x, -x), maximum(maximum(y, -y), maximum(z, -z))))
         store(at + stride * OFFSET_ROW, OFFSET * largest)
-        store(at + stride * UNIT_ROW, primitive)
+        unit = cells_at(knowledge.first, primitive, u, v) if len(knowledge.first) > 0 else primitive
+        store(at + stride * UNIT_ROW, unit)
 
         facet = load_columns(address_of(look.facets), numbers, FACET_COLUMNS)
         w = ONE - u - v
@@ -251,5 +254,5 @@ def points_at(world, look, wave, memory, spread, verify):
         if any_lane(textured):
             cone = spread * (_hit(wave, REACH, k) + t)
             color = _texture(look, textured, primitive, w, u, v, across, maximum(against, -against), cone)
-        _put_surface(points, look, k, as_i32(facet[MATERIAL]), color, verify)
+        _put_surface(points, look, k, as_i32(facet[MATERIAL]), color, knowledge.verify)
     return points
