@@ -74,7 +74,7 @@ class Frame:
     of method "none" bit for bit, and wrong (h, w) int32 the number of wrong answers that count for
     each pixel, at all bounces and of all samples.
 
-    cells (h, w) int32 are the units at each pixel, -1 for none, where the method has virtual cells for units;
+    cells (h, w) int32 are the units of virtual cells at each pixel, -1 for none, where the method has such;
     certificates (h, w) packed words like modes, of which the shadow bits are the certificates of the pixel's
     cell, 0 where it has none.  saved and cost (h, w) int32 count, at all bounces, the shadow rays of each pixel
     that asked no tree of static geometry, and all rays that were traced for it.
@@ -126,7 +126,8 @@ class Frame:
         return np.stack(planes, axis=-1) if planes else np.empty((*self.primitive.shape, 0), np.uint8)
 
     def _per_pixel(self, values: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        hit = self.primitive >= 0
-        result = np.full(self.primitive.shape, 255, np.uint8)
-        result[hit] = values[self.cell[hit]]
+        units = self.cell if self.certificates is None else self.primitive  # cells with certificates have no modes
+        hit = units >= 0
+        result = np.full(units.shape, 255, np.uint8)
+        result[hit] = values[units[hit]]
         return result
