@@ -79,6 +79,8 @@ def assert_right(world: tracer.World, rays: Rays) -> Answers:
         assert not getattr(found, name)[~hit].any()
     assert np.array_equal(found.static, np.isfinite(static.t).any(axis=1))
     assert np.array_equal(found.dynamic, np.isfinite(dynamic.t).any(axis=1))
+    named = world.occluders(rays)
+    assert np.array_equal(named >= 0, hit) and np.isfinite(t[hit, named[hit]]).all()
     return found
 
 

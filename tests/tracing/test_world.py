@@ -10,12 +10,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
-from tests.tracing import naive
+from tests.tracing import brute, naive
+from tests.tracing.brute8 import meet_all8
 from tests.tracing.random_worlds import END, quickly, scenes
 from tests.tracing.worlds import affine, moved, quadrics, random_corners, scene
 from tracer.geometry.kdtree.build import CANCELLED, build_tree
 from tracer.geometry.primitives import triangle_rows
+from tracer.geometry.queries import DYNAMIC, STATIC, any_hits_by
 from tracer.geometry.world import ACCELERATORS
+from tracer.kernels import kernel
 from tracer.scene.model import SPHERE, Cancelled
 
 
@@ -98,6 +101,49 @@ def test_queries_agree_with_float64_in_random_scenes(accelerator):
     assert len(compared) == 4 and min(compared.values()) >= 10, compared
 
 
+def test_occluders_are_met_by_their_rays_alone(accelerator):
+    """By the arithmetic of each structure, bit for bit; something static is named where anything static blocks."""
+    seen: Counter[str] = Counter()
+
+    @quickly(40)
+    @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
+    def check(made: tracer.Scene, time: float, seed: int) -> None:
+        world, rng = tracer.World(made, time, accelerator), np.random.default_rng(seed)
+        rays = tracer.RayBatch(*random_rays(rng, 150), 0.0, np.where(rng.random(150) < 0.5, np.inf, 1.0))
+        if accelerator == "bvh8":
+            met = np.isfinite(np.stack([meetings.t for meetings in meet_all8(world, rays)])).any(axis=0)
+        else:
+            met = np.isfinite(brute.meet_all(world, rays, brute.primitives_there(made, time)).t)
+        found, static = world.occluders(rays), world.object_of == 0
+        blocked = found >= 0
+        assert np.array_equal(blocked, met.any(axis=1)) and np.array_equal(blocked, world.any_hits(rays))
+        assert met[blocked, found[blocked]].all()
+        assert np.array_equal(static[found] & blocked, met[:, static].any(axis=1))
+        seen.update(static=int((static[found] & blocked).sum()), dynamic=int((~static[found] & blocked).sum()))
+        seen.update(triangles=int((found[blocked] < made.triangle_count).sum()), misses=int((~blocked).sum()))
+        seen.update(quadrics=int((found >= made.triangle_count).sum()))
+
+    check()
+    assert len(seen) == 5 and min(seen.values()) >= 50, seen
+
+
+@kernel
+def _ask(placed, rays, blocked, occluders, counts):
+    any_hits_by(placed, rays, STATIC | DYNAMIC, blocked, occluders, 0, len(rays.t_min), counts)
+
+
+def test_kernels_are_told_the_same_occluders(accelerator):
+    rng = np.random.default_rng(7)
+    moving = moved("moving", random_corners(rng, 30, 0.1), np.eye(4))
+    world = tracer.World(scene(random_corners(rng, 30, 0.1), dynamic=(moving,)), 0.0, accelerator)
+    rays = tracer.RayBatch(*random_rays(rng, 500))
+    blocked, occluders = np.empty(500, np.uint8), np.empty(500, np.int32)
+    _ask(world.placed, rays, blocked, occluders, np.zeros(2, np.int64))
+    assert np.array_equal(occluders, world.occluders(rays, 1))
+    assert np.array_equal(blocked, np.where(occluders < 0, 0, np.where(occluders < 30, STATIC, DYNAMIC)))
+    assert set(blocked) == {0, STATIC, DYNAMIC}
+
+
 def test_an_object_scaled_to_nothing_is_not_there(accelerator):
     gone = moved("gone", random_corners(np.random.default_rng(0), 20, 0.3), np.zeros((4, 4)))
     world = tracer.World(scene(dynamic=(gone,)), 0.0, accelerator)
@@ -125,6 +171,7 @@ def test_every_thread_count_gives_the_same_hits(accelerator):
     one, many = world.closest_hits(rays, 1), world.closest_hits(rays, 4)
     assert all(np.array_equal(a, b) for a, b in zip(one, many, strict=True))
     assert np.array_equal(world.any_hits(rays, 1), world.any_hits(rays, 3))
+    assert np.array_equal(world.occluders(rays, 1), world.occluders(rays, 3))
 
 
 def test_spheres_live_beside_triangles(accelerator):

@@ -26,9 +26,12 @@ from tracer.simd import address_of, call_entry, f32_at, load_i64, local_memory, 
 
 # A batch as entries get it: addresses of origins and directions, (3, stride) float32, of t_min and t_max, of
 # what is asked for (t, primitive, u and v of the nearest hits, or what kind of thing there is any hit with), and the
-# stride; and whether static geometry, dynamic objects or both are asked for any hit.
-ORIGIN, DIRECTION, T_MIN, T_MAX, STRIDE, HIT_T, HIT_PRIMITIVE, HIT_U, HIT_V, BLOCKED, WHICH = range(0, 88, 8)
-BATCH = 88  # bytes
+# stride; whether static geometry, dynamic objects or both are asked for any hit; and the address of the occluders'
+# numbers, or 0 where nobody wants to know them.
+(
+    ORIGIN, DIRECTION, T_MIN, T_MAX, STRIDE, HIT_T, HIT_PRIMITIVE, HIT_U, HIT_V, BLOCKED, WHICH, OCCLUDER,
+) = range(0, 96, 8)  # fmt: skip
+BATCH = 96  # bytes
 STATIC, DYNAMIC = 1, 2
 STEPS, TESTS = 0, 1  # what a query adds to its counts
 
@@ -77,10 +80,25 @@ def closest_hits(world, rays, hits, first, last, counts):
 def any_hits(world, rays, which, blocked, first, last, counts):
     """blocked[i] (uint8) for rays first to last - 1: what lies in their interval, STATIC geometry or DYNAMIC objects,
     or 0 where nothing does.  Only `which` of these is asked for; for the sum of both, static geometry first."""
+    _any_hits(world, rays, which, blocked, np.int64(0), first, last, counts)
+
+
+@inlined
+def any_hits_by(world, rays, which, blocked, occluders, first, last, counts):
+    """As `any_hits`; occluders[i] (int32) is the number of a primitive that blocks ray i, MISS where nothing does.
+
+    It need not be the nearest: it is the first that was found.  The kd-tree's depends on the ray alone, that of the
+    8-wide trees on the rays before it from `first` on as well, and on nothing else."""
+    _any_hits(world, rays, which, blocked, address_of(occluders), first, last, counts)
+
+
+@inlined
+def _any_hits(world, rays, which, blocked, occluders, first, last, counts):
     batch = local_memory(BATCH)
     _describe(batch, rays)
     store(batch + BLOCKED, address_of(blocked))
     store(batch + WHICH, np.int64(which))
+    store(batch + OCCLUDER, occluders)
     call_entry(world.any_hit, world.data, batch, first, last, address_of(counts))
 
 
@@ -97,13 +115,17 @@ def rays_of(batch):
 
 
 def batch_of(
-    rays: Rays, hits: Hits | None = None, blocked: NDArray[np.uint8] | None = None, which: int = STATIC | DYNAMIC
+    rays: Rays,
+    hits: Hits | None = None,
+    blocked: NDArray[np.uint8] | None = None,
+    which: int = STATIC | DYNAMIC,
+    occluders: NDArray[np.int32] | None = None,
 ) -> NDArray[np.int64]:
     """The description of a batch for an entry that is called from Python; its arrays must live as long."""
     arrays = [rays.origin, rays.direction, rays.t_min, rays.t_max]
     results = [0, 0, 0, 0] if hits is None else [a.ctypes.data for a in (hits.t, hits.primitive, hits.u, hits.v)]
-    answer = 0 if blocked is None else blocked.ctypes.data
-    return np.array([*(a.ctypes.data for a in arrays), rays.origin.shape[1], *results, answer, which], np.int64)
+    answer, names = (0 if a is None else a.ctypes.data for a in (blocked, occluders))
+    return np.array([*(a.ctypes.data for a in arrays), rays.origin.shape[1], *results, answer, which, names], np.int64)
 
 
 @subkernel

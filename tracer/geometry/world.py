@@ -80,6 +80,15 @@ class World:
         self._ask(self.structure.any_hit, batch_of(rays, blocked=blocked), n, threads)
         return blocked != 0
 
+    def occluders(self, rays: Rays, threads: int = 0) -> NDArray[np.int32]:
+        """(n,) a primitive, not always the nearest, that lies in each ray's interval; MISS where none does.
+
+        The same on every run, and for any number of threads: rays are asked CHUNK by CHUNK."""
+        n = len(rays.t_min)
+        blocked, found = np.empty(n, np.uint8), np.empty(n, np.int32)
+        self._ask(self.structure.any_hit, batch_of(rays, blocked=blocked, occluders=found), n, threads)
+        return found
+
     def _ask(self, query: Entry, batch: NDArray[np.int64], n: int, threads: int) -> None:
         counts = np.zeros((thread_count(threads), 2), np.int64)
         data, described, counted = self.placed.data, batch.ctypes.data, [c.ctypes.data for c in counts]

@@ -25,7 +25,7 @@ from tracer.geometry.bvh8.packet_tree import code_of
 from tracer.geometry.bvh8.tree import QUADRIC
 from tracer.geometry.bvh8.trees import NUMBERS, block_planes
 from tracer.geometry.intersect import hit_quadric
-from tracer.geometry.rays import Ray
+from tracer.geometry.rays import MISS, Ray
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     any_lane,
@@ -144,12 +144,14 @@ def nearest_in_block(block, r, best):
 
 @inlined
 def any_in_block(block, r, far):
+    """The first triangle of a block that a ray meets nearer than far, or MISS."""
     m = terms_of(r.ox, r.oy, r.oz, triangles_of(block))
     crosses, sign, _u, _v, area = crossing(r.dx, r.dy, r.dz, m)
     if not any_lane(crosses):
-        return False
+        return np.int32(MISS)
     t = as_f32(as_i32(m.height) ^ sign) * (np.float32(1) / area)
-    return any_lane(crosses & (t > r.t_min) & (t < far) & _inside_block(block, r, t))
+    bits = bits_of(crosses & (t > r.t_min) & (t < far) & _inside_block(block, r, t))
+    return load_i32(block + NUMBERS + 4 * lowest_bit(bits)) if bits != 0 else np.int32(MISS)
 
 
 @inlined
@@ -174,10 +176,11 @@ def nearest_quadric(r, best, trees, node, quadrics, enter, leave):
 
 @subkernel
 def any_quadric(r, far, trees, node, quadrics, enter, leave):
-    """Whether a ray meets those children of a node that are quadrics nearer than far."""
+    """The first of those children of a node that are quadrics that a ray meets nearer than far, or MISS."""
     while quadrics != 0:
         c = lowest_bit(quadrics)
         quadrics &= quadrics - 1
-        if _quadric(r, trees, ~code_of(node, c) - QUADRIC, lane_of(enter, c), lane_of(leave, c)) < far:
-            return True
-    return False
+        i = ~code_of(node, c) - QUADRIC
+        if _quadric(r, trees, i, lane_of(enter, c), lane_of(leave, c)) < far:
+            return np.int32(trees.triangles + i)
+    return np.int32(MISS)

@@ -19,6 +19,7 @@ from tracer.geometry.queries import (
     HIT_T,
     HIT_U,
     HIT_V,
+    OCCLUDER,
     ORIGIN,
     STATIC,
     STRIDE,
@@ -214,7 +215,7 @@ def mark_static(memory, vectors):
 
 @subkernel
 def keep_blocked(memory, batch, first, count):
-    """Write what blocks the rays of a packet to where the batch wants it."""
+    """Write what blocks the rays of a packet, and its number, to where the batch wants them."""
     blocked, a = load_i64(batch + BLOCKED) + first, memory + T * ROW
     i = 0
     while i + LANES <= count:
@@ -226,3 +227,7 @@ def keep_blocked(memory, batch, first, count):
         t = load_f32(a + 4 * i)
         answers[i] = np.uint8(STATIC if t == STATIC_T else (DYNAMIC if t == BLOCKED_T else 0))
         i += 1
+    occluders = load_i64(batch + OCCLUDER)
+    if occluders != 0:
+        for k in range(0, 4 * count, 4):
+            store(occluders + 4 * first + k, load_i32(memory + NUMBER * ROW + k))

@@ -185,7 +185,8 @@ def closest_in_block(origin, memory, group, block, active):
 
 @subkernel
 def any_in_block(origin, memory, group, block, active):
-    """Rays that meet any of a block's triangles: their t becomes BLOCKED_T; the vectors they are in."""
+    """Rays that meet any of a block's triangles: their t becomes BLOCKED_T, their number that of the triangle; the
+    vectors they are in."""
     active = _inside_block(origin, memory, block, active)
     found = np.int64(0)
     if active == 0:
@@ -208,6 +209,7 @@ def any_in_block(origin, memory, group, block, active):
             if any_lane(mask):
                 found |= np.int64(1) << v
                 store_where(a + T * ROW, f32x16(BLOCKED_T), mask)
+                store_where(a + NUMBER * ROW, i32x16(load_i32(block + NUMBERS + 4 * k)), mask)
     return found
 
 
@@ -242,9 +244,9 @@ def quadric_in_child(origin, memory, a, active, trees, i, nearest):
             if not inside or t > best or (t == best and not (nearest and number < load_i32(r + NUMBER * ROW))):
                 continue
             found |= np.int64(1) << v
+            store(r + NUMBER * ROW, np.int32(number))
             if nearest:
                 store(r + T * ROW, t)
-                store(r + NUMBER * ROW, np.int32(number))
                 store(r + U * ROW, ZERO)
                 store(r + V * ROW, ZERO)
             else:

@@ -34,6 +34,7 @@ from tracer.geometry.bvh8.packet_tree import STACK, code_of, prefetch_child, pus
 from tracer.geometry.bvh8.tree import QUADRIC, WIDTH
 from tracer.geometry.bvh8.trees import BLOCK, HAS_DYNAMIC, NODE, child_planes, tree_of
 from tracer.geometry.queries import STEPS, TESTS
+from tracer.geometry.rays import MISS
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     as_f32,
@@ -147,9 +148,16 @@ def _closest_below(a, code, trees, stack, counts):
     store(a + V * ROW, best.v)
 
 
+@inlined
+def _block(a, number):
+    store(a + T * ROW, BLOCKED_T)
+    store(a + NUMBER * ROW, number)
+
+
 @subkernel
 def _any_below(a, code, trees, stack, counts):
-    """Whether the ray whose column in a packet's memory begins at an address meets anything below a child."""
+    """Into the column of a packet's memory that begins at an address: whether its ray meets anything below a child, and
+    what."""
     r, far = line_at(a), load_f32(a + T * ROW)
     store(stack, code)
     pending = np.int64(1)
@@ -158,8 +166,10 @@ def _any_below(a, code, trees, stack, counts):
         code = load_i64(stack + 8 * pending)
         if code < 0:
             counts[TESTS] += 1
-            if any_in_block(trees.blocks + BLOCK * ~code, r, far):
-                return True
+            number = any_in_block(trees.blocks + BLOCK * ~code, r, far)
+            if number != MISS:
+                _block(a, number)
+                return
             continue
         counts[STEPS] += 1
         node = trees.nodes + NODE * code
@@ -168,14 +178,15 @@ def _any_below(a, code, trees, stack, counts):
         quadrics = children & quadrics_in(node)
         if quadrics != 0:
             counts[TESTS] += 1
-            if any_quadric(r, far, trees, node, quadrics, enter, leave):
-                return True
+            number = any_quadric(r, far, trees, node, quadrics, enter, leave)
+            if number != MISS:
+                _block(a, number)
+                return
             children ^= quadrics
         while children != 0:
             store(stack + 8 * pending, code_of(node, lowest_bit(children)))
             children &= children - 1
             pending += 1
-    return False
 
 
 @inlined
@@ -223,8 +234,7 @@ def any_one_by_one(memory, v, data, which, stack, counts):
                 lane = lowest_bit(rest)
                 rest &= rest - 1
                 a = memory + 64 * v + 4 * lane
-                if _any_below(a, code_of(tree.nodes, np.int64(load_i32(keys + 4 * lane)) & 7), tree, stack, counts):
-                    store(a + T * ROW, BLOCKED_T)
+                _any_below(a, code_of(tree.nodes, np.int64(load_i32(keys + 4 * lane)) & 7), tree, stack, counts)
             rest = _next_children(memory, v, room, WIDTH)
         if dynamic == 0:
             mark_static(memory, np.int64(1) << v)

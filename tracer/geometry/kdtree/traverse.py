@@ -22,6 +22,7 @@ from tracer.geometry.queries import (
     HIT_T,
     HIT_U,
     HIT_V,
+    OCCLUDER,
     STATIC,
     STEPS,
     TESTS,
@@ -128,10 +129,10 @@ def _closest_in_tree(s, trees, o, ray, enter, leave, best):
 
 @subkernel
 def _any_in_tree(s, trees, o, ray, enter, leave):
-    """Whether anything of object o is hit."""
+    """The first primitive of object o that is found to be hit, or MISS."""
     near, far = hit_box(_between(ray, enter, leave), s.boxes, o)
     if near > far:
-        return False
+        return np.int32(MISS)
     pending = push(s.stack, 0, s.roots[o], near, far)
     while pending > 0:
         leaf = next_leaf(trees, ray, s.stack, pending)
@@ -140,8 +141,8 @@ def _any_in_tree(s, trees, o, ray, enter, leave):
         for i in range(leaf.first, leaf.first + leaf.size):
             s.counts[TESTS] += 1
             if _hit_primitive(s.triangles, s.triangle_count, s.quadrics, ray, trees.items[i])[0] < INFINITY:
-                return True
-    return False
+                return trees.items[i]
+    return np.int32(MISS)
 
 
 @inlined
@@ -172,7 +173,7 @@ def _closest_dynamic(s, ray, best):
 def _any_dynamic(s, ray):
     near, far = hit_box(ray, s.top_box, 0)
     if near > far:
-        return False
+        return np.int32(MISS)
     pending = push(s.top_stack, 0, 0, near, far)
     while pending > 0:
         leaf = next_leaf(s.top, ray, s.top_stack, pending)
@@ -181,9 +182,10 @@ def _any_dynamic(s, ray):
         enter, leave = _piece(leaf)
         for i in range(leaf.first, leaf.first + leaf.size):
             o = s.top.items[i]
-            if _any_in_tree(s, s.dynamic, o, transform_ray(ray, s.to_object, o, 12), enter, leave):
-                return True
-    return False
+            primitive = _any_in_tree(s, s.dynamic, o, transform_ray(ray, s.to_object, o, 12), enter, leave)
+            if primitive != MISS:
+                return primitive
+    return np.int32(MISS)
 
 
 @entry
@@ -211,12 +213,17 @@ def any_hit(data, batch, first, last, counts):
     top_stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
     s = _search(data, stack, top_stack, counts)
     rays, blocked, which = rays_of(batch), u8_at(load_i64(batch + BLOCKED)), load_i64(batch + WHICH)
+    named, occluders = load_i64(batch + OCCLUDER) != 0, i32_at(load_i64(batch + OCCLUDER))
     for i in range(first, last):
         ray = ray_at(rays, i)
-        found = 0
+        found, primitive = 0, np.int32(MISS)
         if ray.t_min < ray.t_max:
-            if which & STATIC and _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max):
-                found = STATIC
-            elif which & DYNAMIC and _any_dynamic(s, ray):
-                found = DYNAMIC
+            if which & STATIC:
+                primitive = _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max)
+                found = STATIC if primitive != MISS else 0
+            if which & DYNAMIC and found == 0:
+                primitive = _any_dynamic(s, ray)
+                found = DYNAMIC if primitive != MISS else 0
         blocked[i] = np.uint8(found)
+        if named:
+            occluders[i] = primitive
