@@ -15,10 +15,16 @@ from dataclasses import replace
 import numpy as np
 
 from tracer.culling.cells import first_units, primitives_are_units, units_of
+from tracer.culling.certified.candidates import FEW
+from tracer.culling.certified.cells import make_cells
+from tracer.culling.certified.certificates import Budget, Certificates
+from tracer.culling.certified.certify import CERTIFICATES, STEPS, TESTS
+from tracer.culling.certified.certify import COUNTERS as CERTIFYING
+from tracer.culling.certified.lookup import Wanted
 from tracer.culling.memory import Memory
 from tracer.culling.modes import merge_words
 from tracer.culling.occlusion import count_pixels, occlusion_testing, set_occlusion_modes
-from tracer.culling.shadow import Knowledge
+from tracer.culling.shadow import Certified, Knowledge
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import Pinhole, pinhole
 from tracer.geometry.world import World
@@ -33,6 +39,7 @@ from tracer.statistics import gather
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
 BY_MODES = ("paper", "cells")  # methods that cull by modes
+PATIENCE = {"kdtree": 4, "bvh8": 32}  # rays that must have wanted a cell before it is divided: what they cost
 Cancel = Callable[[], bool] | None
 
 
@@ -58,10 +65,12 @@ class Renderer:
         self._memories: dict[tuple[int, int, bool], Memory] = {}
         self._first_units = {False: primitives_are_units()}
         self._workspaces: list[Workspace] = []
+        self.certificates: Certificates | None = None
 
     def reset_modes(self) -> None:
-        """Forget all modes, at every resolution."""
+        """Forget all modes, at every resolution, and all certificates."""
         self._memories.clear()
+        self.certificates = None
 
     def render(self, time: float = 0.0, camera: Camera | None = None, cancel: Cancel = None) -> Frame:
         """The frame at `time` seconds; the scene's own camera where none is given.
@@ -80,6 +89,8 @@ class Renderer:
                 frame.shade()  # with shadow testing and shadow-mode setting
             with frame.phase("mode setting"):
                 frame.set_modes()
+            with frame.phase("certification"):
+                frame.certify()
         except BaseException:
             frame.memory.discard_frame()
             raise
@@ -123,6 +134,13 @@ def _has_cells(settings: Settings) -> bool:
     return base_of(settings.method) == "cells"
 
 
+_NO_CELLS = {np.dtype(word).itemsize: make_cells(1, lights, 1) for word, lights in ((np.uint32, 1), (np.uint64, 16))}
+_NO_ROWS, _NO_BLURS = np.empty((0, 9), np.float32), np.empty(0, np.float32)
+_NOT_WANTED = Wanted(
+    np.empty((1, 0), np.int32), np.empty((1, 0), np.float32), np.empty((1, 0), np.float32), np.zeros((1, 3), np.int64)
+)
+
+
 class UnfinishedFrame:
     """A frame under way: the phases of `Renderer.render` over its buffers."""
 
@@ -137,6 +155,8 @@ class UnfinishedFrame:
         self._occlusion_tests = np.zeros(self._workers, np.int64)
         self._phases: dict[str, float] = {}
         self._started = clock.perf_counter()
+        self._base = base_of(settings.method)
+        self._certifying = np.zeros(CERTIFYING, np.int64)
         self._rays = pinhole(camera, settings.width, settings.height)
         self._buffers = self._empty_buffers()
         self._units = np.empty_like(self._buffers.primitive) if _has_cells(settings) else self._buffers.primitive
@@ -155,6 +175,7 @@ class UnfinishedFrame:
         lights = len(self._renderer.scene.lights)
         rows = width * height if self._settings.record_lights else 0
         verified = width * height if self._settings.verify else 0
+        worked = width * height if self._settings.record_work else 0
         return Buffers(
             color=np.zeros((width * height, 3), np.float32),
             normal=np.zeros((width * height, 3), np.float32),
@@ -166,6 +187,9 @@ class UnfinishedFrame:
             lit=np.zeros((rows, lights), np.bool_),
             reference=np.zeros((verified, 3), np.float32),
             wrong=np.zeros(verified, np.int32),
+            cell=np.zeros(width * height if self._base == "certified" else 0, np.int32),
+            saved=np.zeros(worked, np.int32),
+            cost=np.zeros(worked, np.int32),
         )
 
     def _for_each_tile(self, work: Callable[[tuple[int, int, int, int], int], None]) -> None:
@@ -183,6 +207,10 @@ class UnfinishedFrame:
         renderer.world.place(self._time)
         renderer._look.lights[:] = light_positions(renderer.scene, self._time)
         self.memory.follow_lights(renderer._look.lights)
+        if self._base == "certified":
+            if renderer.certificates is None:
+                renderer.certificates = Certificates(renderer.world, renderer._look.lights, self._workers)
+            renderer.certificates.follow_lights(renderer._look.lights)
 
     def trace_primary_rays(self) -> None:
         """What does each pixel see?"""
@@ -219,10 +247,24 @@ class UnfinishedFrame:
 
     def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
         placed, look, memory = self._renderer.world.placed, self._renderer._look, self.memory
-        depth, verify = self._settings.depth, self._settings.verify
+        depth, verify, base = self._settings.depth, self._settings.verify, self._base
+        certified = base == "certified"
+        certificates = self._renderer.certificates if certified else None
+        if certificates is not None:
+            cells, rows, blurs = certificates.cells, certificates.occluders.rows, certificates.occluders.blurs
+            words, highest = cells.words, certificates.highest
+            self._wanted = certificates.wanted(len(self._tiles))
+        else:
+            cells, rows, blurs = _NO_CELLS[memory.words.dtype.itemsize], _NO_ROWS, _NO_BLURS
+            words, highest = memory.words, np.float32(0)
 
         def work(tile: tuple[int, int, int, int], worker: int) -> None:
-            knowledge = Knowledge(memory.words, memory.gained[worker], self._first, self._by_modes, verify)
+            chunk = self._tiles.index(tile[:2])
+            wanted = Wanted(*(a[chunk if certified else 0] for a in (self._wanted if certified else _NOT_WANTED)))
+            knowledge = Knowledge(
+                words, memory.gained[worker], self._first, base != "none", self._by_modes, verify, certified,
+                Certified(cells, rows, blurs, highest, FEW, wanted),
+            )  # fmt: skip
             shade_tile(placed, look, rays, tile, depth, knowledge, buffers, counts[worker], self._spaces[worker])
 
         self._for_each_tile(work)
@@ -256,11 +298,22 @@ class UnfinishedFrame:
         else:
             memory.discard_frame()
 
+    def certify(self) -> None:
+        """DESIGN"""
+        certificates = self._renderer.certificates
+        if self._base == "certified" and certificates is not None:
+            budget = Budget(self._settings.certificates, self._settings.certificate_seconds)
+            patience = PATIENCE[self._settings.accelerator]
+            self._certifying = certificates.certify(self._wanted, budget, patience, self._cancel)
+
     def finished(self) -> Frame:
         buffers, memory = self._buffers, self.memory
         shape = buffers.primitive.shape
         statistics = gather(self._counts, int(self._occlusion_tests.sum()))
         statistics.phases = self._phases
+        statistics.certificates = int(self._certifying[CERTIFICATES])
+        statistics.certificate_steps = int(self._certifying[STEPS])
+        statistics.certificate_tests = int(self._certifying[TESTS])
         statistics.seconds = clock.perf_counter() - self._started
         lights = len(self._renderer.scene.lights)
         recorded = self._settings.record_lights
