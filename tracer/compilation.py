@@ -118,8 +118,8 @@ def _frame(lights: int, accelerator: str) -> Iterator[str]:
 def _renderer(lights: int, accelerator: str) -> Renderer:
     # As many lights as make a word of that size, no more: each is traced.
     scene = _tiny_scene(1 if lights <= 15 else 16)
-    # Methods differ in what their kernels are told, and cells have a kernel more.
-    return Renderer(scene, Settings(width=4, height=4, method="cells", threads=1, accelerator=accelerator))
+    # Methods differ in what their kernels are told, and cells and the cache have a kernel more each.
+    return Renderer(scene, Settings(width=4, height=4, method="cells+cache", threads=1, accelerator=accelerator))
 
 
 def _tiny_scene(lights: int) -> Scene:

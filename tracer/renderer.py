@@ -14,6 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tracer.culling.cache import NO_CACHE, OccluderCache
 from tracer.culling.cells import first_units, primitives_are_units, units_of
 from tracer.culling.certified.candidates import FEW
 from tracer.culling.certified.cells import make_cells
@@ -28,7 +29,7 @@ from tracer.culling.shadow import Certified, Knowledge
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import Pinhole, pinhole
 from tracer.geometry.world import World
-from tracer.method import base_of
+from tracer.method import base_of, takes
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
@@ -66,10 +67,12 @@ class Renderer:
         self._first_units = {False: primitives_are_units()}
         self._workspaces: list[Workspace] = []
         self.certificates: Certificates | None = None
+        self._cache: OccluderCache | None = None
 
     def reset_modes(self) -> None:
-        """Forget all modes, at every resolution, and all certificates."""
+        """Forget all modes, at every resolution, all certificates and all occluders."""
         self._memories.clear()
+        self._cache = None
         self.certificates = None
 
     def render(self, time: float = 0.0, camera: Camera | None = None, cancel: Cancel = None) -> Frame:
@@ -93,6 +96,8 @@ class Renderer:
                 frame.certify()
         except BaseException:
             frame.memory.discard_frame()
+            if frame.cache is not None:
+                frame.cache.discard_found()
             raise
         return frame.finished()
 
@@ -123,6 +128,16 @@ class Renderer:
             dynamic = np.repeat(dynamic, np.diff(first))
         return Memory(dynamic, len(self.scene.lights), workers)
 
+    def _occluder_cache(self, settings: Settings, workers: int) -> OccluderCache | None:
+        """The cache, where the method takes one along."""
+        if not takes(settings.method, "cache"):
+            return None
+        if self._cache is None:
+            triangles = self.world.placed.triangles
+            self._cache = OccluderCache(triangles, int((self.world.object_of[: len(triangles)] == 0).sum()))
+        self._cache.make_room(workers)
+        return self._cache
+
     def _first(self, settings: Settings) -> np.ndarray:
         """The first unit of each primitive (`tracer.culling.cells`)."""
         if _has_cells(settings) and True not in self._first_units:
@@ -150,6 +165,7 @@ class UnfinishedFrame:
         self._workers = thread_count(settings.threads)
         self.memory, self._first = renderer._memory(settings, self._workers), renderer._first(settings)
         self._by_modes = base_of(settings.method) in BY_MODES
+        self.cache = renderer._occluder_cache(settings, self._workers)
         self._spaces = renderer.workspaces(self._workers)
         self._counts = np.zeros((self._workers, COUNTERS), np.int64)
         self._occlusion_tests = np.zeros(self._workers, np.int64)
@@ -245,7 +261,7 @@ class UnfinishedFrame:
         if self._settings.samples > 1:
             self._average_samples()
 
-    def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
+    def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray, first: bool = True) -> None:
         placed, look, memory = self._renderer.world.placed, self._renderer._look, self.memory
         depth, verify, base = self._settings.depth, self._settings.verify, self._base
         certified = base == "certified"
@@ -264,6 +280,7 @@ class UnfinishedFrame:
             knowledge = Knowledge(
                 words, memory.gained[worker], self._first, base != "none", self._by_modes, verify, certified,
                 Certified(cells, rows, blurs, highest, FEW, wanted),
+                NO_CACHE if self.cache is None else self.cache.of_worker(worker, learns=first),
             )  # fmt: skip
             shade_tile(placed, look, rays, tile, depth, knowledge, buffers, counts[worker], self._spaces[worker])
 
@@ -279,7 +296,7 @@ class UnfinishedFrame:
             rays = pinhole(self._camera, self._settings.width, self._settings.height, shift)
             buffers, counts = self._empty_buffers(), np.zeros_like(self._counts)
             self._trace_primary(rays, buffers, counts)
-            self._shade(rays, buffers, counts)
+            self._shade(rays, buffers, counts, first=False)
             for sum_, sample in ((self._buffers.color, buffers.color), (self._buffers.reference, buffers.reference)):
                 sum_ += sample
             self._buffers.wrong[:] += buffers.wrong
@@ -290,6 +307,8 @@ class UnfinishedFrame:
     def set_modes(self) -> None:
         """§2.5, §2.6: keep what was learnt, and say what has been seen whole."""
         memory = self.memory
+        if self.cache is not None:
+            self.cache.keep_found()
         count_pixels(self._units, memory.pixel_count)
         if self._by_modes:
             merge_words(memory.words, memory.gained)
