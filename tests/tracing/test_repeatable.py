@@ -45,6 +45,7 @@ def render(world: tracer.World, settings: tracer.Settings, first: int, count: in
         pytest.param("kitchen/kitchen.aff", 395, 10, 320, "paper", False, marks=pytest.mark.slow),
         ("robot/Robot.aff", 0, 3, 96, "paper", True),
         ("robot/Robot.aff", 0, 3, 96, "cells", True),
+        ("robot/Robot.aff", 0, 3, 96, "paper+cache", False),
         ("museum/museum5.aff", 0, 3, 96, "paper", True),
     ],
 )

@@ -187,9 +187,11 @@ def occluders_in(cache, slots):
 def remember(cache, slots, v, occluders, n, asked, blocked):
     """Note for the next frame what has blocked rays of the v-th vector, given as bits: those asked have their
     `occluders` one after the other, from the n-th on."""
+    last = np.int32(MISS), np.int32(MISS)
     while blocked != 0:
         lane = lowest_bit(blocked)
         blocked &= blocked - 1
-        primitive, slot = occluders[n + ones(asked & ((1 << lane) - 1))], slots[16 * v + lane]
-        if primitive < cache.triangles and primitive != cache.occluders[slot]:
-            cache.found[slot] = max(cache.found[slot], primitive)
+        this = slots[16 * v + lane], occluders[n + ones(asked & ((1 << lane) - 1))]
+        if this != last and this[1] < cache.triangles:
+            cache.found[this[0]] = max(cache.found[this[0]], this[1])
+        last = this
