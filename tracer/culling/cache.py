@@ -1,8 +1,9 @@
 """An occluder cache: what blocked the light before is asked first (Haines and Greenberg 1986).
 
-Neighbouring points are shadowed by the same triangle as a rule.  So for every unit and light, and at large
-units for every small range of directions in which the light sees them, the last occluder is kept.  A
-shadow ray is tested against that; only where it does not surely block the ray, the trees are asked.
+Neighbouring points are shadowed by the same triangle as a rule.  So for every primitive and light, and
+at large primitives for every small range of directions in which the light sees them, the last occluder is
+kept.  A shadow ray is tested against that; only where it does not surely block the ray, the trees are
+asked.  Cells of a primitive share what is kept: the light cannot tell them apart.
 The slots are a hash table of fixed size: where two want the same, one is forgotten, which costs a test.
 Slots are read as the last frame left them.  Of what workers find for the next frame, the occluder of the
 highest number is kept, so that pictures and counters are the same for any number of threads.
@@ -134,8 +135,8 @@ def slots_of(points, v, direction, number):
     """Slots of the v-th vector of points, seen from light `number` in these directions."""
     x, y, z = direction
     scale = DIRECTIONS / maximum(maximum(maximum(x, -x), maximum(y, -y)), maximum(maximum(z, -z), SMALLEST))
-    unit = load_i32x16(address_of(points.unit) + 64 * v)
-    mixed = unit * np.int32(0x1E3779B1) + np.int32(0x3C6EF372) * np.int32(number + 1)
+    primitive = load_i32x16(address_of(points.primitive) + 64 * v)
+    mixed = primitive * np.int32(0x1E3779B1) + np.int32(0x3C6EF372) * np.int32(number + 1)
     mixed = mixed + _range_of(x, scale) * np.int32(0x05EBCA77) + _range_of(y, scale) * np.int32(0x2B2AE3D3)
     mixed = mixed + _range_of(z, scale) * np.int32(0x27D4EB2F)
     mixed = (mixed ^ (mixed >> np.int32(15))) * np.int32(0x2C1B3C6D)

@@ -46,14 +46,14 @@ ZERO, ONE = np.float32(0), np.float32(1)
 # Rows of the points' memory.
 POSITION_ROW, GEOMETRIC_ROW, NORMAL_ROW, DIFFUSE_ROW, SPECULAR_ROW, LIGHT_ROW, REFERENCE_ROW = range(0, 21, 3)
 EXPONENT_ROW, SHINE_ROW, TRANSMISSION_ROW, IOR_ROW, OFFSET_ROW, UNIT_ROW, ENTERING_ROW = range(21, 28)
-LIFTED_ROW, SPOT_ROW, POINT_ROWS = 28, 31, 34
+LIFTED_ROW, SPOT_ROW, PRIMITIVE_ROW, POINT_ROWS = 28, 31, 34, 35
 
 
 class Points(NamedTuple):
     """n points, in rows of `memory` (POINT_ROWS, n) float32: position, geometric normal (towards the viewer), shading
     normal (in the geometric one's half space), the material's diffuse colour under the texture's, its specular colour,
     and the light that goes from there to the viewer, of which there is the ambient at first, each (3, n); reference
-    like light; offset (n,), how far above the surface rays start; unit (n,) int32; entering (n / 16,) int32, the bits
+    like light; offset (n,), how far above the surface rays start; primitive and unit (n,) int32; entering (n / 16,) int32, the bits
     of those whose ray came from outside; lifted (3, n), the points that far above the surface; spots (3, n), of which
     `tracer.culling.certified.lookup` tells."""
 
@@ -65,6 +65,7 @@ class Points(NamedTuple):
     light: NDArray[np.float32]
     reference: NDArray[np.float32]
     offset: NDArray[np.float32]
+    primitive: NDArray[np.int32]
     unit: NDArray[np.int32]
     entering: NDArray[np.int32]
     lifted: NDArray[np.float32]
@@ -82,10 +83,11 @@ def _points_in(memory):
         memory[LIGHT_ROW:REFERENCE_ROW],
         memory[REFERENCE_ROW:EXPONENT_ROW],
         memory[OFFSET_ROW],
+        memory[PRIMITIVE_ROW].view(np.int32),
         memory[UNIT_ROW].view(np.int32),
         memory[ENTERING_ROW].view(np.int32),
         memory[LIFTED_ROW:SPOT_ROW],
-        memory[SPOT_ROW:POINT_ROWS],
+        memory[SPOT_ROW:PRIMITIVE_ROW],
     )
 
 
@@ -230,6 +232,7 @@ def points_at(world, look, wave, memory, spread, knowledge):
         largest = maximum(t, maximum(maximum(x, -x), maximum(maximum(y, -y), maximum(z, -z))))
         offset = OFFSET * largest
         store(at + stride * OFFSET_ROW, offset)
+        store(at + stride * PRIMITIVE_ROW, primitive)
         unit = cells_at(knowledge.first, primitive, u, v) if len(knowledge.first) > 0 else primitive
         store(at + stride * UNIT_ROW, unit)
 
