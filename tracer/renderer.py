@@ -23,7 +23,7 @@ from tracer.culling.certified.certify import CERTIFICATES, STEPS, TESTS
 from tracer.culling.certified.certify import COUNTERS as CERTIFYING
 from tracer.culling.certified.lookup import Wanted
 from tracer.culling.memory import Memory
-from tracer.culling.modes import merge_words
+from tracer.culling.modes import MAX_CULLED_LIGHTS, merge_words, word_type
 from tracer.culling.occlusion import count_pixels, occlusion_testing, set_occlusion_modes
 from tracer.culling.shadow import Certified, Knowledge
 from tracer.frame import Frame, Settings
@@ -34,7 +34,7 @@ from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
 from tracer.shading.look import make_look
-from tracer.shading.whitted import COUNTERS, TILE, Buffers, Workspace, shade_tile, trace_primary, workspace
+from tracer.shading.whitted import COUNTERS, TILE, Buffers, Workspace, seek_tile, shade_tile, trace_primary, workspace
 from tracer.statistics import gather
 
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
@@ -88,12 +88,12 @@ class Renderer:
                 frame.trace_primary_rays()
             with frame.phase("occlusion testing"):
                 frame.test_occlusion()
+            with frame.phase("certification"):
+                frame.certify_cells()
             with frame.phase("shading"):
                 frame.shade()  # with shadow testing and shadow-mode setting
             with frame.phase("mode setting"):
                 frame.set_modes()
-            with frame.phase("certification"):
-                frame.certify()
         except BaseException:
             frame.memory.discard_frame()
             if frame.cache is not None:
@@ -149,11 +149,19 @@ def _has_cells(settings: Settings) -> bool:
     return base_of(settings.method) == "cells"
 
 
-_NO_CELLS = {np.dtype(word).itemsize: make_cells(1, lights, 1) for word, lights in ((np.uint32, 1), (np.uint64, 16))}
-_NO_ROWS, _NO_BLURS = np.empty((0, 9), np.float32), np.empty(0, np.float32)
-_NOT_WANTED = Wanted(
-    np.empty((1, 0), np.int32), np.empty((1, 0), np.float32), np.empty((1, 0), np.float32), np.zeros((1, 3), np.int64)
-)
+_NOT_WANTED = Wanted(np.empty(0, np.int32), np.empty(0, np.float32), np.empty(0, np.float32), np.zeros(3, np.int64))
+_NOT_CERTIFIED = {
+    np.dtype(word_type(lights)).itemsize: Certified(
+        make_cells(1, lights, 1),
+        np.empty((0, 9), np.float32),
+        np.empty(0, np.float32),
+        np.empty(0, np.bool_),
+        np.float32(0),
+        FEW,
+        _NOT_WANTED,
+    )
+    for lights in (1, MAX_CULLED_LIGHTS)
+}
 
 
 class UnfinishedFrame:
@@ -171,6 +179,8 @@ class UnfinishedFrame:
         self._occlusion_tests = np.zeros(self._workers, np.int64)
         self._phases: dict[str, float] = {}
         self._started = clock.perf_counter()
+        self._certificates: Certificates | None = None
+        self._wanted = _NOT_WANTED
         self._base = base_of(settings.method)
         self._certifying = np.zeros(CERTIFYING, np.int64)
         self._rays = pinhole(camera, settings.width, settings.height)
@@ -223,10 +233,12 @@ class UnfinishedFrame:
         renderer.world.place(self._time)
         renderer._look.lights[:] = light_positions(renderer.scene, self._time)
         self.memory.follow_lights(renderer._look.lights)
+        self._certificates = None
         if self._base == "certified":
             if renderer.certificates is None:
                 renderer.certificates = Certificates(renderer.world, renderer._look.lights, self._workers)
-            renderer.certificates.follow_lights(renderer._look.lights)
+            self._certificates = renderer.certificates
+            self._certificates.follow_lights(renderer._look.lights)
 
     def trace_primary_rays(self) -> None:
         """What does each pixel see?"""
@@ -255,33 +267,54 @@ class UnfinishedFrame:
 
         for_each_chunk(work, -(-height // ROWS), self._workers, self._cancel)
 
+    def certify_cells(self) -> None:
+        """Certify what these primary hits are about to want, and what else rays wanted in the last frame."""
+        certificates = self._certificates
+        if certificates is None:
+            return
+        sought, lights = certificates.wanted(len(self._tiles)), self._renderer._look.lights
+
+        def work(tile: tuple[int, int, int, int], worker: int) -> None:
+            certified = self._certified(certificates, sought, self._tiles.index(tile[:2]))
+            seek_tile(self._rays, tile, certified, lights, self._buffers, self._spaces[worker])
+
+        self._for_each_tile(work)
+        budget = Budget(self._settings.certificates, self._settings.certificate_seconds)
+        patience = PATIENCE[self._settings.accelerator]
+        self._certifying = certificates.certify([sought, *certificates.left], budget, patience, self._cancel)
+        self._wanted = certificates.wanted(len(self._tiles))
+
     def shade(self) -> None:
         """§2.4, §2.5: Whitted shading, with shadow testing and shadow-mode setting."""
         self._shade(self._rays, self._buffers, self._counts)
         if self._settings.samples > 1:
             self._average_samples()
 
+    def _certified(self, certificates: Certificates | None, wanted: Wanted, tile: int) -> Certified:
+        """What a tile knows of certified cells, and where it says what it wants."""
+        if certificates is None:
+            return _NOT_CERTIFIED[self.memory.words.dtype.itemsize]
+        o, rows = certificates.occluders, Wanted(*(a[tile] for a in wanted))
+        return Certified(certificates.cells, o.rows, o.blurs, certificates.still, certificates.highest, FEW, rows)
+
     def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray, first: bool = True) -> None:
         placed, look, memory = self._renderer.world.placed, self._renderer._look, self.memory
         depth, verify, base = self._settings.depth, self._settings.verify, self._base
-        certified = base == "certified"
-        certificates = self._renderer.certificates if certified else None
-        if certificates is not None:
-            cells, rows, blurs = certificates.cells, certificates.occluders.rows, certificates.occluders.blurs
-            words, highest = cells.words, certificates.highest
-            self._wanted = certificates.wanted(len(self._tiles))
-        else:
-            cells, rows, blurs = _NO_CELLS[memory.words.dtype.itemsize], _NO_ROWS, _NO_BLURS
-            words, highest = memory.words, np.float32(0)
+        certificates = self._certificates
+        words = memory.words if certificates is None else certificates.cells.words
 
         def work(tile: tuple[int, int, int, int], worker: int) -> None:
-            chunk = self._tiles.index(tile[:2])
-            wanted = Wanted(*(a[chunk if certified else 0] for a in (self._wanted if certified else _NOT_WANTED)))
             knowledge = Knowledge(
-                words, memory.gained[worker], self._first, base != "none", self._by_modes, verify, certified,
-                Certified(cells, rows, blurs, highest, FEW, wanted),
-                NO_CACHE if self.cache is None else self.cache.of_worker(worker, learns=first),
-            )  # fmt: skip
+                words,
+                memory.gained[worker],
+                first=self._first,
+                cull=base != "none",
+                learn=self._by_modes,
+                verify=verify,
+                certify=certificates is not None,
+                certified=self._certified(certificates, self._wanted, self._tiles.index(tile[:2])),
+                cache=NO_CACHE if self.cache is None else self.cache.of_worker(worker, learns=first),
+            )
             shade_tile(placed, look, rays, tile, depth, knowledge, buffers, counts[worker], self._spaces[worker])
 
         self._for_each_tile(work)
@@ -316,14 +349,8 @@ class UnfinishedFrame:
             set_occlusion_modes(memory.words, memory.hidden, memory.pixel_count, memory.highest_count, zoom)
         else:
             memory.discard_frame()
-
-    def certify(self) -> None:
-        """DESIGN"""
-        certificates = self._renderer.certificates
-        if self._base == "certified" and certificates is not None:
-            budget = Budget(self._settings.certificates, self._settings.certificate_seconds)
-            patience = PATIENCE[self._settings.accelerator]
-            self._certifying = certificates.certify(self._wanted, budget, patience, self._cancel)
+        if self._certificates is not None:
+            self._certificates.left = [self._wanted]
 
     def finished(self) -> Frame:
         buffers, memory = self._buffers, self.memory

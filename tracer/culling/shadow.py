@@ -62,12 +62,13 @@ ZERO, ONE = np.float32(0), np.float32(1)
 
 class Certified(NamedTuple):
     """Certified cells (`tracer.culling.certified`) and what rays ask of them: the triangles, rows (n, 9) float32, and
-    how far these may be elsewhere, blurs (n,); how high above a cell its rays may end; how many candidates are
-    asked at most; and what a tile wants."""
+    how far these may be elsewhere, blurs (n,); still (lights,) bool, which lights are certified; how high above a
+    cell its rays may end; how many candidates are asked at most; and what a tile wants."""
 
     cells: Cells
     rows: NDArray[np.float32]
     blurs: NDArray[np.float32]
+    still: NDArray[np.bool_]
     highest: float
     few: int
     wanted: Wanted
@@ -212,9 +213,11 @@ def _ask_certified(points, light, number, certified, answers, v, counts):
     _, field, shift = _words(answers, number, v)
     field = field & np.int32(3 << shift)
     some = bits_of(field == np.int32(3 << shift)) & live
+    if number >= len(certified.still) or not certified.still[number]:
+        return
     answers.untried[v] |= live & ~some
     answers.doubtful[v] |= some
-    if number >= MAX_CULLED_LIGHTS or certified.few == 0:
+    if certified.few == 0:
         return
     while some != 0:
         lane = lowest_bit(some)

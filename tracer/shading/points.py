@@ -53,9 +53,9 @@ class Points(NamedTuple):
     """n points, in rows of `memory` (POINT_ROWS, n) float32: position, geometric normal (towards the viewer), shading
     normal (in the geometric one's half space), the material's diffuse colour under the texture's, its specular colour,
     and the light that goes from there to the viewer, of which there is the ambient at first, each (3, n); reference
-    like light; offset (n,), how far above the surface rays start; primitive and unit (n,) int32; entering (n / 16,) int32, the bits
-    of those whose ray came from outside; lifted (3, n), the points that far above the surface; spots (3, n), of which
-    `tracer.culling.certified.lookup` tells."""
+    like light; offset (n,), how far above the surface rays start; primitive and unit (n,) int32; entering
+    (n / 16,) int32, the bits of those whose ray came from outside; lifted (3, n), the points that far above the
+    surface; spots (3, n), of which `tracer.culling.certified.lookup` tells."""
 
     memory: NDArray[np.float32]
     position: NDArray[np.float32]

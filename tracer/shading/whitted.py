@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.lookup import find_cells, want
+from tracer.culling.certified.lookup import find_cells, seek, want
 from tracer.culling.shadow import ANSWER_ROWS, RAYS, SHADOW_COUNTERS, answers_in, shadow_testing
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
@@ -104,6 +104,16 @@ def trace_primary(world, camera, tile, buffers, counts, space):
     keep_hits(wave, place, buffers)
 
 
+@kernel
+def seek_tile(camera, tile, certified, lights, buffers, space):
+    """Note which certificates the primary hits of a tile, which the buffers hold, are about to want."""
+    certified, buffers, space = borrowed(certified), borrowed(buffers), borrowed(space)
+    place = _tile_in(space.tile).place
+    wave = primary_wave(camera, tile, buffers.primitive.shape[1], space.wave, place)
+    recall_hits(wave, place, buffers)
+    seek(certified, lights, wave)
+
+
 @subkernel
 def _light(world, look, wave, points, knowledge, answers, counts, tile, first, buffers):
     """Local light of a wave, with shadow testing for every light; `first` for the wave of primary rays."""
@@ -122,7 +132,7 @@ def _light(world, look, wave, points, knowledge, answers, counts, tile, first, b
             _record(wave, number, answers, tile, buffers)
         if len(buffers.saved) > 0:
             _record_work(wave, answers, tile, buffers)
-    if knowledge.certify:
+    if knowledge.certify and not first:  # what the first wave wanted was sought before
         want(certified.cells, certified.wanted, points, wave.size, answers.untried, answers.doubtful)
     bring_home(wave, points.light, tile.light)
     if knowledge.verify:

@@ -22,18 +22,19 @@ PLANES = 4  # three through the light and an edge of the cell, and the cell's ow
 
 
 class Beam(NamedTuple):
-    """corners and directions from the light (CORNERS, 3) float64, the first three below and the others above;
-    planes (PLANES, 4), normals and offsets, behind which it lies; box (6,) around it; reach (1,), the longest
-    direction, functions (FUNCTIONS, CORNERS), margin (FUNCTIONS,) and numbers (NUMBERS,) of a measured triangle."""
+    """corners and directions from the light (3, CORNERS) float64, of which the first three are below and the others
+    above; planes (PLANES, 4), normals and offsets, behind which it lies; box (6,) around it; reach (1,), the longest
+    direction."""
 
     corners: NDArray[np.float64]
     directions: NDArray[np.float64]
     planes: NDArray[np.float64]
     box: NDArray[np.float64]
     reach: NDArray[np.float64]
-    functions: NDArray[np.float64]
-    margin: NDArray[np.float64]
-    numbers: NDArray[np.float64]
+
+
+def make_beam() -> Beam:
+    return Beam(np.zeros((3, CORNERS)), np.zeros((3, CORNERS)), np.zeros((PLANES, 4)), np.zeros(6), np.zeros(1))
 
 
 @inlined
@@ -50,13 +51,18 @@ def slack_of(e1, e2, largest):
 
 
 @inlined
+def _corner(corners, k):
+    return corners[0, k], corners[1, k], corners[2, k]
+
+
+@inlined
 def _least_coordinate(corners):
     """No point between the corners has a smaller largest coordinate."""
     least = 0.0
     for axis in range(3):
         low, high = np.inf, -np.inf
         for k in range(3):
-            low, high = min(low, corners[k, axis]), max(high, corners[k, axis])
+            low, high = min(low, corners[axis, k]), max(high, corners[axis, k])
         if low > 0.0:
             least = max(least, low)
         elif high < 0.0:
@@ -85,16 +91,17 @@ def put_cell(beam, rows, i, side, u, v, size, highest, largest):
         x = u1 if k == 1 else u0
         y = v1 if k == 2 else v0
         for axis in range(3):
-            beam.corners[k, axis] = a[axis] + x * e1[axis] + y * e2[axis]
+            beam.corners[axis, k] = a[axis] + x * e1[axis] + y * e2[axis]
     lowest = LOWEST * OFFSET * _least_coordinate(beam.corners) - wrong
-    for k in range(3):
-        for axis in range(3):
-            at = beam.corners[k, axis]
-            beam.corners[k, axis] = at + lowest * normal[axis]
-            beam.corners[3 + k, axis] = at + (highest + wrong) * normal[axis]
     for axis in range(3):
+        for k in range(3):
+            at = beam.corners[axis, k]
+            beam.corners[axis, k] = at + lowest * normal[axis]
+            beam.corners[axis, 3 + k] = at + (highest + wrong) * normal[axis]
+        for k in range(6, CORNERS):
+            beam.corners[axis, k] = beam.corners[axis, 5]
         beam.planes[3, axis] = -normal[axis]
-    beam.planes[3, 3] = -dot(normal, (beam.corners[0, 0], beam.corners[0, 1], beam.corners[0, 2]))
+    beam.planes[3, 3] = -dot(normal, _corner(beam.corners, 0))
     return True
 
 
@@ -104,21 +111,22 @@ def put_light(beam, light):
 
     False where the light is not clearly before the cell's plane."""
     longest = 0.0
-    for axis in range(3):
-        beam.box[axis], beam.box[3 + axis] = light[axis], light[axis]
     for k in range(CORNERS):
         square = 0.0
         for axis in range(3):
-            x = beam.corners[k, axis]
-            d = x - light[axis]
-            beam.directions[k, axis] = d
+            d = beam.corners[axis, k] - light[axis]
+            beam.directions[axis, k] = d
             square += d * d
-            beam.box[axis], beam.box[3 + axis] = min(beam.box[axis], x), max(beam.box[3 + axis], x)
         longest = max(longest, square)
+    for axis in range(3):
+        low = high = light[axis]
+        for k in range(6):
+            low, high = min(low, beam.corners[axis, k]), max(high, beam.corners[axis, k])
+        beam.box[axis], beam.box[3 + axis] = low, high
     beam.reach[0] = math.sqrt(longest)
     below = beam.planes[3, 0], beam.planes[3, 1], beam.planes[3, 2]
-    for k in range(3, CORNERS):  # the light must see the cell's plane from above, at more than a graze
-        if not dot(below, (beam.directions[k, 0], beam.directions[k, 1], beam.directions[k, 2])) > 1e-4 * beam.reach[0]:
+    for k in range(3, 6):  # the light must see the cell's plane from above, at more than a graze
+        if not dot(below, _corner(beam.directions, k)) > 1e-4 * beam.reach[0]:
             return False
     for j in range(3):
         _put_side(beam, light, j, (j + 1) % 3, (j + 2) % 3)
@@ -128,19 +136,15 @@ def put_light(beam, light):
 @inlined
 def _put_side(beam, light, i, j, opposite):
     """The plane through the light and the cell's edge from corner i to j."""
-    n = cross(
-        (beam.directions[i, 0], beam.directions[i, 1], beam.directions[i, 2]),
-        (beam.directions[j, 0], beam.directions[j, 1], beam.directions[j, 2]),
-    )
+    n = cross(_corner(beam.directions, i), _corner(beam.directions, j))
     ln = length(n)
     scale = 1.0 / ln if ln > 0.0 else 0.0
-    inside = n[0] * beam.directions[opposite, 0] + n[1] * beam.directions[opposite, 1]
-    if inside + n[2] * beam.directions[opposite, 2] > 0.0:
+    if dot(n, _corner(beam.directions, opposite)) > 0.0:
         scale = -scale
     n = n[0] * scale, n[1] * scale, n[2] * scale
     most = 0.0
-    for k in range(CORNERS):
-        most = max(most, dot(n, (beam.directions[k, 0], beam.directions[k, 1], beam.directions[k, 2])))
+    for k in range(6):
+        most = max(most, dot(n, _corner(beam.directions, k)))
     for axis in range(3):
         beam.planes[i, axis] = n[axis]
     beam.planes[i, 3] = dot(n, light) + most if ln > 0.0 else np.inf

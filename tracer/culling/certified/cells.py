@@ -24,7 +24,7 @@ LEAF, FINAL = -1, -2  # instead of children: none yet, and none ever
 # lie outside, and, as the bits of int32, the roots of both sides.
 CORNER, ALONG_U, ALONG_V, NORMAL, BEYOND_U, BEYOND_V, ROOTS = 0, 3, 6, 9, 12, 13, 14
 RECEIVER = 16
-HIGHEST = 4.0  # times the scene's largest coordinate and OFFSET: rays that end higher above are traced
+HIGHEST = 2.0  # times the scene's largest coordinate and OFFSET: rays that end higher above are traced
 
 
 class Cells(NamedTuple):

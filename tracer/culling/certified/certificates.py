@@ -13,9 +13,10 @@ from tracer.culling.certified import certify
 from tracer.culling.certified.beam import OFFSET
 from tracer.culling.certified.cells import HIGHEST, Cells, bytes_of, make_cells, put_receivers, with_room
 from tracer.culling.certified.lookup import ROOM, Wanted
-from tracer.culling.certified.occluders import BOXES, Occluders, joined, know_light, shape_of
+from tracer.culling.certified.occluders import BOXES, Occluders, blocks_of, joined, know_light, shape_of
 from tracer.culling.certified.work import Points, commit, counters, gather_roots, make_tasks, work_on
 from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.geometry.bvh8.tree import WIDTH
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
@@ -62,10 +63,10 @@ class Certificates:
             np.zeros(len(rows), np.float32),
             boxes,
             shape.children,
-            shape.leaves,
-            shape.order,
+            *blocks_of(shape, rows),
             roots,
             np.empty((count, len(shape.children), BOXES), np.float32),
+            np.empty((count, len(shape.leaves), WIDTH), np.float32),
             np.zeros((count, len(rows)), np.int32),
             np.zeros(count, np.int32),
         )
@@ -74,6 +75,7 @@ class Certificates:
         self._largest = float(np.abs(bounds).max())
         self.highest = np.float32(HIGHEST * OFFSET * self._largest)
         put_receivers(rows, triangles.start, triangles.stop, self._largest, self.cells.receivers)
+        self.left: list[Wanted] = []  # what the last frame's rays wanted and has not been looked into
         self.still = np.zeros(count, np.bool_)
         self.follow_lights(lights)
         self.still[:] = True
@@ -106,14 +108,14 @@ class Certificates:
         shape = (tiles, ROOM)
         return Wanted(np.empty(shape, np.int32), np.empty(shape, np.float32), np.empty(shape, np.float32), of)
 
-    def certify(self, wanted: Wanted, budget: Budget, patience: int, cancel: Callable[[], bool] | None) -> NDArray:
+    def certify(self, lists: list[Wanted], budget: Budget, patience: int, cancel: Callable[[], bool] | None) -> NDArray:
         """Certify what rays wanted, within a budget; counters (COUNTERS,) int64 of what that took."""
         end = clock.perf_counter() + budget.seconds
         counts = counters(self._threads)
-        kept = [wanted.of[tile, 0] for tile in range(len(wanted.of))]
-        key, u, v = (np.concatenate([a[tile, :n] for tile, n in enumerate(kept)]) for a in wanted[:3])
-        if not len(key):
+        kept = [(wanted, tile, n) for wanted in lists for tile, n in enumerate(wanted.of[:, 0]) if n]
+        if not kept:
             return counts.sum(0)
+        key, u, v = (np.concatenate([wanted[k][tile, :n] for wanted, tile, n in kept]) for k in range(3))
         points = Points(np.empty_like(key), np.empty_like(u), np.empty_like(v), np.empty((2, len(key)), np.float32))
         self.cells = with_room(self.cells, min(len(key), 2 * len(self.cells.receivers)), 0)
         todo = gather_roots(self.cells, key, u, v, points)

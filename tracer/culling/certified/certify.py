@@ -14,27 +14,26 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.beam import PLANES, Beam
+from tracer.culling.certified.beam import PLANES, Beam, make_beam
 from tracer.culling.certified.margins import (
-    CORNERS,
-    FUNCTIONS,
-    NUMBERS,
     before_plane,
     depth_of,
     is_past_the_lamp,
     measure,
+    row_of,
     surely_hit,
     surely_missed,
 )
-from tracer.culling.certified.occluders import BOXES, STACK, children_met
+from tracer.culling.certified.occluders import BLOCK, BOXES, STACK, children_met, triangles_met
 from tracer.culling.modes import FULL_SHADOW, NON_SHADOW
 from tracer.geometry.bvh8.tree import WIDTH
 from tracer.kernels import inlined, subkernel
-from tracer.simd import address_of, i64_at, local_memory, lowest_bit
+from tracer.simd import address_of, i64_at, lane_of, local_memory, lowest_bit
 
 UNTRIED, FULL, LIT, CANDIDATES = 0, FULL_SHADOW, NON_SHADOW, 3
 MOST = 48  # candidates that a cell keeps for its parts
 TOO_MANY = 255  # instead of how many there are
+FUNCTIONS = 4
 FUSED = 12  # candidates that are fused at most
 PIECES, VERTICES = 24, 12  # of a cell of which parts are cut off
 SLIVER = 1e-15  # of the cell: pieces with less area are narrower by far than any margin
@@ -57,18 +56,8 @@ class Scratch(NamedTuple):
 
 
 def scratch() -> Scratch:
-    beam = Beam(
-        np.zeros((CORNERS, 3)),
-        np.zeros((CORNERS, 3)),
-        np.zeros((PLANES, 4)),
-        np.zeros(6),
-        np.zeros(1),
-        np.zeros((FUNCTIONS, CORNERS)),
-        np.zeros(FUNCTIONS),
-        np.zeros(NUMBERS),
-    )
     return Scratch(
-        beam,
+        make_beam(),
         np.zeros(MOST + 1, np.int32),
         np.zeros((FUSED, FUNCTIONS, 3)),
         np.zeros((PIECES, VERTICES, 3)),
@@ -79,19 +68,22 @@ def scratch() -> Scratch:
 
 @inlined
 def _measured(b, o, light, i):
-    measure(b.directions, b.reach[0], light, o.rows, i, np.float64(o.blurs[i]), b.functions, b.margin, b.numbers)
+    return measure(b.directions, b.reach[0], light, o.rows, i, np.float64(o.blurs[i]))
 
 
-@subkernel
-def _passes(b, o, i):
+@inlined
+def _passes(b, o, i, q):
     """Whether no ray of the beam hits the triangle that was measured."""
-    if surely_missed(b.functions, b.margin, b.numbers):
+    if surely_missed(q):
         return True
-    depth = depth_of(b.margin, b.numbers)
+    depth = depth_of(q)
+    if not depth > 0.0:
+        return False
+    a, e1, e2 = row_of(o.rows, i)
+    parted = False
     for k in range(PLANES):
-        if before_plane(o.rows, i, b.planes[k], b.margin, depth, b.reach[0]):
-            return True
-    return False
+        parted |= before_plane(a, e1, e2, b.planes[k], q, depth, b.reach[0])
+    return parted
 
 
 @subkernel
@@ -110,20 +102,20 @@ def _behind_plane(b, box):
     return True
 
 
-@inlined
+@subkernel
 def _meet(s, o, light, i, count, counts):
     """Take primitive i among the `count` found, if it may come between: how many there are then, or -1 where it hides
     the whole cell and all others are forgotten."""
-    counts[TESTS] += 1
     if i >= len(o.rows):
         if not _behind_plane(s.beam, o.quadric_boxes[i - len(o.rows)]):
             return count
     else:
-        _measured(s.beam, o, light, i)
-        if surely_hit(s.beam.functions, s.beam.margin, s.beam.numbers):
+        counts[TESTS] += 1
+        q = _measured(s.beam, o, light, i)
+        if surely_hit(q):
             s.found[0] = i
             return -1
-        if _passes(s.beam, o, i):
+        if _passes(s.beam, o, i, q):
             return count
     if count <= MOST:
         s.found[count] = i
@@ -131,10 +123,10 @@ def _meet(s, o, light, i, count, counts):
 
 
 @subkernel
-def _from_list(s, o, light, given, number, counts):
-    """Take primitives from given (number,) int32."""
+def _from_list(s, o, light, given, given_count, counts):
+    """Take primitives from given (given_count,) int32."""
     count = 0
-    for k in range(number):
+    for k in range(given_count):
         count = _meet(s, o, light, given[k], count, counts)
         if count < 0:
             return count
@@ -150,12 +142,13 @@ def _from_tree(s, o, number, light, counts):
         if count < 0:
             return count
     boxes, pending = address_of(o.boxes[number]), 0
+    blocks, reaches = address_of(o.blocks), address_of(o.reaches[number])
     for root in o.roots:
         stack[0], pending = np.int64(root), 1
         while pending > 0:
             pending -= 1
             node = stack[pending]
-            counts[STEPS] += WIDTH
+            counts[STEPS] += 1
             met = np.int64(children_met(boxes + 4 * BOXES * node, s.beam))
             while met != 0:
                 child = lowest_bit(met)
@@ -165,10 +158,15 @@ def _from_tree(s, o, number, light, counts):
                     stack[pending] = code
                     pending += 1
                     continue
-                first = o.leaves[~code, 0]
-                last = first + (o.leaves[~code, 1] if o.order[first] < len(o.rows) else 1)
-                for k in range(first, last):
-                    i = o.order[k]
+                counts[STEPS] += 1
+                leaf = ~code
+                if o.numbers[leaf, 0] >= len(o.rows):
+                    triangles = np.int64(1)
+                else:
+                    triangles = triangles_met(blocks + 4 * BLOCK * leaf, reaches + 4 * WIDTH * leaf, s.beam)
+                while triangles != 0:
+                    i = np.int64(o.numbers[leaf, lowest_bit(triangles)])
+                    triangles &= triangles - 1
                     count = _meet(s, o, light, i, count, counts)
                     if count < 0:
                         return count
@@ -209,18 +207,26 @@ def _put_part(s, o, light, i, part):
     where it hides nothing, or cannot be told to."""
     if i >= len(o.rows):
         return False
-    _measured(s.beam, o, light, i)
-    if not is_past_the_lamp(s.beam.numbers):
+    q = _measured(s.beam, o, light, i)
+    if not is_past_the_lamp(q):
         return False
-    f, m = s.beam.functions, s.beam.margin
-    for j in range(FUNCTIONS):
-        some = False
-        for k in range(3):
-            s.parts[part, j, k] = min(f[j, k], f[j, 3 + k]) - m[j]
-            some |= s.parts[part, j, k] > 0.0
-        if not some:
-            return False
-    return True
+    return (
+        _put_function(s.parts[part, 0], q.u, q.of_u)
+        and _put_function(s.parts[part, 1], q.v, q.of_v)
+        and _put_function(s.parts[part, 2], q.w, q.of_w)
+        and _put_function(s.parts[part, 3], q.beyond, q.of_beyond)
+    )
+
+
+@inlined
+def _put_function(row, function, margin):
+    """A function less its margin at the three corners, whichever is less of below and above; whether it is positive
+    somewhere."""
+    some = False
+    for k in range(3):
+        row[k] = min(lane_of(function, k), lane_of(function, 3 + k)) - margin
+        some |= row[k] > 0.0
+    return some
 
 
 @inlined

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.certified.beam import LOWEST, OFFSET
 from tracer.culling.certified.cells import ALONG_U, ALONG_V, BEYOND_U, BEYOND_V, CORNER, LEAF, NORMAL, RECEIVER, ROOTS
+from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
@@ -26,6 +27,8 @@ from tracer.simd import (
     load_columns,
     load_f32x16,
     load_i32x16,
+    load_three,
+    local_memory,
     lowest_bit,
     mask16,
     maximum,
@@ -37,6 +40,7 @@ from tracer.simd import (
 ZERO, HALF, ONE, TWO = np.float32(0), np.float32(0.5), np.float32(1), np.float32(2)
 NOWHERE = -1  # instead of a root's key
 ROOM = 4096  # points that a tile can ask for
+FACING = 64 * MAX_CULLED_LIGHTS  # bytes
 
 
 class Wanted(NamedTuple):
@@ -125,12 +129,12 @@ def want(cells, wanted, points, count, untried, doubtful):
         while bits != 0:
             i = 16 * k + lowest_bit(bits)
             bits &= bits - 1
-            _note(wanted, spots, i)
+            _note(wanted, spots[2].view(np.int32)[i], spots[0, i], spots[1, i])
 
 
 @inlined
-def _note(wanted, spots, i):
-    """Keep the i-th point: all at first and, each time there is no more room, every other one."""
+def _note(wanted, key, u, v):
+    """Keep a point: all at first and, each time there is no more room, every other one."""
     wanted.of[2] += 1
     if wanted.of[2] % wanted.of[1] != 0:
         return
@@ -143,5 +147,68 @@ def _note(wanted, spots, i):
         if wanted.of[2] % wanted.of[1] != 0:
             return
     n = wanted.of[0]
-    wanted.key[n], wanted.u[n], wanted.v[n] = spots[2].view(np.int32)[i], spots[0, i], spots[1, i]
+    wanted.key[n], wanted.u[n], wanted.v[n] = key, u, v
     wanted.of[0] = n + 1
+
+
+@subkernel
+def _wanting(cells, lights, still, cell, facing):
+    """Bits of the cells of sixteen points in which a light of which more could be known faces them; facing
+    (lights, 16) are more than 0 where it does."""
+    words, size = address_of(cells.words), cells.words.itemsize
+    low = gather_i32x16(words, cell if size == 4 else cell << np.int32(1))
+    high = low if size == 4 else gather_i32x16(words + 4, cell << np.int32(1))
+    leaf = bits_of(gather_i32x16(address_of(cells.child), cell) == np.int32(LEAF))
+    bits = np.int64(0)
+    for number in range(len(still)):
+        if not still[number]:
+            continue
+        faces = bits_of(load_f32x16(facing + 64 * number) > ZERO)
+        field, shift = (low if 2 + 2 * number < 32 else high), (2 + 2 * number) % 32
+        field = (field >> np.int32(shift)) & np.int32(3)
+        bits |= faces & (bits_of(field == np.int32(0)) | (bits_of(field == np.int32(3)) & leaf))
+    return bits
+
+
+@subkernel
+def seek(certified, lights, wave):
+    """Note what primary hits are about to want: those of a wave, found by their coordinates in the triangle."""
+    cells, receivers, child = certified.cells, address_of(certified.cells.receivers), address_of(certified.cells.child)
+    facing, numbers = local_memory(FACING), local_memory(64)
+    for k in range((wave.size + 15) // 16):
+        primitive = load_i32x16(address_of(wave.hits.primitive) + 64 * k)
+        hit = (primitive > np.int32(NOWHERE)) & mask16(lanes_below(wave.size, k))
+        primitive = select(hit, primitive, i32x16(0))
+        store(numbers, primitive)
+        row = load_columns(receivers, numbers, RECEIVER)
+        ox, oy, oz = load_three(wave.rays.origin, k)
+        back = _at(row, NORMAL, ox - row[CORNER], oy - row[CORNER + 1], oz - row[CORNER + 2]) < ZERO
+        way = select(back, -ONE, ONE)
+        there = bits_of(hit & (_at(row, NORMAL, row[NORMAL], row[NORMAL + 1], row[NORMAL + 2]) > HALF))
+        if there == 0:
+            continue
+        for number in range(len(certified.still)):
+            x, y, z = lights[number, 0], lights[number, 1], lights[number, 2]
+            above = _at(row, NORMAL, x - row[CORNER], y - row[CORNER + 1], z - row[CORNER + 2])
+            store(facing + 64 * number, way * above)
+        u, v = load_f32x16(address_of(wave.hits.u) + 64 * k), load_f32x16(address_of(wave.hits.v) + 64 * k)
+        root = select(back, as_i32(row[ROOTS + 1]), as_i32(row[ROOTS]))
+        cell = _descend(child, select(mask16(there), root, i32x16(0)), u, v)
+        # A root that is not there yet is cell 0, of which nothing is known: wanted where any light faces it.
+        bits = there & _wanting(cells, lights, certified.still, cell, facing)
+        bits |= there & bits_of(cell == np.int32(0)) & _any_facing(certified.still, facing)
+        while bits != 0:
+            lane = lowest_bit(bits)
+            bits &= bits - 1
+            i = 16 * k + lane
+            key = 2 * wave.hits.primitive[i] + ((bits_of(back) >> lane) & 1)
+            _note(certified.wanted, key, wave.hits.u[i], wave.hits.v[i])
+
+
+@inlined
+def _any_facing(still, facing):
+    bits = np.int64(0)
+    for number in range(len(still)):
+        if still[number]:
+            bits |= bits_of(load_f32x16(facing + 64 * number) > ZERO)
+    return bits

@@ -39,21 +39,37 @@ corners are taken to be anywhere within `blur` of where they are.
 from __future__ import annotations
 
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tracer.kernels import inlined, subkernel
+from tracer.simd import address_of, all_lanes, any_lane, largest, load_f64x8, select, smallest
 
 EPSILON = 2.0**-24  # the largest relative error of a float32 rounding
 ENLARGED = 2.5e-6  # of a triangle, by which the fast structure takes it to be larger, and a little
 SURPLUS = 1.25
 LAMP = 2e-5  # of a segment from the light: what lies in it may be nearer than rays begin
-CORNERS = 6  # of a cell: three below, three above
-FUNCTIONS = 4
+CORNERS = 8  # of a cell: three below and three above, and the last of them twice more, which makes a vector
 
-# What `measure` finds out of a triangle, beside its functions and margins.
-TURNED, HEIGHT, LARGEST, REACHED, FIRM = range(5)  # see there
-NUMBERS = 5
+
+class Measured(NamedTuple):
+    """A triangle against a cell: its functions at the cell's corners, vectors of float64, times the sign of T; their
+    margins; height, |T|; greatest, the largest |D|; reached, the least, 0 where D's sign is not sure; and whether
+    that of T is."""
+
+    u: Any
+    v: Any
+    w: Any
+    beyond: Any
+    of_u: Any
+    of_v: Any
+    of_w: Any
+    of_beyond: Any
+    height: Any
+    greatest: Any
+    reached: Any
+    firm: Any
 
 
 @inlined
@@ -102,33 +118,31 @@ def margins(s, e1, e2, across, blur, near, reach, largest, height):
     )
 
 
-@subkernel
-def measure(directions, reach, light, rows, i, blur, functions, margin, numbers):
-    """The functions of triangle i of rows (n, 9) at directions (CORNERS, 3) from a light to a cell.
-
-    Fills functions (FUNCTIONS, CORNERS), times the sign of T, margin (FUNCTIONS,), and numbers (NUMBERS,): TURNED,
-    that sign; HEIGHT, |T|; LARGEST, the greatest |D|; REACHED, the least, 0 where D's sign is not sure; FIRM, 1 where
-    that of T is."""
+@inlined
+def measure(directions, reach, light, rows, i, blur):
+    """Triangle i of rows (n, 9) against directions (3, CORNERS) from a light to a cell, none longer than `reach`."""
     a, e1, e2 = row_of(rows, i)
     s = light[0] - a[0], light[1] - a[1], light[2] - a[2]
-    nu, nv, nd = cross(e2, s), cross(s, e1), cross(e2, e1)
+    nd = cross(e2, e1)
     height = -dot(s, nd)
     turned = 1.0 if height >= 0.0 else -1.0
     height = abs(height)
-    least, most, near = np.inf, -np.inf, 0.0
-    for k in range(CORNERS):
-        d = directions[k, 0], directions[k, 1], directions[k, 2]
-        u, v, det = turned * dot(d, nu), turned * dot(d, nv), turned * dot(d, nd)
-        functions[0, k], functions[1, k], functions[2, k], functions[3, k] = u, v, det - u - v, det - height
-        least, most = min(least, det), max(most, det)
-        near = max(near, length((d[0] + s[0], d[1] + s[1], d[2] + s[2])))
-    largest = max(abs(least), abs(most))
-    m = margins(s, e1, e2, length(nd), blur, near, reach, largest, height)
-    for j in range(FUNCTIONS):
-        margin[j] = m[j]
-    numbers[TURNED], numbers[HEIGHT], numbers[LARGEST] = turned, height, largest
-    numbers[REACHED] = least if least > m[4] else (-most if most < -m[4] else 0.0)
-    numbers[FIRM] = 1.0 if height > firm_height(s, e1, e2, blur) else 0.0
+    nu, nv = cross(e2, s), cross(s, e1)
+    at = address_of(directions)
+    x, y, z = load_f64x8(at), load_f64x8(at + 8 * CORNERS), load_f64x8(at + 16 * CORNERS)
+    u = x * (turned * nu[0]) + y * (turned * nu[1]) + z * (turned * nu[2])
+    v = x * (turned * nv[0]) + y * (turned * nv[1]) + z * (turned * nv[2])
+    det = x * (turned * nd[0]) + y * (turned * nd[1]) + z * (turned * nd[2])
+    least, most = smallest(det), largest(det)
+    greatest = max(abs(least), abs(most))
+    px, py, pz = x + s[0], y + s[1], z + s[2]
+    near = math.sqrt(largest(px * px + py * py + pz * pz))
+    m = margins(s, e1, e2, length(nd), blur, near, reach, greatest, height)
+    return Measured(
+        u, v, det - u - v, det - height, m[0], m[1], m[2], m[3], height, greatest,
+        least if least > m[4] else (-most if most < -m[4] else 0.0),
+        height > firm_height(s, e1, e2, blur),
+    )  # fmt: skip
 
 
 @inlined
@@ -139,89 +153,79 @@ def firm_height(s, e1, e2, blur):
 
 
 @inlined
-def surely_hit(functions, margin, numbers):
+def surely_hit(q):
     """Whether every ray of the cell hits the triangle that was measured."""
-    for j in range(FUNCTIONS):
-        for k in range(CORNERS):
-            if not functions[j, k] > margin[j]:
-                return False
     # D - T is greater than its margin at all corners: so is D, and with T firm its sign is that of every ray.
-    return is_past_the_lamp(numbers)
+    inside = all_lanes((q.u > q.of_u) & (q.v > q.of_v) & (q.w > q.of_w) & (q.beyond > q.of_beyond))
+    return inside and is_past_the_lamp(q)
 
 
 @inlined
-def is_past_the_lamp(numbers):
+def is_past_the_lamp(q):
     """Whether the triangle lies where rays from the light have begun, whatever they are."""
-    return numbers[FIRM] != 0.0 and numbers[HEIGHT] > LAMP * numbers[LARGEST]
+    return q.firm and q.height > LAMP * q.greatest
 
 
 @inlined
-def _parted_by_two(functions, margin, i, j):
-    """Whether some sum of functions i and j with positive factors is below its margin at all corners."""
-    low, high = 0.0, np.inf
-    for k in range(CORNERS):
-        x, y = functions[i, k] + margin[i], functions[j, k] + margin[j]
-        if y < 0.0:
-            low = max(low, x / -y)
-        elif x >= 0.0:
-            return False
-        elif y > 0.0:
-            high = min(high, -x / y)
-    return low < high
-
-
-@subkernel
-def surely_missed(functions, margin, numbers):
-    """Whether no ray of the cell hits the triangle that was measured, by its own planes."""
-    if numbers[FIRM] == 0.0:
-        return _missed_both_ways(functions, margin, numbers)
-    for j in range(FUNCTIONS):
-        below = True
-        for k in range(CORNERS):
-            below &= functions[j, k] < -margin[j]
-        if below:
-            return True
-    for i in range(FUNCTIONS):
-        for j in range(i + 1, FUNCTIONS):
-            if _parted_by_two(functions, margin, i, j):
-                return True
-    return False
-
-
-@inlined
-def _missed_both_ways(functions, margin, numbers):
-    """The same where the light lies in the triangle's plane, as far as one can tell: D may have either sign."""
-    for way in (1.0, -1.0):
-        missed = False
-        for j in range(FUNCTIONS):
-            below = True
-            for k in range(CORNERS):
-                value = functions[j, k] + (numbers[HEIGHT] if j == 3 else 0.0)  # D itself, for D - T
-                below &= way * value < -margin[j]
-            missed |= below
-        if not missed:
-            return False
-    return True
-
-
-@inlined
-def depth_of(margin, numbers):
-    """The least |D| of a ray that hits; 0 where it may be anything."""
-    return max(numbers[HEIGHT] - margin[3] if numbers[FIRM] != 0.0 else 0.0, numbers[REACHED])
-
-
-@subkernel
-def before_plane(rows, i, plane, margin, depth, reach):
-    """Whether triangle i lies before a plane (4,), normal and offset, that no segment crosses, so that none hits it."""
-    if not depth > 0.0:
+def _parted_by_two(x, y):
+    """Whether some sum of two functions with positive factors, margins added to both, is negative at all corners."""
+    if any_lane((x >= 0.0) & (y >= 0.0)):
         return False
-    uncertain = max(margin[0], max(margin[1], margin[2])) / depth
-    a, e1, e2 = row_of(rows, i)
+    ratio = -x / y
+    return largest(select(y < 0.0, ratio, 0.0 * x)) < smallest(select(y > 0.0, ratio, x * 0.0 + np.inf))
+
+
+@inlined
+def surely_missed(q):
+    """Whether no ray of the cell hits the triangle that was measured, by its own planes."""
+    u, v, w, b = q.u + q.of_u, q.v + q.of_v, q.w + q.of_w, q.beyond + q.of_beyond
+    if not q.firm:
+        return _missed_both_ways(q)
+    if not (any_lane(b >= 0.0) and any_lane(u >= 0.0) and any_lane(v >= 0.0) and any_lane(w >= 0.0)):
+        return True
+    return (
+        _parted_by_two(u, b)
+        or _parted_by_two(v, b)
+        or _parted_by_two(w, b)
+        or _parted_by_two(u, v)
+        or _parted_by_two(u, w)
+        or _parted_by_two(v, w)
+    )
+
+
+@inlined
+def _beyond_margin(way, q):
+    """Whether one function, times a sign, is below its margin at all corners; D itself for D - T."""
+    return not (
+        any_lane(q.u * way >= -q.of_u)
+        and any_lane(q.v * way >= -q.of_v)
+        and any_lane(q.w * way >= -q.of_w)
+        and any_lane((q.beyond + q.height) * way >= -(q.of_beyond + q.of_w))
+    )
+
+
+@inlined
+def _missed_both_ways(q):
+    """The same where the light lies in the triangle's plane, as far as one can tell: D may have either sign."""
+    return _beyond_margin(1.0, q) and _beyond_margin(-1.0, q)
+
+
+@inlined
+def depth_of(q):
+    """The least |D| of a ray that hits; 0 where it may be anything."""
+    return max(q.height - q.of_beyond if q.firm else 0.0, q.reached)
+
+
+@inlined
+def before_plane(a, e1, e2, plane, q, depth, reach):
+    """Whether a triangle that was measured lies before a plane (4,), normal and offset, that no segment crosses, so
+    that none hits it; depth > 0."""
+    uncertain = max(q.of_u, max(q.of_v, q.of_w)) / depth
     n = plane[0], plane[1], plane[2]
     g = dot(n, a) - plane[3]
     g1, g2 = g + dot(n, e1), g + dot(n, e2)
     least, most = min(g, min(g1, g2)), max(g, max(g1, g2))
-    return least > 2.0 * uncertain * (most - least) + margin[3] / depth * reach
+    return least > 2.0 * uncertain * (most - least) + q.of_beyond / depth * reach
 
 
 SURE_MISS, SURE_HIT, UNSURE = 0, 1, 2

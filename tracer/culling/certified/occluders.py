@@ -20,11 +20,16 @@ from tracer.geometry.bvh8.tree import WIDTH
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.simd import (
     bits_of,
+    f32x8,
     load_f32x8,
+    maximum,
+    minimum,
 )
 
 BOXES = 6 * WIDTH  # float32 of a node: lower x of its eight children, then lower y and so on
-STACK = 64 * 8
+BLOCK = 9 * WIDTH
+NONE = -1
+STACK = 64 * 8 * 8
 FAR = np.float32(3e37)
 ROUNDED = 1e-6  # of the largest coordinate, by which boxes are larger for planes in float32
 
@@ -33,19 +38,22 @@ class Occluders(NamedTuple):
     """All that is static, for any number of trees back to back.
 
     rows (triangles, 9) float32, corner and edges in the world, by number; blurs (triangles,) float32, how far
-    their corners may be elsewhere; quadric_boxes (quadrics, 6) float32; children (nodes, 8), leaves (m, 2) and order
-    int32 as in a `Shape`, whose items are primitives' numbers; roots (trees,) int32; boxes (lights, nodes,
-    BOXES) float32; loose (lights, n) int32, numbers of those in no box, and how many loose_count (lights,).
+    their corners may be elsewhere; quadric_boxes (quadrics, 6) float32; children (nodes, 8) int32 as in a `Shape`;
+    blocks (leaves, BLOCK) float32, corners and edges of a leaf's triangles as structure of arrays, and numbers
+    (leaves, 8) int32, NONE for none, or that of a quadric; roots (trees,) int32; boxes (lights, nodes, BOXES) float32;
+    reaches (lights, leaves, 8) float32, how far from each triangle a ray from the light can report a hit, negative
+    where there is none in the box; loose (lights, n) int32, numbers of those in no box, and loose_count (lights,).
     """
 
     rows: NDArray[np.float32]
     blurs: NDArray[np.float32]
     quadric_boxes: NDArray[np.float32]
     children: NDArray[np.int32]
-    leaves: NDArray[np.int32]
-    order: NDArray[np.int32]
+    blocks: NDArray[np.float32]
+    numbers: NDArray[np.int32]
     roots: NDArray[np.int32]
     boxes: NDArray[np.float32]
+    reaches: NDArray[np.float32]
     loose: NDArray[np.int32]
     loose_count: NDArray[np.int32]
 
@@ -130,23 +138,25 @@ def _triangle_box(rows, i, more):
 
 @subkernel
 def _leaf_box(o, leaf, number, light, farthest, rounded, loose):
-    """The box of a leaf's primitives for a light; what has none goes to the list of loose ones, counted by loose[0]."""
+    """The box of a leaf's primitives for a light; what has none goes to the list of loose ones, of which there are so
+    many, which are returned too."""
     low, high = _empty()
-    first, triangles = o.leaves[leaf, 0], len(o.rows)
-    count = o.leaves[leaf, 1] if o.order[first] < triangles else 1
-    for k in range(first, first + count):
-        i = o.order[k]
+    triangles, reaches = len(o.rows), o.reaches[number, leaf]
+    for k in range(WIDTH):
+        i = o.numbers[leaf, k]
+        reaches[k] = -FAR
         if i >= triangles:
             b = o.quadric_boxes[i - triangles]
             low, high = _around(low, high, (b[0], b[1], b[2]), (b[3], b[4], b[5]))
-            continue
-        reach = _reach_of(o.rows, i, np.float64(o.blurs[i]), light, farthest)
-        if reach < 0.5 * farthest:
-            low2, high2 = _triangle_box(o.rows, i, reach + rounded + o.blurs[i])
-            low, high = _around(low, high, low2, high2)
-        else:
-            o.loose[number, loose] = i
-            loose += 1
+        elif i != NONE:
+            reach = _reach_of(o.rows, i, np.float64(o.blurs[i]), light, farthest) + rounded + o.blurs[i]
+            if reach < 0.5 * farthest:
+                reaches[k] = reach
+                low2, high2 = _triangle_box(o.rows, i, reach)
+                low, high = _around(low, high, low2, high2)
+            else:
+                o.loose[number, loose] = i
+                loose += 1
     return low, high, loose
 
 
@@ -190,3 +200,37 @@ def children_met(box, beam):
         z = z0 if nz > np.float32(0) else z1
         met = met & (x * nx + y * ny + z * nz <= np.float32(beam.planes[k, 3]))
     return bits_of(met)
+
+
+@inlined
+def triangles_met(block, reaches, beam):
+    """Bits of the eight triangles of a block, at an address, that may meet a beam, made larger by their reaches."""
+    x, y, z = load_f32x8(block), load_f32x8(block + 32), load_f32x8(block + 64)
+    ax, ay, az = load_f32x8(block + 96), load_f32x8(block + 128), load_f32x8(block + 160)
+    bx, by, bz = load_f32x8(block + 192), load_f32x8(block + 224), load_f32x8(block + 256)
+    reach, zero, b = load_f32x8(reaches), f32x8(np.float32(0)), beam.box
+    met = reach > zero
+    for k in range(3):
+        c, e1, e2 = (x, ax, bx) if k == 0 else ((y, ay, by) if k == 1 else (z, az, bz))
+        low, high = minimum(zero, minimum(e1, e2)), maximum(zero, maximum(e1, e2))
+        met = met & (c + low - reach <= np.float32(b[3 + k])) & (c + high + reach >= np.float32(b[k]))
+    for k in range(PLANES):
+        nx, ny, nz = np.float32(beam.planes[k, 0]), np.float32(beam.planes[k, 1]), np.float32(beam.planes[k, 2])
+        e1, e2 = ax * nx + ay * ny + az * nz, bx * nx + by * ny + bz * nz
+        least = x * nx + y * ny + z * nz + minimum(zero, minimum(e1, e2))
+        met = met & (least - reach <= np.float32(beam.planes[k, 3]))
+    return bits_of(met)
+
+
+def blocks_of(shape: Shape, rows: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+    """blocks (leaves, BLOCK) and numbers (leaves, WIDTH) of a shape whose items are numbers of rows (t, 9), or of
+    quadrics after them."""
+    first, count = shape.leaves.T
+    count = np.where(shape.order[first] < len(rows), count, 1)
+    slots = first[:, None] + np.arange(WIDTH)
+    there = np.arange(WIDTH) < count[:, None]
+    numbers = np.where(there, shape.order[np.minimum(slots, len(shape.order) - 1)], NONE).astype(np.int32)
+    triangles = there & (numbers < len(rows))
+    blocks = np.zeros((len(first), 9, WIDTH), np.float32)
+    blocks.transpose(0, 2, 1)[triangles] = rows[numbers[triangles]]
+    return blocks.reshape(-1, BLOCK), numbers

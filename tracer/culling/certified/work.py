@@ -21,7 +21,7 @@ from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
 
 DEEPEST = 2.0**-12  # of a triangle's edges: no cell is smaller
-SMALLEST = 64.0  # times how far above a surface rays may end: shorter cells would be mostly margin
+SMALLEST = 8.0  # times how far above a surface rays may end: shorter cells would be mostly margin
 KEPT = 0xFF  # instead of a result: the light has its certificate, or needs none
 
 
