@@ -119,8 +119,9 @@ def _frame(lights: int, accelerator: str) -> Iterator[str]:
 def _renderer(lights: int, accelerator: str) -> Renderer:
     # As many lights as make a word of that size, no more: each is traced.
     scene = _tiny_scene(1 if lights <= 15 else 16)
-    settings = Settings(width=4, height=4, threads=1, method="paper+rest", accelerator=accelerator)
-    return Renderer(scene, settings)
+    # Methods differ in what their kernels are told, and what they take along has a kernel more each.
+    method = "cells+cache+rest"
+    return Renderer(scene, Settings(width=4, height=4, method=method, threads=1, accelerator=accelerator))
 
 
 def _tiny_scene(lights: int) -> Scene:

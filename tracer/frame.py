@@ -22,7 +22,8 @@ MAX_SIDE = 16384
 class Settings:
     """How to render.  Sizes in pixels; depth is the most bounces; threads 0 means all cores.
 
-    `method` is "none" or "paper"; `symmetric` and `zoom_factor` belong to the latter (§2.3, §2.6).
+    `method` is "none", "paper" or "cells", which is the paper's with cells of large triangles for primitives
+    (`tracer.culling.cells`); `symmetric` and `zoom_factor` belong to the latter two (§2.3, §2.6).
     `verify` traces each culled answer too, counts the wrong ones, and fills Frame.reference and
     Frame.wrong.  `samples` rays a pixel are averaged; all modes and statistics are those of the
     first, through the pixel's centre.
@@ -73,8 +74,8 @@ class Frame:
 
     color (h, w, 3) float32, linear and not clamped; depth (h, w) float32, distance along the unit
     ray, inf for a miss; primitive and cell (h, w) int32, -1 for a miss; normal (h, w, 3) float32,
-    the shading normal towards the viewer.  modes (p,) uint32 or uint64 are the packed words as this
-    frame leaves them; pixel_count and highest_count (p,) int32.  due and lit (h, w, lights) bool
+    the shading normal towards the viewer.  modes (units,) uint32 or uint64 are the packed words as this
+    frame leaves them; pixel_count and highest_count (units,) int32.  due and lit (h, w, lights) bool
     where they were asked for: whether each shadow ray of the primary hit is due, and its answer.
     Where verified, reference like color is the picture with every shadow answer right, which is that
     of method "none" bit for bit, and wrong (h, w) int32 the number of wrong answers that count for
@@ -122,17 +123,18 @@ class Frame:
 
     @property
     def occlusion_mode(self) -> NDArray[np.uint8]:
-        """(h, w) OcclusionMode of each pixel's primitive, 255 for a miss."""
+        """(h, w) OcclusionMode of each pixel's unit, 255 for a miss."""
         return self._per_pixel(modes.occlusion_mode(self.modes))
 
     @property
     def shadow_mode(self) -> NDArray[np.uint8]:
-        """(h, w, lights) ShadowMode of each pixel's primitive, 255 for a miss."""
+        """(h, w, lights) ShadowMode of each pixel's unit, 255 for a miss."""
         planes = [self._per_pixel(modes.shadow_mode(self.modes, light)) for light in range(self.lights)]
         return np.stack(planes, axis=-1) if planes else np.empty((*self.primitive.shape, 0), np.uint8)
 
     def _per_pixel(self, values: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        hit = self.primitive >= 0
-        result = np.full(self.primitive.shape, 255, np.uint8)
-        result[hit] = values[self.primitive[hit]]
+        units = self.cell if self.certificates is None else self.primitive  # cells with certificates have no modes
+        hit = units >= 0
+        result = np.full(units.shape, 255, np.uint8)
+        result[hit] = values[units[hit]]
         return result

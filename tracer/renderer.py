@@ -14,6 +14,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from tracer.culling.cache import NO_CACHE, OccluderCache
+from tracer.culling.cells import first_units, primitives_are_units, units_of
 from tracer.culling.certified.cells import make_cells
 from tracer.culling.certified.certificates import Budget, Certificates
 from tracer.culling.certified.certify import CERTIFICATES, STEPS, TESTS
@@ -36,7 +38,8 @@ from tracer.shading.whitted import COUNTERS, TILE, Buffers, Workspace, seek_tile
 from tracer.statistics import gather
 
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
-MEMORIES = 16  # resolutions whose modes are kept, those used last
+MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
+BY_MODES = ("paper", "cells")  # methods that cull by modes
 # How many rays must have wanted a triangle's first cell, and a part of a cell: that depends on what tracing them costs.
 PATIENCE = {"kdtree": (2, 4), "bvh8": (64, 256)}
 FEW = {"kdtree": 8, "bvh8": 0}  # candidates that are asked instead of the tree, at most
@@ -63,13 +66,16 @@ class Renderer:
         self.world = world or World(scene, scene.time_range[0], self.settings.accelerator, progress)
         self.rest = Rest(len(scene.objects))
         self._look = make_look(scene, self.world.facets)
-        self._memories: dict[tuple[int, int], Memory] = {}
+        self._memories: dict[tuple[int, int, bool], Memory] = {}
+        self._first_units = {False: primitives_are_units()}
         self._workspaces: list[Workspace] = []
         self.certificates: Certificates | None = None
+        self._cache: OccluderCache | None = None
 
     def reset_modes(self) -> None:
-        """Forget all modes, at every resolution, and all certificates."""
+        """Forget all modes, at every resolution, all certificates and all occluders."""
         self._memories.clear()
+        self._cache = None
         self.certificates = None
 
     def render(self, time: float = 0.0, camera: Camera | None = None, cancel: Cancel = None) -> Frame:
@@ -93,6 +99,8 @@ class Renderer:
                 frame.set_modes()
         except BaseException:
             frame.memory.discard_frame()
+            if frame.cache is not None:
+                frame.cache.discard_found()
             raise
         return frame.finished()
 
@@ -106,15 +114,39 @@ class Renderer:
         return self._workspaces
 
     def _memory(self, settings: Settings, workers: int) -> Memory:
-        """The modes at this resolution; made, or given room for more workers, where need be."""
-        key = (settings.width, settings.height)
-        memory = self._memories.pop(key, None) or Memory(self.world.object_of, len(self.scene.lights), workers)
+        """The modes at this resolution, of primitives or of cells; made, or given room for more workers, where need
+        be."""
+        key = (settings.width, settings.height, _has_cells(settings))
+        memory = self._memories.pop(key, None) or self._new_memory(settings, workers)
         self._memories[key] = memory  # the newest last
         if len(self._memories) > MEMORIES:
             del self._memories[next(iter(self._memories))]
         if len(memory.gained) < workers:
             memory.gained = np.zeros((workers, len(memory.words)), memory.words.dtype)
         return memory
+
+    def _new_memory(self, settings: Settings, workers: int) -> Memory:
+        return Memory(self.world.object_of, len(self.scene.lights), workers, self._first(settings))
+
+    def _occluder_cache(self, settings: Settings, workers: int) -> OccluderCache | None:
+        """The cache, where the method takes one along."""
+        if not takes(settings.method, "cache"):
+            return None
+        if self._cache is None:
+            triangles = self.world.placed.triangles
+            self._cache = OccluderCache(triangles, int((self.world.object_of[: len(triangles)] == 0).sum()))
+        self._cache.make_room(workers)
+        return self._cache
+
+    def _first(self, settings: Settings) -> np.ndarray:
+        """The first unit of each primitive (`tracer.culling.cells`)."""
+        if _has_cells(settings) and True not in self._first_units:
+            self._first_units[True] = first_units(self.world.placed.triangles, self.world.object_of)
+        return self._first_units[_has_cells(settings)]
+
+
+def _has_cells(settings: Settings) -> bool:
+    return base_of(settings.method) == "cells"
 
 
 _NOT_WANTED = Wanted(np.empty(0, np.int32), np.empty(0, np.float32), np.empty(0, np.float32), np.zeros(3, np.int64))
@@ -141,7 +173,9 @@ class UnfinishedFrame:
         self._renderer, self._settings = renderer, settings
         self._camera, self._time, self._cancel = camera, time, cancel
         self._workers = thread_count(settings.threads)
-        self.memory = renderer._memory(settings, self._workers)
+        self.memory, self._first = renderer._memory(settings, self._workers), renderer._first(settings)
+        self._by_modes = base_of(settings.method) in BY_MODES
+        self.cache = renderer._occluder_cache(settings, self._workers)
         self._spaces = renderer.workspaces(self._workers)
         self._counts = np.zeros((self._workers, COUNTERS), np.int64)
         self._occlusion_tests = np.zeros(self._workers, np.int64)
@@ -153,6 +187,7 @@ class UnfinishedFrame:
         self._certifying = np.zeros(CERTIFYING, np.int64)
         self._rays = pinhole(camera, settings.width, settings.height)
         self._buffers = self._empty_buffers()
+        self._units = np.empty_like(self._buffers.primitive) if _has_cells(settings) else self._buffers.primitive
         across, down = -(-settings.width // TILE), -(-settings.height // TILE)
         self._tiles = [(x * TILE, y * TILE) for y in range(down) for x in range(across)]
 
@@ -218,6 +253,9 @@ class UnfinishedFrame:
     def trace_primary_rays(self) -> None:
         """What does each pixel see?"""
         self._trace_primary(self._rays, self._buffers, self._counts)
+        if len(self._first) > 0:
+            seen = (self._buffers.primitive, self._buffers.u, self._buffers.v, self._units)
+            units_of(self._first, *(pixels.reshape(-1) for pixels in seen))
 
     def _trace_primary(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
         placed, spaces = self._renderer.world.placed, self._spaces
@@ -226,11 +264,12 @@ class UnfinishedFrame:
         )
 
     def test_occlusion(self) -> None:
-        """§2.3: which primitives does a neighbouring pixel show to be hidden?"""
-        if self._base in ("none", "certified"):
+        """§2.3: what does a neighbouring pixel show to be hidden?"""
+        if not self._by_modes:
             return
         height, memory = self._settings.height, self.memory
-        seen = self._renderer.world.placed, self._rays, self._buffers.primitive, self._settings.symmetric
+        units = self._buffers.primitive, self._first, self._units
+        seen = self._renderer.world.placed, self._rays, *units, self._settings.symmetric
 
         def work(chunk: int, worker: int) -> None:
             rows = chunk * ROWS, min(height, (chunk + 1) * ROWS)
@@ -279,7 +318,7 @@ class UnfinishedFrame:
             rows,
         )
 
-    def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
+    def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray, first: bool = True) -> None:
         placed, look, memory = self._renderer.world.placed, self._renderer._look, self.memory
         depth, verify, base = self._settings.depth, self._settings.verify, self._base
         certificates = self._certificates
@@ -289,11 +328,13 @@ class UnfinishedFrame:
             knowledge = Knowledge(
                 words,
                 memory.gained[worker],
+                first=self._first,
                 cull=base != "none",
-                learn=base == "paper",
+                learn=self._by_modes,
                 verify=verify,
                 certify=certificates is not None,
                 certified=self._certified(certificates, self._wanted, self._tiles.index(tile[:2])),
+                cache=NO_CACHE if self.cache is None else self.cache.of_worker(worker, learns=first),
             )
             shade_tile(placed, look, rays, tile, depth, knowledge, buffers, counts[worker], self._spaces[worker])
 
@@ -309,7 +350,7 @@ class UnfinishedFrame:
             rays = pinhole(self._camera, self._settings.width, self._settings.height, shift)
             buffers, counts = self._empty_buffers(), np.zeros_like(self._counts)
             self._trace_primary(rays, buffers, counts)
-            self._shade(rays, buffers, counts)
+            self._shade(rays, buffers, counts, first=False)
             for sum_, sample in ((self._buffers.color, buffers.color), (self._buffers.reference, buffers.reference)):
                 sum_ += sample
             self._buffers.wrong[:] += buffers.wrong
@@ -318,10 +359,12 @@ class UnfinishedFrame:
         self.memory.gained[:] = gained
 
     def set_modes(self) -> None:
-        """§2.5, §2.6: keep what was learnt, and say which primitives have been seen whole."""
+        """§2.5, §2.6: keep what was learnt, and say what has been seen whole."""
         memory = self.memory
-        count_pixels(self._buffers.primitive, memory.pixel_count)
-        if self._base not in ("none", "certified"):
+        if self.cache is not None:
+            self.cache.keep_found()
+        count_pixels(self._units, memory.pixel_count)
+        if self._by_modes:
             merge_words(memory.words, memory.gained)
             zoom = np.float64(self._settings.zoom_factor)
             set_occlusion_modes(memory.words, memory.hidden, memory.pixel_count, memory.highest_count, zoom)
@@ -357,5 +400,6 @@ class UnfinishedFrame:
             lit=buffers.lit.reshape(*shape, lights) if recorded else None,
             reference=buffers.reference.reshape(*shape, 3) if self._settings.verify else None,
             wrong=buffers.wrong.reshape(shape) if self._settings.verify else None,
+            cells=self._units if _has_cells(self._settings) else None,
             statistics=statistics,
         )

@@ -105,21 +105,22 @@ def set_occlusion_mode(mode: int, hidden: bool, count: int, highest: int, zoom: 
     return (FULLY, count) if count > 0 else (INIT, highest)
 
 
-def hidden_primitives(ids: np.ndarray, hits, symmetric: bool) -> tuple[set[int], int]:
-    """(hidden, tests) by section 2.3; hits(x, y, primitive) tells whether a pixel's ray meets a primitive."""
+def hidden_units(ids: np.ndarray, units: np.ndarray, hits, symmetric: bool) -> tuple[set[int], int]:
+    """(hidden, tests) by section 2.3, of the units of primitives `ids` at each pixel; hits(x, y, primitive, unit)
+    tells whether a pixel's ray meets a unit."""
     height, width = ids.shape
-    hidden = {int(i) for i in np.concatenate([ids[0], ids[-1], ids[:, 0], ids[:, -1]]) if i >= 0}
+    hidden = {int(i) for i in np.concatenate([units[0], units[-1], units[:, 0], units[:, -1]]) if i >= 0}
     tests = 0
     for y in range(height):
         for x in range(width):
             for rx, ry in ((x - 1, y), (x, y - 1)):
                 if rx < 0 or ry < 0 or ids[ry, rx] == ids[y, x]:
                     continue
-                questions = [(x, y, int(ids[ry, rx]))] + ([(rx, ry, int(ids[y, x]))] if symmetric else [])
-                for qx, qy, primitive in questions:
-                    if primitive >= 0:
+                questions = [((x, y), (ry, rx))] + ([((rx, ry), (y, x))] if symmetric else [])
+                for ray, seen in questions:
+                    if ids[seen] >= 0:
                         tests += 1
-                        hidden |= {primitive} if hits(qx, qy, primitive) else set()
+                        hidden |= {int(units[seen])} if hits(*ray, int(ids[seen]), int(units[seen])) else set()
     return hidden, tests
 
 

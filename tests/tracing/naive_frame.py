@@ -1,5 +1,7 @@
 """A naive twin of a whole frame: the paper's Figure 1, one ray at a time, with modes in lists.
 
+What carries modes is a primitive, or a cell of it (tests/tracing/naive_cells.py).
+
 It is told after the design, not after the tracer's sources: no tiles, no batches, no packed words, no
 trees, no threads.  Each shadow ray's true answer is always at hand, and what culling would have said
 is decided next to it.  Directions, surface points and ray ends are in float32, step by step as the
@@ -18,7 +20,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 import tracer
-from tests.tracing import brute, naive
+from tests.tracing import brute, naive, naive_cells
+from tracer.culling.cells import first_units
 from tracer.culling.modes import ShadowMode
 from tracer.geometry.camera import Pinhole, pinhole
 from tracer.scene.animation import light_positions
@@ -51,6 +54,7 @@ class Point:
     """What a ray met: place, geometric and shading normal towards the viewer, and how far off rays start."""
 
     primitive: int
+    unit: int
     position: np.ndarray
     geometric: np.ndarray
     normal: np.ndarray
@@ -67,6 +71,7 @@ class NaiveFrame:
     """What a frame shows and counts, named as in `tracer.Frame` and its statistics."""
 
     primitive: np.ndarray
+    cell: np.ndarray
     color: np.ndarray
     reference: np.ndarray
     wrong: np.ndarray
@@ -79,13 +84,17 @@ class NaiveFrame:
 
 
 class NaiveRenderer:
-    """Renders frames of a scene, and remembers the modes of every primitive from one to the next."""
+    """Renders frames of a scene, and remembers the modes of every unit from one to the next."""
 
     def __init__(self, scene: tracer.Scene, settings: tracer.Settings) -> None:
         self.scene, self.settings = scene, settings
         self.world = tracer.World(scene)
         self.static = np.array([scene.object_of(p) == 0 for p in range(scene.primitive_count)], np.bool_)
-        self.modes = naive.Modes(~self.static, len(scene.lights))
+        self.first = np.arange(scene.primitive_count + 1)
+        if settings.method == "cells":
+            self.first = first_units(self.world.placed.triangles, self.world.object_of)
+        self.by_modes = settings.method != "none"
+        self.modes = naive.Modes(np.repeat(~self.static, np.diff(self.first)), len(scene.lights))
         self.lamps: np.ndarray | None = None
 
     def render(self, time: float, camera: Camera) -> NaiveFrame:
@@ -93,11 +102,11 @@ class NaiveRenderer:
         self._place(time)
         rays = self._primary_rays(pinhole(camera, self.settings.width, self.settings.height))
         met = self._meet([r.origin for r in rays], [r.direction for r in rays])
-        frame = self._blank(met.closest().reshape(self.settings.height, self.settings.width))
-        hidden = self._test_occlusion(frame, met) if self.settings.method == "paper" else set()
+        frame = self._blank(met)
+        hidden = self._test_occlusion(frame, met) if self.by_modes else set()
         learnt = self._shade(frame, rays, met)
-        frame.pixel_count = [int((frame.primitive == p).sum()) for p in range(self.scene.primitive_count)]
-        if self.settings.method == "paper":
+        frame.pixel_count = [int((frame.cell == unit).sum()) for unit in range(self.first[-1])]
+        if self.by_modes:
             self.modes.end_frame(hidden, frame.pixel_count, learnt, self.settings.zoom_factor)
         frame.words, frame.highest_count = self.modes.words(), list(self.modes.highest)
         return frame
@@ -121,21 +130,34 @@ class NaiveRenderer:
         rays = tracer.RayBatch(np.reshape(origins, shape), np.reshape(directions, shape), t_min, t_max)
         return brute.meet_all(self.world, rays, self.there)
 
-    def _blank(self, primitive: np.ndarray) -> NaiveFrame:
-        shape, lights = primitive.shape, len(self.scene.lights)
+    def _unit(self, met: brute.Meetings, ray: int, primitive: int) -> int:
+        """What carries the modes of the place where a ray meets a primitive."""
+        start, end = self.first[primitive], self.first[primitive + 1]
+        return int(start) + naive_cells.cell_of(int(end - start), met.u[ray, primitive], met.v[ray, primitive])
+
+    def _blank(self, met: brute.Meetings) -> NaiveFrame:
+        primitives = met.closest()
+        units = [-1 if p < 0 else self._unit(met, i, p) for i, p in enumerate(primitives.tolist())]
+        shape, lights = (self.settings.height, self.settings.width), len(self.scene.lights)
+        seen = primitives.reshape(shape), np.array(units).reshape(shape)
         light = np.zeros((*shape, 3)), np.zeros((*shape, 3)), np.zeros(shape, np.int32)
-        return NaiveFrame(primitive, *light, *(np.zeros((*shape, lights), np.bool_) for _ in range(2)))
+        return NaiveFrame(*seen, *light, *(np.zeros((*shape, lights), np.bool_) for _ in range(2)))
 
     def _test_occlusion(self, frame: NaiveFrame, met: brute.Meetings) -> set[int]:
         """§2.3"""
         width = self.settings.width
-        hidden, frame.counts["occlusion_tests"] = naive.hidden_primitives(
-            frame.primitive, lambda x, y, p: np.isfinite(met.t[y * width + x, p]), self.settings.symmetric
+
+        def hits(x: int, y: int, primitive: int, unit: int) -> bool:
+            ray = y * width + x
+            return bool(np.isfinite(met.t[ray, primitive])) and self._unit(met, ray, primitive) == unit
+
+        hidden, frame.counts["occlusion_tests"] = naive.hidden_units(
+            frame.primitive, frame.cell, hits, self.settings.symmetric
         )
         return hidden
 
     def _shade(self, frame: NaiveFrame, rays: list[Ray], met: brute.Meetings) -> list[tuple[int, int, int]]:
-        """Whitted's recursion, all rays of a bounce together; what shadow rays taught: (primitive, light, mode)."""
+        """Whitted's recursion, all rays of a bounce together; what shadow rays taught: (unit, light, mode)."""
         learnt: list[tuple[int, int, int]] = []
         for bounce in range(self.settings.depth + 1):
             if bounce > 0:
@@ -150,12 +172,12 @@ class NaiveRenderer:
                         picture[ray.pixel] += ray.weight * np.array(self.scene.background)
                 else:
                     where = met.t[i, primitive], met.u[i, primitive], met.v[i, primitive]
-                    shaded.append((ray, self._point(ray, primitive, *where)))
+                    shaded.append((ray, self._point(ray, primitive, self._unit(met, i, primitive), *where)))
             self._light(frame, shaded, bounce == 0, learnt)
             rays = [ray for pair in shaded for ray in self._onwards(*pair)]
         return learnt
 
-    def _point(self, ray: Ray, primitive: int, t: np.float32, u: np.float32, v: np.float32) -> Point:
+    def _point(self, ray: Ray, primitive: int, unit_: int, t: np.float32, u: np.float32, v: np.float32) -> Point:
         world, place = self.world, self.world.placed.to_object[self.scene.object_of(primitive)].reshape(3, 4)
         position = ray.origin + t * ray.direction
 
@@ -177,7 +199,7 @@ class NaiveRenderer:
         normal = normal if entering else -normal
         normal = -normal if dot(geometric, normal) < 0 else normal
         offset = F(2e-5) * max(t, *np.abs(position))
-        return Point(primitive, position, geometric, normal, offset, entering)
+        return Point(primitive, unit_, position, geometric, normal, offset, entering)
 
     def _light(self, frame: NaiveFrame, shaded: list[tuple[Ray, Point]], first: bool, learnt: list) -> None:
         """Local light of all points, with shadow testing (§2.5) and shadow-mode setting (§2.4)."""
@@ -191,7 +213,7 @@ class NaiveRenderer:
             met = self._meet([lamp] * len(due), ends, 1e-5, 1.0)
             truths = zip(met.any_of(self.static), met.any_of(~self.static), strict=True)
             for (ray, point), (static, dynamic) in zip(due, truths, strict=True):
-                lit = self._shadow_test(frame, point.primitive, light, bool(static), bool(dynamic), learnt)
+                lit = self._shadow_test(frame, point.unit, light, bool(static), bool(dynamic), learnt)
                 right = not (static or dynamic)
                 phong = _phong(
                     ray, point, lamp, self.scene.lights[light].color, self.scene.material_of(point.primitive)
@@ -202,10 +224,10 @@ class NaiveRenderer:
                 if first:
                     frame.due[ray.pixel][light], frame.lit[ray.pixel][light] = True, lit
 
-    def _shadow_test(self, frame, primitive: int, light: int, static: bool, dynamic: bool, learnt: list) -> bool:
-        """Whether a light is thought to reach a primitive, given what static and dynamic objects really do."""
+    def _shadow_test(self, frame, unit: int, light: int, static: bool, dynamic: bool, learnt: list) -> bool:
+        """Whether a light is thought to reach a unit, given what static and dynamic objects really do."""
         frame.counts["due"] += 1
-        known = self.modes.known(primitive, light) if self.settings.method == "paper" else ShadowMode.INIT
+        known = self.modes.known(unit, light) if self.by_modes else ShadowMode.INIT
         if known == ShadowMode.FULL_SHADOW:
             frame.counts["culled"] += 1
             lit = False
@@ -215,7 +237,7 @@ class NaiveRenderer:
             lit = not dynamic
         else:
             frame.counts["rays"] += 1
-            learnt.append((primitive, light, ShadowMode.FULL_SHADOW if static else ShadowMode.NON_SHADOW))
+            learnt.append((unit, light, ShadowMode.FULL_SHADOW if static else ShadowMode.NON_SHADOW))
             lit = not static and not dynamic
         frame.counts["wrong"] += lit == (static or dynamic)
         return lit

@@ -12,6 +12,7 @@ from tests.tracing import naive
 from tests.tracing.random_worlds import quickly
 from tests.tracing.worlds import random_corners, scene
 from tracer.culling import modes
+from tracer.culling.cells import primitives_are_units
 from tracer.culling.memory import Memory
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.culling.occlusion import occlusion_testing, set_occlusion_modes
@@ -122,7 +123,8 @@ def test_occlusion_testing_asks_what_the_naive_twin_asks(seed, symmetric):
 
     alone = [tracer.World(scene(c[None])) for c in corners]
     met = np.array([w.any_hits(tracer.RayBatch(origins, directions)) for w in alone]).reshape(-1, 18, 24)
-    expected, tests = naive.hidden_primitives(ids, lambda px, py, p: met[p, py, px], symmetric)
+    expected, tests = naive.hidden_units(ids, ids, lambda px, py, p, unit: met[p, py, px], symmetric)
+    units = primitives_are_units(), ids
     nothing = np.zeros(len(corners), np.uint32)
     for words in (
         nothing,
@@ -130,7 +132,8 @@ def test_occlusion_testing_asks_what_the_naive_twin_asks(seed, symmetric):
     ):
         hidden = np.zeros(len(corners), np.bool_)
         counted = [
-            occlusion_testing(world.placed, camera, ids, symmetric, row, row + 6, words, hidden) for row in (0, 6, 12)
+            occlusion_testing(world.placed, camera, ids, *units, symmetric, row, row + 6, words, hidden)
+            for row in (0, 6, 12)
         ]
         assert sum(counted) == tests
         asked = words != OcclusionMode.FULLY_RENDERED

@@ -40,21 +40,23 @@ def render(world: tracer.World, settings: tracer.Settings, first: int, count: in
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
 @pytest.mark.parametrize(
-    "name, first, count, size, symmetric",
+    "name, first, count, size, method, symmetric",
     [
-        pytest.param("kitchen/kitchen.aff", 395, 10, 320, False, marks=pytest.mark.slow),
-        ("robot/Robot.aff", 0, 3, 96, True),
-        ("museum/museum5.aff", 0, 3, 96, True),
+        pytest.param("kitchen/kitchen.aff", 395, 10, 320, "paper", False, marks=pytest.mark.slow),
+        ("robot/Robot.aff", 0, 3, 96, "paper", True),
+        ("robot/Robot.aff", 0, 3, 96, "cells", True),
+        ("robot/Robot.aff", 0, 3, 96, "paper+cache", False),
+        ("museum/museum5.aff", 0, 3, 96, "paper", True),
     ],
 )
 def test_frames_are_the_same_for_any_number_of_threads_and_on_every_run(
-    bart: Path, name: str, first: int, count: int, size: int, symmetric: bool, accelerator: str
+    bart: Path, name: str, first: int, count: int, size: int, method: str, symmetric: bool, accelerator: str
 ):
     """Along the scene's own path: pictures, reference pictures, modes, counts and counters, bit for bit."""
     world, anew = (tracer.World(tracer.load_scene(bart / name), accelerator=accelerator) for _ in range(2))
     runs = {}
     for run, on, threads in (("1 thread", world, 1), ("2", world, 2), ("4", world, 4), ("2, loaded anew", anew, 2)):
-        settings = tracer.Settings(size, size, 10, "paper", symmetric, verify=True, threads=threads, record_lights=True)
+        settings = tracer.Settings(size, size, 10, method, symmetric, verify=True, threads=threads, record_lights=True)
         runs[run] = render(on, settings, first, count)
     expected = runs.pop("1 thread")
     for run, frames in runs.items():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,12 +14,20 @@ import tracer
 from tests.tracing.naive_frame import NaiveFrame, NaiveRenderer
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.test_verify import assert_verified
+from tracer.culling import cells
 from tracer.geometry.world import ACCELERATORS
+
+
+@pytest.fixture(autouse=True)
+def few_cells(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As many as a twin can count, and some of them larger than a pixel."""
+    monkeypatch.setattr(cells, "AIM", 150)
 
 
 def assert_same(frame: tracer.Frame, twin: NaiveFrame) -> None:
     """Primitives, answers, words, counts and counters exactly; colours as near as float32 goes."""
     assert np.array_equal(frame.primitive, twin.primitive)
+    assert np.array_equal(frame.cell, twin.cell)
     shadow, statistics = frame.statistics.shadow, frame.statistics
     counted = {name: getattr(shadow, name) for name in ("rays", "due", "culled", "dynamic_only", "wrong")}
     counted |= {"primary": statistics.primary.rays, "secondary": statistics.secondary.rays}
@@ -46,6 +55,7 @@ CULLED = {"culled", "dynamic_only", "wrong", "occlusion_tests"}
         (17, "paper", 6, SHADOW_TESTED | CULLED),  # words of 64 bits
         (33, "paper", 4, SHADOW_TESTED | CULLED),  # lights past what they hold
         (3, "none", 4, SHADOW_TESTED),
+        (3, "cells", 12, SHADOW_TESTED | CULLED),
     ],
 )
 def test_frames_of_random_scenes_are_what_the_naive_twin_says(
@@ -61,6 +71,8 @@ def test_frames_of_random_scenes_are_what_the_naive_twin_says(
         settings = tracer.Settings(
             34, height, depth, method, symmetric, zoom_factor, verify=True, threads=2, record_lights=True
         )
+        if method == "cells":  # whose weights of corners are the twin's to the last bit
+            settings = replace(settings, accelerator="kdtree")
         renderer, twin = tracer.Renderer(walk.scene, settings), NaiveRenderer(walk.scene, settings)
         for time, camera in walk.frames:
             frame, expected = renderer.render(time, camera), twin.render(time, camera)
@@ -72,7 +84,8 @@ def test_frames_of_random_scenes_are_what_the_naive_twin_says(
 
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
-def test_the_reference_of_random_scenes_is_the_picture_without_culling(accelerator: str):
+@pytest.mark.parametrize("method", ["paper", "cells"])
+def test_the_reference_of_random_scenes_is_the_picture_without_culling(method: str, accelerator: str):
     wrong = 0
 
     @quickly(15)
@@ -81,9 +94,9 @@ def test_the_reference_of_random_scenes_is_the_picture_without_culling(accelerat
         nonlocal wrong
         settings = {"width": 48, "height": 40, "depth": depth, "threads": 2, "verify": True}
         settings["accelerator"] = accelerator
-        paper, none = (tracer.Renderer(walk.scene, tracer.Settings(method=m, **settings)) for m in ("paper", "none"))
+        culling, none = (tracer.Renderer(walk.scene, tracer.Settings(method=m, **settings)) for m in (method, "none"))
         for time, camera in walk.frames:
-            frame = paper.render(time, camera)
+            frame = culling.render(time, camera)
             assert_verified(frame, none.render(time, camera))
             wrong += int(frame.wrong.sum())
 

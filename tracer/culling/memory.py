@@ -22,8 +22,11 @@ class Memory:
     int32, hidden (units,) bool, gained (workers, units) like words.
     """
 
-    def __init__(self, object_of: np.ndarray, lights: int, workers: int) -> None:
-        """object_of (units,) tells whose each unit is: object 0 is static."""
+    def __init__(self, object_of: np.ndarray, lights: int, workers: int, first: np.ndarray) -> None:
+        """object_of (primitives,) tells whose each is: object 0 is static; first (primitives + 1,) is each one's first
+        unit (`tracer.culling.cells`), or nothing where primitives are units."""
+        self._units_of = np.diff(first) if len(first) else np.ones(len(object_of), np.int32)
+        object_of = np.repeat(object_of, self._units_of)
         units, word = len(object_of), modes.word_type(lights)
         self.words = np.where(object_of != 0, word(modes.DYNAMIC), word(modes.INIT)).astype(word)
         self.pixel_count = np.zeros(units, np.int32)
@@ -54,9 +57,21 @@ class Memory:
             concerned = np.zeros(len(resting.since), np.bool_)
             concerned[changed.which] = True
             self.words[concerned[self._object_of]] = mode
-        assert self.light_positions is not None
         for changed, mode in ((started, modes.FULL_SHADOW), (stopped, modes.NON_SHADOW)):
-            drop_dependent(self.words, outlines(), self.light_positions, changed.boxes, mode, threads)
+            self._drop_dependent(outlines(), changed.boxes, mode, threads)
+
+    def _drop_dependent(self, outlines: Outlines, boxes: np.ndarray, mode: int, threads: int) -> None:
+        """Drop a shadow mode of what may depend on boxes (k, 6); the cells of a primitive as one."""
+        assert self.light_positions is not None
+        if len(self.words) == len(self._units_of):
+            drop_dependent(self.words, outlines, self.light_positions, boxes, mode, threads)
+            return
+        word = self.words.dtype.type
+        kept = np.full(len(self._units_of), ~word(0) ^ word(modes.FULLY_RENDERED ^ 3), word)
+        drop_dependent(kept, outlines, self.light_positions, boxes, mode, threads)
+        lost = self.words & ~np.repeat(kept | word(3), self._units_of)
+        self.words ^= lost
+        self.words[(lost != 0) & (modes.occlusion_mode(self.words) == modes.FULLY_RENDERED)] &= ~word(3)
 
     def discard_frame(self) -> None:
         """Drop what an unfinished frame has gathered."""

@@ -4,31 +4,35 @@ Neighbouring pixels that see different primitives are asked whether one hides th
 the current pixel is tested against the primitive of the reference pixel, left and above.  If it
 hits, something nearer hides that primitive here, and it is PARTIALLY_OCCLUDED.  A primitive that is
 never found hidden has been seen whole and becomes FULLY_RENDERED at the end of the frame.
+
+Where modes are carried by cells of primitives (`tracer.culling.cells`), it is the reference pixel's
+cell that the ray is tested against.  Cells of one triangle hide nothing of each other, and nothing is
+tested where neighbouring pixels see the same primitive.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from tracer.culling.cells import hits_unit
 from tracer.culling.modes import DYNAMIC, FULLY_RENDERED, INIT, PARTIALLY_OCCLUDED, occlusion_bits
 from tracer.geometry.camera import primary_ray
 from tracer.geometry.memory import borrowed
-from tracer.geometry.queries import hits_alone
 from tracer.geometry.rays import MISS
 from tracer.kernels import inlined, kernel
 from tracer.simd import address_of, bits_of, i32x16, lanes_below, load_i32, load_i32x16, local_memory, lowest_bit, store
 
 
 @inlined
-def _test(world, camera, x, y, primitive, words, hidden):
-    """Occlusion test: is `primitive` hidden where pixel (x, y) sees another one?
+def _test(world, camera, x, y, primitive, first, unit, words, hidden):
+    """Occlusion test: is this unit of a primitive hidden where pixel (x, y) sees another primitive?
 
     It is left out, though counted as published, where the answer is known or would change nothing."""
-    mode = occlusion_bits(words[primitive])
-    if hidden[primitive] or mode in (FULLY_RENDERED, DYNAMIC):
+    mode = occlusion_bits(words[unit])
+    if hidden[unit] or mode in (FULLY_RENDERED, DYNAMIC):
         return
-    if hits_alone(world, primary_ray(camera, x, y), primitive):
-        hidden[primitive] = True
+    if hits_unit(world, primary_ray(camera, x, y), primitive, first, unit):
+        hidden[unit] = True
 
 
 @inlined
@@ -43,27 +47,29 @@ def _sixteen(row, x, width, spare):
 
 
 @inlined
-def _compare(world, camera, primitives, x, y, rx, ry, symmetric, words, hidden):
+def _compare(world, camera, primitives, first, units, x, y, rx, ry, symmetric, words, hidden):
     """Occlusion tests of two pixels that see different primitives, (rx, ry) the reference; how many."""
     reference, current, tests = primitives[ry, rx], primitives[y, x], 0
     if reference != MISS:
-        _test(world, camera, x, y, reference, words, hidden)
+        _test(world, camera, x, y, reference, first, units[ry, rx], words, hidden)
         tests += 1
     if symmetric and current != MISS:
-        _test(world, camera, rx, ry, current, words, hidden)
+        _test(world, camera, rx, ry, current, first, units[y, x], words, hidden)
         tests += 1
     return tests
 
 
 @kernel
-def occlusion_testing(world, camera, primitives, symmetric, first_row, last_row, words, hidden):
+def occlusion_testing(world, camera, primitives, first, units, symmetric, first_row, last_row, words, hidden):
     """Mark in hidden (units,) bool what rows first_row to last_row - 1 find occluded; returns the tests asked for.
 
-    primitives (height, width) int32 are the nearest along the primary rays, words (units,) their modes as
-    the last frame left them: what is hidden matters of those alone that are not FULLY_RENDERED.  With
-    `symmetric` the reference pixel's ray is also tested against the current primitive.
+    primitives (height, width) int32 are the nearest along the primary rays, units like primitives what of
+    them carries modes, numbered from first (p + 1,) on, or, where that is empty, the primitives themselves.
+    words (units,) are modes as the last frame left them: what is hidden matters of those alone that are not
+    FULLY_RENDERED.  With `symmetric` the reference pixel's ray is also tested against the current unit.
     """
     world, primitives, words, hidden = borrowed(world), borrowed(primitives), borrowed(words), borrowed(hidden)
+    first, units = borrowed(first), borrowed(units)
     height, width = primitives.shape
     spare, tests = local_memory(64), 0
     for y in range(first_row, last_row):
@@ -71,7 +77,7 @@ def occlusion_testing(world, camera, primitives, symmetric, first_row, last_row,
         step = 1 if y == 0 or y == height - 1 else max(1, width - 1)
         for x in range(0, width, step):
             if primitives[y, x] != MISS:
-                hidden[primitives[y, x]] = True  # it may go on beyond the screen's edge
+                hidden[units[y, x]] = True  # it may go on beyond the screen's edge
         for start in range(0, width, 16):
             there = lanes_below(width - start, 0)
             current = _sixteen(row, start, width, spare)
@@ -81,14 +87,14 @@ def occlusion_testing(world, camera, primitives, symmetric, first_row, last_row,
             while left != 0:
                 x = start + lowest_bit(left)
                 left &= left - 1
-                tests += _compare(world, camera, primitives, x, y, x - 1, y, symmetric, words, hidden)
+                tests += _compare(world, camera, primitives, first, units, x, y, x - 1, y, symmetric, words, hidden)
             if y == 0:
                 continue
             above = there & ~bits_of(current == _sixteen(row - 4 * width, start, width, spare))
             while above != 0:
                 x = start + lowest_bit(above)
                 above &= above - 1
-                tests += _compare(world, camera, primitives, x, y, x, y - 1, symmetric, words, hidden)
+                tests += _compare(world, camera, primitives, first, units, x, y, x, y - 1, symmetric, words, hidden)
     return tests
 
 
@@ -120,9 +126,9 @@ def set_occlusion_modes(words, hidden, pixel_count, highest_count, zoom_factor):
 
 
 @kernel
-def count_pixels(primitives, pixel_count):
-    """Primary pixels of every unit, into pixel_count (units,) int32."""
+def count_pixels(seen, pixel_count):
+    """Primary pixels of every unit, of units `seen` (height, width), into pixel_count (units,) int32."""
     pixel_count[:] = 0
-    for primitive in primitives.flat:
-        if primitive != MISS:
-            pixel_count[primitive] += 1
+    for unit in seen.flat:
+        if unit != MISS:
+            pixel_count[unit] += 1

@@ -6,7 +6,8 @@ is known to be, as the last frame left it, decides the ray's fate:
 - FULLY_RENDERED and FULL_SHADOW: culled, the point is in shadow;
 - FULLY_RENDERED and NON_SHADOW: dynamic objects alone are asked;
 - anything else: static geometry is asked and, where nothing static blocks the light, dynamic objects
-  are; what static geometry answers is OR-ed into the shadow mode.
+  are; what static geometry answers is OR-ed into the shadow mode.  Where there is an occluder cache, it
+  is asked before (`tracer.culling.cache`).
 
 Shadow rays start at the light.  They end a little above the surface (`lifted`), so that it does not
 shadow itself.
@@ -22,20 +23,22 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.cache import Cache, occluders_in, remember, slots_of, surely_blocked
 from tracer.culling.certified.candidates import ask_candidates
 from tracer.culling.certified.cells import Cells
 from tracer.culling.certified.lookup import Wanted
 from tracer.culling.certified.margins import SURE_HIT, UNSURE
 from tracer.culling.modes import DYNAMIC, FULL_SHADOW, FULLY_RENDERED, MAX_CULLED_LIGHTS, NON_SHADOW, add_shadow
 from tracer.geometry.queries import DYNAMIC as MOVING
-from tracer.geometry.queries import STATIC, any_hits
-from tracer.geometry.rays import Rays
+from tracer.geometry.queries import STATIC, any_hits, any_hits_by
+from tracer.geometry.rays import MISS, Rays
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     bits_of,
     f32x16,
     gather_i32x16,
+    i32x16,
     lanes_below,
     load_i32x16,
     load_spread_bytes16,
@@ -44,6 +47,7 @@ from tracer.simd import (
     mask16,
     ones,
     pack_three,
+    select,
     store,
     store_three,
 )
@@ -75,16 +79,19 @@ class Certified(NamedTuple):
 
 class Knowledge(NamedTuple):
     """What culling goes by: words (units,) as the last frame left them, what this worker gains for the next, of the
-    same shape; whether to cull by the words, to learn from rays, and to verify what was culled; and
-    whether units are certified cells."""
+    same shape; the first unit of each primitive (p + 1,), or nothing where primitives are the units; whether to cull
+    by the words, to learn from rays, and to verify what was culled; whether units are certified cells; and the
+    occluder cache."""
 
     words: NDArray[np.unsignedinteger]
     gained: NDArray[np.unsignedinteger]
+    first: NDArray[np.int32]
     cull: bool
     learn: bool
     verify: bool
     certify: bool
     certified: Certified
+    cache: Cache
 
 
 class Answers(NamedTuple):
@@ -94,7 +101,8 @@ class Answers(NamedTuple):
     For asking: low and high (n,) int32, halves of the points' words, and whether these have been looked up,
     vector by vector; live, the bits of those to be traced, their rays, one after the other, and blocked, a
     byte for each ray.  Of certified cells, over all lights: untried, the bits of points with a light of which
-    nothing is known, and doubtful, of those with one of which only candidates are."""
+    nothing is known, and doubtful, of those with one of which only candidates are.  Of the cache: slots (n,) int32 of
+    the points, and occluders (n,) int32 of the rays, one after the other."""
 
     due: NDArray[np.int32]
     lit: NDArray[np.int32]
@@ -107,12 +115,14 @@ class Answers(NamedTuple):
     blocked: NDArray[np.float32]
     untried: NDArray[np.int32]
     doubtful: NDArray[np.int32]
+    slots: NDArray[np.int32]
+    occluders: NDArray[np.int32]
 
 
 # Rows of the memory that answers lie in, the first eight of which are the rays.
 DUE_ROW, LIT_ROW, TRUTH_ROW, LOW_ROW, HIGH_ROW, LOOKED_UP_ROW, LIVE_ROW, BLOCKED_ROW = range(8, 16)
-UNTRIED_ROW, DOUBTFUL_ROW = 16, 17
-ANSWER_ROWS = 18
+UNTRIED_ROW, DOUBTFUL_ROW, SLOT_ROW, OCCLUDER_ROW = range(16, 20)
+ANSWER_ROWS = 20
 
 
 @inlined
@@ -132,6 +142,8 @@ def answers_in(memory, count):
         memory[BLOCKED_ROW],
         memory[UNTRIED_ROW].view(np.int32),
         memory[DOUBTFUL_ROW].view(np.int32),
+        memory[SLOT_ROW].view(np.int32),
+        memory[OCCLUDER_ROW].view(np.int32),
     )
 
 
@@ -305,18 +317,53 @@ def _ask_about_known(world, points, light, vectors, answers, counts):
 
 
 @subkernel
+def _ask_cache(world, points, light, number, knowledge, vectors, answers, counts):
+    """Test the points that are to be asked about against what blocked their light before, and set shadow modes."""
+    cache = knowledge.cache
+    for v in range(vectors):
+        live = np.int64(answers.live[v])
+        if live == 0:
+            continue
+        x, y, z = load_three(points.lifted, v)
+        direction = x - light[0], y - light[1], z - light[2]
+        slots = slots_of(points, v, direction, number)
+        store(address_of(answers.slots) + 64 * v, slots)
+        known = occluders_in(cache, slots)
+        there = known > np.int32(MISS)
+        tested = bits_of(there) & live
+        if tested == 0:
+            continue
+        numbers = select(there, known, i32x16(0))
+        hit = bits_of(surely_blocked(world.triangles, light, direction, LIGHT_MARGIN, numbers, cache.padding)) & tested
+        counts[TESTS] += ones(tested)
+        counts[CACHE_HITS] += ones(hit)
+        answers.live[v] = live & ~hit
+        if knowledge.learn and number < MAX_CULLED_LIGHTS:
+            _learn(points, v, number, knowledge, answers, hit, hit)
+
+
+@subkernel
 def _ask_about_others(world, points, light, number, knowledge, vectors, answers, counts):
     """Ask everything about the points of which nothing is known, and set shadow modes by what is static."""
-    count = _ask(world, points, light, vectors, answers.live, STATIC | MOVING, answers, counts)
+    cached = len(knowledge.cache.occluders) > 0
+    if cached:
+        _ask_cache(world, points, light, number, knowledge, vectors, answers, counts)
+    count = _rays_from_light(points, light, vectors, answers.live, answers)
     counts[RAYS] += count
     if count == 0:
         return
+    if cached:
+        any_hits_by(world, answers.rays, STATIC | MOVING, answers.blocked, answers.occluders, 0, count, counts)
+    else:
+        any_hits(world, answers.rays, STATIC | MOVING, answers.blocked, 0, count, counts)
     n = 0
     for v in range(vectors):
         asked = np.int64(answers.live[v])
         if asked == 0:
             continue
         blocked, for_good = _blocked(answers, asked, n)
+        if len(knowledge.cache.found) > 0:
+            remember(knowledge.cache, answers.slots, v, answers.occluders, n, asked, for_good)
         n += ones(asked)
         if knowledge.learn and number < MAX_CULLED_LIGHTS:
             _learn(points, v, number, knowledge, answers, asked, for_good)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.cells import cells_at
 from tracer.geometry.facets import ACROSS, MATERIAL, NORMALS, OBJECT, TEXTURE
 from tracer.geometry.intersect import quadric_normal
 from tracer.geometry.memory import pointer
@@ -22,6 +23,7 @@ from tracer.simd import (
     f32x16,
     gather_f32x16,
     i32x16,
+    lane_of,
     lanes_below,
     load_columns,
     load_f32x16,
@@ -44,16 +46,16 @@ ZERO, ONE = np.float32(0), np.float32(1)
 # Rows of the points' memory.
 POSITION_ROW, GEOMETRIC_ROW, NORMAL_ROW, DIFFUSE_ROW, SPECULAR_ROW, LIGHT_ROW, REFERENCE_ROW = range(0, 21, 3)
 EXPONENT_ROW, SHINE_ROW, TRANSMISSION_ROW, IOR_ROW, OFFSET_ROW, UNIT_ROW, ENTERING_ROW = range(21, 28)
-LIFTED_ROW, SPOT_ROW, POINT_ROWS = 28, 31, 34
+LIFTED_ROW, SPOT_ROW, PRIMITIVE_ROW, POINT_ROWS = 28, 31, 34, 35
 
 
 class Points(NamedTuple):
     """n points, in rows of `memory` (POINT_ROWS, n) float32: position, geometric normal (towards the viewer), shading
     normal (in the geometric one's half space), the material's diffuse colour under the texture's, its specular colour,
     and the light that goes from there to the viewer, of which there is the ambient at first, each (3, n); reference
-    like light; offset (n,), how far above the surface rays start; unit (n,) int32; entering (n / 16,) int32, the bits
-    of those whose ray came from outside; lifted (3, n), the points that far above the surface; spots (3, n), of which
-    `tracer.culling.certified.lookup` tells."""
+    like light; offset (n,), how far above the surface rays start; primitive and unit (n,) int32; entering
+    (n / 16,) int32, the bits of those whose ray came from outside; lifted (3, n), the points that far above the
+    surface; spots (3, n), of which `tracer.culling.certified.lookup` tells."""
 
     memory: NDArray[np.float32]
     position: NDArray[np.float32]
@@ -63,6 +65,7 @@ class Points(NamedTuple):
     light: NDArray[np.float32]
     reference: NDArray[np.float32]
     offset: NDArray[np.float32]
+    primitive: NDArray[np.int32]
     unit: NDArray[np.int32]
     entering: NDArray[np.int32]
     lifted: NDArray[np.float32]
@@ -80,10 +83,11 @@ def _points_in(memory):
         memory[LIGHT_ROW:REFERENCE_ROW],
         memory[REFERENCE_ROW:EXPONENT_ROW],
         memory[OFFSET_ROW],
+        memory[PRIMITIVE_ROW].view(np.int32),
         memory[UNIT_ROW].view(np.int32),
         memory[ENTERING_ROW].view(np.int32),
         memory[LIFTED_ROW:SPOT_ROW],
-        memory[SPOT_ROW:POINT_ROWS],
+        memory[SPOT_ROW:PRIMITIVE_ROW],
     )
 
 
@@ -172,9 +176,9 @@ def _quadrics(world, points, v, there, primitive, geometric, normal):
     store_three(address_of(points.geometric) + 64 * v, stride, geometric)
     store_three(address_of(points.normal) + 64 * v, stride, normal)
     while rest != 0:
-        i = 16 * v + lowest_bit(rest)
+        lane = lowest_bit(rest)
         rest &= rest - 1
-        _quadric_point(world, points, i, np.int64(points.unit[i]))
+        _quadric_point(world, points, 16 * v + lane, np.int64(lane_of(primitive, lane)))
     return load_three(points.geometric, v), load_three(points.normal, v)
 
 
@@ -209,10 +213,10 @@ def _hit(wave, row, v):
 
 
 @subkernel
-def points_at(world, look, wave, memory, spread, verify):
+def points_at(world, look, wave, memory, spread, knowledge):
     """The surface points of a wave each of whose rays hits something, in this memory or, where they are many, in more.
 
-    spread is the width of a pixel at distance 1; with `verify` there is a reference for the light.
+    spread is the width of a pixel at distance 1.  Where knowledge asks to verify, there is a reference for the light.
     """
     points = _points_in(room(memory, wave.size))
     stride = 4 * points.memory.shape[1]
@@ -228,7 +232,9 @@ def points_at(world, look, wave, memory, spread, verify):
         largest = maximum(t, maximum(maximum(x, -x), maximum(maximum(y, -y), maximum(z, -z))))
         offset = OFFSET * largest
         store(at + stride * OFFSET_ROW, offset)
-        store(at + stride * UNIT_ROW, primitive)
+        store(at + stride * PRIMITIVE_ROW, primitive)
+        unit = cells_at(knowledge.first, primitive, u, v) if len(knowledge.first) > 0 else primitive
+        store(at + stride * UNIT_ROW, unit)
 
         facet = load_columns(address_of(look.facets), numbers, FACET_COLUMNS)
         w = ONE - u - v
@@ -259,5 +265,5 @@ def points_at(world, look, wave, memory, spread, verify):
         if any_lane(textured):
             cone = spread * (_hit(wave, REACH, k) + t)
             color = _texture(look, textured, primitive, w, u, v, across, maximum(against, -against), cone)
-        _put_surface(points, look, k, as_i32(facet[MATERIAL]), color, verify)
+        _put_surface(points, look, k, as_i32(facet[MATERIAL]), color, knowledge.verify)
     return points

@@ -206,7 +206,7 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts, spa
     _count_rays(wave, pixels, buffers)
     wave = without_misses(wave, look.background, pixels.light, pixels.reference)
     for bounce in range(depth + 1):
-        points = points_at(world, look, wave, space.points, camera.spread, knowledge.verify)
+        points = points_at(world, look, wave, space.points, camera.spread, knowledge)
         answers = answers_in(room(space.answers, wave.size), wave.size)
         _light(world, look, wave, points, knowledge, answers, counts, pixels, bounce == 0, buffers)
         if bounce == 0:
