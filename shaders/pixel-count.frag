@@ -1,6 +1,5 @@
 // How many pixels a primitive covers now, against the most it covered while fully rendered: at zoom_factor times
 // that, its modes are no longer trusted. Logarithmic, from 1 / zoom_factor to zoom_factor; grey has no highest count.
-uniform sampler2D color_map;
 uniform float zoom_factor;
 uniform vec3 unknown;
 

@@ -28,7 +28,7 @@ class Settings:
     first, through the pixel's centre.
     `accelerator` is "bvh8", fast, whose steps and tests are those of whole packets of rays where these are
     coherent, or "kdtree", the paper's, which counts them ray by ray.  `record_lights` fills Frame.due
-    and Frame.lit.
+    and Frame.lit, `record_work` Frame.saved and Frame.cost.
     """
 
     width: int = 512
@@ -42,6 +42,7 @@ class Settings:
     threads: int = 0
     accelerator: str = "bvh8"
     record_lights: bool = False
+    record_work: bool = False
 
     def validated(self) -> Settings:
         """Itself; raises ValueError, in one line, where a value is out of range."""

@@ -12,7 +12,7 @@ import pytest
 from tests.viewer.conftest import make_frame, make_scene
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
-from viewer import views
+from viewer import legends, views
 from viewer.history import SERIES, History
 from viewer.panels.widgets import in_window_style, percent
 from viewer.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
@@ -20,27 +20,27 @@ from viewer.resolution import ResolutionControl, divided
 
 
 def test_the_occlusion_legend_counts_primitives_and_pixels():
-    rows = {r.name: r for r in views.occlusion_legend(make_frame())}
-    assert {name: r.primitives for name, r in rows.items()} == {
+    rows = {r.name: r for r in legends.occlusion_legend(make_frame())}
+    assert {name: r.units for name, r in rows.items()} == {
         "INIT": 1, "PARTIALLY_OCCLUDED": 1, "FULLY_RENDERED": 3, "DYNAMIC": 2,
     }  # fmt: skip
     assert rows["FULLY_RENDERED"].pixels == 3 * 16
     assert sum(r.pixel_share for r in rows.values()) == pytest.approx(1.0)
-    assert sum(r.primitive_share for r in rows.values()) == pytest.approx(1.0)
+    assert sum(r.unit_share for r in rows.values()) == pytest.approx(1.0)
 
 
 def test_the_shadow_legend_counts_what_moves_apart():
-    rows = {r.name: r.primitives for r in views.shadow_legend(make_frame(), 0)}
+    rows = {r.name: r.units for r in legends.shadow_legend(make_frame(), 0)}
     assert rows == {"INIT": 2, "FULL_SHADOW": 1, "NON_SHADOW": 1, "PARTIAL_SHADOW": 1, "DYNAMIC": 2}
-    assert views.shadow_legend(make_frame(), 31) == []
-    assert views.shadow_legend(make_frame(), 15) == []
+    assert legends.shadow_legend(make_frame(), 31) == []
+    assert legends.shadow_legend(make_frame(), 15) == []
 
 
 def test_wide_words_reach_light_30():
     frame = make_frame()
     words = frame.modes.astype(np.uint64) | (np.uint64(2) << np.uint64(62))
     frame = replace(frame, modes=words)
-    rows = {r.name: r.primitives for r in views.shadow_legend(frame, 30)}
+    rows = {r.name: r.units for r in legends.shadow_legend(frame, 30)}
     assert rows["NON_SHADOW"] == 5
     assert shadow_mode_of(frame, 0, 30) is ShadowMode.NON_SHADOW
     assert shadow_mode_of(frame, 0, 31) is None
@@ -72,11 +72,11 @@ def test_the_colour_of_wrong_answers_is_unmistakable():
 
 
 def test_the_difference_legend_counts_what_is_wrong():
-    legend = views.difference_legend(make_frame(Settings(width=16, height=8, verify=True)))
+    legend = legends.difference_legend(make_frame(Settings(width=16, height=8, verify=True)))
     assert (legend.answers, legend.due, legend.pixels) == (3, 4 * 128, 2)
     assert legend.pixel_share == pytest.approx(2 / 128) and legend.largest == pytest.approx(0.1)
     with pytest.raises(ValueError, match="not verified"):
-        views.difference_legend(make_frame())
+        legends.difference_legend(make_frame())
 
 
 @pytest.mark.parametrize(
