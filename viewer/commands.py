@@ -80,10 +80,7 @@ def _view(ui: Ui) -> list[Command]:
     p = c.preferences
 
     def show(view: View) -> Command:
-        number = list(View).index(view) + 1
-        return Command(
-            view.label, "View", lambda: c.set_view(view), str(number), checked=lambda: c.session.view is view
-        )
+        return Command(view.label, "View", lambda: c.set_view(view), view.key, checked=lambda: c.session.view is view)
 
     def toggle(name: str) -> Callable[[], None]:
         return lambda: setattr(p, name, not getattr(p, name))

@@ -192,12 +192,12 @@ class Controller:
         self.preferences.view = view.value
 
     def set_light(self, light: int) -> None:
-        """Choose the light of the shadow view; counts around."""
+        """Choose the light of the views that speak of one; counts around."""
         lights = len(self.session.scene.lights) if self.session.scene is not None else 0
         self.session.light = light % lights if lights else 0
 
     def toggle_culling(self) -> None:
-        self.change(method="none" if self.session.settings.method != "none" else "paper")
+        self.change(method="none" if self.session.settings.method != "none" else self.preferences.method)
 
     def reset_modes(self) -> None:
         """Forget all that was learnt about shadows, and look again."""

@@ -18,6 +18,8 @@ from typing import Any
 import platformdirs
 
 from tracer.frame import Settings
+from tracer.method import is_method
+from viewer.methods import DEFAULT
 from viewer.outputs import write_text
 from viewer.views import View
 
@@ -44,7 +46,8 @@ _RANGES: dict[str, tuple[float, float]] = {
 
 @dataclass
 class Preferences:
-    """Everything that outlives the window.  `speed` is relative to the scene's own pace, 1 by default."""
+    """Everything that outlives the window.  `speed` is relative to the scene's own pace, 1 by default; `method` is
+    the one to cull by while `culling` is on."""
 
     target_fps: float = 15.0
     dynamic_resolution: bool = True
@@ -59,6 +62,7 @@ class Preferences:
     playback_rate: float = 1.0
     keep_tracing: bool = False
     culling: bool = True
+    method: str = DEFAULT
     symmetric: bool = False
     zoom_factor: float = 4.0
     depth: int = 10
@@ -76,7 +80,7 @@ class Preferences:
 
     def settings(self) -> Settings:
         """Settings to trace with; the defaults where these do not go together."""
-        method = "paper" if self.culling else "none"
+        method = self.method if self.culling else "none"
         names = ("symmetric", "zoom_factor", "depth", "samples", "threads", "verify")
         try:
             return Settings(method=method, **{name: getattr(self, name) for name in names}).validated()
@@ -86,7 +90,8 @@ class Preferences:
     def keep(self, settings: Settings) -> None:
         """Remember what was chosen to trace with."""
         s = settings
-        self.culling, self.symmetric, self.zoom_factor = s.method != "none", s.symmetric, s.zoom_factor
+        self.culling, self.method = s.method != "none", s.method if s.method != "none" else self.method
+        self.symmetric, self.zoom_factor = s.symmetric, s.zoom_factor
         self.depth, self.samples, self.threads, self.verify = s.depth, s.samples, s.threads, s.verify
 
     def chosen_view(self) -> View:
@@ -162,6 +167,8 @@ def _checked(name: str, value: Any, default: Any) -> Any:
         if not isinstance(value, int | float) or not low <= value <= high:
             return default
         return type(default)(value)
+    if name == "method":
+        return value if isinstance(value, str) and is_method(value) and value != "none" else default
     if name == "recent":
         return [v for v in value if isinstance(v, str)][:RECENT_SCENES] if isinstance(value, list) else default
     if name == "bookmarks":

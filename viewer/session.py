@@ -15,10 +15,11 @@ from typing import Any
 
 from tracer.renderer import Settings
 from tracer.scene.model import Camera, Scene
+from viewer.methods import DEFAULT
 from viewer.views import View
 
 # Settings that say how a frame was asked for, not what the user chose, and those of this machine.
-_NOT_RESTORED = {"width", "height", "threads", "record_lights"}
+_NOT_RESTORED = {"width", "height", "threads", "record_lights", "record_work"}
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ class Session:
     time: float = 0.0
     free_camera: Camera | None = None
     playing: bool = False
-    settings: Settings = field(default_factory=Settings)
+    settings: Settings = field(default_factory=lambda: Settings(method=DEFAULT))
     view: View = View.COLOR
     light: int = 0
     wipe: float = 0.5

@@ -14,7 +14,6 @@ from enum import IntEnum, StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.renderer import Frame
 
@@ -62,7 +61,9 @@ class View(StrEnum):
 
     def can_draw(self, frame: Frame) -> bool:
         """Whether the frame holds what it was to be asked for."""
-        return not (self.needs_verify and frame.wrong is None) and not (self.needs_work and work_of(frame, self) is None)
+        return not (self.needs_verify and frame.wrong is None) and not (
+            self.needs_work and work_of(frame, self) is None
+        )
 
     @property
     def explanation(self) -> str:

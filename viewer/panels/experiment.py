@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 
 from tracer import experiment
 from tracer.experiment import REFERENCE, Results, Row
-from tracer.frame import METHODS
+from tracer.method import BASES, EXTRAS
+from viewer.methods import BASES_TOLD, EXTRAS_TOLD, named
 from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
 from viewer.panels.runs import export_buttons, side_by_side, start_or_progress
 from viewer.panels.widgets import (
@@ -22,9 +25,10 @@ from viewer.panels.widgets import (
     row,
     size_field,
     tooltip,
+    tooltip_above,
 )
 from viewer.reports import LINES, WRONG
-from viewer.runs import LONGEST_SIDE, Experiment
+from viewer.runs import LONGEST_SIDE, Experiment, ExperimentPlan
 from viewer.ui import Ui
 
 _WORKS = (("steps", "steps"), ("tests", "tests"))
@@ -65,14 +69,7 @@ def _plan(ui: Ui) -> None:
         if not shown:
             return
         row("Methods", f"each is compared with {REFERENCE}, which traces every shadow ray")
-        for method in METHODS:
-            imgui.begin_disabled(method == REFERENCE)
-            changed, _ = imgui.checkbox(method, method == REFERENCE or method in plan.methods)
-            imgui.end_disabled()
-            if changed:
-                plan.methods ^= {method}
-            imgui.same_line()
-        imgui.new_line()
+        _methods(plan)
         row("Frames", "over the whole path of the scene")
         changed, frames = imgui.input_int("##frames", plan.frames)
         if changed:
@@ -87,14 +84,42 @@ def _plan(ui: Ui) -> None:
         checkbox("##verify", plan.verify, lambda on: setattr(plan, "verify", on))
 
 
+def _methods(plan: ExperimentPlan) -> None:
+    """A line for each base, a tick for each way to take extras along; the reference is always among them."""
+    sets = [extras for n in range(len(EXTRAS) + 1) for extras in combinations(EXTRAS, n)]
+    if not imgui.begin_table("methods", 1 + len(sets), int(imgui.TableFlags_.sizing_fixed_fit)):
+        return
+    for heading in ("", *("+".join(extras) or "alone" for extras in sets)):
+        imgui.table_next_column()
+        clipped({"cache+rest": "both"}.get(heading, heading), QUIET)
+        if heading not in ("", "alone"):
+            tooltip(" and ".join(f"+{extra}: {EXTRAS_TOLD[extra][1]}" for extra in heading.split("+")))
+    for base in BASES:
+        imgui.table_next_column()
+        imgui.text_unformatted(base)
+        tooltip(BASES_TOLD[base])
+        for method in (named(base, extras) for extras in sets):
+            imgui.table_next_column()
+            imgui.begin_disabled(method == REFERENCE)
+            changed, _ = imgui.checkbox(f"##{method}", method == REFERENCE or method in plan.methods)
+            imgui.end_disabled()
+            tooltip_above(method)
+            if changed:
+                plan.methods ^= {method}
+    imgui.end_table()
+
+
 def _shown_method(run: Experiment) -> None:
     """Whose frames are the picture."""
     imgui.align_text_to_frame_padding()
     imgui.text_colored(QUIET, "show")
-    for method in run.methods:
-        imgui.same_line()
-        if imgui.radio_button(method, run.shown == method):
-            run.shown = method
+    imgui.same_line()
+    imgui.set_next_item_width(-1.0)
+    if imgui.begin_combo("##shown", run.shown):
+        for method in run.methods:
+            if imgui.selectable(method, run.shown == method)[0]:
+                run.shown = method
+        imgui.end_combo()
     width, height = run.settings.width, run.settings.height
     imgui.text_colored(QUIET, f"{width} x {height}, {run.settings.depth} bounces")
 
@@ -124,12 +149,20 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
     implot.setup_legend(implot.Location_.south, LEGEND)
     if wrong:
         _plot_wrong(results, frames)
-    for number, (name, values) in enumerate(savings):
-        spec = implot.Spec(line_color=COLORS[number % len(COLORS)], line_weight=1.6)
+    for (name, values), spec in zip(savings, _looks(len(savings)), strict=True):
         if len(frames) == 1:  # is no line
             spec.marker = int(implot.Marker_.circle)
         implot.plot_line(name, frames, values, spec)
     implot.end_plot()
+
+
+def _looks(curves: int) -> list[implot.Spec]:
+    """How to draw so many curves, steps and tests of each method in turn: of several methods each has one colour, and
+    its tests are thin."""
+    if curves <= len(_WORKS):
+        return [implot.Spec(line_color=color, line_weight=1.6) for color in COLORS[:curves]]
+    pairs = [(COLORS[n // len(_WORKS) % len(COLORS)], n % len(_WORKS) == 0) for n in range(curves)]
+    return [implot.Spec(line_color=color, line_weight=2.2 if steps else 0.9) for color, steps in pairs]
 
 
 def _savings(results: Results) -> list[tuple[str, np.ndarray]]:
