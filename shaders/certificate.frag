@@ -11,10 +11,10 @@ int cell_at(ivec2 p) { return texelFetch(cell_buffer, clamp(p, ivec2(0), texture
 
 void main() {
     ivec2 p = pixel();
-    int primitive = primitive_at(p);
-    if (primitive < 0) { finish(background); return; }
+    int unit = unit_at(p);
+    if (unit < 0) { finish(background); return; }
     int certificate = light < 0 ? 0 : two_bits(texelFetch(certificate_buffer, p, 0).rg, 2 + 2 * light);
-    if (mode_bits(primitive, 0) == DYNAMIC) certificate = 4;
+    if (mode_bits(unit, 0) == DYNAMIC) certificate = 4;
     int cell = cell_at(p);
     bool on_line = cell_at(p + ivec2(1, 0)) != cell || cell_at(p + ivec2(0, 1)) != cell;
     finish(shaded(palette[certificate]) * (on_line ? cell_line : 1.0));

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.conftest import with_certificates
+from tests.viewer.conftest import in_cells, with_certificates
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
@@ -121,6 +121,16 @@ def test_shadow_modes_have_their_colours(frame: Frame, light: int) -> None:
     for mode in ShadowMode:
         there = (frame.shadow_mode[..., light] == mode) & ~moving
         assert (drawn[there] == to_bytes(SHADOW_COLORS[mode])).all()
+
+
+def test_modes_of_cells_are_those_that_are_drawn(frame: Frame) -> None:
+    cells = in_cells(frame)
+    drawn = picture(cells, View.SHADOW, 0, shading=0.0)
+    still = (cells.primitive >= 0) & (frame.occlusion_mode != OcclusionMode.DYNAMIC)
+    mode = (cells.modes[cells.cells] >> 2) & 3
+    for one in ShadowMode:
+        assert (drawn[still & (mode == one)] == to_bytes(SHADOW_COLORS[one])).all()
+    assert (drawn[:, ::2] != picture(frame, View.SHADOW, 0, shading=0.0)[:, 1::2]).any()
 
 
 def test_every_primitive_has_a_colour_of_its_own(frame: Frame) -> None:
@@ -246,18 +256,19 @@ def test_a_shadow_that_culling_misses_is_drawn(figure4: list[Frame]) -> None:
 
 @pytest.mark.gui
 @pytest.mark.parametrize("view", list(View))
-@pytest.mark.parametrize("marked", [True, False])
-def test_shaders_draw_the_same(certified_frame: Frame, view: View, marked: bool) -> None:
+@pytest.mark.parametrize(("marked", "cells"), [(True, False), (False, False), (True, True)])
+def test_shaders_draw_the_same(certified_frame: Frame, view: View, marked: bool, cells: bool) -> None:
     moderngl = pytest.importorskip("moderngl")
     from viewer.display import Display, Look
 
+    shown = in_cells(replace(certified_frame, certificates=None)) if cells else certified_frame
     context = moderngl.create_context(standalone=True, require=330)
     with context:
         display = Display()
-        display.upload(certified_frame)
+        display.upload(shown)
         display.draw(Look(view=view, light=1, shading=SHADING, marked=marked, wipe=0.4))
         on_gpu = display.read()[..., :3].astype(int)
         display.release()
     context.release()
-    here = picture(certified_frame, view, 1, marked=marked, wipe=0.4).astype(int)
+    here = picture(shown, view, 1, marked=marked, wipe=0.4).astype(int)
     assert np.abs(on_gpu - here).max() <= 1

@@ -33,6 +33,7 @@ from viewer.views import (
     View,
     color_map,
     depth_range,
+    units_of,
     wipe_column,
     work_top,
     wrong_marks,
@@ -44,8 +45,8 @@ if TYPE_CHECKING:
 TABLE_WIDTH = 2048
 _PICTURES = (View.COLOR, View.WIPE)
 _UNITS = (
-    "color_buffer", "primitive_buffer", "mode_table", "count_table", "depth_buffer", "normal_buffer", "color_map",
-    "reference_buffer", "mark_buffer", "certificate_buffer", "cell_buffer", "saved_buffer", "cost_buffer",
+    "color_buffer", "primitive_buffer", "unit_buffer", "mode_table", "count_table", "depth_buffer", "normal_buffer",
+    "color_map", "reference_buffer", "mark_buffer", "certificate_buffer", "cell_buffer", "saved_buffer", "cost_buffer",
 )  # fmt: skip
 # What lies on the GPU as a frame holds it: components, their kind, and the frame's attribute.
 _PIXELS = {
@@ -132,6 +133,8 @@ class Display:
         elif name == "certificate_buffer":
             words = frame.certificates if frame.certificates is not None else np.zeros(frame.primitive.shape, np.uint32)
             self._write(name, self.size, 2, "u4", _halves(words))
+        elif name == "unit_buffer":
+            self._write(name, self.size, 1, "i4", units_of(frame))
         elif name == "mode_table":
             self._write_table(name, "u4", _halves(frame.modes))
         elif name == "count_table":
@@ -203,7 +206,7 @@ class Display:
         texture.write(np.ascontiguousarray(data), alignment=1)
 
     def _write_table(self, name: str, dtype: str, entries: NDArray) -> None:
-        """Upload (n, 2) entries, one per primitive, as rows of TABLE_WIDTH."""
+        """Upload (n, 2) entries, one per unit, as rows of TABLE_WIDTH."""
         rows = max(1, -(-len(entries) // TABLE_WIDTH))
         table = np.zeros((rows * TABLE_WIDTH, 2), entries.dtype)
         table[: len(entries)] = entries

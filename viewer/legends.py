@@ -20,6 +20,7 @@ from viewer.views import (
     Certificate,
     Color,
     View,
+    units_of,
     verified,
     work_of,
     work_top,
@@ -30,7 +31,7 @@ from viewer.views import (
 class LegendRow:
     """One colour of a legend: what it means, and how much of the frame it is (counts, and fractions of all).
 
-    Units are the primitives of the scene, or the cells that are seen."""
+    Units are what carries modes, primitives or cells, or the cells that are seen."""
 
     name: str
     color: Color
@@ -42,14 +43,14 @@ class LegendRow:
 
 
 def occlusion_legend(frame: Frame) -> list[LegendRow]:
-    """Primitives and primary pixels in each occlusion mode."""
+    """Units and primary pixels in each occlusion mode."""
     classes = modes.occlusion_mode(frame.modes)
     rows = [(mode.name, OCCLUSION_COLORS[mode], OCCLUSION_MEANING[mode]) for mode in OcclusionMode]
     return _rows(frame, classes, rows)
 
 
 def shadow_legend(frame: Frame, light: int) -> list[LegendRow]:
-    """Primitives and primary pixels in each shadow mode of a light; those that move are counted apart.
+    """Units and primary pixels in each shadow mode of a light; those that move are counted apart.
 
     Empty for a light that culling does not cover."""
     if not modes.has_shadow_mode(frame.modes, light):
@@ -87,14 +88,16 @@ def certificates_of(frame: Frame, light: int) -> NDArray[np.uint8]:
         classes = modes.shadow_mode(frame.certificates, light)
     else:
         classes = np.zeros(frame.primitive.shape, np.uint8)
-    classes[frame.occlusion_mode == OcclusionMode.DYNAMIC] = len(Certificate)
+    if len(frame.modes):
+        dynamic = modes.occlusion_mode(frame.modes) == OcclusionMode.DYNAMIC
+        classes[dynamic[np.maximum(units_of(frame), 0)] & (frame.primitive >= 0)] = len(Certificate)
     return classes
 
 
 def _rows(frame: Frame, classes: NDArray[np.uint8], rows: list[tuple[str, Color, str]]) -> list[LegendRow]:
-    primitives = np.bincount(classes, minlength=len(rows))
+    units = np.bincount(classes, minlength=len(rows))
     pixels = np.bincount(classes, weights=frame.pixel_count, minlength=len(rows)).astype(np.int64)
-    return _with_shares(rows, primitives, pixels)
+    return _with_shares(rows, units, pixels)
 
 
 def _with_shares(

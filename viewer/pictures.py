@@ -28,6 +28,7 @@ from viewer.views import (
     View,
     color_map,
     depth_range,
+    units_of,
     wipe_column,
     work_of,
     work_top,
@@ -72,8 +73,9 @@ def picture(
         colors = _on_background(frame, frame.normal * 0.5 + 0.5)
     else:
         table = {View.OCCLUSION: _occlusion, View.PRIMITIVE: _primitive, View.PIXEL_COUNT: _pixel_count}
-        per_primitive = _shadow(frame, light) if view is View.SHADOW else table[view](frame)
-        colors = _on_background(frame, _shaded(frame, _per_pixel(frame, per_primitive), shading))
+        entries = _shadow(frame, light) if view is View.SHADOW else table[view](frame)
+        numbers = frame.primitive if view is View.PRIMITIVE else units_of(frame)
+        colors = _on_background(frame, _shaded(frame, _per_pixel(numbers, entries), shading))
     return np.round(np.clip(colors, 0.0, 1.0) * 255.0).astype(np.uint8)
 
 
@@ -94,11 +96,11 @@ def _shaded(frame: Frame, flat: NDArray, shading: float) -> NDArray:
     return np.clip(flat * (1.0 + shading * (light[..., None] - 1.0)), 0.0, 1.0)
 
 
-def _per_pixel(frame: Frame, table: NDArray) -> NDArray:
-    """Look a colour per primitive up at each pixel; misses get some colour, to be overwritten."""
+def _per_pixel(numbers: NDArray[np.int32], table: NDArray) -> NDArray:
+    """Look a colour up by the number at each pixel; misses get some colour, to be overwritten."""
     if len(table) == 0:
-        return np.zeros((*frame.primitive.shape, 3), np.float32)
-    return table[np.maximum(frame.primitive, 0)]
+        return np.zeros((*numbers.shape, 3), np.float32)
+    return table[np.maximum(numbers, 0)]
 
 
 def _occlusion(frame: Frame) -> NDArray:
@@ -142,7 +144,7 @@ def _work(frame: Frame, view: View) -> NDArray:
 
 def _primitive(frame: Frame) -> NDArray:
     """A colour of its own for every primitive: its number, well mixed, picks hue, strength and brightness."""
-    n = np.arange(1, len(frame.modes) + 1, dtype=np.uint32)
+    n = np.arange(1, int(frame.primitive.max(initial=-1)) + 2, dtype=np.uint32)
     n = (n ^ (n >> np.uint32(16))) * np.uint32(0x7FEB352D)  # lowbias32, as in the shader
     n = (n ^ (n >> np.uint32(15))) * np.uint32(0x846CA68B)
     n ^= n >> np.uint32(16)

@@ -210,6 +210,13 @@ def depth_range(frame: Frame) -> tuple[float, float]:
     return float(low), float(max(high, low * (1.0 + 1e-6) + 1e-12))
 
 
+def units_of(frame: Frame) -> NDArray[np.int32]:
+    """(h, w) what carries modes at each pixel, a virtual cell or the primitive itself; -1 for a miss.
+
+    Cells that have certificates have no modes."""
+    return frame.cell if frame.certificates is None else frame.primitive
+
+
 def work_of(frame: Frame, view: View) -> NDArray[np.int32] | None:
     """(h, w) what a heat map shows at each pixel; None where the frame did not record it."""
     return frame.saved if view is View.SAVED else frame.cost

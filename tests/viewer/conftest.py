@@ -148,6 +148,18 @@ def with_certificates(frame: Frame) -> Frame:
     return replace(frame, settings=settings, cells=cells, certificates=certificates, saved=saved, cost=cost)
 
 
+def in_cells(frame: Frame) -> Frame:
+    """The frame as of a method whose units are cells: odd columns of every primitive have others than even ones."""
+    x = np.indices(frame.primitive.shape)[1]
+    cells = np.where(frame.primitive < 0, -1, 2 * frame.primitive + x % 2).astype(np.int32)
+    words = np.repeat(frame.modes, 2)
+    words[1::2] ^= words.dtype.type(5 << 2)  # other shadow modes
+    counts = np.bincount(cells[cells >= 0], minlength=len(words)).astype(np.int32)
+    settings = replace(frame.settings, method="cells")
+    highest = np.repeat(frame.highest_count, 2)
+    return replace(frame, settings=settings, cells=cells, modes=words, pixel_count=counts, highest_count=highest)
+
+
 class FakeRenderer:
     """Delivers `make_frame` when `go` is set; says what it was asked, and stops when told to."""
 

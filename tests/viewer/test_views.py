@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.conftest import make_frame, make_scene
+from tests.viewer.conftest import in_cells, make_frame, make_scene, with_certificates
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
 from viewer import legends, views
@@ -34,6 +34,34 @@ def test_the_shadow_legend_counts_what_moves_apart():
     assert rows == {"INIT": 2, "FULL_SHADOW": 1, "NON_SHADOW": 1, "PARTIAL_SHADOW": 1, "DYNAMIC": 2}
     assert legends.shadow_legend(make_frame(), 31) == []
     assert legends.shadow_legend(make_frame(), 15) == []
+
+
+def test_the_certificate_legend_counts_the_cells_that_are_seen():
+    frame = with_certificates(make_frame())
+    rows = {r.name: r for r in legends.certificate_legend(frame, 1)}
+    dynamic = np.isin(frame.primitive, (4, 5))
+    for number, name in enumerate(("NONE", "FULL", "LIT", "CANDIDATES")):
+        there = (frame.primitive >= 0) & ~dynamic & ((frame.certificates >> 4) & 3 == number)
+        assert rows[name].pixels == there.sum()
+        assert rows[name].units == len(np.unique(frame.cells[there & (frame.cells >= 0)]))
+    assert (rows["DYNAMIC"].pixels, rows["DYNAMIC"].units) == (dynamic.sum(), 0)
+    assert sum(r.pixel_share for r in rows.values()) == pytest.approx(1.0)
+    assert sum(r.units for r in rows.values()) == frame.cells.max() + 1
+    assert legends.certificate_legend(make_frame(), 1) == legends.certificate_legend(frame, 15) == []
+
+
+@pytest.mark.parametrize("view", [views.View.SAVED, views.View.COST])
+def test_the_legend_of_work_sums_it_up(view):
+    frame = with_certificates(make_frame(Settings(width=160, height=80)))
+    found = legends.work_legend(frame, view)
+    work = frame.saved if view is views.View.SAVED else frame.cost
+    assert (found.total, found.most) == (work.sum(), work.max())
+    assert found.per_pixel == pytest.approx(work.mean())
+    assert np.percentile(work[frame.primitive >= 0], 98) <= found.top <= work.max()
+    for empty in (replace(frame, saved=work * 0, cost=work * 0), replace(frame, primitive=work * 0 - 1)):
+        assert legends.work_legend(empty, view).top == 1.0
+    with pytest.raises(ValueError, match="did not record"):
+        legends.work_legend(make_frame(), view)
 
 
 def test_wide_words_reach_light_30():
@@ -116,7 +144,7 @@ def test_the_line_of_a_wipe_reaches_both_edges():
     assert [views.wipe_column(10, wipe) for wipe in (-1.0, 0.0, 0.05, 0.5, 0.99, 1.0, 2.0)] == [0, 0, 0, 5, 9, 10, 10]
 
 
-@pytest.mark.parametrize("palette", [views.OCCLUSION_COLORS, views.SHADOW_COLORS])
+@pytest.mark.parametrize("palette", [views.OCCLUSION_COLORS, views.SHADOW_COLORS, views.CERTIFICATE_COLORS])
 def test_mode_colours_can_be_told_apart_without_red_green_vision(palette):
     for a, b in itertools.combinations(palette.values(), 2):
         assert np.linalg.norm(dichromat(a) - dichromat(b)) > 0.15
@@ -155,6 +183,20 @@ def test_a_kept_pick_follows_its_primitives_modes():
     later.modes[3] = 1
     assert refreshed(found, later).occlusion is OcclusionMode.PARTIALLY_OCCLUDED
     assert refreshed(found, later).point == found.point
+
+
+def test_a_kept_pick_goes_by_cells_where_those_carry_the_modes():
+    frame, cells = make_frame(), in_cells(make_frame())
+    at = ((2 * 3 + 1.5) / 16, 0.5)  # the fourth primitive's second column
+    found = pick(cells, make_scene(), *at)
+    assert (found.primitive, found.unit, found.in_cells, found.pixels) == (3, 7, True, 8)
+    assert found.shadows != pick(frame, make_scene(), *at).shadows
+    assert refreshed(found, frame) == replace(pick(frame, make_scene(), *at), in_cells=False)
+    assert refreshed(pick(frame, make_scene(), *at), cells) == found
+    elsewhere = in_cells(make_frame(time=1.0))
+    assert refreshed(pick(frame, make_scene(), *at), elsewhere).unit == 3, "which cell it is cannot be known"
+    certified = with_certificates(frame)
+    assert pick(certified, make_scene(), *at).unit == 3, "certificates are no modes"
 
 
 def test_a_pick_counts_the_pixels_wrong_answers_as_long_as_it_shows_the_same():
