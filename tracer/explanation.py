@@ -94,20 +94,13 @@ def _surface(world: World, frame: Frame, x: int, y: int) -> tuple[Float32, Float
     direction /= np.linalg.norm(direction)
     depth = frame.depth[y, x]
     position = rays.origin + depth * direction
+    across = frame.normal[y, x].astype(np.float64)  # a quadric's shading normal is its own
     if primitive < len(world.placed.triangles):
-        normal = world.facets[primitive, ACROSS:OBJECT].astype(np.float64)
-        normal = normal @ _linear(world, primitive)
-        normal /= max(float(np.linalg.norm(normal)), 1e-300)
-    else:
-        normal = frame.normal[y, x].astype(np.float64)  # a quadric's shading normal is its own
-    normal = (-normal if normal @ direction > 0 else normal).astype(np.float32)
+        across = world.facets[primitive, ACROSS:OBJECT] @ _to_object(world, primitive)[:, :3]
+        across /= max(float(np.linalg.norm(across)), 1e-300)
+    normal: Float32 = (-across if across @ direction > 0 else across).astype(np.float32)
     offset = OFFSET * max(depth, np.abs(position).max())
     return position, normal, position + offset * normal
-
-
-def _linear(world: World, primitive: int) -> Float64:
-    """The linear part of the map into a primitive's object; its transpose carries normals out of there."""
-    return _to_object(world, primitive)[:, :3]
 
 
 def _to_object(world: World, primitive: int) -> Float64:

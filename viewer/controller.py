@@ -19,6 +19,7 @@ import numpy as np
 from tracer.renderer import Frame, Renderer
 from tracer.scene.model import Camera, Scene
 from viewer import navigation
+from viewer.explaining import Explaining
 from viewer.history import History
 from viewer.keeper import Keeper
 from viewer.motion import Motion
@@ -61,6 +62,7 @@ class Controller:
         self.runner = Runner(self)
         self.tracing = Tracing(self)
         self.motion = Motion(self)
+        self.explaining = Explaining(self)
         self.drawn_seconds = 0.0
         self.size = (0, 0)
         self._seen = math.inf
@@ -79,6 +81,7 @@ class Controller:
         frame = self._take_frame()
         self.motion.follow()
         self.tracing.ask()
+        self.explaining.follow()
         return frame
 
     @property

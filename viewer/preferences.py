@@ -73,6 +73,7 @@ class Preferences:
     shading: float = 0.35
     outlines: bool = False
     mark_wrong: bool = True
+    draw_explanation: bool = True
     screenshot_folder: str = ""
     screenshot_template: str = DEFAULT_TEMPLATE
     recent: list[str] = field(default_factory=list)

@@ -29,6 +29,7 @@ from viewer.panels.widgets import (
     percent,
     properties,
     row,
+    swatch,
     tooltip,
     value,
 )
@@ -98,7 +99,7 @@ def _legend(ui: Ui, frame: Frame) -> None:
     elif view is View.PIXEL_COUNT:
         zoom = frame.settings.zoom_factor
         _gradient(f"1/{zoom:.3g}", f"{zoom:.3g} x", "as many")
-        _swatch(GREY)
+        swatch(GREY)
         imgui.text_unformatted("never fully rendered")
     elif view.needs_work:
         _work(ui, frame)
@@ -163,10 +164,10 @@ def _wrong_swatch(ui: Ui) -> None:
     """What the one colour of both views means: the pixels themselves, or the rings around them."""
     marked = ui.controller.preferences.mark_wrong
     if ui.controller.session.view is View.DIFFERENCE:
-        _swatch(WRONG)
+        swatch(WRONG)
         imgui.text_unformatted("a wrong shadow answer" + (", in a ring" if marked else ""))
     elif marked:
-        _swatch(WRONG)
+        swatch(WRONG)
         imgui.text_unformatted("around wrong shadow answers")
 
 
@@ -186,7 +187,7 @@ def _table(rows: list[LegendRow], units: str) -> None:
             _right(title, QUIET)
     for entry in rows:
         imgui.table_next_column()
-        _swatch(entry.color)
+        swatch(entry.color)
         imgui.text_unformatted(entry.name.replace("_", " ").lower())
         tooltip(f"{entry.name}: {entry.meaning}")
         imgui.table_next_column()
@@ -206,16 +207,6 @@ def _right(text: str, color: ImVec4 | None = None) -> None:
         imgui.text_unformatted(text)
     else:
         imgui.text_colored(color, text)
-
-
-def _swatch(color: tuple[float, float, float]) -> None:
-    side = imgui.get_text_line_height()
-    at = imgui.get_cursor_screen_pos()
-    end = ImVec2(at.x + 0.8 * side, at.y + 0.9 * side)
-    start = ImVec2(at.x, at.y + 0.1 * side)
-    imgui.get_window_draw_list().add_rect_filled(start, end, imgui.get_color_u32(ImVec4(*color, 1.0)), em(0.15))
-    imgui.dummy(ImVec2(0.8 * side, side))
-    imgui.same_line(0.0, em(0.4))
 
 
 def _opaque(color: NDArray[np.float32]) -> ImVec4:

@@ -1,0 +1,145 @@
+"""Why it is in shadow: the rows of the inspector, and the lights' ways and what blocks them over the picture."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from tracer.explanation import Explanation
+from viewer.explaining import MOST_OCCLUDERS, Answer, Part
+from viewer.panels.widgets import QUIET, checkbox, clipped, em, heading, paragraph, swatch, tooltip
+from viewer.picking import kind_of
+from viewer.projection import place
+from viewer.ui import Ui
+from viewer.views import CERTIFICATE_COLORS, CERTIFICATE_MEANING, SHADOW_COLORS, Certificate, ShadowMode
+
+_LIT, _STOPPED = SHADOW_COLORS[ShadowMode.NON_SHADOW], (0.34, 0.71, 0.91)
+_BLOCKER = SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW]
+_COLORS = {Part.REACHING: _LIT, Part.STOPPED: _STOPPED, Part.BLOCKER: _BLOCKER, Part.OCCLUDER: (0.90, 0.62, 0.0)}
+_WIDTHS = {Part.REACHING: 0.13, Part.STOPPED: 0.13, Part.BLOCKER: 0.16, Part.OCCLUDER: 0.1}  # in ems
+_UNSEEN = 0.6  # of the width of what is seen
+_SHADE = ImVec4(0.05, 0.06, 0.08, 0.6)
+_FADED = 0.18  # opacity of other lights than the one that is pointed at
+
+
+def rows(ui: Ui) -> None:
+    """In the inspector: each light, whether it gets here, and what blocks it; nothing while that is not known."""
+    c = ui.controller
+    ui.pointed_light = None
+    heading("Shadow rays")
+    p = c.preferences
+    tip = "the lights' ways to this point, and what blocks them, over the picture (I)"
+    checkbox("Draw in the picture", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), tip)
+    answer = c.explaining.answer
+    if answer is None:
+        imgui.same_line(0.0, em(1.0))
+        imgui.align_text_to_frame_padding()
+        imgui.text_colored(QUIET, "traced while the picture rests")
+        return
+    if not answer.lights:
+        paragraph("The scene has no lights.", QUIET)
+    for one in answer.lights:
+        imgui.push_id(one.light)
+        _row(ui, one)
+        imgui.pop_id()
+
+
+def _row(ui: Ui, one: Explanation) -> None:
+    """A light; resting on it picks it out over the picture."""
+    imgui.begin_group()
+    told, color = _answer(one)
+    swatch(color)
+    imgui.text_unformatted(ui.light_name(one.light))
+    imgui.same_line(em(8.0))
+    imgui.text_unformatted(told)
+    if one.due:
+        _certificate(one.certificate)
+    imgui.end_group()
+    if imgui.is_item_hovered():
+        ui.pointed_light = one.light
+    for number in one.occluders[:MOST_OCCLUDERS]:
+        imgui.indent(em(1.2))
+        first = one.blocked_at is not None and number == one.occluders[0]
+        clipped(f"{'blocked by' if first else 'certified by'} {_named(ui, number)}", QUIET)
+        imgui.unindent(em(1.2))
+    if len(one.occluders) > MOST_OCCLUDERS:
+        imgui.text_colored(QUIET, f"    and {len(one.occluders) - MOST_OCCLUDERS} more")
+
+
+def _answer(one: Explanation) -> tuple[str, tuple[float, float, float]]:
+    if not one.due:
+        return "faces away", (0.25, 0.27, 0.31)
+    return ("lit", _LIT) if one.lit else ("in shadow", SHADOW_COLORS[ShadowMode.FULL_SHADOW])
+
+
+def _certificate(name: str) -> None:
+    """The certificate in its own colour, at the row's end."""
+    if name.upper() not in Certificate.__members__ or name.upper() == Certificate.NONE.name:
+        return
+    certificate = Certificate[name.upper()]
+    imgui.same_line(em(12.6))
+    imgui.text_colored(ImVec4(*CERTIFICATE_COLORS[certificate], 1.0), f"proven {certificate.name.lower()}")
+    tooltip(CERTIFICATE_MEANING[certificate])
+
+
+def _named(ui: Ui, primitive: int) -> str:
+    """A primitive as people find it again: its kind and number, and whose it is."""
+    scene = ui.controller.session.scene
+    if scene is None or primitive >= scene.primitive_count:
+        return f"primitive {primitive}"
+    owner = scene.objects[scene.object_of(primitive)].name
+    return f"{kind_of(scene, primitive)} {primitive}, {owner}, {scene.material_of(primitive).name}"
+
+
+def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
+    """Over the picture: the lights' ways to the point, and outlines of what blocks them."""
+    c = ui.controller
+    answer, frame = c.explaining.answer, c.frame
+    if answer is None or frame is None or not c.preferences.draw_explanation:
+        return
+    width, height = end.x - corner.x, end.y - corner.y
+
+    def on_screen(at: tuple[float, float]) -> ImVec2:
+        return ImVec2(corner.x + at[0] * width, corner.y + at[1] * height)
+
+    draw = imgui.get_window_draw_list()
+    draw.push_clip_rect(corner, end, True)
+    lines = c.explaining.lines(frame)
+    for shade in (True, False):
+        for part, light, strokes in lines:
+            alpha = _FADED if ui.pointed_light not in (None, light) else 1.0
+            color = imgui.get_color_u32(_with_alpha(_SHADE, alpha) if shade else ImVec4(*_COLORS[part], alpha))
+            for stroke in strokes:
+                wide = em(_WIDTHS[part]) * (1.0 if stroke.seen else _UNSEEN) + (em(0.12) if shade else 0.0)
+                draw.add_line(on_screen(stroke.start), on_screen(stroke.end), color, max(1.0, wide))
+    _ends(answer, on_screen, ui, draw)
+    draw.pop_clip_rect()
+
+
+def _ends(answer: Answer, on_screen: Callable[[tuple[float, float]], ImVec2], ui: Ui, draw: imgui.ImDrawList) -> None:
+    """A disc at each light that is due, a cross where its way ends before the point, and a ring around the point."""
+    frame = ui.controller.frame
+    assert frame is not None
+    for one in answer.lights:
+        if not one.due:
+            continue
+        alpha = _FADED if ui.pointed_light not in (None, one.light) else 1.0
+        at = place(frame, one.light_position)
+        if at is not None:
+            draw.add_circle_filled(on_screen(at), em(0.42), imgui.get_color_u32(_with_alpha(_SHADE, alpha)))
+            draw.add_circle_filled(on_screen(at), em(0.3), imgui.get_color_u32(ImVec4(*_LIT, alpha)))
+        stop = place(frame, one.blocked_at) if one.blocked_at is not None else None
+        if stop is not None:
+            x, y, arm = on_screen(stop).x, on_screen(stop).y, em(0.28)
+            color = imgui.get_color_u32(ImVec4(*_BLOCKER, alpha))
+            draw.add_line(ImVec2(x - arm, y - arm), ImVec2(x + arm, y + arm), color, em(0.14))
+            draw.add_line(ImVec2(x - arm, y + arm), ImVec2(x + arm, y - arm), color, em(0.14))
+    point = place(frame, answer.lights[0].point) if answer.lights else None
+    if point is not None:
+        draw.add_circle(on_screen(point), em(0.4), imgui.get_color_u32(_SHADE), 0, em(0.22))
+        draw.add_circle(on_screen(point), em(0.4), imgui.get_color_u32(ImVec4(1.0, 1.0, 1.0, 1.0)), 0, em(0.1))
+
+
+def _with_alpha(color: ImVec4, alpha: float) -> ImVec4:
+    return ImVec4(color.x, color.y, color.z, color.w * alpha)
