@@ -33,6 +33,16 @@ def extras_of(method: str) -> set[str]:
     return {extra for extra in EXTRAS if takes(method, extra)}
 
 
+def with_base(method: str, base: str) -> str:
+    """What culls exchanged; what the method takes along stays."""
+    return named(base, extras_of(method))
+
+
+def toggled(method: str, extra: str) -> str:
+    """The method with an extra where it had none, or without."""
+    return named(base_of(method), extras_of(method) ^ {extra})
+
+
 def in_order(methods: Iterable[str]) -> list[str]:
     """Each once, as bases are ordered, and those that take more along later."""
     return sorted(set(methods), key=lambda name: (BASES.index(base_of(name)), [takes(name, extra) for extra in EXTRAS]))

@@ -144,8 +144,7 @@ def with_certificates(frame: Frame) -> Frame:
     certificates = np.where(none, words.dtype.type(0), words[np.maximum(cells, 0)])
     saved = np.where(none, 0, frame.lights + x % 5).astype(np.int32)
     cost = (1 + 2 * (frame.primitive >= 0) + y % 7).astype(np.int32)
-    settings = replace(frame.settings, method="certified", record_work=True)
-    return replace(frame, settings=settings, cells=cells, certificates=certificates, saved=saved, cost=cost)
+    return replace(frame, cells=cells, certificates=certificates, saved=saved, cost=cost)
 
 
 def in_cells(frame: Frame) -> Frame:
@@ -155,9 +154,8 @@ def in_cells(frame: Frame) -> Frame:
     words = np.repeat(frame.modes, 2)
     words[1::2] ^= words.dtype.type(5 << 2)  # other shadow modes
     counts = np.bincount(cells[cells >= 0], minlength=len(words)).astype(np.int32)
-    settings = replace(frame.settings, method="cells")
     highest = np.repeat(frame.highest_count, 2)
-    return replace(frame, settings=settings, cells=cells, modes=words, pixel_count=counts, highest_count=highest)
+    return replace(frame, cells=cells, modes=words, pixel_count=counts, highest_count=highest)
 
 
 class FakeRenderer:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.method import BASES, base_of
-from viewer.methods import BASES_TOLD, EXTRAS_TOLD, extras_of, named
+from tracer.method import BASES, base_of, takes
+from viewer.methods import BASES_TOLD, EXTRAS_TOLD, toggled, with_base
 from viewer.panels.widgets import (
     ERROR,
     GOOD,
@@ -60,23 +60,23 @@ def _method(ui: Ui) -> None:
     """What culls, and what it takes along."""
     c = ui.controller
     method = c.session.settings.method
-    base, extras = base_of(method), extras_of(method)
+    base = base_of(method)
     with properties("method", 4.0) as shown:
         if shown:
             row("Method", f"{BASES_TOLD[base]} (C: none, and back)")
             if imgui.begin_combo("##method", base):
                 for other in BASES:
                     if imgui.selectable(other, other == base)[0]:
-                        c.change(method=named(other, extras))
+                        c.change(method=with_base(method, other))
                     tooltip(BASES_TOLD[other])
                 imgui.end_combo()
     for number, (extra, (label, told)) in enumerate(EXTRAS_TOLD.items()):
         if number:
             imgui.same_line(0.0, em(1.0))
-        changed, _ = imgui.checkbox(label, extra in extras)
+        changed, _ = imgui.checkbox(label, takes(method, extra))
         tooltip(told)
         if changed:
-            c.change(method=named(base, extras ^ {extra}))
+            c.change(method=toggled(method, extra))
 
 
 def _by_modes(method: str) -> bool:

@@ -10,7 +10,7 @@ from imgui_bundle import ImVec2, imgui, implot
 from tracer import experiment
 from tracer.experiment import REFERENCE, Results, Row
 from tracer.method import BASES, EXTRAS
-from viewer.methods import BASES_TOLD, EXTRAS_TOLD, named
+from viewer.methods import BASES_TOLD, EXTRAS_TOLD, in_order, named
 from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
 from viewer.panels.runs import export_buttons, side_by_side, start_or_progress
 from viewer.panels.widgets import (
@@ -25,7 +25,6 @@ from viewer.panels.widgets import (
     row,
     size_field,
     tooltip,
-    tooltip_above,
 )
 from viewer.reports import LINES, WRONG
 from viewer.runs import LONGEST_SIDE, Experiment, ExperimentPlan
@@ -85,15 +84,24 @@ def _plan(ui: Ui) -> None:
 
 
 def _methods(plan: ExperimentPlan) -> None:
-    """A line for each base, a tick for each way to take extras along; the reference is always among them."""
+    """A list to be opened: a line for each base, a tick for each way to take extras along; the reference is always
+    among them."""
+    opened = imgui.begin_combo("##methods", ", ".join(in_order(plan.methods)), int(imgui.ComboFlags_.height_largest))
+    tooltip(", ".join(in_order({REFERENCE, *plan.methods})))
+    if opened:
+        _method_ticks(plan)
+        imgui.end_combo()
+
+
+def _method_ticks(plan: ExperimentPlan) -> None:
     sets = [extras for n in range(len(EXTRAS) + 1) for extras in combinations(EXTRAS, n)]
     if not imgui.begin_table("methods", 1 + len(sets), int(imgui.TableFlags_.sizing_fixed_fit)):
         return
-    for heading in ("", *("+".join(extras) or "alone" for extras in sets)):
+    for heading in ("", *("+".join(("", *extras)) or "alone" for extras in sets)):
         imgui.table_next_column()
-        clipped({"cache+rest": "both"}.get(heading, heading), QUIET)
-        if heading not in ("", "alone"):
-            tooltip(" and ".join(f"+{extra}: {EXTRAS_TOLD[extra][1]}" for extra in heading.split("+")))
+        imgui.text_colored(QUIET, heading)
+        if heading.startswith("+"):
+            tooltip("; ".join(f"+{extra}: {EXTRAS_TOLD[extra][1]}" for extra in heading[1:].split("+")))
     for base in BASES:
         imgui.table_next_column()
         imgui.text_unformatted(base)
@@ -103,7 +111,6 @@ def _methods(plan: ExperimentPlan) -> None:
             imgui.begin_disabled(method == REFERENCE)
             changed, _ = imgui.checkbox(f"##{method}", method == REFERENCE or method in plan.methods)
             imgui.end_disabled()
-            tooltip_above(method)
             if changed:
                 plan.methods ^= {method}
     imgui.end_table()

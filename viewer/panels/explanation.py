@@ -29,7 +29,10 @@ def rows(ui: Ui) -> None:
     ui.pointed_light = None
     heading("Shadow rays")
     p = c.preferences
-    tip = "the lights' ways to this point, and what blocks them, over the picture (I)"
+    tip = (
+        "over the picture, the lights' ways to this point (I): yellow as far as they get, blue where they are in "
+        "shadow; red what blocks them, orange what a certificate rests on, in dashes what is hidden"
+    )
     checkbox("Draw in the picture", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), tip)
     answer = c.explaining.answer
     if answer is None:
@@ -47,17 +50,15 @@ def rows(ui: Ui) -> None:
 
 def _row(ui: Ui, one: Explanation) -> None:
     """A light; resting on it picks it out over the picture."""
-    imgui.begin_group()
     told, color = _answer(one)
     swatch(color)
-    imgui.text_unformatted(ui.light_name(one.light))
+    imgui.selectable(f"{ui.light_name(one.light)}##light", False)
+    if imgui.is_item_hovered():
+        ui.pointed_light = one.light
     imgui.same_line(em(8.0))
     imgui.text_unformatted(told)
     if one.due:
         _certificate(one.certificate)
-    imgui.end_group()
-    if imgui.is_item_hovered():
-        ui.pointed_light = one.light
     for number in one.occluders[:MOST_OCCLUDERS]:
         imgui.indent(em(1.2))
         first = one.blocked_at is not None and number == one.occluders[0]
