@@ -109,6 +109,7 @@ class Runner:
         frame = run.take()
         if done:
             self.current = None
+            self._c.tracing.again()  # else the world might stay where the run has put it
             self._tell(run)
         if frame is None or run.stopping or not run.is_of(self._c.session.scene):
             return None

@@ -123,6 +123,8 @@ def make_frame(settings: Settings | None = None, time: float = 0.0, camera: Came
         lights=3,
         reference=np.where(wrong[..., None] > 0, np.float32(0.6), color) if settings.verify else None,
         wrong=wrong if settings.verify else None,
+        saved=wrong if settings.record_work else None,
+        cost=wrong + 1 if settings.record_work else None,
         statistics=statistics,
     )
 

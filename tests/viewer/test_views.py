@@ -231,6 +231,18 @@ def test_history_keeps_the_newest_in_order_and_contiguous():
     assert len(history) == 0 and len(history.values("due")) == 0
 
 
+def test_fates_of_shadow_rays_add_up_to_those_due():
+    history, frame = History(), make_frame()
+    shadow = frame.statistics.shadow
+    shadow.due, shadow.culled, shadow.candidates_only, shadow.dynamic_only, shadow.cache_hits = 100, 40, 25, 20, 10
+    frame.statistics.certificate_steps, frame.statistics.certificate_tests = 7, 3
+    history.add(frame, 0.0)
+    fates = ("culled", "candidates_only", "dynamic_only", "cache_hits", "traced")
+    assert [history.values(name)[0] for name in fates] == [40, 25, 20, 10, 5]
+    assert history.values("steps")[0] == history.values("shadow_steps")[0] == 7, "certificates count against it"
+    assert history.values("tests")[0] == history.values("shadow_tests")[0] == 3
+
+
 def test_resolution_drops_until_the_frame_rate_holds_and_comes_back():
     control = ResolutionControl()
     control.observe(1.0, 1000 * 1000)  # a microsecond per pixel
