@@ -178,7 +178,7 @@ def certifying(d: Driver) -> None:
     assert d.c.session.view is View.CERTIFICATE and d.c.frame.certificates is None
     d.certify()
     d.context.menu_click("//##MainMenuBar/Culling/Method certified")
-    d.context.item_click("//Culling/Occluder cache")
+    d.context.item_click("//Culling/+cache")
     d.settle()
     assert d.c.frame.settings.method == "certified+cache" == d.c.preferences.method
     assert d.c.frame.certificates is not None

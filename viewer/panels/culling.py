@@ -73,8 +73,8 @@ def _method(ui: Ui) -> None:
     for number, (extra, (label, told)) in enumerate(EXTRAS_TOLD.items()):
         if number:
             imgui.same_line(0.0, em(1.0))
-        changed, _ = imgui.checkbox(label, takes(method, extra))
-        tooltip(told)
+        changed, _ = imgui.checkbox(f"+{extra}", takes(method, extra))
+        tooltip(f"{label}: {told}")
         if changed:
             c.change(method=toggled(method, extra))
 

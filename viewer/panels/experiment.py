@@ -46,8 +46,14 @@ def show(ui: Ui) -> None:
         lambda: _controls(ui, run),
         lambda size: _plot(ui, run, results, size),
         lambda: _table(ui, run, results),
-        em(_HEADING + _REFERENCE + _METHOD * (columns - 1) + 1.2),
+        em(_table_width(columns)),
+        scrolls=True,
     )
+
+
+def _table_width(columns: int) -> float:
+    """Of the paper's table with so many methods, in ems."""
+    return _HEADING + _REFERENCE + _METHOD * (columns - 1) + 1.2
 
 
 def _controls(ui: Ui, run: Experiment | None) -> None:
@@ -139,10 +145,11 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
         imgui.end_child()
         return
     wrong = run.settings.verify and any(any(figures["wrong"]) for figures in results.methods.values())
-    if not implot.begin_plot(f"{run.scene_path.name}: saved##{id(run)}", size, FLAGS):
+    savings = ui.cached("savings", results, 0, lambda: _savings(results))
+    thin = " (thin: tests)" if len(savings) > len(_WORKS) else ""
+    if not implot.begin_plot(f"{run.scene_path.name}: saved{thin}##{id(run)}", size, FLAGS):
         return
     frames = np.array(results.frames, np.float64)
-    savings = ui.cached("savings", results, 0, lambda: _savings(results))
     top = max([float(values.max()) for _, values in savings] or [0.0])
     bottom = min([float(values.min()) for _, values in savings] or [0.0])
     implot.setup_axes("", "", AXIS, AXIS)
@@ -164,8 +171,8 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
 
 
 def _looks(curves: int) -> list[implot.Spec]:
-    """How to draw so many curves, steps and tests of each method in turn: of several methods each has one colour, and
-    its tests are thin."""
+    """How to draw so many curves, steps and tests of each method in turn: of several methods each has one colour and
+    one entry in the legend, and its tests are thin."""
     if curves <= len(_WORKS):
         return [implot.Spec(line_color=color, line_weight=1.6) for color in COLORS[:curves]]
     pairs = [(COLORS[n // len(_WORKS) % len(COLORS)], n % len(_WORKS) == 0) for n in range(curves)]
@@ -176,7 +183,7 @@ def _savings(results: Results) -> list[tuple[str, np.ndarray]]:
     methods = [method for method in results.methods if method != REFERENCE]
     many = len(methods) > 1
     return [
-        (f"{method}: {label}" if many else label, 100.0 * results.reductions(method, work))
+        (method if many else label, 100.0 * results.reductions(method, work))
         for method in methods
         for work, label in _WORKS
     ]
@@ -202,16 +209,21 @@ def _table(ui: Ui, run: Experiment | None, results: Results | None) -> None:
     done = f"{len(results.frames)} frame{plural}" if whole else f"{len(results.frames)} of {len(run.times)} frames"
     clipped(f"{done}, {run.settings.width} x {run.settings.height}, {run.settings.accelerator}", QUIET)
     flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg
+    scrolls = em(_table_width(len(rows)) - 1.2) > imgui.get_content_region_avail().x
+    if scrolls:
+        flags |= imgui.TableFlags_.scroll_x | imgui.TableFlags_.scroll_y
     if not imgui.begin_table("table 1", 1 + len(rows), int(flags)):
         return
-    imgui.table_setup_column("", int(imgui.TableColumnFlags_.width_stretch))
+    imgui.table_setup_scroll_freeze(1, 1)
+    stretch, fixed = imgui.TableColumnFlags_.width_stretch, imgui.TableColumnFlags_.width_fixed
+    imgui.table_setup_column("", int(fixed if scrolls else stretch), em(_HEADING) if scrolls else 0.0)
     for line in rows:
         width = em(_REFERENCE if line.method == REFERENCE else _METHOD)
-        imgui.table_setup_column(line.method, int(imgui.TableColumnFlags_.width_fixed), width)
+        imgui.table_setup_column(line.method, int(fixed), width)
     imgui.table_next_column()
     for line in rows:
         imgui.table_next_column()
-        imgui.text_colored(QUIET, line.method)
+        clipped(line.method, QUIET)
     for (heading, cell), short in zip(LINES, _SHORT, strict=True):
         if heading == WRONG and not run.settings.verify:
             continue

@@ -18,6 +18,7 @@ _LIT, _STOPPED = SHADOW_COLORS[ShadowMode.NON_SHADOW], (0.34, 0.71, 0.91)
 _BLOCKER = SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW]
 _COLORS = {Part.REACHING: _LIT, Part.STOPPED: _STOPPED, Part.BLOCKER: _BLOCKER, Part.OCCLUDER: (0.90, 0.62, 0.0)}
 _WIDTHS = {Part.REACHING: 0.13, Part.STOPPED: 0.13, Part.BLOCKER: 0.16, Part.OCCLUDER: 0.1}  # in ems
+_RESTS_ON = {Certificate.FULL.name: "covered by", Certificate.CANDIDATES.name: "only tested against"}
 _UNSEEN = 0.6  # of the width of what is seen
 _SHADE = ImVec4(0.05, 0.06, 0.08, 0.6)
 _FADED = 0.18  # opacity of other lights than the one that is pointed at
@@ -59,13 +60,14 @@ def _row(ui: Ui, one: Explanation) -> None:
     imgui.text_unformatted(told)
     if one.due:
         _certificate(one.certificate)
-    for number in one.occluders[:MOST_OCCLUDERS]:
-        imgui.indent(em(1.2))
-        first = one.blocked_at is not None and number == one.occluders[0]
-        clipped(f"{'blocked by' if first else 'certified by'} {_named(ui, number)}", QUIET)
-        imgui.unindent(em(1.2))
-    if len(one.occluders) > MOST_OCCLUDERS:
-        imgui.text_colored(QUIET, f"    and {len(one.occluders) - MOST_OCCLUDERS} more")
+    blocked, others = (one.occluders[:1], one.occluders[1:]) if one.blocked_at is not None else ((), one.occluders)
+    for told, numbers in (("blocked by", blocked), (_RESTS_ON.get(one.certificate.upper(), "certified by"), others)):
+        if numbers:
+            names = [_named(ui, number) for number in numbers[:MOST_OCCLUDERS]]
+            more = f" and {len(numbers) - MOST_OCCLUDERS} more" if len(numbers) > MOST_OCCLUDERS else ""
+            imgui.indent(em(1.2))
+            clipped(f"{told} {', '.join(names)}{more}", QUIET)
+            imgui.unindent(em(1.2))
 
 
 def _answer(one: Explanation) -> tuple[str, tuple[float, float, float]]:
@@ -75,22 +77,24 @@ def _answer(one: Explanation) -> tuple[str, tuple[float, float, float]]:
 
 
 def _certificate(name: str) -> None:
-    """The certificate in its own colour, at the row's end."""
+    """The certificate and its colour, at the row's end."""
     if name.upper() not in Certificate.__members__ or name.upper() == Certificate.NONE.name:
         return
     certificate = Certificate[name.upper()]
-    imgui.same_line(em(12.6))
-    imgui.text_colored(ImVec4(*CERTIFICATE_COLORS[certificate], 1.0), f"proven {certificate.name.lower()}")
-    tooltip(CERTIFICATE_MEANING[certificate])
+    imgui.same_line(em(12.2))
+    swatch(CERTIFICATE_COLORS[certificate])
+    imgui.text_unformatted(certificate.name.lower())
+    tooltip(f"proven: {CERTIFICATE_MEANING[certificate]}")
 
 
 def _named(ui: Ui, primitive: int) -> str:
-    """A primitive as people find it again: its kind and number, and whose it is."""
+    """A primitive as people find it again: its kind and number, its object where that moves, and its material."""
     scene = ui.controller.session.scene
     if scene is None or primitive >= scene.primitive_count:
         return f"primitive {primitive}"
-    owner = scene.objects[scene.object_of(primitive)].name
-    return f"{kind_of(scene, primitive)} {primitive}, {owner}, {scene.material_of(primitive).name}"
+    owner = scene.object_of(primitive)
+    whose = f"{scene.objects[owner].name}, " if owner else ""
+    return f"{kind_of(scene, primitive)} {primitive} ({whose}{scene.material_of(primitive).name})"
 
 
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:

@@ -37,6 +37,8 @@ def show(ui: Ui) -> None:
 
 
 def _details(ui: Ui, pick: Pick) -> None:
+    frame = ui.controller.frame
+    by_modes = frame is None or base_of(frame.settings.method) != "certified"
     with properties("primitive", 5.8) as shown:
         if shown:
             value("Primitive", f"{pick.primitive}  ({pick.kind})")
@@ -46,13 +48,12 @@ def _details(ui: Ui, pick: Pick) -> None:
             if pick.material is not None:
                 value("Material", pick.material.name, _describe(pick))
             tip = "that it covers now; its modes are judged by its highest count while fully rendered"
-            value("Pixels", f"{count(pick.pixels)} now, {judged(pick.highest)}", tip)
+            value("Pixels", f"{count(pick.pixels)} now{f', {judged(pick.highest)}' if by_modes else ''}", tip)
             if pick.wrong is not None:
                 answers = f"{count(pick.wrong)} shadow {'answer' if pick.wrong == 1 else 'answers'}"
                 value("Wrong here", answers, "of this pixel, of any light at any bounce: what is mirrored counts too")
     explanation.rows(ui)
-    frame = ui.controller.frame
-    if frame is None or base_of(frame.settings.method) != "certified":
+    if by_modes:
         heading("Modes of its cell" if pick.in_cells else "Modes")
         _modes(ui, pick)
         paragraph(_verdict(pick), QUIET)
