@@ -59,6 +59,7 @@ def _figure4(d: Driver, frame: int) -> None:
     p = d.c.preferences
     p.dynamic_resolution, p.fixed_resolution, p.fixed_width, p.fixed_height = False, True, 128, 128
     p.every_frame = p.loop = False
+    d.c.change(method="paper")
     d.drop(embedded_scenes()["figure4"])
     d.wait(lambda: d.c.session.scene.path.name == "figure4.aff", "the scene of Figure 4")
     d.settle()
@@ -150,6 +151,7 @@ def wiping(d: Driver) -> None:
 
 def culling(d: Driver) -> None:
     """Tracing again culls; the key switches it off and on; resetting forgets."""
+    d.c.change(method="paper")
     d.settle()
     first = d.c.frame.statistics.shadow
     assert first.due > 0 and first.culled == 0
@@ -493,7 +495,7 @@ def closing_while_experimenting(d: Driver) -> None:
 def experimenting(d: Driver) -> None:
     """An experiment starts from its panel, plays, can be stopped, and leaves a table, a plot and files."""
     d.settle()
-    runner, home = d.c.runner, d.c.session.camera
+    runner, home, method = d.c.runner, d.c.session.camera, d.c.session.settings.method
     d.ui.show_panel("Experiment")
     d.frames(3)
     runner.experiment_plan.frames, runner.experiment_plan.size = 3000, (64, 48)
@@ -508,7 +510,7 @@ def experimenting(d: Driver) -> None:
     d.hold(KEY.w, 0.1)
     assert d.c.session.camera == home and "stop it first" in d.c.message.text
     d.press(KEY.c)
-    assert d.c.session.settings.method == "paper"
+    assert d.c.session.settings.method == method
     d.press(KEY._2)
     assert d.c.session.view is View.OCCLUSION, "a view can be chosen any time"
     d.context.item_click(f"//Experiment/**/{icons.ICON_FA_STOP}  Stop")
