@@ -29,6 +29,9 @@ class Settings:
     `accelerator` is "bvh8", fast, whose steps and tests are those of whole packets of rays where these are
     coherent, or "kdtree", the paper's, which counts them ray by ray.  `record_lights` fills Frame.due
     and Frame.lit, `record_work` Frame.saved and Frame.cost.
+
+    After a frame of method "certified" at most so many `certificates` are made, in at most so many
+    `certificate_seconds` (which leaves it to chance how many: inf for counters that repeat exactly).
     """
 
     width: int = 512
@@ -43,6 +46,8 @@ class Settings:
     accelerator: str = "bvh8"
     record_lights: bool = False
     record_work: bool = False
+    certificates: int = 100_000
+    certificate_seconds: float = math.inf
 
     def validated(self) -> Settings:
         """Itself; raises ValueError, in one line, where a value is out of range."""
@@ -54,6 +59,7 @@ class Settings:
             (self.accelerator in ACCELERATORS, f"accelerator is one of {', '.join(ACCELERATORS)}"),
             (1 <= self.samples <= 4096, "samples lie in 1 to 4096"),
             (0 <= self.threads <= 1024, "threads lie in 0 to 1024"),
+            (self.certificates >= 0 and self.certificate_seconds >= 0, "budgets of certificates are 0 or more"),
         )
         for holds, message in checks:
             if not holds:

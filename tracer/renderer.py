@@ -14,22 +14,30 @@ from dataclasses import replace
 
 import numpy as np
 
+from tracer.culling.certified.candidates import FEW
+from tracer.culling.certified.cells import make_cells
+from tracer.culling.certified.certificates import Budget, Certificates
+from tracer.culling.certified.certify import CERTIFICATES, STEPS, TESTS
+from tracer.culling.certified.certify import COUNTERS as CERTIFYING
+from tracer.culling.certified.lookup import Wanted
 from tracer.culling.memory import Memory
-from tracer.culling.modes import merge_words
+from tracer.culling.modes import MAX_CULLED_LIGHTS, merge_words, word_type
 from tracer.culling.occlusion import count_pixels, occlusion_testing, set_occlusion_modes
-from tracer.culling.shadow import Knowledge
+from tracer.culling.shadow import Certified, Knowledge
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import Pinhole, pinhole
 from tracer.geometry.world import World
+from tracer.method import base_of
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
 from tracer.shading.look import make_look
-from tracer.shading.whitted import COUNTERS, TILE, Buffers, Workspace, shade_tile, trace_primary, workspace
+from tracer.shading.whitted import COUNTERS, TILE, Buffers, Workspace, seek_tile, shade_tile, trace_primary, workspace
 from tracer.statistics import gather
 
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, those used last
+PATIENCE = {"kdtree": 4, "bvh8": 32}  # rays that must have wanted a cell before it is divided: what they cost
 Cancel = Callable[[], bool] | None
 
 
@@ -54,10 +62,12 @@ class Renderer:
         self._look = make_look(scene, self.world.facets)
         self._memories: dict[tuple[int, int], Memory] = {}
         self._workspaces: list[Workspace] = []
+        self.certificates: Certificates | None = None
 
     def reset_modes(self) -> None:
-        """Forget all modes, at every resolution."""
+        """Forget all modes, at every resolution, and all certificates."""
         self._memories.clear()
+        self.certificates = None
 
     def render(self, time: float = 0.0, camera: Camera | None = None, cancel: Cancel = None) -> Frame:
         """The frame at `time` seconds; the scene's own camera where none is given.
@@ -72,6 +82,8 @@ class Renderer:
                 frame.trace_primary_rays()
             with frame.phase("occlusion testing"):
                 frame.test_occlusion()
+            with frame.phase("certification"):
+                frame.certify_cells()
             with frame.phase("shading"):
                 frame.shade()  # with shadow testing and shadow-mode setting
             with frame.phase("mode setting"):
@@ -102,6 +114,21 @@ class Renderer:
         return memory
 
 
+_NOT_WANTED = Wanted(np.empty(0, np.int32), np.empty(0, np.float32), np.empty(0, np.float32), np.zeros(3, np.int64))
+_NOT_CERTIFIED = {
+    np.dtype(word_type(lights)).itemsize: Certified(
+        make_cells(1, lights, 1),
+        np.empty((0, 9), np.float32),
+        np.empty(0, np.float32),
+        np.empty(0, np.bool_),
+        np.float32(0),
+        FEW,
+        _NOT_WANTED,
+    )
+    for lights in (1, MAX_CULLED_LIGHTS)
+}
+
+
 class UnfinishedFrame:
     """A frame under way: the phases of `Renderer.render` over its buffers."""
 
@@ -115,6 +142,10 @@ class UnfinishedFrame:
         self._occlusion_tests = np.zeros(self._workers, np.int64)
         self._phases: dict[str, float] = {}
         self._started = clock.perf_counter()
+        self._certificates: Certificates | None = None
+        self._wanted = _NOT_WANTED
+        self._base = base_of(settings.method)
+        self._certifying = np.zeros(CERTIFYING, np.int64)
         self._rays = pinhole(camera, settings.width, settings.height)
         self._buffers = self._empty_buffers()
         across, down = -(-settings.width // TILE), -(-settings.height // TILE)
@@ -132,6 +163,7 @@ class UnfinishedFrame:
         lights = len(self._renderer.scene.lights)
         rows = width * height if self._settings.record_lights else 0
         verified = width * height if self._settings.verify else 0
+        worked = width * height if self._settings.record_work else 0
         return Buffers(
             color=np.zeros((width * height, 3), np.float32),
             normal=np.zeros((width * height, 3), np.float32),
@@ -143,6 +175,9 @@ class UnfinishedFrame:
             lit=np.zeros((rows, lights), np.bool_),
             reference=np.zeros((verified, 3), np.float32),
             wrong=np.zeros(verified, np.int32),
+            cell=np.zeros(width * height if self._base == "certified" else 0, np.int32),
+            saved=np.zeros(worked, np.int32),
+            cost=np.zeros(worked, np.int32),
         )
 
     def _for_each_tile(self, work: Callable[[tuple[int, int, int, int], int], None]) -> None:
@@ -160,6 +195,12 @@ class UnfinishedFrame:
         renderer.world.place(self._time)
         renderer._look.lights[:] = light_positions(renderer.scene, self._time)
         self.memory.follow_lights(renderer._look.lights)
+        self._certificates = None
+        if self._base == "certified":
+            if renderer.certificates is None:
+                renderer.certificates = Certificates(renderer.world, renderer._look.lights, self._workers)
+            self._certificates = renderer.certificates
+            self._certificates.follow_lights(renderer._look.lights)
 
     def trace_primary_rays(self) -> None:
         """What does each pixel see?"""
@@ -173,7 +214,7 @@ class UnfinishedFrame:
 
     def test_occlusion(self) -> None:
         """§2.3: which primitives does a neighbouring pixel show to be hidden?"""
-        if self._settings.method == "none":
+        if self._base in ("none", "certified"):
             return
         height, memory = self._settings.height, self.memory
         seen = self._renderer.world.placed, self._rays, self._buffers.primitive, self._settings.symmetric
@@ -184,18 +225,52 @@ class UnfinishedFrame:
 
         for_each_chunk(work, -(-height // ROWS), self._workers, self._cancel)
 
+    def certify_cells(self) -> None:
+        """Certify what these primary hits are about to want, and what else rays wanted in the last frame."""
+        certificates = self._certificates
+        if certificates is None:
+            return
+        sought, lights = certificates.wanted(len(self._tiles)), self._renderer._look.lights
+
+        def work(tile: tuple[int, int, int, int], worker: int) -> None:
+            certified = self._certified(certificates, sought, self._tiles.index(tile[:2]))
+            seek_tile(self._rays, tile, certified, lights, self._buffers, self._spaces[worker])
+
+        self._for_each_tile(work)
+        budget = Budget(self._settings.certificates, self._settings.certificate_seconds)
+        patience = PATIENCE[self._settings.accelerator]
+        self._certifying = certificates.certify([sought, *certificates.left], budget, patience, self._cancel)
+        self._wanted = certificates.wanted(len(self._tiles))
+
     def shade(self) -> None:
         """§2.4, §2.5: Whitted shading, with shadow testing and shadow-mode setting."""
         self._shade(self._rays, self._buffers, self._counts)
         if self._settings.samples > 1:
             self._average_samples()
 
+    def _certified(self, certificates: Certificates | None, wanted: Wanted, tile: int) -> Certified:
+        """What a tile knows of certified cells, and where it says what it wants."""
+        if certificates is None:
+            return _NOT_CERTIFIED[self.memory.words.dtype.itemsize]
+        o, rows = certificates.occluders, Wanted(*(a[tile] for a in wanted))
+        return Certified(certificates.cells, o.rows, o.blurs, certificates.still, certificates.highest, FEW, rows)
+
     def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
         placed, look, memory = self._renderer.world.placed, self._renderer._look, self.memory
-        depth, cull, verify = self._settings.depth, self._settings.method != "none", self._settings.verify
+        depth, verify, base = self._settings.depth, self._settings.verify, self._base
+        certificates = self._certificates
+        words = memory.words if certificates is None else certificates.cells.words
 
         def work(tile: tuple[int, int, int, int], worker: int) -> None:
-            knowledge = Knowledge(memory.words, memory.gained[worker], cull, verify)
+            knowledge = Knowledge(
+                words,
+                memory.gained[worker],
+                cull=base != "none",
+                learn=base == "paper",
+                verify=verify,
+                certify=certificates is not None,
+                certified=self._certified(certificates, self._wanted, self._tiles.index(tile[:2])),
+            )
             shade_tile(placed, look, rays, tile, depth, knowledge, buffers, counts[worker], self._spaces[worker])
 
         self._for_each_tile(work)
@@ -222,18 +297,23 @@ class UnfinishedFrame:
         """§2.5, §2.6: keep what was learnt, and say which primitives have been seen whole."""
         memory = self.memory
         count_pixels(self._buffers.primitive, memory.pixel_count)
-        if self._settings.method != "none":
+        if self._base not in ("none", "certified"):
             merge_words(memory.words, memory.gained)
             zoom = np.float64(self._settings.zoom_factor)
             set_occlusion_modes(memory.words, memory.hidden, memory.pixel_count, memory.highest_count, zoom)
         else:
             memory.discard_frame()
+        if self._certificates is not None:
+            self._certificates.left = [self._wanted]
 
     def finished(self) -> Frame:
         buffers, memory = self._buffers, self.memory
         shape = buffers.primitive.shape
         statistics = gather(self._counts, int(self._occlusion_tests.sum()))
         statistics.phases = self._phases
+        statistics.certificates = int(self._certifying[CERTIFICATES])
+        statistics.certificate_steps = int(self._certifying[STEPS])
+        statistics.certificate_tests = int(self._certifying[TESTS])
         statistics.seconds = clock.perf_counter() - self._started
         lights = len(self._renderer.scene.lights)
         recorded = self._settings.record_lights

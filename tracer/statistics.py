@@ -70,6 +70,8 @@ def gather(counts: NDArray[np.int64], occlusion_tests: int) -> FrameStatistics:
         due=total[SHADOW + shadow.DUE],
         culled=total[SHADOW + shadow.CULLED],
         dynamic_only=total[SHADOW + shadow.DYNAMIC_ONLY],
+        candidates_only=total[SHADOW + shadow.CANDIDATES_ONLY],
+        cache_hits=total[SHADOW + shadow.CACHE_HITS],
         wrong=total[SHADOW + shadow.WRONG],
     )
     return FrameStatistics(rays_from(PRIMARY), rays_from(SECONDARY), shadow_rays, occlusion_tests)

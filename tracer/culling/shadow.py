@@ -22,6 +22,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.certified.candidates import ask_candidates
+from tracer.culling.certified.cells import Cells
+from tracer.culling.certified.lookup import Wanted
+from tracer.culling.certified.margins import SURE_HIT, UNSURE
 from tracer.culling.modes import DYNAMIC, FULL_SHADOW, FULLY_RENDERED, MAX_CULLED_LIGHTS, NON_SHADOW, add_shadow
 from tracer.geometry.queries import DYNAMIC as MOVING
 from tracer.geometry.queries import STATIC, any_hits
@@ -33,7 +37,6 @@ from tracer.simd import (
     f32x16,
     gather_i32x16,
     lanes_below,
-    load_f32x16,
     load_i32x16,
     load_spread_bytes16,
     load_three,
@@ -46,21 +49,39 @@ from tracer.simd import (
 )
 
 # Shadow counters; the first two are those that queries add to.
-STEPS, TESTS, RAYS, DUE, CULLED, DYNAMIC_ONLY, WRONG = range(7)
-SHADOW_COUNTERS = 7
+STEPS, TESTS, RAYS, DUE, CULLED, DYNAMIC_ONLY, CANDIDATES_ONLY, CACHE_HITS, WRONG = range(9)
+SHADOW_COUNTERS = 9
 
 LIGHT_MARGIN = np.float32(1e-5)  # of the way from the light: what lies nearer to it is the lamp itself
 ZERO, ONE = np.float32(0), np.float32(1)
 
 
+class Certified(NamedTuple):
+    """Certified cells (`tracer.culling.certified`) and what rays ask of them: the triangles, rows (n, 9) float32, and
+    how far these may be elsewhere, blurs (n,); still (lights,) bool, which lights are certified; how high above a
+    cell its rays may end; how many candidates are asked at most; and what a tile wants."""
+
+    cells: Cells
+    rows: NDArray[np.float32]
+    blurs: NDArray[np.float32]
+    still: NDArray[np.bool_]
+    highest: float
+    few: int
+    wanted: Wanted
+
+
 class Knowledge(NamedTuple):
-    """What culling goes by: words (units,) as the last frame left them, what this worker gains for
-    the next, of the same shape, and whether to cull and to verify what was culled."""
+    """What culling goes by: words (units,) as the last frame left them, what this worker gains for the next, of the
+    same shape; whether to cull by the words, to learn from rays, and to verify what was culled; and
+    whether units are certified cells."""
 
     words: NDArray[np.unsignedinteger]
     gained: NDArray[np.unsignedinteger]
     cull: bool
+    learn: bool
     verify: bool
+    certify: bool
+    certified: Certified
 
 
 class Answers(NamedTuple):
@@ -69,7 +90,8 @@ class Answers(NamedTuple):
 
     For asking: low and high (n,) int32, halves of the points' words, and whether these have been looked up,
     vector by vector; live, the bits of those to be traced, their rays, one after the other, and blocked, a
-    byte for each ray."""
+    byte for each ray.  Of certified cells, over all lights: untried, the bits of points with a light of which
+    nothing is known, and doubtful, of those with one of which only candidates are."""
 
     due: NDArray[np.int32]
     lit: NDArray[np.int32]
@@ -80,17 +102,21 @@ class Answers(NamedTuple):
     rays: Rays
     live: NDArray[np.int32]
     blocked: NDArray[np.float32]
+    untried: NDArray[np.int32]
+    doubtful: NDArray[np.int32]
 
 
 # Rows of the memory that answers lie in, the first eight of which are the rays.
 DUE_ROW, LIT_ROW, TRUTH_ROW, LOW_ROW, HIGH_ROW, LOOKED_UP_ROW, LIVE_ROW, BLOCKED_ROW = range(8, 16)
-ANSWER_ROWS = 16
+UNTRIED_ROW, DOUBTFUL_ROW = 16, 17
+ANSWER_ROWS = 18
 
 
 @inlined
 def answers_in(memory, count):
     """Answers for `count` points, of which nothing has been looked up, in memory (ANSWER_ROWS, n) float32."""
-    memory[LOOKED_UP_ROW, : (count + 15) // 16] = 0
+    for row in (LOOKED_UP_ROW, UNTRIED_ROW, DOUBTFUL_ROW):
+        memory[row, : (count + 15) // 16] = 0
     return Answers(
         memory[DUE_ROW].view(np.int32),
         memory[LIT_ROW].view(np.int32),
@@ -101,6 +127,8 @@ def answers_in(memory, count):
         Rays(memory[0:3], memory[3:6], memory[6], memory[7]),
         memory[LIVE_ROW].view(np.int32),
         memory[BLOCKED_ROW],
+        memory[UNTRIED_ROW].view(np.int32),
+        memory[DOUBTFUL_ROW].view(np.int32),
     )
 
 
@@ -117,16 +145,6 @@ def _look_up(points, v, knowledge, answers):
     else:
         store(address_of(answers.low) + at, gather_i32x16(words, unit << np.int32(1)))
         store(address_of(answers.high) + at, gather_i32x16(words + 4, unit << np.int32(1)))
-
-
-@inlined
-def lifted(points, v, side):
-    """Where rays to or from the v-th vector of points end or start: a little off the surface, on the viewer's side
-    of it for side 1 and on the other for -1."""
-    x, y, z = load_three(points.position, v)
-    gx, gy, gz = load_three(points.geometric, v)
-    offset = side * load_f32x16(address_of(points.offset) + 64 * v)
-    return x + offset * gx, y + offset * gy, z + offset * gz
 
 
 @inlined
@@ -172,6 +190,38 @@ def _choose_fates(points, light, number, knowledge, count, answers, counts):
         counts[DUE] += ones(due)
         counts[CULLED] += ones(due & full)
         counts[DYNAMIC_ONLY] += ones(due & non)
+        if knowledge.certify and answers.live[v] != 0:
+            _ask_certified(points, light, number, knowledge.certified, answers, v, counts)
+
+
+@subkernel
+def _ask_certified(points, light, number, certified, answers, v, counts):
+    """Ask candidates about the live points of a vector, and note which certificates are wanting."""
+    live = np.int64(answers.live[v])
+    _, field, shift = _words(answers, number, v)
+    field = field & np.int32(3 << shift)
+    some = bits_of(field == np.int32(3 << shift)) & live
+    if number >= len(certified.still) or not certified.still[number]:
+        return
+    answers.untried[v] |= live & ~some
+    answers.doubtful[v] |= some
+    if certified.few == 0:
+        return
+    while some != 0:
+        lane = lowest_bit(some)
+        some &= some - 1
+        i = 16 * v + lane
+        at = points.lifted[0, i], points.lifted[1, i], points.lifted[2, i]
+        end = np.float64(at[0]), np.float64(at[1]), np.float64(at[2])
+        start = np.float64(light[0]), np.float64(light[1]), np.float64(light[2])
+        found, tests = ask_candidates(certified, np.int64(points.unit[i]), number, start, end)
+        counts[TESTS] += tests
+        if found == UNSURE:
+            continue
+        counts[CANDIDATES_ONLY] += 1
+        answers.live[v] &= ~(1 << lane)
+        if found != SURE_HIT:
+            answers.lit[v] |= 1 << lane
 
 
 @subkernel
@@ -185,7 +235,7 @@ def _rays_from_light(points, light, vectors, bits, answers):
         live = np.int64(bits[v])
         if live == 0:
             continue
-        x, y, z = lifted(points, v, ONE)
+        x, y, z = load_three(points.lifted, v)
         direction = pack_three((x - light[0], y - light[1], z - light[2]), mask16(live))
         store_three(address_of(rays.direction) + 4 * n, stride, direction)
         n += ones(live)
@@ -260,7 +310,7 @@ def _ask_about_others(world, points, light, number, knowledge, vectors, answers,
             continue
         blocked, for_good = _blocked(answers, asked, n)
         n += ones(asked)
-        if knowledge.cull and number < MAX_CULLED_LIGHTS:
+        if knowledge.learn and number < MAX_CULLED_LIGHTS:
             _learn(points, v, number, knowledge, answers, asked, for_good)
         answers.lit[v] |= asked & ~blocked
 
@@ -281,9 +331,9 @@ def _verify(world, points, light, vectors, answers, counts):
 def shadow_testing(world, points, count, light, number, knowledge, answers, counts):
     """Which of `count` points are due to light `number` at light (3,), and which it reaches: into answers."""
     vectors = (count + 15) // 16
-    before = counts[DYNAMIC_ONLY]
+    before = counts[DYNAMIC_ONLY] + counts[CANDIDATES_ONLY]
     _choose_fates(points, light, number, knowledge, count, answers, counts)
-    if world.has_dynamic and counts[DYNAMIC_ONLY] > before:
+    if world.has_dynamic and counts[DYNAMIC_ONLY] + counts[CANDIDATES_ONLY] > before:
         _ask_about_known(world, points, light, vectors, answers, counts)
     _ask_about_others(world, points, light, number, knowledge, vectors, answers, counts)
     if knowledge.verify:

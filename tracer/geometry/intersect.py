@@ -44,24 +44,25 @@ def hit_box(ray, boxes, i):
 
 @inlined
 def hit_triangle(ray, triangles, i):
-    """(t, u, v) of a ray on the i-th triangle, t = inf for a miss (Moeller and Trumbore 1997), two-sided."""
+    """(t, u, v) of a ray on the i-th triangle, t = inf for a miss, two-sided: the triple products of Moeller and
+    Trumbore (1997), by one normal for det and t, so that what lies just above a triangle is seen there."""
     r = 9 * i
     e1x, e1y, e1z = triangles[r + 3], triangles[r + 4], triangles[r + 5]
     e2x, e2y, e2z = triangles[r + 6], triangles[r + 7], triangles[r + 8]
-    px, py, pz = ray.dy * e2z - ray.dz * e2y, ray.dz * e2x - ray.dx * e2z, ray.dx * e2y - ray.dy * e2x
-    det = e1x * px + e1y * py + e1z * pz
+    nx, ny, nz = e1y * e2z - e1z * e2y, e1z * e2x - e1x * e2z, e1x * e2y - e1y * e2x
+    det = -(ray.dx * nx + ray.dy * ny + ray.dz * nz)
     if det == ZERO:
         return INFINITY, ZERO, ZERO
     f = ONE / det
     sx, sy, sz = ray.ox - triangles[r], ray.oy - triangles[r + 1], ray.oz - triangles[r + 2]
-    u = f * (sx * px + sy * py + sz * pz)
+    qx, qy, qz = sy * ray.dz - sz * ray.dy, sz * ray.dx - sx * ray.dz, sx * ray.dy - sy * ray.dx
+    u = f * (e2x * qx + e2y * qy + e2z * qz)
     if not (u >= ZERO and u <= ONE):
         return INFINITY, ZERO, ZERO
-    qx, qy, qz = sy * e1z - sz * e1y, sz * e1x - sx * e1z, sx * e1y - sy * e1x
-    v = f * (ray.dx * qx + ray.dy * qy + ray.dz * qz)
+    v = -f * (e1x * qx + e1y * qy + e1z * qz)
     if not (v >= ZERO and u + v <= ONE):
         return INFINITY, ZERO, ZERO
-    t = f * (e2x * qx + e2y * qy + e2z * qz)
+    t = f * (sx * nx + sy * ny + sz * nz)
     if not (t > ray.t_min and t < ray.t_max):
         return INFINITY, ZERO, ZERO
     return t, u, v

@@ -47,6 +47,7 @@ class World:
         self._primitives = Primitives(scene)
         self.facets, self.normals = self._primitives.facets, self._primitives.normals
         self.object_of = self._primitives.object_of
+        self.primitives = self._primitives
         self.scene = scene
         self.structure = STRUCTURES[accelerator](self._primitives, len(scene.objects), progress)
         self.place(time)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.culling.shadow import lifted
 from tracer.kernels import inlined, subkernel
 from tracer.shading.octants import sorted_by_octant
-from tracer.shading.points import IOR_ROW, SPECULAR_ROW, TRANSMISSION_ROW
+from tracer.shading.points import IOR_ROW, OFFSET_ROW, SPECULAR_ROW, TRANSMISSION_ROW
 from tracer.shading.wave import DIRECTION, HIT_T, ORIGIN, PIXEL, REACH, WEIGHT, room, row_of, wave_in
 from tracer.simd import (
     any_lane,
@@ -71,6 +70,15 @@ def _send(wave, v, out, n, going, origin, direction, scale):
     return n + ones(bits_of(going))
 
 
+@inlined
+def _sunk(points, v):
+    """Where refracted rays start: as far below the surface as others above it."""
+    x, y, z = load_three(points.position, v)
+    gx, gy, gz = load_three(points.geometric, v)
+    offset = load_f32x16(row_of(points.memory, OFFSET_ROW) + 64 * v)
+    return x - offset * gx, y - offset * gy, z - offset * gz
+
+
 @subkernel
 def _refract(points, wave, out):
     """Refracted rays, scaled by the transmission, into the rows of `out`; how many.
@@ -85,7 +93,7 @@ def _refract(points, wave, out):
         ior = load_f32x16(row_of(points.memory, IOR_ROW) + 64 * v)
         eta = select(mask16(np.int64(points.entering[v])), ONE / ior, ior)
         passes, direction = _refracted(load_three(wave.rays.direction, v), load_three(points.normal, v), eta)
-        n = _send(wave, v, out, n, transmits & passes, lifted(points, v, -ONE), direction, (through, through, through))
+        n = _send(wave, v, out, n, transmits & passes, _sunk(points, v), direction, (through, through, through))
         share = select(transmits, select(passes, ZERO, through), ZERO)
         for c in range(3):
             a = row_of(points.memory, SPECULAR_ROW + c) + 64 * v
@@ -99,7 +107,7 @@ def _reflect(points, wave, out, n):
     for v in range((wave.size + 15) // 16):
         direction = _reflected(load_three(wave.rays.direction, v), load_three(points.normal, v))
         there = mask16(lanes_below(wave.size, v))
-        n = _send(wave, v, out, n, there, lifted(points, v, ONE), direction, load_three(points.specular, v))
+        n = _send(wave, v, out, n, there, load_three(points.lifted, v), direction, load_three(points.specular, v))
     return n
 
 

@@ -44,7 +44,7 @@ ZERO, ONE = np.float32(0), np.float32(1)
 # Rows of the points' memory.
 POSITION_ROW, GEOMETRIC_ROW, NORMAL_ROW, DIFFUSE_ROW, SPECULAR_ROW, LIGHT_ROW, REFERENCE_ROW = range(0, 21, 3)
 EXPONENT_ROW, SHINE_ROW, TRANSMISSION_ROW, IOR_ROW, OFFSET_ROW, UNIT_ROW, ENTERING_ROW = range(21, 28)
-POINT_ROWS = 28
+LIFTED_ROW, SPOT_ROW, POINT_ROWS = 28, 31, 34
 
 
 class Points(NamedTuple):
@@ -52,7 +52,8 @@ class Points(NamedTuple):
     normal (in the geometric one's half space), the material's diffuse colour under the texture's, its specular colour,
     and the light that goes from there to the viewer, of which there is the ambient at first, each (3, n); reference
     like light; offset (n,), how far above the surface rays start; unit (n,) int32; entering (n / 16,) int32, the bits
-    of those whose ray came from outside."""
+    of those whose ray came from outside; lifted (3, n), the points that far above the surface; spots (3, n), of which
+    `tracer.culling.certified.lookup` tells."""
 
     memory: NDArray[np.float32]
     position: NDArray[np.float32]
@@ -64,6 +65,8 @@ class Points(NamedTuple):
     offset: NDArray[np.float32]
     unit: NDArray[np.int32]
     entering: NDArray[np.int32]
+    lifted: NDArray[np.float32]
+    spots: NDArray[np.float32]
 
 
 @inlined
@@ -79,6 +82,8 @@ def _points_in(memory):
         memory[OFFSET_ROW],
         memory[UNIT_ROW].view(np.int32),
         memory[ENTERING_ROW].view(np.int32),
+        memory[LIFTED_ROW:SPOT_ROW],
+        memory[SPOT_ROW:POINT_ROWS],
     )
 
 
@@ -221,7 +226,8 @@ def points_at(world, look, wave, memory, spread, verify):
         at = address_of(points.memory) + 64 * k
         store_three(at + stride * POSITION_ROW, stride, (x, y, z))
         largest = maximum(t, maximum(maximum(x, -x), maximum(maximum(y, -y), maximum(z, -z))))
-        store(at + stride * OFFSET_ROW, OFFSET * largest)
+        offset = OFFSET * largest
+        store(at + stride * OFFSET_ROW, offset)
         store(at + stride * UNIT_ROW, primitive)
 
         facet = load_columns(address_of(look.facets), numbers, FACET_COLUMNS)
@@ -244,6 +250,8 @@ def points_at(world, look, wave, memory, spread, verify):
         geometric = _chosen(entering, geometric, _opposite(geometric))
         behind = geometric[0] * normal[0] + geometric[1] * normal[1] + geometric[2] * normal[2] < ZERO
         store_three(at + stride * GEOMETRIC_ROW, stride, geometric)
+        gx, gy, gz = geometric
+        store_three(at + stride * LIFTED_ROW, stride, (x + offset * gx, y + offset * gy, z + offset * gz))
         store_three(at + stride * NORMAL_ROW, stride, _chosen(behind, _opposite(normal), normal))
 
         color = f32x16(ONE), f32x16(ONE), f32x16(ONE)

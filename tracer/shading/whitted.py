@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.certified.lookup import find_cells, seek, want
 from tracer.culling.shadow import ANSWER_ROWS, RAYS, SHADOW_COUNTERS, answers_in, shadow_testing
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
@@ -33,7 +34,9 @@ COUNTERS = SHADOW + SHADOW_COUNTERS
 class Buffers(NamedTuple):
     """One picture: color and normal (height * width, 3), depth, u and v (height, width) float32,
     primitive (height, width) int32; due and lit (height * width, lights) bool, or without rows;
-    reference like color and wrong (height * width,) int32, or without rows where nothing is verified."""
+    reference like color and wrong (height * width,) int32, or without rows where nothing is verified; cell
+    (height * width,) int32, or without rows where there are no certified cells; saved and cost
+    (height * width,) int32, or without rows."""
 
     color: NDArray[np.float32]
     normal: NDArray[np.float32]
@@ -45,6 +48,9 @@ class Buffers(NamedTuple):
     lit: NDArray[np.bool_]
     reference: NDArray[np.float32]
     wrong: NDArray[np.int32]
+    cell: NDArray[np.int32]
+    saved: NDArray[np.int32]
+    cost: NDArray[np.int32]
 
 
 class Workspace(NamedTuple):
@@ -98,9 +104,24 @@ def trace_primary(world, camera, tile, buffers, counts, space):
     keep_hits(wave, place, buffers)
 
 
+@kernel
+def seek_tile(camera, tile, certified, lights, buffers, space):
+    """Note which certificates the primary hits of a tile, which the buffers hold, are about to want."""
+    certified, buffers, space = borrowed(certified), borrowed(buffers), borrowed(space)
+    place = _tile_in(space.tile).place
+    wave = primary_wave(camera, tile, buffers.primitive.shape[1], space.wave, place)
+    recall_hits(wave, place, buffers)
+    seek(certified, lights, wave)
+
+
 @subkernel
 def _light(world, look, wave, points, knowledge, answers, counts, tile, first, buffers):
     """Local light of a wave, with shadow testing for every light; `first` for the wave of primary rays."""
+    if knowledge.certify:
+        certified = knowledge.certified
+        find_cells(certified.cells, certified.highest, points, wave.size)
+        if first:
+            _record_cells(wave, points, tile, buffers.cell)
     for number in range(len(look.lights)):
         shadow_testing(world, points, wave.size, look.lights[number], number, knowledge, answers, counts[SHADOW:])
         add_light(points, look, number, answers.lit, wave, points.light)
@@ -109,9 +130,28 @@ def _light(world, look, wave, points, knowledge, answers, counts, tile, first, b
             _note_wrong(wave, answers, tile, buffers.wrong)
         if first and len(buffers.due) > 0:
             _record(wave, number, answers, tile, buffers)
+        if len(buffers.saved) > 0:
+            _record_work(wave, answers, tile, buffers)
+    if knowledge.certify and not first:  # what the first wave wanted was sought before
+        want(certified.cells, certified.wanted, points, wave.size, answers.untried, answers.doubtful)
     bring_home(wave, points.light, tile.light)
     if knowledge.verify:
         bring_home(wave, points.reference, tile.reference)
+
+
+@subkernel
+def _record_cells(wave, points, tile, cell):
+    for i in range(wave.size):
+        cell[tile.place[wave.pixel[i]]] = points.unit[i]
+
+
+@subkernel
+def _record_work(wave, answers, tile, buffers):
+    """Count the shadow rays that asked static geometry, and those that need not."""
+    for i in range(wave.size):
+        place, due, live = tile.place[wave.pixel[i]], answers.due[i >> 4] >> (i & 15), answers.live[i >> 4] >> (i & 15)
+        buffers.saved[place] += due & ~live & 1
+        buffers.cost[place] += live & 1
 
 
 @subkernel
@@ -127,6 +167,14 @@ def _record(wave, number, answers, tile, buffers):
         place = tile.place[wave.pixel[i]]
         buffers.due[place, number] = (answers.due[i >> 4] >> (i & 15)) & 1
         buffers.lit[place, number] = (answers.lit[i >> 4] >> (i & 15)) & 1
+
+
+@subkernel
+def _count_rays(wave, tile, buffers):
+    """Count the rays of a wave at their pixels, where that is asked for."""
+    if len(buffers.cost) > 0:
+        for i in range(wave.size):
+            buffers.cost[tile.place[wave.pixel[i]]] += 1
 
 
 @inlined
@@ -155,6 +203,7 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts, spa
     recall_hits(wave, pixels.place, buffers)
     pixels.light[:, :count] = 0
     pixels.reference[:, :count] = 0
+    _count_rays(wave, pixels, buffers)
     wave = without_misses(wave, look.background, pixels.light, pixels.reference)
     for bounce in range(depth + 1):
         points = points_at(world, look, wave, space.points, camera.spread, knowledge.verify)
@@ -169,6 +218,7 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts, spa
             break
         trace(world, wave, counts[SECONDARY:])
         counts[SECONDARY + RAYS] += wave.size
+        _count_rays(wave, pixels, buffers)
         wave = without_misses(wave, look.background, pixels.light, pixels.reference)
         if wave.size == 0:
             break

@@ -11,7 +11,7 @@ from typing import Any
 from llvmlite import ir
 from numba.core import cgutils, types
 
-from tracer.simd.vectors import F32x8, F32x16, I32x8, I32x16, Mask, Vector, operation
+from tracer.simd.vectors import F32x8, F32x16, F64x8, I32x8, I32x16, Mask, Vector, operation
 
 
 @operation
@@ -62,8 +62,8 @@ def _loading(kind: types.Type) -> Any:
     return load
 
 
-load_f32x8, load_f32x16, load_i32x8, load_i32x16, load_f32, load_i32, load_i64 = (
-    _loading(kind) for kind in (F32x8, F32x16, I32x8, I32x16, types.float32, types.int32, types.int64)
+load_f32x8, load_f32x16, load_f64x8, load_i32x8, load_i32x16, load_f32, load_i32, load_i64 = (
+    _loading(kind) for kind in (F32x8, F32x16, F64x8, I32x8, I32x16, types.float32, types.int32, types.int64)
 )
 
 

@@ -16,7 +16,7 @@ operation: Any = intrinsic  # untyped: called without the typing context
 
 
 class Vector(types.Type):
-    """So many lanes of float32 or int32."""
+    """So many lanes of float32, float64 or int32."""
 
     def __init__(self, element: types.Number, lanes: int) -> None:
         self.element, self.lanes = element, lanes
@@ -47,13 +47,14 @@ class Mask(types.Type):
 
 F32x8, F32x16 = Vector(types.float32, 8), Vector(types.float32, 16)
 I32x8, I32x16 = Vector(types.int32, 8), Vector(types.int32, 16)
+F64x8 = Vector(types.float64, 8)
+_ELEMENTS = {types.float32: ir.FloatType(), types.float64: ir.DoubleType(), types.int32: ir.IntType(32)}
 
 
 @register_model(Vector)
 class _VectorModel(models.PrimitiveModel):
     def __init__(self, dmm: Any, fe_type: Vector) -> None:
-        element = ir.FloatType() if fe_type.floating else ir.IntType(32)
-        super().__init__(dmm, fe_type, ir.VectorType(element, fe_type.lanes))
+        super().__init__(dmm, fe_type, ir.VectorType(_ELEMENTS[fe_type.element], fe_type.lanes))
 
 
 @register_model(Mask)

@@ -1,0 +1,14 @@
+"""Certified cells: shadow answers that are proved for whole pieces of a surface, before they are asked for.
+
+A triangle is cut, virtually and lazily, into a quadtree of cells (`cells`).  Of a cell and a light, against
+all static geometry, one of these is found out (`certify`) by rules that leave room for all that rays
+may get wrong (`margins`), in a tree that knows how far each triangle can be mistaken (`occluders`):
+
+- FULL: some triangles together hide the light from all of the cell;
+- LIT: no triangle comes between;
+- CANDIDATES: only these few triangles may;
+- else the cell is split, where rays want it, and its children go by what is left.
+
+Rays look up the cells they end in (`lookup`), which costs no step through a tree, and say where they found
+nothing; what is wanted most is certified after the frame (`certificates`).
+"""

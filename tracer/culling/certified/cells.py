@@ -1,0 +1,173 @@
+"""The cells of a scene: for each side of each static triangle a quadtree, made where rays have asked for it.
+
+A cell is a triangle within its triangle: (u, v), (u + size, v), (u, v + size), the middle one of four having a
+negative size.  Its word is packed like that of a primitive (`tracer.culling.modes`): occlusion bits
+FULLY_RENDERED, for what it says can be trusted, then FULL, LIT or CANDIDATES for each light, or 0.  Children take
+over what is certified of the whole, so that a leaf's word says everything.  Cell 0 is none.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.certified.beam import slack_of
+from tracer.culling.certified.margins import EPSILON, cross, length, row_of
+from tracer.culling.modes import FULLY_RENDERED, word_type
+from tracer.geometry.memory import aligned_rows
+from tracer.kernels import kernel, subkernel
+
+LEAF, FINAL = -1, -2  # instead of children: none yet, and none ever
+# Columns of a receiver's row: a corner, the dual vectors that give u and v, the normal, by how much u and v may
+# lie outside, and, as the bits of int32, the roots of both sides.
+CORNER, ALONG_U, ALONG_V, NORMAL, BEYOND_U, BEYOND_V, ROOTS = 0, 3, 6, 9, 12, 13, 14
+RECEIVER = 16
+HIGHEST = 2.0  # times the scene's largest coordinate and OFFSET: rays that end higher above are traced
+
+
+class Cells(NamedTuple):
+    """n cells, of which `used` (1,) int64 are in use.
+
+    words (n,) uint32 or uint64; child (n,) int32, the first of four, LEAF or FINAL; parent (n,) int32; owner
+    (n,) int32, twice the triangle's number, plus 1 for its back; place (n, 3) float32, u, v and size; wanted (n,)
+    int32, how many rays have; start (n, lights) int32 and count (n, lights) uint8, the primitives that a
+    certificate names, in names (m,) int32, of which named (1,) int64 are in use.  receivers
+    (primitives, RECEIVER) float32 lead rays to the roots; those of what has no cells are 0.
+    """
+
+    words: NDArray[np.unsignedinteger]
+    child: NDArray[np.int32]
+    parent: NDArray[np.int32]
+    owner: NDArray[np.int32]
+    place: NDArray[np.float32]
+    wanted: NDArray[np.int32]
+    start: NDArray[np.int32]
+    count: NDArray[np.uint8]
+    names: NDArray[np.int32]
+    used: NDArray[np.int64]
+    named: NDArray[np.int64]
+    receivers: NDArray[np.float32]
+
+
+def make_cells(primitives: int, lights: int, room: int = 1 << 12) -> Cells:
+    """None yet, of so many primitives, all without a row of their own."""
+    receivers = aligned_rows(max(primitives, 1), RECEIVER)
+    receivers[:] = 0
+    cells = Cells(
+        np.zeros(room, word_type(lights)),
+        np.full(room, FINAL, np.int32),
+        np.zeros(room, np.int32),
+        np.zeros(room, np.int32),
+        np.zeros((room, 3), np.float32),
+        np.zeros(room, np.int32),
+        np.zeros((room, lights), np.int32),
+        np.zeros((room, lights), np.uint8),
+        np.zeros(4 * room, np.int32),
+        np.ones(1, np.int64),
+        np.zeros(1, np.int64),
+        receivers,
+    )
+    return cells
+
+
+def bytes_of(cells: Cells) -> int:
+    """Memory that the cells in use take."""
+    each = sum(a.itemsize * (a.shape[1] if a.ndim > 1 else 1) for a in cells[:8])
+    return int(cells.used[0]) * each + 4 * int(cells.named[0])
+
+
+def _longer(array: NDArray, size: int) -> NDArray:
+    result = np.zeros((size, *array.shape[1:]), array.dtype)
+    result[: len(array)] = array
+    return result
+
+
+def with_room(cells: Cells, more: int, names: int) -> Cells:
+    """The same with room for so many more cells and names."""
+    need, size = int(cells.used[0]) + more, len(cells.words)
+    if need > size:
+        size = max(need, 2 * size)
+        cells = Cells(*(_longer(a, size) for a in cells[:8]), *cells[8:])
+    need = int(cells.named[0]) + names
+    if need > len(cells.names):
+        cells = cells._replace(names=_longer(cells.names, max(need, 2 * len(cells.names))))
+    return cells
+
+
+@subkernel
+def _put_receiver(rows, i, largest, row):
+    """The row of triangle i of rows (n, 9); False where it is too thin to have one."""
+    a, e1, e2 = row_of(rows, i)
+    n = cross(e1, e2)
+    across = length(n)
+    if not across > 0.0:
+        return False
+    along_u, along_v = cross(e2, n), cross(n, e1)
+    du, dv, _ = slack_of(e1, e2, largest)
+    if not (du < 0.01 and dv < 0.01):
+        return False
+    for axis in range(3):
+        row[CORNER + axis] = a[axis]
+        row[ALONG_U + axis] = along_u[axis] / (across * across)
+        row[ALONG_V + axis] = along_v[axis] / (across * across)
+        row[NORMAL + axis] = n[axis] / across
+    row[BEYOND_U] = 3 * EPSILON * largest * length(e2) / across
+    row[BEYOND_V] = 3 * EPSILON * largest * length(e1) / across
+    return True
+
+
+@kernel
+def put_receivers(rows, first, last, largest, receivers):
+    """Rows (p, RECEIVER) of triangles first to last - 1 of rows (n, 9), in a scene of this largest coordinate.
+
+    What had a root before has none then."""
+    for i in range(first, last):
+        receivers[i, :] = 0
+        if not _put_receiver(rows, i, largest, receivers[i]):
+            receivers[i, :] = 0
+
+
+@subkernel
+def add_cell(cells, parent, owner, u, v, size):
+    """A new leaf; its number.  There must be room."""
+    number = cells.used[0]
+    cells.used[0] = number + 1
+    cells.words[number] = FULLY_RENDERED
+    cells.child[number], cells.parent[number], cells.owner[number] = LEAF, parent, owner
+    cells.place[number, 0], cells.place[number, 1], cells.place[number, 2] = u, v, size
+    cells.wanted[number] = 0
+    for light in range(cells.start.shape[1]):
+        cells.start[number, light] = 0
+        cells.count[number, light] = 0
+    return number
+
+
+@subkernel
+def state_of(word, light):
+    """The certificate for a light in a word."""
+    return (np.int64(word) >> (2 + 2 * light)) & 3
+
+
+@subkernel
+def set_state(cells, number, light, state):
+    """Put a certificate for a light into a cell's word."""
+    shift = np.uint64(2 + 2 * light)
+    word = np.uint64(cells.words[number]) & ~(np.uint64(3) << shift)
+    cells.words[number] = word | (np.uint64(state) << shift)
+
+
+@subkernel
+def set_below(cells, number, light, state, stack):
+    """Put a certificate for a light into the words of all cells that a cell is divided into."""
+    stack[0], pending = number, 1
+    while pending > 0:
+        pending -= 1
+        child = np.int64(cells.child[stack[pending]])
+        if child >= 0:
+            for k in range(4):
+                set_state(cells, child + k, light, state)
+                cells.count[child + k, light] = 0
+                stack[pending] = child + k
+                pending += 1

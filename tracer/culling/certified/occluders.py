@@ -1,0 +1,236 @@
+"""Which static primitives may come between a light and a cell: an 8-wide tree whose boxes know a light.
+
+Its shape is made once.  For each light every triangle's box is enlarged by how far from it a ray could
+still report a hit (`margins`), and the boxes above follow.  A triangle in whose plane the light lies, as far
+as float32 can tell, is in no box, but in a list that is always looked through.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.certified.beam import PLANES
+from tracer.culling.certified.margins import cross, dot, firm_height, length, margins, row_of
+from tracer.geometry.bvh8.build import build_shape
+from tracer.geometry.bvh8.collapse import VACANT, Shape
+from tracer.geometry.bvh8.tree import WIDTH
+from tracer.kernels import inlined, kernel, subkernel
+from tracer.simd import (
+    bits_of,
+    f32x8,
+    load_f32x8,
+    maximum,
+    minimum,
+)
+
+BOXES = 6 * WIDTH  # float32 of a node: lower x of its eight children, then lower y and so on
+BLOCK = 9 * WIDTH
+NONE = -1
+STACK = 64 * 8 * 8
+FAR = np.float32(3e37)
+ROUNDED = 1e-6  # of the largest coordinate, by which boxes are larger for planes in float32
+
+
+class Occluders(NamedTuple):
+    """All that is static, for any number of trees back to back.
+
+    rows (triangles, 9) float32, corner and edges in the world, by number; blurs (triangles,) float32, how far
+    their corners may be elsewhere; quadric_boxes (quadrics, 6) float32; children (nodes, 8) int32 as in a `Shape`;
+    blocks (leaves, BLOCK) float32, corners and edges of a leaf's triangles as structure of arrays, and numbers
+    (leaves, 8) int32, NONE for none, or that of a quadric; roots (trees,) int32; boxes (lights, nodes, BOXES) float32;
+    reaches (lights, leaves, 8) float32, how far from each triangle a ray from the light can report a hit, negative
+    where there is none in the box; loose (lights, n) int32, numbers of those in no box, and loose_count (lights,).
+    """
+
+    rows: NDArray[np.float32]
+    blurs: NDArray[np.float32]
+    quadric_boxes: NDArray[np.float32]
+    children: NDArray[np.int32]
+    blocks: NDArray[np.float32]
+    numbers: NDArray[np.int32]
+    roots: NDArray[np.int32]
+    boxes: NDArray[np.float32]
+    reaches: NDArray[np.float32]
+    loose: NDArray[np.int32]
+    loose_count: NDArray[np.int32]
+
+
+def shape_of(rows: NDArray[np.float32], boxes: NDArray[np.float32], numbers: NDArray[np.int32], threads: int) -> Shape:
+    """The shape of a tree over triangles (t, 9) and boxes (q, 6), whose primitives have these numbers (t + q,)."""
+    shape = build_shape(np.ascontiguousarray(rows), np.ascontiguousarray(boxes), np.zeros(2, np.int64), threads)
+    return Shape(shape.children, shape.leaves, numbers[shape.order])
+
+
+def joined(shapes: list[Shape]) -> tuple[Shape, NDArray[np.int32]]:
+    """Several shapes as one, and the roots (n,) int32 of each."""
+    children, leaves, order, roots = [], [], [], []
+    node = leaf = item = 0
+    for shape in shapes:
+        roots.append(node)
+        moved = np.where(shape.children >= 0, shape.children + node, shape.children - leaf)
+        children.append(np.where(shape.children == VACANT, VACANT, moved).astype(np.int32))
+        leaves.append(shape.leaves + np.array([item, 0], np.int32))
+        order.append(shape.order)
+        node, leaf, item = node + len(shape.children), leaf + len(shape.leaves), item + len(shape.order)
+    whole = Shape(np.concatenate(children), np.concatenate(leaves).astype(np.int32), np.concatenate(order))
+    return whole, np.array(roots, np.int32)
+
+
+@subkernel
+def _reach_of(rows, i, blur, light, farthest):
+    """How far from triangle i a ray from the light can report a hit; inf where that is anywhere."""
+    a, e1, e2 = row_of(rows, i)
+    s = light[0] - a[0], light[1] - a[1], light[2] - a[2]
+    across = cross(e1, e2)
+    height = abs(dot(s, across))
+    if not height > firm_height(s, e1, e2, blur):
+        return np.inf
+    # In the margins |D| counts by the same part of itself, whatever it is: that is added at the end.
+    m = margins(s, e1, e2, length(across), blur, 2.0 * farthest, farthest, height, height)
+    depth = height - m[3]
+    if not depth > 0.0:
+        return np.inf
+    uncertain = max(m[0], max(m[1], m[2])) / depth + 1e-5
+    longest = max(length(e1), max(length(e2), length((e1[0] - e2[0], e1[1] - e2[1], e1[2] - e2[2]))))
+    return 2.0 * uncertain * longest + (m[3] / depth + 1e-6) * farthest
+
+
+@inlined
+def _put_box(box, child, low, high):
+    for axis in range(3):
+        box[axis * WIDTH + child] = low[axis]
+        box[(3 + axis) * WIDTH + child] = high[axis]
+
+
+@inlined
+def _empty():
+    return (FAR, FAR, FAR), (-FAR, -FAR, -FAR)
+
+
+@inlined
+def _around(low, high, low2, high2):
+    return (
+        (min(low[0], low2[0]), min(low[1], low2[1]), min(low[2], low2[2])),
+        (max(high[0], high2[0]), max(high[1], high2[1]), max(high[2], high2[2])),
+    )
+
+
+@inlined
+def _triangle_box(rows, i, more):
+    low0, low1, low2 = rows[i, 0], rows[i, 1], rows[i, 2]
+    more = np.float32(more)
+    return (
+        (
+            low0 + min(np.float32(0), min(rows[i, 3], rows[i, 6])) - more,
+            low1 + min(np.float32(0), min(rows[i, 4], rows[i, 7])) - more,
+            low2 + min(np.float32(0), min(rows[i, 5], rows[i, 8])) - more,
+        ),
+        (
+            low0 + max(np.float32(0), max(rows[i, 3], rows[i, 6])) + more,
+            low1 + max(np.float32(0), max(rows[i, 4], rows[i, 7])) + more,
+            low2 + max(np.float32(0), max(rows[i, 5], rows[i, 8])) + more,
+        ),
+    )
+
+
+@subkernel
+def _leaf_box(o, leaf, number, light, farthest, rounded, loose):
+    """The box of a leaf's primitives for a light; what has none goes to the list of loose ones, of which there are so
+    many, which are returned too."""
+    low, high = _empty()
+    triangles, reaches = len(o.rows), o.reaches[number, leaf]
+    for k in range(WIDTH):
+        i = o.numbers[leaf, k]
+        reaches[k] = -FAR
+        if i >= triangles:
+            b = o.quadric_boxes[i - triangles]
+            low, high = _around(low, high, (b[0], b[1], b[2]), (b[3], b[4], b[5]))
+        elif i != NONE:
+            reach = _reach_of(o.rows, i, np.float64(o.blurs[i]), light, farthest) + rounded + o.blurs[i]
+            if reach < 0.5 * farthest:
+                reaches[k] = reach
+                low2, high2 = _triangle_box(o.rows, i, reach)
+                low, high = _around(low, high, low2, high2)
+            else:
+                o.loose[number, loose] = i
+                loose += 1
+    return low, high, loose
+
+
+@kernel
+def know_light(o, number, light, farthest, largest):
+    """Enlarge the boxes for light `number`, now at light (3,): no ray from it is longer than `farthest`, and no
+    coordinate larger than `largest`."""
+    light = (np.float64(light[0]), np.float64(light[1]), np.float64(light[2]))
+    loose, boxes, rounded = 0, o.boxes[number], ROUNDED * largest
+    for node in range(len(o.children) - 1, -1, -1):  # children come after their parents
+        for child in range(WIDTH):
+            code = o.children[node, child]
+            low, high = _empty()
+            if code >= 0:
+                for k in range(WIDTH):
+                    low, high = _around(
+                        low,
+                        high,
+                        (boxes[code, k], boxes[code, WIDTH + k], boxes[code, 2 * WIDTH + k]),
+                        (boxes[code, 3 * WIDTH + k], boxes[code, 4 * WIDTH + k], boxes[code, 5 * WIDTH + k]),
+                    )
+            elif code != VACANT:
+                low, high, loose = _leaf_box(o, ~code, number, light, farthest, rounded, loose)
+            _put_box(boxes[node], child, low, high)
+    o.loose_count[number] = loose
+
+
+@inlined
+def children_met(box, beam):
+    """Bits of the eight boxes at an address that may meet a beam."""
+    x0, y0, z0 = load_f32x8(box), load_f32x8(box + 32), load_f32x8(box + 64)
+    x1, y1, z1 = load_f32x8(box + 96), load_f32x8(box + 128), load_f32x8(box + 160)
+    b = beam.box
+    met = (x0 <= np.float32(b[3])) & (y0 <= np.float32(b[4])) & (z0 <= np.float32(b[5]))
+    met = met & (x1 >= np.float32(b[0])) & (y1 >= np.float32(b[1])) & (z1 >= np.float32(b[2]))
+    for k in range(PLANES):
+        nx, ny, nz = np.float32(beam.planes[k, 0]), np.float32(beam.planes[k, 1]), np.float32(beam.planes[k, 2])
+        # The corner of each box that is farthest behind the plane.
+        x = x0 if nx > np.float32(0) else x1
+        y = y0 if ny > np.float32(0) else y1
+        z = z0 if nz > np.float32(0) else z1
+        met = met & (x * nx + y * ny + z * nz <= np.float32(beam.planes[k, 3]))
+    return bits_of(met)
+
+
+@inlined
+def triangles_met(block, reaches, beam):
+    """Bits of the eight triangles of a block, at an address, that may meet a beam, made larger by their reaches."""
+    x, y, z = load_f32x8(block), load_f32x8(block + 32), load_f32x8(block + 64)
+    ax, ay, az = load_f32x8(block + 96), load_f32x8(block + 128), load_f32x8(block + 160)
+    bx, by, bz = load_f32x8(block + 192), load_f32x8(block + 224), load_f32x8(block + 256)
+    reach, zero, b = load_f32x8(reaches), f32x8(np.float32(0)), beam.box
+    met = reach > zero
+    for k in range(3):
+        c, e1, e2 = (x, ax, bx) if k == 0 else ((y, ay, by) if k == 1 else (z, az, bz))
+        low, high = minimum(zero, minimum(e1, e2)), maximum(zero, maximum(e1, e2))
+        met = met & (c + low - reach <= np.float32(b[3 + k])) & (c + high + reach >= np.float32(b[k]))
+    for k in range(PLANES):
+        nx, ny, nz = np.float32(beam.planes[k, 0]), np.float32(beam.planes[k, 1]), np.float32(beam.planes[k, 2])
+        e1, e2 = ax * nx + ay * ny + az * nz, bx * nx + by * ny + bz * nz
+        least = x * nx + y * ny + z * nz + minimum(zero, minimum(e1, e2))
+        met = met & (least - reach <= np.float32(beam.planes[k, 3]))
+    return bits_of(met)
+
+
+def blocks_of(shape: Shape, rows: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+    """blocks (leaves, BLOCK) and numbers (leaves, WIDTH) of a shape whose items are numbers of rows (t, 9), or of
+    quadrics after them."""
+    first, count = shape.leaves.T
+    count = np.where(shape.order[first] < len(rows), count, 1)
+    slots = first[:, None] + np.arange(WIDTH)
+    there = np.arange(WIDTH) < count[:, None]
+    numbers = np.where(there, shape.order[np.minimum(slots, len(shape.order) - 1)], NONE).astype(np.int32)
+    triangles = there & (numbers < len(rows))
+    blocks = np.zeros((len(first), 9, WIDTH), np.float32)
+    blocks.transpose(0, 2, 1)[triangles] = rows[numbers[triangles]]
+    return blocks.reshape(-1, BLOCK), numbers

@@ -1,0 +1,278 @@
+"""Certifying the cells that rays wanted: round by round from the roots, each round in parallel.
+
+A task is a cell and the points in it that wanted more.  Working on it finds certificates for all lights
+that have none there, and sorts the points by the part of the cell they lie in; nothing is written that others
+read.  `commit` then takes results over in the order of the tasks, so that cells get the same
+numbers whoever worked on what, and says which parts are the tasks of the next round.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.certified.beam import put_cell, put_light
+from tracer.culling.certified.cells import FINAL, LEAF, add_cell, set_below, set_state, state_of
+from tracer.culling.certified.certify import CANDIDATES, COUNTERS, MOST, TOO_MANY, UNTRIED, certify
+from tracer.culling.certified.margins import cross, dot, row_of
+from tracer.geometry.memory import borrowed
+from tracer.kernels import inlined, kernel, subkernel
+
+DEEPEST = 2.0**-12  # of a triangle's edges: no cell is smaller
+SMALLEST = 8.0  # times how far above a surface rays may end: shorter cells would be mostly margin
+KEPT = 0xFF  # instead of a result: the light has its certificate, or needs none
+
+
+class Points(NamedTuple):
+    """Points (n,) that wanted more, by root: key int32, u and v float32; and room to sort them, (3, n) float32."""
+
+    key: NDArray[np.int32]
+    u: NDArray[np.float32]
+    v: NDArray[np.float32]
+    spare: NDArray[np.float32]
+
+
+class Tasks(NamedTuple):
+    """n tasks: cell (n,) int32, and first and last (n,) int32 of its points; results: state (n, lights) uint8, KEPT for
+    no news, count (n, lights) uint8 and names (n, lights, MOST) int32 of what each names; and parts (n, 5) int32, where
+    the points of each part begin and the last end, or all 0 where the cell need not be looked into.
+    """
+
+    cell: NDArray[np.int32]
+    first: NDArray[np.int32]
+    last: NDArray[np.int32]
+    state: NDArray[np.uint8]
+    count: NDArray[np.uint8]
+    names: NDArray[np.int32]
+    parts: NDArray[np.int32]
+
+
+def make_tasks(cell: NDArray[np.int32], first: NDArray[np.int32], last: NDArray[np.int32], lights: int) -> Tasks:
+    n = len(cell)
+    return Tasks(
+        cell,
+        first,
+        last,
+        np.empty((n, lights), np.uint8),
+        np.empty((n, lights), np.uint8),
+        np.empty((n, lights, MOST), np.int32),
+        np.zeros((n, 5), np.int32),
+    )
+
+
+@kernel
+def gather_roots(cells, key, u, v, points):
+    """Sort points by their roots' keys into points, whose arrays are as long: tasks' (cell, first, last), (n, 3) int32.
+
+    Roots that are not there yet are made; there must be room."""
+    receivers = cells.receivers.view(np.int32)
+    starts = np.zeros(2 * len(receivers) + 1, np.int32)
+    for i in range(len(key)):
+        starts[key[i] + 1] += 1
+    roots = 0
+    for k in range(len(starts) - 1):
+        roots += starts[k + 1] > 0
+        starts[k + 1] += starts[k]
+    tasks = np.empty((roots, 3), np.int32)
+    n = 0
+    for k in range(len(starts) - 1):
+        if starts[k + 1] > starts[k]:
+            root = receivers[k >> 1, 14 + (k & 1)]
+            if root == 0:
+                root = add_cell(cells, 0, k, np.float32(0), np.float32(0), np.float32(1))
+                receivers[k >> 1, 14 + (k & 1)] = root
+            tasks[n, 0], tasks[n, 1], tasks[n, 2] = root, starts[k], starts[k + 1]
+            n += 1
+    for i in range(len(key)):
+        at = starts[key[i]]
+        starts[key[i]] += 1
+        points.key[at], points.u[at], points.v[at] = key[i], u[i], v[i]
+    return tasks
+
+
+@inlined
+def _part(cells, cell, u, v):
+    """Which of a cell's four parts a point of its triangle lies in."""
+    size = cells.place[cell, 2]
+    x, y = (u - cells.place[cell, 0]) / size, (v - cells.place[cell, 1]) / size
+    if x + y <= np.float32(0.5):
+        return 0
+    if x >= np.float32(0.5):
+        return 1
+    return 2 if y >= np.float32(0.5) else 3
+
+
+@subkernel
+def _sort_points(cells, cell, points, first, last, parts):
+    """Sort points first to last - 1 by the parts of a cell; where they begin, into parts (5,)."""
+    for k in range(5):
+        parts[k] = 0
+    for i in range(first, last):
+        parts[1 + _part(cells, cell, points.u[i], points.v[i])] += 1
+    parts[0] = first
+    for k in range(4):
+        parts[k + 1] += parts[k]
+    n0, n1, n2, n3 = parts[0], parts[1], parts[2], parts[3]
+    for i in range(first, last):
+        points.spare[0, i], points.spare[1, i] = points.u[i], points.v[i]
+    for i in range(first, last):
+        u, v = points.spare[0, i], points.spare[1, i]
+        k = _part(cells, cell, u, v)
+        if k == 0:
+            at = n0
+            n0 += 1
+        elif k == 1:
+            at = n1
+            n1 += 1
+        elif k == 2:
+            at = n2
+            n2 += 1
+        else:
+            at = n3
+            n3 += 1
+        points.u[at], points.v[at] = u, v
+
+
+@inlined
+def _can_split(cells, o, cell, highest):
+    """Whether a leaf may be divided: its parts are not too small."""
+    size = abs(np.float64(cells.place[cell, 2])) * 0.5
+    if size < DEEPEST:
+        return False
+    _a, e1, e2 = row_of(o.rows, cells.owner[cell] >> 1)
+    shortest = min(dot(e1, e1), dot(e2, e2)) * size * size
+    return shortest > (SMALLEST * highest) ** 2
+
+
+@subkernel
+def _faces(o, triangle, side, light):
+    """Whether a light lies on a side of a triangle's plane."""
+    a, e1, e2 = row_of(o.rows, triangle)
+    return side * dot(cross(e1, e2), (light[0] - a[0], light[1] - a[1], light[2] - a[2])) > 0.0
+
+
+@subkernel
+def _work_on(cells, o, lights, still, reach, task, tasks, points, patience, s, counts):
+    cell = np.int64(tasks.cell[task])
+    first, last = tasks.first[task], tasks.last[task]
+    owner = np.int64(cells.owner[cell])
+    triangle, side = owner >> 1, 1.0 - 2.0 * (owner & 1)
+    word, parent = cells.words[cell], np.int64(cells.parent[cell])
+    highest, largest = reach
+    placed = put_cell(
+        s.beam,
+        o.rows,
+        triangle,
+        side,
+        np.float64(cells.place[cell, 0]),
+        np.float64(cells.place[cell, 1]),
+        np.float64(cells.place[cell, 2]),
+        highest,
+        largest,
+    )
+    doubt = False
+    for light in range(len(lights)):
+        tasks.state[task, light] = KEPT
+        state = state_of(word, light)
+        if not still[light] or not _faces(o, triangle, side, lights[light]):
+            continue
+        if state == UNTRIED:
+            given = cells.names[:0]
+            given_count = TOO_MANY
+            if parent != 0 and state_of(cells.words[parent], light) == CANDIDATES:
+                given_count = np.int64(cells.count[parent, light])
+                start = np.int64(cells.start[parent, light])
+                given = cells.names[start : start + (given_count if given_count <= MOST else 0)]
+            place = (np.float64(lights[light, 0]), np.float64(lights[light, 1]), np.float64(lights[light, 2]))
+            count = TOO_MANY
+            state = CANDIDATES
+            if placed and put_light(s.beam, place):
+                state, count = certify(s, o, light, place, given, given_count, counts)
+            tasks.state[task, light], tasks.count[task, light] = state, count
+            if count != TOO_MANY:
+                for k in range(count):
+                    tasks.names[task, light, k] = s.found[k]
+        doubt |= state == CANDIDATES
+    tasks.parts[task, :] = 0
+    if doubt and placed:
+        leaf = cells.child[cell] == LEAF
+        if cells.child[cell] >= 0 or (
+            leaf and cells.wanted[cell] + last - first >= patience and _can_split(cells, o, cell, highest)
+        ):
+            _sort_points(cells, cell, points, first, last, tasks.parts[task])
+
+
+@kernel
+def work_on(cells, o, lights, still, reach, first, last, tasks, points, patience, s, counts):
+    """Certify tasks first to last - 1 for lights (n, 3), those of them that stand `still` (n,) bool.
+
+    reach is how high above rays may end and the scene's largest coordinate; a leaf is divided once so many
+    rays have wanted it."""
+    cells, o, tasks, points, s = borrowed(cells), borrowed(o), borrowed(tasks), borrowed(points), borrowed(s)
+    for task in range(first, last):
+        _work_on(cells, o, lights, still, reach, task, tasks, points, patience, s, counts)
+
+
+@subkernel
+def _divide(cells, cell):
+    """Make the four parts of a leaf, which take over what is certified of it."""
+    u, v, size = cells.place[cell, 0], cells.place[cell, 1], cells.place[cell, 2]
+    half = np.float32(0.5) * size
+    owner = cells.owner[cell]
+    child = add_cell(cells, cell, owner, u, v, half)
+    add_cell(cells, cell, owner, u + half, v, half)
+    add_cell(cells, cell, owner, u, v + half, half)
+    add_cell(cells, cell, owner, u + half, v + half, -half)
+    for light in range(cells.start.shape[1]):
+        state = state_of(cells.words[cell], light)
+        if state != UNTRIED and state != CANDIDATES:
+            for k in range(4):
+                set_state(cells, child + k, light, state)
+    cells.child[cell] = child
+    return child
+
+
+@kernel
+def commit(cells, o, reach, tasks, following):
+    """Take over the results of tasks; how many tasks (n, 3) int32, cell, first and last point, follow from them."""
+    stack = np.empty(256, np.int64)
+    more = 0
+    highest, _largest = reach
+    for task in range(len(tasks.cell)):
+        cell = np.int64(tasks.cell[task])
+        for light in range(tasks.state.shape[1]):
+            state = tasks.state[task, light]
+            if state == KEPT:
+                continue
+            set_state(cells, cell, light, state)
+            count = tasks.count[task, light]
+            cells.count[cell, light] = count
+            if count != TOO_MANY and count > 0:
+                at = cells.named[0]
+                cells.start[cell, light] = at
+                cells.names[at : at + count] = tasks.names[task, light, :count]
+                cells.named[0] = at + count
+            if state != CANDIDATES and cells.child[cell] >= 0:
+                set_below(cells, cell, light, state, stack)
+        parts = tasks.parts[task]
+        if parts[4] == 0:
+            if cells.child[cell] == LEAF:
+                cells.wanted[cell] += tasks.last[task] - tasks.first[task]
+                if not _can_split(cells, o, cell, highest):
+                    cells.child[cell] = FINAL
+            continue
+        child = np.int64(cells.child[cell])
+        if child < 0:
+            child = _divide(cells, cell)
+        for k in range(4):
+            if parts[k + 1] > parts[k]:
+                following[more, 0], following[more, 1], following[more, 2] = child + k, parts[k], parts[k + 1]
+                more += 1
+    return more
+
+
+def counters(workers: int) -> NDArray[np.int64]:
+    """(workers, COUNTERS) of what certifying takes."""
+    return np.zeros((workers, COUNTERS), np.int64)
