@@ -27,6 +27,8 @@ SETTINGS_FILE = "settings.json"
 RECENT_SCENES = 10
 LONGEST_SIDE = 8192
 """Pixels of a picture of fixed size."""
+LONGEST_BUDGET = 10_000.0
+"""Milliseconds of a frame that may go into certificates."""
 DEFAULT_TEMPLATE = "{scene}-{view}-{frame:04d}-{date}-{time}.png"
 
 # Limits of the numbers; whatever lies outside is not from this program.
@@ -37,6 +39,7 @@ _RANGES: dict[str, tuple[float, float]] = {
     "fixed_width": (1, LONGEST_SIDE),
     "fixed_height": (1, LONGEST_SIDE),
     "zoom_factor": (1.0, 1e6),
+    "certificate_ms": (0.0, LONGEST_BUDGET),
     "depth": (0, 100),
     "samples": (1, 64),
     "threads": (0, 1024),
@@ -47,7 +50,7 @@ _RANGES: dict[str, tuple[float, float]] = {
 @dataclass
 class Preferences:
     """Everything that outlives the window.  `speed` is relative to the scene's own pace, 1 by default; `method` is
-    the one to cull by while `culling` is on."""
+    the one to cull by while `culling` is on, `certificate_ms` what certifying may take of a frame."""
 
     target_fps: float = 15.0
     dynamic_resolution: bool = True
@@ -63,6 +66,7 @@ class Preferences:
     keep_tracing: bool = False
     culling: bool = True
     method: str = DEFAULT
+    certificate_ms: float = 50.0
     symmetric: bool = False
     zoom_factor: float = 4.0
     depth: int = 10
@@ -84,15 +88,18 @@ class Preferences:
         method = self.method if self.culling else "none"
         names = ("symmetric", "zoom_factor", "depth", "samples", "threads", "verify")
         try:
-            return Settings(method=method, **{name: getattr(self, name) for name in names}).validated()
+            budget = self.certificate_ms / 1e3
+            values = {name: getattr(self, name) for name in names}
+            return Settings(method=method, certificate_seconds=budget, **values).validated()
         except ValueError:
-            return Settings()
+            return Settings(method=DEFAULT)
 
     def keep(self, settings: Settings) -> None:
         """Remember what was chosen to trace with."""
         s = settings
         self.culling, self.method = s.method != "none", s.method if s.method != "none" else self.method
         self.symmetric, self.zoom_factor = s.symmetric, s.zoom_factor
+        self.certificate_ms = min(1e3 * s.certificate_seconds, LONGEST_BUDGET)
         self.depth, self.samples, self.threads, self.verify = s.depth, s.samples, s.threads, s.verify
 
     def chosen_view(self) -> View:

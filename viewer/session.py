@@ -19,7 +19,9 @@ from viewer.methods import DEFAULT
 from viewer.views import View
 
 # Settings that say how a frame was asked for, not what the user chose, and those of this machine.
-_NOT_RESTORED = {"width", "height", "threads", "record_lights", "record_work"}
+_NOT_RESTORED = {
+    "width", "height", "threads", "record_lights", "record_work", "certificates", "certificate_seconds",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,11 @@ class Snapshot:
             raise ValueError(f"its saved state lacks {error}") from None
         except TypeError:
             raise ValueError("its saved state is damaged") from None
+
+
+def settings_to_json(settings: Settings) -> dict[str, Any]:
+    """What is kept of settings, in a snapshot."""
+    return {name: value for name, value in asdict(settings).items() if name not in _NOT_RESTORED}
 
 
 def settings_from_json(data: Any) -> dict[str, Any]:
@@ -168,7 +175,7 @@ class Session:
             time=self.time,
             camera=self.camera,
             follow=self.follow,
-            settings=asdict(self.settings),
+            settings=settings_to_json(self.settings),
             view=self.view,
             light=self.light,
             wipe=self.wipe,

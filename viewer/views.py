@@ -102,7 +102,8 @@ _EXPLANATIONS = {
     View.PIXEL_COUNT: "Pixels a primitive covers now, against the most it covered while fully rendered.",
     View.DIFFERENCE: "Pixels for which a culled shadow ray was answered wrongly; black where every answer is right.",
     View.WIPE: "Left of the line the traced picture, right of it that with every shadow answer right. Drag the line.",
-    View.CERTIFICATE: "What is proven of each virtual cell and the chosen light; lines are the borders of cells.",
+    View.CERTIFICATE: "What is proven of each virtual cell and the chosen light; lines are the borders of cells. Each "
+    "frame proves more: T traces another, K goes on.",
     View.SAVED: "Shadow rays of each pixel, at all bounces, that asked no tree of static geometry.",
     View.COST: "Rays traced for each pixel, of all kinds and at all bounces.",
 }

@@ -28,6 +28,7 @@ KEY = imgui.Key
 def views(d: Driver) -> None:
     """Every view by its key, each the same as what the command line would draw; only what must be verified, or
     counted, is traced for, once, and as little for the views after it."""
+    d.c.change(method="paper")
     d.settle()
     d.certify()
     d.press(KEY.t)

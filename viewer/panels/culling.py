@@ -21,6 +21,7 @@ from viewer.panels.widgets import (
     tooltip,
     wide_button,
 )
+from viewer.preferences import LONGEST_BUDGET
 from viewer.ui import Ui
 
 
@@ -43,6 +44,13 @@ def show(ui: Ui) -> None:
             changed, factor = imgui.slider_float("##zoom", s.zoom_factor, 1.0, 64.0, "%.1f", flags)
             if changed:
                 c.change(zoom_factor=factor)
+        if shown and base_of(s.method) == "certified":
+            row("Certify", "milliseconds of a frame for it, at most; what is wanted most comes first")
+            flags = int(imgui.SliderFlags_.logarithmic | imgui.SliderFlags_.always_clamp)
+            budget = min(1e3 * s.certificate_seconds, LONGEST_BUDGET)
+            changed, budget = imgui.slider_float("##budget", budget, 1.0, LONGEST_BUDGET, "%.0f ms", flags)
+            if changed:
+                c.change(certificate_seconds=budget / 1e3)
     if wide_button(f"{icons.ICON_FA_ERASER}  Reset modes", "forget all that was learnt (Backspace)", 2):
         c.reset_modes()
     imgui.same_line()

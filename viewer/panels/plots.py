@@ -21,13 +21,14 @@ _BLUE, _GREEN, _ORANGE, _SKY, _PINK, _YELLOW = (
 _FATES = "Shadow rays by fate"
 _LOGARITHMIC = "Milliseconds"
 _PLOTS = (
-    (_FATES, (("culled", "culled", _BLUE), ("dynamic only", "dynamic_only", _YELLOW),
-              ("candidates", "candidates_only", _ORANGE), ("cache hits", "cache_hits", _PINK),
+    (_FATES, (("culled", "culled", _BLUE), ("dynamic", "dynamic_only", _YELLOW),
+              ("candidates", "candidates_only", _ORANGE), ("cache", "cache_hits", _PINK),
               ("traced", "traced", ImVec4(0.55, 0.58, 0.64, 1.0)))),
     ("Steps and tests", (("steps", "steps", _BLUE), ("for shadows", "shadow_steps", _SKY),
                          ("tests", "tests", _ORANGE))),
     (_LOGARITHMIC, (("traced", "traced_ms", _BLUE), ("drawn", "drawn_ms", _ORANGE))),
 )  # fmt: skip
+_SHARES = (0.44, 0.31, 0.25)  # of the panel's width: the first legend is the longest
 FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
 AXIS = int(implot.AxisFlags_.no_highlight)
 LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
@@ -64,11 +65,11 @@ def show(ui: Ui) -> None:
     room = imgui.get_content_region_avail()
     spacing = imgui.get_style().item_spacing.x
     columns = 3 if room.x > em(42.0) else 1  # else one below the other, and the panel scrolls
-    size = ImVec2((room.x - (columns - 1) * spacing) / columns, max(room.y, em(8.0)))
-    for number, (title, series) in enumerate(_PLOTS):
+    shares = _SHARES if columns > 1 else (1.0,) * len(_PLOTS)
+    for number, ((title, series), share) in enumerate(zip(_PLOTS, shares, strict=True)):
         if number % columns:
             imgui.same_line()
-        _plot(ui, title, series, size)
+        _plot(ui, title, series, ImVec2(share * (room.x - (columns - 1) * spacing), max(room.y, em(8.0))))
 
 
 def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size: ImVec2) -> None:

@@ -21,7 +21,7 @@ from viewer.panels.widgets import (
 )
 from viewer.ui import Ui
 
-_PHASE_ORDER = ("place", "primary", "occlusion testing", "shading", "mode setting", "certification")
+_PHASE_ORDER = ("place", "primary", "occlusion testing", "certification", "shading", "mode setting")
 
 
 def show(ui: Ui) -> None:
@@ -62,7 +62,7 @@ def show(ui: Ui) -> None:
         with properties("certificates") as shown:
             if shown:
                 seconds = s.phases.get("certification", 0.0)
-                tip = "of cells that this frame's rays asked for, after it; the next frames go by them"
+                tip = "of cells that rays wanted, those that were wanted most first"
                 value("Made", f"{count(s.certificates)}  in {1e3 * seconds:.1f} ms", tip)
     heading("Work")
     _work(ui)
