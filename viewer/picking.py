@@ -12,7 +12,7 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.renderer import Frame
 from tracer.scene.model import CONE, Camera, Material, Scene
 from viewer.navigation import Vector, ray
-from viewer.views import units_of
+from viewer.views import has_modes_of_cells, units_of
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
         y,
         primitive,
         unit=unit,
-        in_cells=_in_cells(frame),
+        in_cells=has_modes_of_cells(frame),
         kind=kind_of(scene, primitive),
         object_name=scene.objects[index].name,
         dynamic=index > 0,
@@ -76,10 +76,6 @@ def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
         wrong=_wrong_at(frame, x, y),
         seen=_seen(frame),
     )
-
-
-def _in_cells(frame: Frame) -> bool:
-    return frame.cells is not None and units_of(frame) is frame.cells
 
 
 def _wrong_at(frame: Frame, x: int, y: int) -> int | None:
@@ -143,7 +139,7 @@ def refreshed(old: Pick, frame: Frame) -> Pick:
 
     Where units are others now, cells or no cells any more, it is the primitive, or else what the pixel shows.  Wrong
     answers are those of the pixel, and known only while it shows the same."""
-    same, in_cells = old.seen == _seen(frame), _in_cells(frame)
+    same, in_cells = old.seen == _seen(frame), has_modes_of_cells(frame)
     unit = old.unit if in_cells == old.in_cells else old.primitive
     if in_cells != old.in_cells and in_cells:
         unit = int(units_of(frame)[old.y, old.x]) if same else -1

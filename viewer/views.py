@@ -218,6 +218,11 @@ def units_of(frame: Frame) -> NDArray[np.int32]:
     return frame.cell if frame.certificates is None else frame.primitive
 
 
+def has_modes_of_cells(frame: Frame) -> bool:
+    """Whether what carries modes are virtual cells."""
+    return frame.cells is not None and frame.certificates is None
+
+
 def work_of(frame: Frame, view: View) -> NDArray[np.int32] | None:
     """(h, w) what a heat map shows at each pixel; None where the frame did not record it."""
     return frame.saved if view is View.SAVED else frame.cost

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.explanation import Explanation
+from tracer.frame import Frame
 from viewer.explaining import MOST_OCCLUDERS, Answer, Part
 from viewer.panels.widgets import QUIET, checkbox, clipped, em, heading, paragraph, swatch, tooltip
 from viewer.picking import kind_of
@@ -27,7 +28,6 @@ _FADED = 0.18  # opacity of other lights than the one that is pointed at
 def rows(ui: Ui) -> None:
     """In the inspector: each light, whether it gets here, and what blocks it; nothing while that is not known."""
     c = ui.controller
-    ui.pointed_light = None
     heading("Shadow rays")
     p = c.preferences
     tip = (
@@ -100,6 +100,7 @@ def _named(ui: Ui, primitive: int) -> str:
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """Over the picture: the lights' ways to the point, and outlines of what blocks them."""
     c = ui.controller
+    pointed, ui.pointed_light = ui.pointed_light, None  # the inspector says so in each frame
     answer, frame = c.explaining.answer, c.frame
     if answer is None or frame is None or not c.preferences.draw_explanation:
         return
@@ -113,23 +114,27 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     lines = c.explaining.lines(frame)
     for shade in (True, False):
         for part, light, strokes in lines:
-            alpha = _FADED if ui.pointed_light not in (None, light) else 1.0
+            alpha = _FADED if pointed not in (None, light) else 1.0
             color = imgui.get_color_u32(_with_alpha(_SHADE, alpha) if shade else ImVec4(*_COLORS[part], alpha))
             for stroke in strokes:
                 wide = em(_WIDTHS[part]) * (1.0 if stroke.seen else _UNSEEN) + (em(0.12) if shade else 0.0)
                 draw.add_line(on_screen(stroke.start), on_screen(stroke.end), color, max(1.0, wide))
-    _ends(answer, on_screen, ui, draw)
+    _ends(answer, frame, pointed, on_screen, draw)
     draw.pop_clip_rect()
 
 
-def _ends(answer: Answer, on_screen: Callable[[tuple[float, float]], ImVec2], ui: Ui, draw: imgui.ImDrawList) -> None:
+def _ends(
+    answer: Answer,
+    frame: Frame,
+    pointed: int | None,
+    on_screen: Callable[[tuple[float, float]], ImVec2],
+    draw: imgui.ImDrawList,
+) -> None:
     """A disc at each light that is due, a cross where its way ends before the point, and a ring around the point."""
-    frame = ui.controller.frame
-    assert frame is not None
     for one in answer.lights:
         if not one.due:
             continue
-        alpha = _FADED if ui.pointed_light not in (None, one.light) else 1.0
+        alpha = _FADED if pointed not in (None, one.light) else 1.0
         at = place(frame, one.light_position)
         if at is not None:
             draw.add_circle_filled(on_screen(at), em(0.42), imgui.get_color_u32(_with_alpha(_SHADE, alpha)))

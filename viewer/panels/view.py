@@ -34,7 +34,7 @@ from viewer.panels.widgets import (
     value,
 )
 from viewer.ui import Ui
-from viewer.views import GREY, WRONG, View, color_map
+from viewer.views import GREY, WRONG, View, color_map, has_modes_of_cells
 
 _GRADIENT_STEPS = 24
 _FLAT = (View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT, View.CERTIFICATE)
@@ -81,8 +81,9 @@ def _legend(ui: Ui, frame: Frame) -> None:
     tip = view.explanation
     if view in _OF_MODES and base_of(frame.settings.method) == "certified":
         paragraph("This frame's method goes by certificates (0); modes are those of other methods.", WARNING)
+    units = "cells" if has_modes_of_cells(frame) else "primitives"
     if view is View.OCCLUSION:
-        _table(ui.cached("occlusion", frame, 0, lambda: occlusion_legend(frame)), "primitives")
+        _table(ui.cached("occlusion", frame, 0, lambda: occlusion_legend(frame)), units)
     elif view.of_light:
         if view is View.CERTIFICATE and frame.certificates is None:
             paragraph(f"The method {frame.settings.method} makes no certificates; certified does.", WARNING)
@@ -92,7 +93,7 @@ def _legend(ui: Ui, frame: Frame) -> None:
         if not rows:
             paragraph("Culling does not cover this light: its shadow rays are all traced.", WARNING)
             return
-        _table(rows, "primitives" if view is View.SHADOW else "cells seen")
+        _table(rows, units if view is View.SHADOW else "cells seen")
     elif view is View.DEPTH and ui.display is not None:
         near, far = ui.display.depth_range
         _gradient(f"{near:.4g}", f"{far:.4g}", reverse=True)
