@@ -3,9 +3,11 @@
 
 uniform sampler2D color_buffer;       // rgb, display-referred, unclamped
 uniform isampler2D primitive_buffer;  // number of the primitive, -1 for a miss
-uniform usampler2D mode_table;        // per primitive: low and high half of its packed word of modes
-uniform isampler2D count_table;       // per primitive: pixels now, highest count
-uniform int table_width;              // primitives per row of the two tables
+uniform isampler2D unit_buffer;       // number of what carries modes, the primitive or a cell of it; -1 for a miss
+uniform usampler2D mode_table;        // per unit: low and high half of its packed word of modes
+uniform isampler2D count_table;       // per unit: pixels now, highest count
+uniform int table_width;              // units per row of the two tables
+uniform sampler2D color_map;          // from the lowest value to the highest
 uniform vec3 background;
 uniform float shading;                // how much of the picture's light and shade shows under flat colours, 0 to 1
 uniform bool outlines;                // draw the borders between primitives
@@ -25,16 +27,21 @@ int primitive_at(ivec2 p) {
 
 int mark_at(ivec2 p) { return int(texelFetch(mark_buffer, p, 0).r); }
 
-ivec2 table_entry(int primitive) { return ivec2(primitive % table_width, primitive / table_width); }
+int unit_at(ivec2 p) { return texelFetch(unit_buffer, p, 0).r; }
 
-// Two bits of a primitive's packed word, at an even position from 0 to 62.
-int mode_bits(int primitive, int position) {
-    uvec2 word = texelFetch(mode_table, table_entry(primitive), 0).rg;
+ivec2 table_entry(int unit) { return ivec2(unit % table_width, unit / table_width); }
+
+// Two bits of a packed word, at an even position from 0 to 62.
+int two_bits(uvec2 word, int position) {
     uint half_word = position < 32 ? word.x : word.y;
     return int((half_word >> uint(position & 31)) & 3u);
 }
 
-ivec2 counts_of(int primitive) { return texelFetch(count_table, table_entry(primitive), 0).rg; }
+int mode_bits(int unit, int position) {
+    return two_bits(texelFetch(mode_table, table_entry(unit), 0).rg, position);
+}
+
+ivec2 counts_of(int unit) { return texelFetch(count_table, table_entry(unit), 0).rg; }
 
 // A flat colour with some of the traced picture's light and shade, so that shapes stay readable.
 vec3 shaded(vec3 flat_color) {
@@ -63,3 +70,9 @@ void finish_over(vec3 color) { result = vec4(on_selected_border() ? vec3(1.0) : 
 
 // The same with the borders between primitives, where they are asked for.
 void finish(vec3 color) { finish_over(outlines && on_border(primitive_at(pixel())) ? color * 0.35 : color); }
+
+// A value from 0 to 1 on the colour map, and on the background where nothing is seen.
+void finish_mapped(float t) {
+    vec3 color = texture(color_map, vec2(clamp(t, 0.0, 1.0), 0.5)).rgb;
+    finish(primitive_at(pixel()) < 0 ? background : color);
+}

@@ -7,22 +7,28 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.viewer.conftest import in_cells, with_certificates
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
+from viewer.legends import difference_legend
 from viewer.pictures import SHADING, picture
 from viewer.resources import embedded_scenes
 from viewer.views import (
     BACKGROUND,
+    CELL_LINE,
+    CERTIFICATE_COLORS,
     GREY,
     OCCLUSION_COLORS,
     RING_DIMMING,
     SHADOW_COLORS,
     WIPE_LINE,
     WRONG,
+    Certificate,
     View,
-    difference_legend,
+    color_map,
+    work_top,
 )
 
 SCENE = """\
@@ -62,6 +68,12 @@ def wrong_frame(frame: Frame) -> Frame:
 
 
 @pytest.fixture(scope="module")
+def certified_frame(wrong_frame: Frame) -> Frame:
+    """The same with cells and their certificates, and with the work at each pixel."""
+    return with_certificates(wrong_frame)
+
+
+@pytest.fixture(scope="module")
 def figure4() -> list[Frame]:
     """The paper's Figure 4 as it goes wrong and mends itself: frames 0, 10, 20 and 27, verified."""
     scene = load_scene(embedded_scenes()["figure4"])
@@ -85,10 +97,10 @@ def test_colours_are_clamped_and_otherwise_untouched(frame: Frame) -> None:
 
 
 @pytest.mark.parametrize("view", [v for v in View if v is not View.COLOR and not v.needs_verify])
-def test_what_is_missed_has_the_background(frame: Frame, view: View) -> None:
-    missed = frame.primitive < 0
+def test_what_is_missed_has_the_background(certified_frame: Frame, view: View) -> None:
+    missed = certified_frame.primitive < 0
     assert missed.any()
-    assert (picture(frame, view)[missed] == to_bytes(BACKGROUND)).all()
+    assert (picture(certified_frame, view)[missed] == to_bytes(BACKGROUND)).all()
 
 
 def test_occlusion_modes_have_their_colours(frame: Frame) -> None:
@@ -111,6 +123,16 @@ def test_shadow_modes_have_their_colours(frame: Frame, light: int) -> None:
         assert (drawn[there] == to_bytes(SHADOW_COLORS[mode])).all()
 
 
+def test_modes_of_cells_are_those_that_are_drawn(frame: Frame) -> None:
+    cells = in_cells(frame)
+    drawn = picture(cells, View.SHADOW, 0, shading=0.0)
+    still = (cells.primitive >= 0) & (frame.occlusion_mode != OcclusionMode.DYNAMIC)
+    mode = (cells.modes[cells.cells] >> 2) & 3
+    for one in ShadowMode:
+        assert (drawn[still & (mode == one)] == to_bytes(SHADOW_COLORS[one])).all()
+    assert (drawn[:, ::2] != picture(frame, View.SHADOW, 0, shading=0.0)[:, 1::2]).any()
+
+
 def test_every_primitive_has_a_colour_of_its_own(frame: Frame) -> None:
     drawn = picture(frame, View.PRIMITIVE, shading=0.0)
     hit = frame.primitive >= 0
@@ -125,9 +147,55 @@ def test_a_light_past_the_culled_ones_is_drawn_as_unknown(frame: Frame) -> None:
     assert (drawn[still] == to_bytes(GREY)).all()
 
 
+@pytest.mark.parametrize("light", [0, 1])
+def test_certificates_have_their_colours_and_cells_their_lines(certified_frame: Frame, light: int) -> None:
+    f = certified_frame
+    drawn = picture(f, View.CERTIFICATE, light, shading=0.0)
+    moving = f.occlusion_mode == OcclusionMode.DYNAMIC
+    line = np.zeros_like(moving)
+    for y, x in np.argwhere(f.primitive >= 0):
+        right, below = f.cells[y, min(x + 1, f.width - 1)], f.cells[min(y + 1, f.height - 1), x]
+        line[y, x] = right != f.cells[y, x] or below != f.cells[y, x]
+    assert 0.1 < line[f.cells >= 0].mean() < 0.6
+    for certificate in Certificate:
+        there = (f.primitive >= 0) & ~moving & ((f.certificates >> (2 + 2 * light)) & 3 == certificate)
+        color = np.asarray(CERTIFICATE_COLORS[certificate])
+        assert there.any() and (drawn[there & ~line] == to_bytes(color)).all()
+        assert (drawn[there & line] == to_bytes(np.float32(CELL_LINE) * color.astype(np.float32))).all()
+    assert (drawn[moving & ~line] == to_bytes(OCCLUSION_COLORS[OcclusionMode.DYNAMIC])).all()
+
+
+def test_a_frame_without_certificates_is_grey(frame: Frame) -> None:
+    drawn = picture(frame, View.CERTIFICATE, 0, shading=0.0)
+    still = (frame.primitive >= 0) & (frame.occlusion_mode != OcclusionMode.DYNAMIC)
+    greys = np.stack([to_bytes(GREY), to_bytes(np.float32(CELL_LINE) * np.asarray(GREY, np.float32))])
+    assert (drawn[still][:, None] == greys).all(axis=-1).any(axis=-1).all()
+
+
+@pytest.mark.parametrize("view", [View.SAVED, View.COST])
+def test_work_is_mapped_up_to_nearly_the_most(certified_frame: Frame, view: View) -> None:
+    work = certified_frame.saved if view is View.SAVED else certified_frame.cost
+    drawn, top = picture(certified_frame, view), work_top(certified_frame, view)
+    hit = certified_frame.primitive >= 0
+    assert np.mean(work[hit] > top) <= 0.01 and (work[hit] >= 0.9 * top).any()
+    colors = np.round(color_map() * 255).astype(int)
+    assert np.abs(drawn[hit & (work >= top)].astype(int) - colors[-1]).max() <= 1
+    for rays in np.unique(work[hit]):
+        shown = drawn[hit & (work == rays)].astype(int)
+        entry = min(max(rays / top * 256.0 - 0.5, 0.0), 255.0)
+        assert (shown == shown[0]).all() and np.abs(shown[0] - colors[round(entry)]).max() <= 2
+
+
+@pytest.mark.parametrize("view", [View.SAVED, View.COST])
+def test_a_frame_that_recorded_no_work_is_refused(frame: Frame, view: View) -> None:
+    with pytest.raises(ValueError, match="did not record the work"):
+        picture(frame, view)
+
+
 def test_a_light_that_is_not_there(frame: Frame) -> None:
-    with pytest.raises(ValueError, match="no light 2: the scene's lights are 0 to 1"):
-        picture(frame, View.SHADOW, 2)
+    for view in (View.SHADOW, View.CERTIFICATE):
+        with pytest.raises(ValueError, match="no light 2: the scene's lights are 0 to 1"):
+            picture(frame, view, 2)
 
 
 def test_what_is_wrong_has_the_one_colour_and_all_else_is_black(wrong_frame: Frame) -> None:
@@ -188,18 +256,19 @@ def test_a_shadow_that_culling_misses_is_drawn(figure4: list[Frame]) -> None:
 
 @pytest.mark.gui
 @pytest.mark.parametrize("view", list(View))
-@pytest.mark.parametrize("marked", [True, False])
-def test_shaders_draw_the_same(wrong_frame: Frame, view: View, marked: bool) -> None:
+@pytest.mark.parametrize(("marked", "cells"), [(True, False), (False, False), (True, True)])
+def test_shaders_draw_the_same(certified_frame: Frame, view: View, marked: bool, cells: bool) -> None:
     moderngl = pytest.importorskip("moderngl")
     from viewer.display import Display, Look
 
+    shown = in_cells(replace(certified_frame, certificates=None)) if cells else certified_frame
     context = moderngl.create_context(standalone=True, require=330)
     with context:
         display = Display()
-        display.upload(wrong_frame)
+        display.upload(shown)
         display.draw(Look(view=view, light=1, shading=SHADING, marked=marked, wipe=0.4))
         on_gpu = display.read()[..., :3].astype(int)
         display.release()
     context.release()
-    here = picture(wrong_frame, view, 1, marked=marked, wipe=0.4).astype(int)
+    here = picture(shown, view, 1, marked=marked, wipe=0.4).astype(int)
     assert np.abs(on_gpu - here).max() <= 1

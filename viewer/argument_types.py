@@ -8,7 +8,13 @@ from collections.abc import Callable
 
 MOST_FACTORS = 6  # that are compared in one zoom test
 
-_VIEW_NAMES = {"colour": "color", "primitives": "primitive", "normals": "normal", "count": "pixel-count"}
+_VIEW_NAMES = {
+    "colour": "color",
+    "primitives": "primitive",
+    "normals": "normal",
+    "count": "pixel-count",
+    "certificates": "certificate",
+}
 
 
 def size(text: str) -> tuple[int, int]:
@@ -77,12 +83,21 @@ def view(text: str) -> tuple:
 
     name, colon, detail = text.partition(":")
     name = _VIEW_NAMES.get(name, name)
-    details = {View.SHADOW: r"\d{1,9}", View.WIPE: r"0|1|[01]?\.\d{1,9}"}
-    known = ", ".join({View.SHADOW: "shadow:LIGHT", View.WIPE: "wipe:PART"}.get(v, v.value) for v in View)
+    details = {View.WIPE: r"0|1|[01]?\.\d{1,9}"} | {v: r"\d{1,9}" for v in View if v.of_light}
+    known = ", ".join(v.value + (":LIGHT" if v.of_light else ":PART" if v is View.WIPE else "") for v in View)
     if name not in set(View) or (colon and not re.fullmatch(details.get(View(name), r"(?!)"), detail, re.ASCII)):
         raise argparse.ArgumentTypeError(f"{text!r} is no view; the views are {known}")
     view = View(name)
     wipe = float(detail) if view is View.WIPE and detail else 0.5
     if wipe > 1.0:
         raise argparse.ArgumentTypeError(f"{text!r}: the line of a wipe lies at 0 to 1 of the width")
-    return view, int(detail) if view is View.SHADOW and detail else 0, wipe
+    return view, int(detail) if view.of_light and detail else 0, wipe
+
+
+def method(text: str) -> str:
+    """A method, with what it takes along."""
+    from tracer.method import choice, is_method
+
+    if not is_method(text):
+        raise argparse.ArgumentTypeError(f"invalid choice: {text!r}; it is {choice()}")
+    return text

@@ -99,7 +99,7 @@ def _table(results: Results, verified: bool) -> Table:
     rows = experiment.table(results)
     table.add_column("")
     for row in rows:
-        table.add_column(row.method, justify="right")
+        table.add_column(row.method.replace("+", "\n+"), justify="right")
     for heading, cell in LINES:
         if verified or heading != WRONG:
             table.add_row(heading, *(cell(row) for row in rows))

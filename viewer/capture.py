@@ -27,7 +27,7 @@ FIELDS = {
     "view": "the view's name",
     "frame": "number of the frame, e.g. {frame:04d}",
     "seconds": "the scene's time, e.g. {seconds:.2f}",
-    "method": "how shadows were traced: none or paper",
+    "method": "how shadows were traced, e.g. paper or certified+cache",
     "light": "number of the chosen light",
     "width": "width in pixels",
     "height": "height in pixels",

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from viewer import examples, resources
-from viewer.argument_types import count, factors, number, pixel, size, view
+from viewer.argument_types import count, factors, method, number, pixel, size, view
 from viewer.lines import say
 from viewer.screen import has_display, no_display_reason
 from viewer.version import program_version
@@ -155,14 +155,21 @@ def _render(arguments: list[str]) -> int:
     _add_moment(parser)
     add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
     add("--samples", type=count(1, 4096), default=1, metavar="N", help="rays per pixel, averaged (default: 1)")
-    add("--method", choices=("none", "paper"), default="paper", help="how shadow rays are culled (default: paper)")
+    add(
+        "--method",
+        type=method,
+        default="paper",
+        metavar="M",
+        help="how shadow rays are culled: none, paper, cells or certified, and what that takes along, like "
+        "certified+cache or cells+rest (default: paper)",
+    )
     add(
         "--view",
         type=view,
         default="color",
         metavar="V",
-        help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference or "
-        "wipe:PART (default: color)",
+        help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference, "
+        "wipe:PART, certificate:LIGHT, saved or cost (default: color)",
     )
     add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
     add("--camera", metavar="JSON", help="another camera: position, direction, up, angle; or a file with that")
@@ -193,7 +200,7 @@ def _bench(arguments: list[str]) -> int:
         type=lambda text: [name.strip() for name in text.split(",")],
         default=["paper"],
         metavar="M,...",
-        help="none, paper; none is always among them (default: paper)",
+        help="like none,paper,cells,certified,certified+cache; none is always among them (default: paper)",
     )
     add("--path-frames", type=count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
     add("--frames", metavar="A:B", help="only the frames A to B - 1 of the path")

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
+from tracer.method import BASES, EXTRAS, base_of, takes
 from viewer import navigation
+from viewer.methods import EXTRAS_TOLD, toggled, with_base
 from viewer.picking import extent_at, point_at
 from viewer.ui import CaptureKind, Ui
 from viewer.views import View
@@ -80,10 +82,7 @@ def _view(ui: Ui) -> list[Command]:
     p = c.preferences
 
     def show(view: View) -> Command:
-        number = list(View).index(view) + 1
-        return Command(
-            view.label, "View", lambda: c.set_view(view), str(number), checked=lambda: c.session.view is view
-        )
+        return Command(view.label, "View", lambda: c.set_view(view), view.key, checked=lambda: c.session.view is view)
 
     def toggle(name: str) -> Callable[[], None]:
         return lambda: setattr(p, name, not getattr(p, name))
@@ -95,6 +94,7 @@ def _view(ui: Ui) -> list[Command]:
         Command("Previous light", "View", lambda: c.set_light(c.session.light - 1), "Shift+L", enabled=lit),
         Command("Outlines", "View", toggle("outlines"), "B", checked=lambda: p.outlines, separated=True),
         Command("Mark wrong pixels", "View", toggle("mark_wrong"), "M", checked=lambda: p.mark_wrong),
+        Command("Draw shadow rays", "View", toggle("draw_explanation"), "I", checked=lambda: p.draw_explanation),
         Command("Smooth upscaling", "View", toggle("smooth_upscaling"), checked=lambda: p.smooth_upscaling),
         Command("Default layout", "View", lambda: ui.reset_layout(), separated=True),
     ]
@@ -157,8 +157,23 @@ def _culling(ui: Ui) -> list[Command]:
         c.trace_again()
 
     s = lambda: c.session.settings  # noqa: E731
+
+    def base(name: str) -> Command:
+        chosen = lambda: base_of(s().method) == name  # noqa: E731
+        return Command(
+            f"Method {name}", "Culling", lambda: c.change(method=with_base(s().method, name)), checked=chosen
+        )
+
+    def extra(name: str) -> Command:
+        taken = lambda: takes(s().method, name)  # noqa: E731
+        change = lambda: c.change(method=toggled(s().method, name))  # noqa: E731
+        return Command(EXTRAS_TOLD[name][0], "Culling", change, checked=taken)
+
     return [
-        Command("Shadow culling", "Culling", c.toggle_culling, "C", checked=lambda: s().method != "none"),
+        *[base(name) for name in BASES],
+        *[extra(name) for name in EXTRAS],
+        Command("Shadow culling", "Culling", c.toggle_culling, "C", checked=lambda: s().method != "none",
+                separated=True),
         Command("Symmetric occlusion test", "Culling", lambda: c.change(symmetric=not s().symmetric), "Y",
                 checked=lambda: s().symmetric),
         Command("Verify", "Culling", lambda: c.change(verify=not s().verify), "V", checked=lambda: s().verify),

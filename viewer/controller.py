@@ -19,6 +19,7 @@ import numpy as np
 from tracer.renderer import Frame, Renderer
 from tracer.scene.model import Camera, Scene
 from viewer import navigation
+from viewer.explaining import Explaining
 from viewer.history import History
 from viewer.keeper import Keeper
 from viewer.motion import Motion
@@ -61,6 +62,7 @@ class Controller:
         self.runner = Runner(self)
         self.tracing = Tracing(self)
         self.motion = Motion(self)
+        self.explaining = Explaining(self)
         self.drawn_seconds = 0.0
         self.size = (0, 0)
         self._seen = math.inf
@@ -79,6 +81,7 @@ class Controller:
         frame = self._take_frame()
         self.motion.follow()
         self.tracing.ask()
+        self.explaining.follow()
         return frame
 
     @property
@@ -192,12 +195,12 @@ class Controller:
         self.preferences.view = view.value
 
     def set_light(self, light: int) -> None:
-        """Choose the light of the shadow view; counts around."""
+        """Choose the light of the views that speak of one; counts around."""
         lights = len(self.session.scene.lights) if self.session.scene is not None else 0
         self.session.light = light % lights if lights else 0
 
     def toggle_culling(self) -> None:
-        self.change(method="none" if self.session.settings.method != "none" else "paper")
+        self.change(method="none" if self.session.settings.method != "none" else self.preferences.method)
 
     def reset_modes(self) -> None:
         """Forget all that was learnt about shadows, and look again."""

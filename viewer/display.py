@@ -22,6 +22,8 @@ from tracer.culling.modes import OcclusionMode, has_shadow_mode
 from viewer.resources import shader_source
 from viewer.views import (
     BACKGROUND,
+    CELL_LINE,
+    CERTIFICATE_COLORS,
     GREY,
     OCCLUSION_COLORS,
     RING_DIMMING,
@@ -31,7 +33,9 @@ from viewer.views import (
     View,
     color_map,
     depth_range,
+    units_of,
     wipe_column,
+    work_top,
     wrong_marks,
 )
 
@@ -41,8 +45,8 @@ if TYPE_CHECKING:
 TABLE_WIDTH = 2048
 _PICTURES = (View.COLOR, View.WIPE)
 _UNITS = (
-    "color_buffer", "primitive_buffer", "mode_table", "count_table", "depth_buffer", "normal_buffer", "color_map",
-    "reference_buffer", "mark_buffer",
+    "color_buffer", "primitive_buffer", "unit_buffer", "mode_table", "count_table", "depth_buffer", "normal_buffer",
+    "color_map", "reference_buffer", "mark_buffer", "certificate_buffer", "cell_buffer", "saved_buffer", "cost_buffer",
 )  # fmt: skip
 # What lies on the GPU as a frame holds it: components, their kind, and the frame's attribute.
 _PIXELS = {
@@ -51,6 +55,9 @@ _PIXELS = {
     "normal_buffer": (3, "f4", "normal"),
     "primitive_buffer": (1, "i4", "primitive"),
     "reference_buffer": (3, "f4", "reference"),
+    "cell_buffer": (1, "i4", "cell"),
+    "saved_buffer": (1, "i4", "saved"),
+    "cost_buffer": (1, "i4", "cost"),
 }
 
 
@@ -123,6 +130,11 @@ class Display:
         if name in _PIXELS:
             components, dtype, attribute = _PIXELS[name]
             self._write(name, self.size, components, dtype, getattr(frame, attribute))
+        elif name == "certificate_buffer":
+            words = frame.certificates if frame.certificates is not None else np.zeros(frame.primitive.shape, np.uint32)
+            self._write(name, self.size, 2, "u4", _halves(words))
+        elif name == "unit_buffer":
+            self._write(name, self.size, 1, "i4", units_of(frame))
         elif name == "mode_table":
             self._write_table(name, "u4", _halves(frame.modes))
         elif name == "count_table":
@@ -132,7 +144,7 @@ class Display:
     def draw(self, look: Look) -> None:
         """Draw the view of the frame into the target, unless it is there already.
 
-        Raises ValueError for a view of verified frames where the frame is none."""
+        Raises ValueError for a view of verified frames, or of work that was recorded, where the frame is none."""
         if self._frame is None or self._drawn == (self._serial, look):
             return
         window = self.context.detect_framebuffer()
@@ -194,7 +206,7 @@ class Display:
         texture.write(np.ascontiguousarray(data), alignment=1)
 
     def _write_table(self, name: str, dtype: str, entries: NDArray) -> None:
-        """Upload (n, 2) entries, one per primitive, as rows of TABLE_WIDTH."""
+        """Upload (n, 2) entries, one per unit, as rows of TABLE_WIDTH."""
         rows = max(1, -(-len(entries) // TABLE_WIDTH))
         table = np.zeros((rows * TABLE_WIDTH, 2), entries.dtype)
         table[: len(entries)] = entries
@@ -216,27 +228,32 @@ class Display:
 
     def _set_uniforms(self, program: Any, look: Look) -> None:
         assert self._frame is not None
-        dynamic = OCCLUSION_COLORS[OcclusionMode.DYNAMIC]
-        covered = has_shadow_mode(self._frame.modes, look.light)
+        frame, view, dynamic = self._frame, look.view, OCCLUSION_COLORS[OcclusionMode.DYNAMIC]
+        words = frame.certificates if view is View.CERTIFICATE and frame.certificates is not None else frame.modes
+        palettes = {
+            View.OCCLUSION: list(OCCLUSION_COLORS.values()),
+            View.SHADOW: [*SHADOW_COLORS.values(), dynamic],
+            View.CERTIFICATE: [*CERTIFICATE_COLORS.values(), dynamic],
+        }
         values: dict[str, Any] = {
             "table_width": TABLE_WIDTH,
             "background": BACKGROUND,
             "shading": look.shading,
             "outlines": look.outlines,
             "selected": look.selected,
-            "light": look.light if covered else -1,
-            "range": self.depth_range if look.view is View.DEPTH else (0.0, 1.0),
-            "zoom_factor": self._frame.settings.zoom_factor,
+            "light": look.light if has_shadow_mode(words, look.light) else -1,
+            "range": self.depth_range if view is View.DEPTH else (0.0, 1.0),
+            "top": work_top(frame, view) if view.needs_work else 1.0,
+            "cell_line": CELL_LINE,
+            "zoom_factor": frame.settings.zoom_factor,
             "unknown": GREY,
             "wrong_color": WRONG,
             "ring_color": tuple(RING_DIMMING * channel for channel in WRONG),
             "marked": look.marked,
-            "column": wipe_column(self._frame.width, look.wipe),
+            "column": wipe_column(frame.width, look.wipe),
             "line": look.line,
             "line_color": WIPE_LINE,
-            "palette": list(OCCLUSION_COLORS.values())
-            if look.view is View.OCCLUSION
-            else [*SHADOW_COLORS.values(), dynamic],
+            "palette": palettes.get(view),
         }
         for name, value in values.items():
             if name in program:
@@ -258,7 +275,7 @@ class Display:
 
 
 def _halves(words: NDArray) -> NDArray[np.uint32]:
-    """Packed words of 32 or 64 bits as (n, 2) uint32: low half, high half."""
+    """Packed words (...) of 32 or 64 bits as (..., 2) uint32: low half, high half."""
     low = (words & words.dtype.type(0xFFFFFFFF)).astype(np.uint32)
     high = (words >> np.uint64(32)).astype(np.uint32) if words.itemsize == 8 else np.zeros_like(low)
-    return np.stack([low, high], axis=1)
+    return np.stack([low, high], axis=-1)

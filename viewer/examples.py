@@ -23,6 +23,7 @@ examples:
   shadowcull render kitchen.aff -o kitchen.png --size 1024x768 --samples 16
   shadowcull render kitchen.aff -o modes.png --frame 50 --warmup 20 --view shadow:2
   shadowcull render kitchen.aff -o wrong.png --frame 50 --warmup 20 --view difference
+  shadowcull render kitchen.aff -o cells.png --frame 50 --warmup 20 --method certified --view certificate:0
   shadowcull render Robot.aff --frame 10 --warmup 10 --buffers robot.npz
   shadowcull render bunny.ply -o bunny.png --camera '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
 
@@ -33,17 +34,20 @@ The .npz holds color (H,W,3 float32), depth (H,W float32, distance along the uni
 primitive and cell (H,W int32, -1 for a miss), occlusion_mode (H,W uint8, 255 for a miss), shadow_mode
 (H,W,lights uint8), and for each light and primary hit lit and due (H,W,lights bool); with --verify also
 reference (H,W,3 float32), the colour with every shadow answer right, and wrong (H,W int32), the number of
-wrong shadow answers of each pixel.
+wrong shadow answers of each pixel. A frame of the method certified has certificate (H,W,lights uint8: 0 none,
+1 in full shadow, 2 lit, 3 a few candidates), and the views saved and cost have arrays of their names (H,W int32).
 
 --view difference and --view wipe verify by themselves: the first shows the pixels with wrong shadow answers,
 the second the picture left of a line and what it should be right of it; wipe:0.3 puts the line at 30 % of
-the width. Rings show where wrong pixels are; --no-marks leaves them out.
+the width. Rings show where wrong pixels are; --no-marks leaves them out. --view saved and --view cost are maps
+of the shadow rays that were spared at each pixel, and of all rays that were traced for it.
 """
 
 BENCH = """\
 examples:
   shadowcull bench kitchen.aff --path-frames 100
   shadowcull bench Robot.aff --frames 100:200 --size 256x256 --verify
+  shadowcull bench kitchen.aff --path-frames 100 --methods paper,cells,certified,certified+cache
   shadowcull bench default --methods none,paper --symmetric --json default.json --csv default.csv
   shadowcull bench kitchen.aff --path-frames 100 --verify --plot kitchen.svg
 

@@ -18,8 +18,10 @@ from PIL import Image, PngImagePlugin
 from rich.table import Table
 
 from tracer.compilation import warm_up
+from tracer.culling import modes
 from tracer.frame import Frame, Settings
 from tracer.kernels import cache_folder, is_kept
+from tracer.method import base_of
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, load_visible_scene, scene_info
 from tracer.scene.model import Camera, Scene
@@ -56,20 +58,24 @@ def render(path: Path, options: Namespace) -> None:
     view, light, _ = options.view
     settings = replace(tracing_settings(options), method=options.method)
     _check_outputs(options.output, options.buffers)
+    if view is View.CERTIFICATE and base_of(settings.method) != "certified":
+        raise ValueError(f"--view certificate: the method {settings.method} makes none; give --method certified")
     with working() as work:
         scene = load_visible_scene(path, work.progress)
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
-        if view is View.SHADOW and light >= len(scene.lights):
-            raise ValueError(f"--view shadow:{light}: {lights_in_words(len(scene.lights))}")
+        if view.of_light and light >= len(scene.lights):
+            raise ValueError(f"--view {view.value}:{light}: {lights_in_words(len(scene.lights))}")
         time = moment(scene, options.frame, options.time)
         prepare_kernels(work, len(scene.lights), options.accelerator)
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)
         before = _render_before(renderer, time, options, work)
         work.count(f"tracing {settings.width} × {settings.height}", before, before + options.samples)
         verify = settings.verify or view.needs_verify
-        wanted = replace(settings, samples=options.samples, verify=verify, record_lights=options.buffers is not None)
-        renderer.settings = wanted
+        lights = options.buffers is not None
+        renderer.settings = replace(
+            settings, samples=options.samples, verify=verify, record_lights=lights, record_work=view.needs_work
+        )
         frame = renderer.render(time, options.camera, work.cancelled)
         work.progress("writing", 1.0)
         if options.output is not None:
@@ -87,7 +93,8 @@ def render(path: Path, options: Namespace) -> None:
 def buffers(frame: Frame) -> dict[str, np.ndarray]:
     """The arrays of `--buffers`, by name; the frame must have been rendered with `record_lights`.
 
-    A verified frame has `reference` and `wrong` as well."""
+    A verified frame has `reference` and `wrong` as well, one with certificates `certificate`, and one that recorded
+    its work `saved` and `cost`."""
     assert frame.lit is not None and frame.due is not None
     arrays: dict[str, np.ndarray] = {
         "color": frame.color,
@@ -101,6 +108,11 @@ def buffers(frame: Frame) -> dict[str, np.ndarray]:
     }
     if frame.reference is not None and frame.wrong is not None:
         arrays |= {"reference": frame.reference, "wrong": frame.wrong}
+    if frame.certificates is not None:
+        planes = [modes.shadow_mode(frame.certificates, light) for light in range(frame.lights)]
+        arrays["certificate"] = np.stack(planes, axis=-1) if planes else np.empty((*frame.primitive.shape, 0), np.uint8)
+    if frame.saved is not None and frame.cost is not None:
+        arrays |= {"saved": frame.saved, "cost": frame.cost}
     return arrays
 
 

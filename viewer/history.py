@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.renderer import Frame
+from tracer.frame import Frame
+from tracer.statistics import ShadowCounts
 
 CAPACITY = 600
 
@@ -17,6 +18,9 @@ SERIES = (
     "due",
     "culled",
     "dynamic_only",
+    "candidates_only",
+    "cache_hits",
+    "traced",
     "steps",
     "tests",
     "shadow_steps",
@@ -25,6 +29,11 @@ SERIES = (
     "traced_ms",
     "drawn_ms",
 )
+
+
+def fully_traced(shadow: ShadowCounts) -> int:
+    """Shadow rays that were due and that nothing was known of."""
+    return shadow.due - shadow.culled - shadow.candidates_only - shadow.dynamic_only - shadow.cache_hits
 
 
 class History:
@@ -36,17 +45,22 @@ class History:
         self._values = {name: np.zeros(2 * capacity) for name in SERIES}
 
     def add(self, frame: Frame, drawn_seconds: float) -> None:
-        """Append one traced frame's numbers; `drawn_seconds` is what the window needed for its last own frame."""
+        """Append one traced frame's numbers; `drawn_seconds` is what the window needed for its last own frame.
+
+        Steps and tests are all that were made for the frame, those of its certificates too."""
         s = frame.statistics
         parts = (s.primary, s.secondary, s.shadow)
         self._put(
             due=s.shadow.due,
             culled=s.shadow.culled,
             dynamic_only=s.shadow.dynamic_only,
-            steps=sum(p.traversal_steps for p in parts),
-            tests=sum(p.intersection_tests for p in parts),
-            shadow_steps=s.shadow.traversal_steps,
-            shadow_tests=s.shadow.intersection_tests,
+            candidates_only=s.shadow.candidates_only,
+            cache_hits=s.shadow.cache_hits,
+            traced=fully_traced(s.shadow),
+            steps=sum(p.traversal_steps for p in parts) + s.certificate_steps,
+            tests=sum(p.intersection_tests for p in parts) + s.certificate_tests,
+            shadow_steps=s.shadow.traversal_steps + s.certificate_steps,
+            shadow_tests=s.shadow.intersection_tests + s.certificate_tests,
             pixels=frame.width * frame.height,
             traced_ms=1e3 * s.seconds,
             drawn_ms=1e3 * drawn_seconds,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from viewer import capture
 from viewer.jobs import Job
 from viewer.preferences import default_screenshot_folder
-from viewer.session import Snapshot
+from viewer.session import Snapshot, settings_to_json
 
 if TYPE_CHECKING:
     from viewer.controller import Controller
@@ -90,7 +90,9 @@ class Keeper:
         }
         settings = replace(frame.settings, verify=session.settings.verify)  # a view may have verified by itself
         now = session.snapshot()
-        snapshot = replace(now, time=frame.time, camera=frame.camera, follow=follow, settings=asdict(settings))
+        snapshot = replace(
+            now, time=frame.time, camera=frame.camera, follow=follow, settings=settings_to_json(settings)
+        )
         size = (frame.width, frame.height)
         text = capture.metadata(snapshot, number, size, frame.statistics.to_dict())
         folder = Path(preferences.screenshot_folder or default_screenshot_folder()).expanduser()

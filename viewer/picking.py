@@ -12,11 +12,14 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.renderer import Frame
 from tracer.scene.model import CONE, Camera, Material, Scene
 from viewer.navigation import Vector, ray
+from viewer.views import has_modes_of_cells, units_of
 
 
 @dataclass(frozen=True)
 class Pick:
     """One pixel of a frame.  `primitive` is -1 where the ray left the scene; then only x and y mean anything.
+
+    `unit` carries the modes and counts; `in_cells` says whether units are virtual cells, else they are primitives.
 
     `wrong` is the number of the pixel's wrong shadow answers, None where that is not known; `seen` is the frame's
     time, camera, width and height."""
@@ -24,6 +27,8 @@ class Pick:
     x: int
     y: int
     primitive: int
+    unit: int = -1
+    in_cells: bool = False
     kind: str = ""
     object_name: str = ""
     dynamic: bool = False
@@ -50,19 +55,21 @@ def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
     primitive = int(frame.primitive[y, x])
     if not 0 <= primitive < scene.primitive_count:
         return Pick(x, y, -1)
-    index = scene.object_of(primitive)
+    index, unit = scene.object_of(primitive), int(units_of(frame)[y, x])
     return Pick(
         x,
         y,
         primitive,
+        unit=unit,
+        in_cells=has_modes_of_cells(frame),
         kind=kind_of(scene, primitive),
         object_name=scene.objects[index].name,
         dynamic=index > 0,
         material=scene.material_of(primitive),
-        occlusion=OcclusionMode(int(frame.modes[primitive]) & 3),
-        shadows=tuple(shadow_mode_of(frame, primitive, light) for light in range(len(scene.lights))),
-        pixels=int(frame.pixel_count[primitive]),
-        highest=int(frame.highest_count[primitive]),
+        occlusion=OcclusionMode(int(frame.modes[unit]) & 3),
+        shadows=tuple(shadow_mode_of(frame, unit, light) for light in range(len(scene.lights))),
+        pixels=int(frame.pixel_count[unit]),
+        highest=int(frame.highest_count[unit]),
         depth=float(frame.depth[y, x]),
         point=_triple(point_at(frame, u, v)),
         normal=_triple(frame.normal[y, x]),
@@ -88,11 +95,11 @@ def kind_of(scene: Scene, primitive: int) -> str:
     return "cone" if kind == CONE else "sphere"
 
 
-def shadow_mode_of(frame: Frame, primitive: int, light: int) -> ShadowMode | None:
-    """A primitive's shadow mode for a light; None where culling does not cover the light."""
+def shadow_mode_of(frame: Frame, unit: int, light: int) -> ShadowMode | None:
+    """A unit's shadow mode for a light; None where culling does not cover the light."""
     if not modes.has_shadow_mode(frame.modes, light):
         return None
-    return ShadowMode(int(modes.shadow_mode(frame.modes[primitive], light)))
+    return ShadowMode(int(modes.shadow_mode(frame.modes[unit], light)))
 
 
 def point_at(frame: Frame, u: float, v: float) -> Vector | None:
@@ -128,16 +135,23 @@ def _triple(v: Vector | None) -> tuple[float, float, float] | None:
 
 
 def refreshed(old: Pick, frame: Frame) -> Pick:
-    """The same primitive's modes and counts as a newer frame knows them; where it was clicked stays.
+    """The same unit's modes and counts as a newer frame knows them; where it was clicked stays.
 
-    Wrong answers are those of the pixel, and known only while it shows the same."""
-    if old.primitive < 0 or old.primitive >= len(frame.modes):
+    Where units are others now, cells or no cells any more, it is the primitive, or else what the pixel shows.  Wrong
+    answers are those of the pixel, and known only while it shows the same."""
+    same, in_cells = old.seen == _seen(frame), has_modes_of_cells(frame)
+    unit = old.unit if in_cells == old.in_cells else old.primitive
+    if in_cells != old.in_cells and in_cells:
+        unit = int(units_of(frame)[old.y, old.x]) if same else -1
+    if old.primitive < 0 or not 0 <= unit < len(frame.modes):
         return old
     return replace(
         old,
-        occlusion=OcclusionMode(int(frame.modes[old.primitive]) & 3),
-        shadows=tuple(shadow_mode_of(frame, old.primitive, light) for light in range(len(old.shadows))),
-        pixels=int(frame.pixel_count[old.primitive]),
-        highest=int(frame.highest_count[old.primitive]),
-        wrong=_wrong_at(frame, old.x, old.y) if old.seen == _seen(frame) else None,
+        unit=unit,
+        in_cells=in_cells,
+        occlusion=OcclusionMode(int(frame.modes[unit]) & 3),
+        shadows=tuple(shadow_mode_of(frame, unit, light) for light in range(len(old.shadows))),
+        pixels=int(frame.pixel_count[unit]),
+        highest=int(frame.highest_count[unit]),
+        wrong=_wrong_at(frame, old.x, old.y) if same else None,
     )

@@ -13,8 +13,11 @@ from numpy.typing import NDArray
 from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame
+from viewer.legends import certificates_of
 from viewer.views import (
     BACKGROUND,
+    CELL_LINE,
+    CERTIFICATE_COLORS,
     GREY,
     OCCLUSION_COLORS,
     RING_DIMMING,
@@ -25,7 +28,10 @@ from viewer.views import (
     View,
     color_map,
     depth_range,
+    units_of,
     wipe_column,
+    work_of,
+    work_top,
     wrong_marks,
 )
 
@@ -45,11 +51,11 @@ def picture(
 ) -> NDArray[np.uint8]:
     """(height, width, 3) uint8, row 0 at the top: a frame in one of its views.
 
-    `light` is the light that the shadow view speaks of, `marked` draws rings around wrong pixels, and
-    `wipe` is the place of the wipe's line, 0 to 1 from the left.  Raises ValueError where there is no
-    such light, or where the frame was not verified and the view is of verified ones.
+    `light` is the light that the views of shadows and certificates speak of, `marked` draws rings around wrong
+    pixels, and `wipe` is the place of the wipe's line, 0 to 1 from the left.  Raises ValueError where there is no
+    such light, or where the view is one of verified frames, or of work that was recorded, and the frame is not.
     """
-    if view is View.SHADOW and not 0 <= light < frame.lights:
+    if view.of_light and not 0 <= light < frame.lights:
         raise ValueError(f"no light {light}: {lights_in_words(frame.lights)}")
     if view is View.COLOR:
         colors = np.clip(frame.color, 0.0, 1.0)
@@ -57,14 +63,19 @@ def picture(
         colors = _difference(frame, marked)
     elif view is View.WIPE:
         colors = _wipe(frame, marked, wipe)
+    elif view.needs_work:
+        colors = _on_background(frame, _work(frame, view))
+    elif view is View.CERTIFICATE:
+        colors = _on_background(frame, _certificate(frame, light, shading))
     elif view is View.DEPTH:
         colors = _on_background(frame, _depth(frame))
     elif view is View.NORMAL:
         colors = _on_background(frame, frame.normal * 0.5 + 0.5)
     else:
         table = {View.OCCLUSION: _occlusion, View.PRIMITIVE: _primitive, View.PIXEL_COUNT: _pixel_count}
-        per_primitive = _shadow(frame, light) if view is View.SHADOW else table[view](frame)
-        colors = _on_background(frame, _shaded(frame, _per_pixel(frame, per_primitive), shading))
+        entries = _shadow(frame, light) if view is View.SHADOW else table[view](frame)
+        numbers = frame.primitive if view is View.PRIMITIVE else units_of(frame)
+        colors = _on_background(frame, _shaded(frame, _per_pixel(numbers, entries), shading))
     return np.round(np.clip(colors, 0.0, 1.0) * 255.0).astype(np.uint8)
 
 
@@ -85,11 +96,11 @@ def _shaded(frame: Frame, flat: NDArray, shading: float) -> NDArray:
     return np.clip(flat * (1.0 + shading * (light[..., None] - 1.0)), 0.0, 1.0)
 
 
-def _per_pixel(frame: Frame, table: NDArray) -> NDArray:
-    """Look a colour per primitive up at each pixel; misses get some colour, to be overwritten."""
+def _per_pixel(numbers: NDArray[np.int32], table: NDArray) -> NDArray:
+    """Look a colour up by the number at each pixel; misses get some colour, to be overwritten."""
     if len(table) == 0:
-        return np.zeros((*frame.primitive.shape, 3), np.float32)
-    return table[np.maximum(frame.primitive, 0)]
+        return np.zeros((*numbers.shape, 3), np.float32)
+    return table[np.maximum(numbers, 0)]
 
 
 def _occlusion(frame: Frame) -> NDArray:
@@ -108,9 +119,32 @@ def _shadow(frame: Frame, light: int) -> NDArray:
     return palette[mode]
 
 
+def _certificate(frame: Frame, light: int, shading: float) -> NDArray:
+    """By the certificate of each pixel's cell, what moves as moving, and darker lines between cells."""
+    palette = np.asarray([*CERTIFICATE_COLORS.values(), OCCLUSION_COLORS[OcclusionMode.DYNAMIC]], np.float32)
+    colors = _shaded(frame, palette[certificates_of(frame, light)], shading)
+    colors[_on_line(frame.cell)] *= CELL_LINE
+    return colors
+
+
+def _on_line(cells: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Pixels whose neighbour to the right, or below, lies in another cell."""
+    line = np.zeros(cells.shape, np.bool_)
+    line[:, :-1] |= cells[:, 1:] != cells[:, :-1]
+    line[:-1] |= cells[1:] != cells[:-1]
+    return line
+
+
+def _work(frame: Frame, view: View) -> NDArray:
+    """Rays at each pixel, from none to the view's top."""
+    top, work = work_top(frame, view), work_of(frame, view)
+    assert work is not None
+    return _mapped(work / top)
+
+
 def _primitive(frame: Frame) -> NDArray:
     """A colour of its own for every primitive: its number, well mixed, picks hue, strength and brightness."""
-    n = np.arange(1, len(frame.modes) + 1, dtype=np.uint32)
+    n = np.arange(1, int(frame.primitive.max(initial=-1)) + 2, dtype=np.uint32)
     n = (n ^ (n >> np.uint32(16))) * np.uint32(0x7FEB352D)  # lowbias32, as in the shader
     n = (n ^ (n >> np.uint32(15))) * np.uint32(0x846CA68B)
     n ^= n >> np.uint32(16)

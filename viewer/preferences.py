@@ -18,6 +18,8 @@ from typing import Any
 import platformdirs
 
 from tracer.frame import Settings
+from tracer.method import is_method
+from viewer.methods import DEFAULT
 from viewer.outputs import write_text
 from viewer.views import View
 
@@ -25,6 +27,8 @@ SETTINGS_FILE = "settings.json"
 RECENT_SCENES = 10
 LONGEST_SIDE = 8192
 """Pixels of a picture of fixed size."""
+LONGEST_BUDGET = 10_000.0
+"""Milliseconds of a frame that may go into certificates."""
 DEFAULT_TEMPLATE = "{scene}-{view}-{frame:04d}-{date}-{time}.png"
 
 # Limits of the numbers; whatever lies outside is not from this program.
@@ -35,6 +39,7 @@ _RANGES: dict[str, tuple[float, float]] = {
     "fixed_width": (1, LONGEST_SIDE),
     "fixed_height": (1, LONGEST_SIDE),
     "zoom_factor": (1.0, 1e6),
+    "certificate_ms": (0.0, LONGEST_BUDGET),
     "depth": (0, 100),
     "samples": (1, 64),
     "threads": (0, 1024),
@@ -44,7 +49,8 @@ _RANGES: dict[str, tuple[float, float]] = {
 
 @dataclass
 class Preferences:
-    """Everything that outlives the window.  `speed` is relative to the scene's own pace, 1 by default."""
+    """Everything that outlives the window.  `speed` is relative to the scene's own pace, 1 by default; `method` is
+    the one to cull by while `culling` is on, `certificate_ms` what certifying may take of a frame."""
 
     target_fps: float = 15.0
     dynamic_resolution: bool = True
@@ -59,6 +65,8 @@ class Preferences:
     playback_rate: float = 1.0
     keep_tracing: bool = False
     culling: bool = True
+    method: str = DEFAULT
+    certificate_ms: float = 50.0
     symmetric: bool = False
     zoom_factor: float = 4.0
     depth: int = 10
@@ -69,6 +77,7 @@ class Preferences:
     shading: float = 0.35
     outlines: bool = False
     mark_wrong: bool = True
+    draw_explanation: bool = True
     screenshot_folder: str = ""
     screenshot_template: str = DEFAULT_TEMPLATE
     recent: list[str] = field(default_factory=list)
@@ -76,17 +85,21 @@ class Preferences:
 
     def settings(self) -> Settings:
         """Settings to trace with; the defaults where these do not go together."""
-        method = "paper" if self.culling else "none"
+        method = self.method if self.culling else "none"
         names = ("symmetric", "zoom_factor", "depth", "samples", "threads", "verify")
         try:
-            return Settings(method=method, **{name: getattr(self, name) for name in names}).validated()
+            budget = self.certificate_ms / 1e3
+            values = {name: getattr(self, name) for name in names}
+            return Settings(method=method, certificate_seconds=budget, **values).validated()
         except ValueError:
-            return Settings()
+            return Settings(method=DEFAULT)
 
     def keep(self, settings: Settings) -> None:
         """Remember what was chosen to trace with."""
         s = settings
-        self.culling, self.symmetric, self.zoom_factor = s.method != "none", s.symmetric, s.zoom_factor
+        self.culling, self.method = s.method != "none", s.method if s.method != "none" else self.method
+        self.symmetric, self.zoom_factor = s.symmetric, s.zoom_factor
+        self.certificate_ms = min(1e3 * s.certificate_seconds, LONGEST_BUDGET)
         self.depth, self.samples, self.threads, self.verify = s.depth, s.samples, s.threads, s.verify
 
     def chosen_view(self) -> View:
@@ -162,6 +175,8 @@ def _checked(name: str, value: Any, default: Any) -> Any:
         if not isinstance(value, int | float) or not low <= value <= high:
             return default
         return type(default)(value)
+    if name == "method":
+        return value if isinstance(value, str) and is_method(value) and value != "none" else default
     if name == "recent":
         return [v for v in value if isinstance(v, str)][:RECENT_SCENES] if isinstance(value, list) else default
     if name == "bookmarks":

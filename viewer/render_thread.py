@@ -8,7 +8,8 @@ moves, the next request comes before the last picture is ready, and cancelling e
 none at all.
 
 An experiment is a `Task`: it has the thread, and with it the scene's world, to itself until it is
-done; the newest request of that time waits for its end.
+done; the newest request of that time waits for its end.  A `Question` takes a moment: it is answered
+between two frames, while the world still stands as it did in the frame that it is about.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Protocol
 
 from tracer.renderer import Frame, Settings
@@ -67,6 +69,15 @@ class Task(Protocol):
     def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None: ...
 
 
+class Question(Protocol):
+    """A moment's work with the renderer as the frame of this time left it."""
+
+    @property
+    def time(self) -> float: ...
+
+    def answer(self, renderer: Traces) -> None: ...
+
+
 class RenderThread:
     """Owns the renderer: nobody else calls it while this lives."""
 
@@ -77,6 +88,8 @@ class RenderThread:
         self._waiting: RenderRequest | None = None
         self._running: RenderRequest | None = None
         self._task: tuple[Traces, Task] | None = None
+        self._question: Question | None = None
+        self._placed_at: float | None = None  # the time of what was traced last
         self._performing = False
         self._cancel = False
         self._reset = False
@@ -90,7 +103,7 @@ class RenderThread:
         """Trace this renderer's scene from now on; whatever was asked of the old one is dropped, and a task ended."""
         with self._changed:
             self._renderer = renderer
-            self._waiting = self._finished = self._error = None
+            self._waiting = self._finished = self._error = self._question = self._placed_at = None
             self._cancel = True
             self._changed.notify_all()
 
@@ -115,6 +128,12 @@ class RenderThread:
                 raise RuntimeError("there is no scene to work on")
             self._task, self._waiting = (self._renderer, task), None
             self._cancel = True
+            self._changed.notify_all()
+
+    def ask(self, question: Question) -> None:
+        """Answer this before the next frame; the newest question only, and none about a time that was left."""
+        with self._changed:
+            self._question = question
             self._changed.notify_all()
 
     def reset_modes(self) -> None:
@@ -159,30 +178,44 @@ class RenderThread:
     def _run(self) -> None:
         step_back(TRACER)
         while (turn := self._next()) is not None:
-            renderer, work, reset = turn
-            if isinstance(work, RenderRequest):
-                self._trace(renderer, work, reset)
-                continue
-            work.work(renderer, lambda: self._cancel)
-            with self._changed:
-                self._performing = False
-            self._wake()
+            turn()
 
-    def _next(self) -> tuple[Traces, RenderRequest | Task, bool] | None:
+    def _next(self) -> Callable[[], None] | None:
+        """What to do now, once there is something: a task before all, then a question, then a frame."""
         with self._changed:
-            while not self._closing and self._task is None and (self._renderer is None or self._waiting is None):
-                self._changed.wait()
-            if self._closing:
-                return None
-            if self._task is not None:
-                (renderer, task), self._task = self._task, None
-                self._performing, self._cancel = True, renderer is not self._renderer
-                return renderer, task, False
-            assert self._renderer is not None and self._waiting is not None
-            request, reset = self._waiting, self._reset
-            self._cancel = False
-            self._running, self._waiting, self._reset = request, None, False
-            return self._renderer, request, reset
+            while not self._closing:
+                if self._task is not None:
+                    (renderer, task), self._task = self._task, None
+                    self._performing, self._cancel = True, renderer is not self._renderer
+                    self._placed_at = None
+                    return partial(self._perform, renderer, task)
+                if self._renderer is not None and self._question is not None:
+                    question, self._question = self._question, None
+                    if question.time == self._placed_at:
+                        return partial(self._answer, self._renderer, question)
+                elif self._renderer is not None and self._waiting is not None:
+                    request, reset = self._waiting, self._reset
+                    self._cancel = False
+                    self._running, self._waiting, self._reset = request, None, False
+                    self._placed_at = request.time
+                    return partial(self._trace, self._renderer, request, reset)
+                else:
+                    self._changed.wait()
+            return None
+
+    def _perform(self, renderer: Traces, task: Task) -> None:
+        task.work(renderer, lambda: self._cancel)
+        with self._changed:
+            self._performing = False
+        self._wake()
+
+    def _answer(self, renderer: Traces, question: Question) -> None:
+        try:
+            question.answer(renderer)
+        except Exception as problem:
+            with self._changed:
+                self._error = f"no answer: {one_line(problem)}"
+        self._wake()
 
     def _trace(self, renderer: Traces, request: RenderRequest, reset: bool) -> None:
         frame, error = None, None

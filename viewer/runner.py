@@ -14,6 +14,7 @@ from tracer.scene.model import Progress
 from tracer.zoom import Step
 from viewer import exports
 from viewer.jobs import Job
+from viewer.methods import DEFAULT
 from viewer.preferences import default_screenshot_folder
 from viewer.render_thread import RenderRequest, Traced
 from viewer.runs import Experiment, ExperimentPlan, Run, ZoomPlan, ZoomTest, duration
@@ -27,7 +28,7 @@ class Runner:
 
     def __init__(self, controller: Controller) -> None:
         self._c = controller
-        self.experiment_plan = ExperimentPlan({"paper"})
+        self.experiment_plan = ExperimentPlan({"paper", DEFAULT})
         self.zoom_plan = ZoomPlan()
         self.experiment: Experiment | None = None
         self.zoom_test: ZoomTest | None = None
@@ -108,6 +109,7 @@ class Runner:
         frame = run.take()
         if done:
             self.current = None
+            self._c.tracing.again()  # else the world might stay where the run has put it
             self._tell(run)
         if frame is None or run.stopping or not run.is_of(self._c.session.scene):
             return None

@@ -7,6 +7,7 @@ picture.  What has come of it is there at any moment, and stays when it is stopp
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 import weakref
@@ -23,7 +24,9 @@ from tracer.scene.model import Cancelled, Scene
 from viewer import exports
 from viewer.console import TimeLeft
 from viewer.jobs import one_line
+from viewer.methods import in_order
 from viewer.render_thread import Traces
+from viewer.views import View
 from viewer.zoom import parse_factors
 
 LONGEST_SIDE = 4096
@@ -76,6 +79,12 @@ class Run(ABC, Generic[Results]):
     def verifies(self) -> bool:
         """Whether its frames tell right answers from wrong ones."""
         return True
+
+    def lacks(self, view: View) -> str:
+        """Why frames of this run cannot be seen in a view that needs more of them, in words; else nothing."""
+        if view.needs_work:
+            return "does not count the rays of each pixel"
+        return "does not verify" if view.needs_verify and not self.verifies else ""
 
     def is_of(self, scene: Scene | None) -> bool:
         """Whether it is (or was) made in this very scene, as it was loaded then."""
@@ -177,7 +186,7 @@ class Experiment(Run[experiment.Results]):
         self, scene: Scene, settings: Settings, plan: ExperimentPlan, wake: Callable[[], None] = lambda: None
     ) -> None:
         _check_size(plan.size)
-        self.methods = experiment.with_reference(sorted(plan.methods))
+        self.methods = experiment.with_reference(in_order(plan.methods))
         self.times = experiment.path_times(scene, plan.frames)
         self.settings = replace(
             settings,
@@ -187,6 +196,7 @@ class Experiment(Run[experiment.Results]):
             verify=plan.verify,
             samples=1,
             accelerator="kdtree",  # whose steps are the paper's, as the command has it
+            certificate_seconds=math.inf,  # a count of certificates is what repeats exactly
         ).validated()
         self.shown = self.methods[-1]
         super().__init__(scene, len(self.methods) * len(self.times), wake)
@@ -205,14 +215,7 @@ class Experiment(Run[experiment.Results]):
             if method == self.shown:
                 self._show(frame, wait=False)
 
-        return experiment.run(
-            scene,
-            self.settings,
-            self.methods,
-            self.times,
-            cancel=cancelled,
-            on_frame=on_frame,
-        )
+        return experiment.run(scene, self.settings, self.methods, self.times, cancel=cancelled, on_frame=on_frame)
 
     def _copy(self, results: experiment.Results) -> experiment.Results:
         methods = {

@@ -15,10 +15,13 @@ from typing import Any
 
 from tracer.renderer import Settings
 from tracer.scene.model import Camera, Scene
+from viewer.methods import DEFAULT
 from viewer.views import View
 
 # Settings that say how a frame was asked for, not what the user chose, and those of this machine.
-_NOT_RESTORED = {"width", "height", "threads", "record_lights"}
+_NOT_RESTORED = {
+    "width", "height", "threads", "record_lights", "record_work", "certificates", "certificate_seconds",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,11 @@ class Snapshot:
             raise ValueError("its saved state is damaged") from None
 
 
+def settings_to_json(settings: Settings) -> dict[str, Any]:
+    """What is kept of settings, in a snapshot."""
+    return {name: value for name, value in asdict(settings).items() if name not in _NOT_RESTORED}
+
+
 def settings_from_json(data: Any) -> dict[str, Any]:
     """The known fields of stored settings, checked by `Settings.validated`; raises ValueError."""
     if not isinstance(data, Mapping):
@@ -86,7 +94,7 @@ class Session:
     time: float = 0.0
     free_camera: Camera | None = None
     playing: bool = False
-    settings: Settings = field(default_factory=Settings)
+    settings: Settings = field(default_factory=lambda: Settings(method=DEFAULT))
     view: View = View.COLOR
     light: int = 0
     wipe: float = 0.5
@@ -167,7 +175,7 @@ class Session:
             time=self.time,
             camera=self.camera,
             follow=self.follow,
-            settings=asdict(self.settings),
+            settings=settings_to_json(self.settings),
             view=self.view,
             light=self.light,
             wipe=self.wipe,

@@ -7,6 +7,7 @@ nothing at all while a run has the render thread to itself.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 from typing import TYPE_CHECKING
 
 from tracer.frame import Frame, Settings
@@ -75,7 +76,8 @@ class Tracing:
 
     def _settle(self, request: RenderRequest) -> None:
         """At rest the first fine frame of a view teaches the modes; a second one shows what they save."""
-        view = replace(request, settings=replace(request.settings, verify=False), interactive=False, serial=0)
+        seen = replace(request.settings, verify=False, record_work=False)
+        view = replace(request, settings=seen, interactive=False, serial=0)
         learns = request.divisor == 1 and request.settings.method != "none" and request.settings.samples == 1
         if self._c.preferences.keep_tracing or (learns and view != self._settled):
             self._settled = view
@@ -106,18 +108,22 @@ class Tracing:
 
     @property
     def settings(self) -> Settings:
-        """What the user has set, and verified where the view needs that."""
+        """What the user has set, verified and with its work recorded where the view needs that."""
         s = self._c.session
-        return replace(s.settings, verify=s.settings.verify or s.view.needs_verify)
+        return replace(s.settings, verify=s.settings.verify or s.view.needs_verify, record_work=s.view.needs_work)
 
     def _answered(self, wanted: RenderRequest) -> bool:
-        """Whether a frame has been asked for, or is there.  One that was verified for a view serves the next view."""
+        """Whether a frame has been asked for, or is there.  One that holds more for a view serves the next view."""
         if wanted == self._asked or self._same_picture(wanted):
             return True
         if self._c.session.settings != self._chosen:
             return False
-        verified = replace(wanted, settings=replace(wanted.settings, verify=True))
-        return verified == self._asked or self._same_picture(verified)
+        settings = wanted.settings
+        for verify, work in product({settings.verify, True}, {settings.record_work, True}):
+            fuller = replace(wanted, settings=replace(settings, verify=verify, record_work=work))
+            if fuller == self._asked or self._same_picture(fuller):
+                return True
+        return False
 
     def _same_picture(self, wanted: RenderRequest) -> bool:
         if self.traced is None or self._c.render.busy:
@@ -125,12 +131,11 @@ class Tracing:
         return replace(self.traced.request, interactive=wanted.interactive) == wanted
 
     def _jumped(self) -> bool:
-        """Whether, at rest, something else is to be seen than was last asked for; to verify is to see the same."""
+        """Whether, at rest, something else is to be seen than was last asked for; to learn more is to see the same."""
         session, asked = self._c.session, self._asked
         if asked is None or session.playing or self._c.moving:
             return False
-        width, height, verify = asked.settings.width, asked.settings.height, asked.settings.verify
-        settings = replace(session.settings, width=width, height=height, verify=verify)
+        settings = _as_asked(session.settings, asked.settings)
         return (session.time, session.camera, settings) != (asked.time, asked.camera, asked.settings)
 
     # --- what the newest frame is ----------------------------------------------------------------
@@ -142,12 +147,12 @@ class Tracing:
 
     @property
     def outdated(self) -> bool:
-        """Whether the newest frame was traced with other settings than those now chosen, or lacks to be verified."""
+        """Whether the newest frame was traced with other settings than those now chosen, or lacks what they ask for."""
         if self.frame is None or self._c.runner.current is not None:
             return False
         had, wanted = self.frame.settings, self.settings
-        verify = had.verify or wanted.verify
-        return replace(wanted, width=had.width, height=had.height, verify=verify) != had
+        lacks = (wanted.verify and not had.verify) or (wanted.record_work and not had.record_work)
+        return lacks or _as_asked(wanted, had) != had
 
     @property
     def full_size(self) -> tuple[int, int]:
@@ -173,17 +178,22 @@ class Tracing:
 
     @property
     def drawn_view(self) -> View:
-        """The view to draw the newest frame in: the picture while one that needs a verified frame waits for it."""
-        view, unverified = self._c.session.view, self.frame is not None and self.frame.wrong is None
-        return View.COLOR if view.needs_verify and unverified else view
+        """The view to draw the newest frame in: the picture while one that needs more of a frame waits for it."""
+        view = self._c.session.view
+        return view if self.frame is None or view.can_draw(self.frame) else View.COLOR
 
     @property
     def title(self) -> str:
         """The view, and the light where it shows one; before it what a run that is under way is at."""
         view, run = self.drawn_view, self._c.runner.current
-        title = f"{view.label}, light {self._c.session.light}" if view is View.SHADOW else view.label
+        title = f"{view.label}, light {self._c.session.light}" if view.of_light else view.label
         wanted = self._c.session.view
         if run is not None:
-            lacks = wanted is not view and not run.verifies
-            return f"showing {run.label_shown}   {title}{' (this run does not verify)' if lacks else ''}"
-        return title if wanted is view else f"{wanted.label}: verifying ..."
+            lacks = wanted is not view and run.lacks(wanted)
+            return f"showing {run.label_shown}   {title}{f' (this run {lacks})' if lacks else ''}"
+        return title if wanted is view else f"{wanted.label}: {'verifying' if wanted.needs_verify else 'counting'} ..."
+
+
+def _as_asked(settings: Settings, asked: Settings) -> Settings:
+    """Settings at the size, and with as much recorded, as others."""
+    return replace(settings, width=asked.width, height=asked.height, verify=asked.verify, record_work=asked.record_work)

@@ -40,7 +40,7 @@ class FileBrowser:
 @dataclass
 class Ui:
     """See the module.  `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says
-    that the pointer holds the line of the wipe."""
+    that the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector."""
 
     controller: Controller
     display: Display | None = None
@@ -66,6 +66,7 @@ class Ui:
     reset_layout: Callable[[], None] = lambda: None
     show_panel: Callable[[str], Any] = lambda label: None
     zoom_all_steps: bool = False
+    pointed_light: int | None = None
     _cache: dict[str, tuple[object, int, Any]] = field(default_factory=dict)
 
     def cached(self, name: str, of: object, light: int, compute: Callable[[], Any]) -> Any:

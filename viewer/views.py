@@ -1,21 +1,19 @@
 """What can be seen of a frame: the views, their colours, and what each colour stands for.
 
 A view turns the buffers of a frame into a picture; the shader of that name under `shaders/` does
-the turning, this module knows the names, the colours and the numbers of the legend.  Nothing here
-needs GL.  The colours of modes are those of Okabe and Ito, told apart by every kind of
+the turning, this module knows the names and the colours, `viewer.legends` counts what has which.  Nothing
+here needs GL.  The colours of modes are those of Okabe and Ito, told apart by every kind of
 colour-blindness, and in greys.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from enum import IntEnum, StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.renderer import Frame
 
@@ -34,15 +32,38 @@ class View(StrEnum):
     PIXEL_COUNT = "pixel-count"
     DIFFERENCE = "difference"
     WIPE = "wipe"
+    CERTIFICATE = "certificate"
+    SAVED = "saved"
+    COST = "cost"
 
     @property
     def label(self) -> str:
         return _TITLES[self]
 
     @property
+    def key(self) -> str:
+        return _KEYS[self]
+
+    @property
     def needs_verify(self) -> bool:
         """Whether it can be drawn of verified frames alone."""
         return self in (View.DIFFERENCE, View.WIPE)
+
+    @property
+    def needs_work(self) -> bool:
+        """Whether it can be drawn only of frames that recorded the work at each pixel."""
+        return self in (View.SAVED, View.COST)
+
+    @property
+    def of_light(self) -> bool:
+        """Whether it speaks of one light."""
+        return self in (View.SHADOW, View.CERTIFICATE)
+
+    def can_draw(self, frame: Frame) -> bool:
+        """Whether the frame holds what it was to be asked for."""
+        return not (self.needs_verify and frame.wrong is None) and not (
+            self.needs_work and work_of(frame, self) is None
+        )
 
     @property
     def explanation(self) -> str:
@@ -59,6 +80,16 @@ _TITLES = {
     View.PIXEL_COUNT: "Pixel count",
     View.DIFFERENCE: "Difference",
     View.WIPE: "Wipe",
+    View.CERTIFICATE: "Certificates",
+    View.SAVED: "Shadow rays saved",
+    View.COST: "Rays traced",
+}
+
+_KEYS = {
+    **{view: str(number) for number, view in enumerate(list(View)[:9], start=1)},
+    View.CERTIFICATE: "0",
+    View.SAVED: "H",
+    View.COST: "Shift+H",
 }
 
 _EXPLANATIONS = {
@@ -71,6 +102,10 @@ _EXPLANATIONS = {
     View.PIXEL_COUNT: "Pixels a primitive covers now, against the most it covered while fully rendered.",
     View.DIFFERENCE: "Pixels for which a culled shadow ray was answered wrongly; black where every answer is right.",
     View.WIPE: "Left of the line the traced picture, right of it that with every shadow answer right. Drag the line.",
+    View.CERTIFICATE: "What is proven of each virtual cell and the chosen light; lines are the borders of cells. Each "
+    "frame proves more: T traces another, K goes on.",
+    View.SAVED: "Shadow rays of each pixel, at all bounces, that asked no tree of static geometry.",
+    View.COST: "Rays traced for each pixel, of all kinds and at all bounces.",
 }
 
 
@@ -81,6 +116,16 @@ def _hex(code: str) -> Color:
 
 BACKGROUND = _hex("16181D")
 GREY = _hex("5C616C")
+
+
+class Certificate(IntEnum):
+    """What is proven of a cell and a light, in the place that a shadow mode has in a word."""
+
+    NONE = 0
+    FULL = 1
+    LIT = 2
+    CANDIDATES = 3
+
 
 OCCLUSION_COLORS: dict[OcclusionMode, Color] = {
     OcclusionMode.INIT: GREY,
@@ -96,6 +141,16 @@ SHADOW_COLORS: dict[ShadowMode, Color] = {
     ShadowMode.PARTIAL_SHADOW: _hex("D55E00"),
 }
 
+CERTIFICATE_COLORS: dict[Certificate, Color] = {
+    Certificate.NONE: GREY,
+    Certificate.FULL: SHADOW_COLORS[ShadowMode.FULL_SHADOW],
+    Certificate.LIT: SHADOW_COLORS[ShadowMode.NON_SHADOW],
+    Certificate.CANDIDATES: SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW],
+}
+
+CELL_LINE = 0.55
+"""Brightness of the lines between cells, against that of the cells."""
+
 OCCLUSION_MEANING = {
     OcclusionMode.INIT: "not seen yet, or to be looked at again",
     OcclusionMode.PARTIALLY_OCCLUDED: "something hides a part of it in this frame",
@@ -108,6 +163,13 @@ SHADOW_MEANING = {
     ShadowMode.FULL_SHADOW: "every shadow ray was blocked: culled once fully rendered",
     ShadowMode.NON_SHADOW: "no shadow ray was blocked: only moving objects are asked once fully rendered",
     ShadowMode.PARTIAL_SHADOW: "some were blocked: always traced",
+}
+
+CERTIFICATE_MEANING = {
+    Certificate.NONE: "nothing is proven: its shadow rays are traced",
+    Certificate.FULL: "all of it is in the shadow of static geometry: its shadow rays are culled",
+    Certificate.LIT: "nothing static lies between it and the light: only moving objects are asked",
+    Certificate.CANDIDATES: "only a few triangles can lie between: they are tested, and moving objects asked",
 }
 
 WRONG = _hex("FF00FF")
@@ -138,49 +200,6 @@ def color_map(steps: int = 256) -> NDArray[np.float32]:
     return np.clip((t ** np.arange(len(_VIRIDIS))) @ _VIRIDIS, 0.0, 1.0).astype(np.float32)
 
 
-@dataclass(frozen=True)
-class LegendRow:
-    """One colour of a legend: what it means, and how much of the frame it is (counts, and fractions of all)."""
-
-    name: str
-    color: Color
-    meaning: str
-    primitives: int
-    pixels: int
-    primitive_share: float
-    pixel_share: float
-
-
-def occlusion_legend(frame: Frame) -> list[LegendRow]:
-    """Primitives and primary pixels in each occlusion mode."""
-    classes = modes.occlusion_mode(frame.modes)
-    rows = [(mode.name, OCCLUSION_COLORS[mode], OCCLUSION_MEANING[mode]) for mode in OcclusionMode]
-    return _rows(frame, classes, rows)
-
-
-def shadow_legend(frame: Frame, light: int) -> list[LegendRow]:
-    """Primitives and primary pixels in each shadow mode of a light; those that move are counted apart.
-
-    Empty for a light that culling does not cover."""
-    if not modes.has_shadow_mode(frame.modes, light):
-        return []
-    classes = modes.shadow_mode(frame.modes, light)
-    classes[modes.occlusion_mode(frame.modes) == OcclusionMode.DYNAMIC] = len(ShadowMode)
-    rows = [(mode.name, SHADOW_COLORS[mode], SHADOW_MEANING[mode]) for mode in ShadowMode]
-    rows.append(("DYNAMIC", OCCLUSION_COLORS[OcclusionMode.DYNAMIC], OCCLUSION_MEANING[OcclusionMode.DYNAMIC]))
-    return _rows(frame, classes, rows)
-
-
-def _rows(frame: Frame, classes: NDArray[np.uint8], rows: list[tuple[str, Color, str]]) -> list[LegendRow]:
-    primitives = np.bincount(classes, minlength=len(rows))
-    pixels = np.bincount(classes, weights=frame.pixel_count, minlength=len(rows)).astype(np.int64)
-    total, seen = max(int(primitives.sum()), 1), max(int(pixels.sum()), 1)
-    return [
-        LegendRow(name, color, meaning, int(p), int(q), int(p) / total, int(q) / seen)
-        for (name, color, meaning), p, q in zip(rows, primitives, pixels)
-    ]
-
-
 def depth_range(frame: Frame) -> tuple[float, float]:
     """Nearest and farthest distance worth a colour: the 1st and 99th percentile of what is hit (0, 1 for nothing)."""
     step = max(1, frame.height * frame.width // 20000)
@@ -190,6 +209,35 @@ def depth_range(frame: Frame) -> tuple[float, float]:
         return 0.0, 1.0
     low, high = np.percentile(sample, (1.0, 99.0))
     return float(low), float(max(high, low * (1.0 + 1e-6) + 1e-12))
+
+
+def units_of(frame: Frame) -> NDArray[np.int32]:
+    """(h, w) what carries modes at each pixel, a virtual cell or the primitive itself; -1 for a miss.
+
+    Cells that have certificates have no modes."""
+    return frame.cell if frame.certificates is None else frame.primitive
+
+
+def has_modes_of_cells(frame: Frame) -> bool:
+    """Whether what carries modes are virtual cells."""
+    return frame.cells is not None and frame.certificates is None
+
+
+def work_of(frame: Frame, view: View) -> NDArray[np.int32] | None:
+    """(h, w) what a heat map shows at each pixel; None where the frame did not record it."""
+    return frame.saved if view is View.SAVED else frame.cost
+
+
+def work_top(frame: Frame, view: View) -> float:
+    """What has a heat map's last colour: the 99th percentile of pixels that hit something, 1 at least.
+
+    Raises ValueError for a frame without that record."""
+    work = work_of(frame, view)
+    if work is None:
+        raise ValueError("the frame did not record the work at its pixels")
+    step = max(1, work.size // 20000)
+    sample = work.reshape(-1)[::step][frame.primitive.reshape(-1)[::step] >= 0]
+    return max(1.0, float(np.percentile(sample, 99.0))) if len(sample) else 1.0
 
 
 class Mark(IntEnum):
@@ -205,7 +253,7 @@ def wrong_marks(frame: Frame, magnified: int = 1) -> NDArray[np.uint8]:
 
     The rings grow with the picture, so that a lone pixel is found in any; they are so much smaller where each pixel
     is shown as `magnified` of the screen's."""
-    wrong = _verified(frame.wrong) > 0
+    wrong = verified(frame.wrong) > 0
     if not wrong.any():
         return np.zeros(wrong.shape, np.uint8)
     side = max(frame.width, frame.height)
@@ -237,28 +285,8 @@ def wipe_column(width: int, wipe: float) -> int:
     return min(max(int(wipe * width), 0), width)
 
 
-@dataclass(frozen=True)
-class DifferenceLegend:
-    """How wrong a verified frame is: wrong answers of the rays that `due` counts, pixels with any, and the largest
-    difference of a channel of the colour shown, from 0 to 1."""
-
-    answers: int
-    due: int
-    pixels: int
-    pixel_share: float
-    largest: float
-
-
-def difference_legend(frame: Frame) -> DifferenceLegend:
-    """Counts of a verified frame."""
-    wrong, reference = _verified(frame.wrong), _verified(frame.reference)
-    pixels = int(np.count_nonzero(wrong))
-    apart = np.abs(np.clip(frame.color[wrong > 0], 0.0, 1.0) - np.clip(reference[wrong > 0], 0.0, 1.0))
-    shadow = frame.statistics.shadow
-    return DifferenceLegend(shadow.wrong, shadow.due, pixels, pixels / wrong.size, float(apart.max(initial=0.0)))
-
-
-def _verified(buffer: NDArray | None) -> NDArray:
+def verified(buffer: NDArray | None) -> NDArray:
+    """A buffer of verified frames; raises ValueError where the frame is none."""
     if buffer is None:
         raise ValueError("the frame was not verified")
     return buffer

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from threading import Event
 
@@ -122,8 +123,41 @@ def make_frame(settings: Settings | None = None, time: float = 0.0, camera: Came
         lights=3,
         reference=np.where(wrong[..., None] > 0, np.float32(0.6), color) if settings.verify else None,
         wrong=wrong if settings.verify else None,
+        saved=wrong if settings.record_work else None,
+        cost=wrong + 1 if settings.record_work else None,
         statistics=statistics,
     )
+
+
+def with_certificates(frame: Frame) -> Frame:
+    """The frame with cells, 8 pixels wide and some 4, with certificates of each light drawn by lot, and work counted.
+
+    What moves and what is missed has no cell."""
+    y, x = np.indices(frame.primitive.shape)
+    side = np.where((x // 16 + y // 16) % 2 == 0, 8, 4)
+    place = (frame.primitive.astype(np.int64) << 40) + ((y // side) << 22) + ((x // side) << 2) + side // 8
+    none = (frame.primitive < 0) | (frame.occlusion_mode == 3)
+    known, cells = np.unique(np.where(none, -1, place), return_inverse=True)
+    cells = cells.reshape(none.shape).astype(np.int32) - int(known[0] == -1)
+    lots = np.random.default_rng(1)
+    words = np.zeros(int(cells.max()) + 1, frame.modes.dtype)
+    for light in range(frame.lights):
+        words |= lots.integers(0, 4, len(words)).astype(words.dtype) << words.dtype.type(2 + 2 * light)
+    certificates = np.where(none, words.dtype.type(0), words[np.maximum(cells, 0)])
+    saved = np.where(none, 0, frame.lights + x % 5).astype(np.int32)
+    cost = (1 + 2 * (frame.primitive >= 0) + y % 7).astype(np.int32)
+    return replace(frame, cells=cells, certificates=certificates, saved=saved, cost=cost)
+
+
+def in_cells(frame: Frame) -> Frame:
+    """The frame as of a method whose units are cells: odd columns of every primitive have others than even ones."""
+    x = np.indices(frame.primitive.shape)[1]
+    cells = np.where(frame.primitive < 0, -1, 2 * frame.primitive + x % 2).astype(np.int32)
+    words = np.repeat(frame.modes, 2)
+    words[1::2] ^= words.dtype.type(5 << 2)  # other shadow modes
+    counts = np.bincount(cells[cells >= 0], minlength=len(words)).astype(np.int32)
+    highest = np.repeat(frame.highest_count, 2)
+    return replace(frame, cells=cells, modes=words, pixel_count=counts, highest_count=highest)
 
 
 class FakeRenderer:

@@ -15,6 +15,9 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from PIL import Image
 
 from tests.viewer.window import Driver
+from tracer.renderer import Renderer
+from viewer.commands import chord
+from viewer.explaining import Part
 from viewer.pictures import picture
 from viewer.resources import embedded_scenes
 from viewer.views import WRONG, View, wipe_column
@@ -23,17 +26,20 @@ KEY = imgui.Key
 
 
 def views(d: Driver) -> None:
-    """Every view by its key, each the same as what the command line would draw; only what must be verified is traced
-    for, once, and as little for the views after it."""
+    """Every view by its key, each the same as what the command line would draw; only what must be verified, or
+    counted, is traced for, once, and as little for the views after it."""
+    d.c.change(method="paper")
     d.settle()
+    d.certify()
     d.press(KEY.t)
     d.settle()
     traced = d.c.history.frames
     d.c.preferences.shading = 0.35
-    for number, view in enumerate(View, start=1):
-        d.press(getattr(KEY, f"_{number}"))
+    for view in View:
+        before = d.c.history.frames
+        d.press(chord(view.key))
         assert d.c.session.view is view
-        assert view.needs_verify or d.c.history.frames == traced, "changing the view has traced"
+        assert view.needs_verify or view.needs_work or d.c.history.frames == before, "changing the view has traced"
         d.settle()
         shown = d.shown().astype(int)
         expected = picture(d.c.frame, view, d.c.session.light).astype(int)
@@ -45,7 +51,7 @@ def views(d: Driver) -> None:
     d.press(int(KEY.l) | int(KEY.mod_shift))
     assert d.c.session.light == 0
     d.settle()
-    assert d.c.history.frames == traced + 1, "only the first of the views that verify traces"
+    assert d.c.history.frames == traced + 2, "only the first of the views that verify traces, and of those that count"
     assert not d.c.session.settings.verify and not d.c.preferences.verify
 
 
@@ -54,6 +60,7 @@ def _figure4(d: Driver, frame: int) -> None:
     p = d.c.preferences
     p.dynamic_resolution, p.fixed_resolution, p.fixed_width, p.fixed_height = False, True, 128, 128
     p.every_frame = p.loop = False
+    d.c.change(method="paper")
     d.drop(embedded_scenes()["figure4"])
     d.wait(lambda: d.c.session.scene.path.name == "figure4.aff", "the scene of Figure 4")
     d.settle()
@@ -145,6 +152,7 @@ def wiping(d: Driver) -> None:
 
 def culling(d: Driver) -> None:
     """Tracing again culls; the key switches it off and on; resetting forgets."""
+    d.c.change(method="paper")
     d.settle()
     first = d.c.frame.statistics.shadow
     assert first.due > 0 and first.culled == 0
@@ -164,6 +172,84 @@ def culling(d: Driver) -> None:
     d.context.item_click("//Culling/Symmetric occlusion test")
     d.settle()
     assert d.c.frame.settings.symmetric
+
+
+def certifying(d: Driver) -> None:
+    """A method is chosen with what it takes along; a view of certificates says where there are none; key C is off."""
+    d.settle()
+    d.press(KEY._0)
+    assert d.c.session.view is View.CERTIFICATE and d.c.frame.certificates is None
+    d.certify()
+    d.context.menu_click("//##MainMenuBar/Culling/Method certified")
+    d.context.item_click("//Culling/+cache")
+    d.settle()
+    assert d.c.frame.settings.method == "certified+cache" == d.c.preferences.method
+    assert d.c.frame.certificates is not None
+    expected = picture(d.c.frame, View.CERTIFICATE, shading=d.c.preferences.shading)
+    assert np.abs(d.shown().astype(int) - expected).max() <= 2
+    d.press(KEY.c)
+    d.settle()
+    assert d.c.frame.settings.method == "none"
+    d.press(KEY.c)
+    d.settle()
+    assert d.c.frame.settings.method == "certified+cache"
+    for key in ("H", "Shift+H"):
+        d.press(chord(key))
+        d.settle()
+        assert d.c.tracing.drawn_view is d.c.session.view and not d.c.tracing.outdated
+
+
+def explaining(d: Driver) -> None:
+    """What the pointer is on, or was clicked, is explained beside the window's own frames; a key hides the lines."""
+    d.settle()
+    explaining = d.c.explaining
+    assert explaining.answer is None
+    traced = d.c.history.frames
+    left, top, right, bottom = d.picture_edges()
+    shadow, lit = (_places(d, lit) for lit in (False, True))
+    d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
+    d.wait(lambda: explaining.answer is not None, "an answer about the pointer's pixel", 20.0)
+    blocked = [one for one in explaining.answer.lights if one.blocked_at is not None]
+    assert blocked and all(one.due and not one.lit for one in blocked)
+    lines = explaining.lines(d.c.frame)
+    assert {line.part for line in lines} >= {Part.BLOCKER, Part.REACHING, Part.STOPPED}
+    d.context.mouse_move_to_pos((left + lit[0] * (right - left), top + lit[1] * (bottom - top)))
+    d.wait(lambda: all(one.lit for one in explaining.answer.lights if one.due), "an answer about another pixel", 20.0)
+    assert {line.part for line in explaining.lines(d.c.frame)} == {Part.REACHING}
+    d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
+    d.context.mouse_click(0)
+    d.frames(3)
+    assert d.c.selected is not None
+    d.context.mouse_move_to_pos((left + lit[0] * (right - left), top + lit[1] * (bottom - top)))
+    d.wait(lambda: explaining.answer is not None, "an answer about what was clicked", 20.0)
+    assert any(one.blocked_at is not None for one in explaining.answer.lights), "it goes on following the pointer"
+    assert d.c.history.frames == traced, "asking has traced a frame"
+    point = explaining.answer.lights[0].point
+    d.hold(KEY.d, 0.3)
+    d.settle()
+    assert explaining.answer is not None and math.dist(explaining.answer.lights[0].point, point) < 0.2
+    d.context.mouse_move(f"//Inspector/**/{d.c.session.scene.lights[0].name}##light")
+    d.frames(3)
+    assert d.ui.pointed_light == 0
+    shows = d.c.preferences.draw_explanation
+    d.press(KEY.i)
+    assert d.c.preferences.draw_explanation is not shows
+    d.c.selected = None
+    d.frames(3)
+    assert explaining.answer is None
+
+
+def _places(d: Driver, lit: bool) -> tuple[float, float]:
+    """A pixel of the square, on the picture, that a light which is due reaches, or does not, and so its neighbours."""
+    renderer = Renderer(d.c.session.scene, replace(d.c.frame.settings, method="none", record_lights=True))
+    frame = renderer.render(d.c.frame.time, d.c.frame.camera)
+    here = (frame.primitive >= 0) & (frame.primitive < d.c.session.scene.triangle_count)
+    here &= (frame.lit == frame.due).all(-1) if lit else (frame.due & ~frame.lit).any(-1)
+    inner = here.copy()
+    for shift in (-4, 4):
+        inner &= np.roll(here, shift, 0) & np.roll(here, shift, 1)
+    y, x = np.argwhere(inner)[inner.sum() // 2]
+    return (x + 0.5) / frame.width, (y + 0.5) / frame.height
 
 
 def flying(d: Driver) -> None:
@@ -410,7 +496,7 @@ def closing_while_experimenting(d: Driver) -> None:
 def experimenting(d: Driver) -> None:
     """An experiment starts from its panel, plays, can be stopped, and leaves a table, a plot and files."""
     d.settle()
-    runner, home = d.c.runner, d.c.session.camera
+    runner, home, method = d.c.runner, d.c.session.camera, d.c.session.settings.method
     d.ui.show_panel("Experiment")
     d.frames(3)
     runner.experiment_plan.frames, runner.experiment_plan.size = 3000, (64, 48)
@@ -425,7 +511,7 @@ def experimenting(d: Driver) -> None:
     d.hold(KEY.w, 0.1)
     assert d.c.session.camera == home and "stop it first" in d.c.message.text
     d.press(KEY.c)
-    assert d.c.session.settings.method == "paper"
+    assert d.c.session.settings.method == method
     d.press(KEY._2)
     assert d.c.session.view is View.OCCLUSION, "a view can be chosen any time"
     d.context.item_click(f"//Experiment/**/{icons.ICON_FA_STOP}  Stop")

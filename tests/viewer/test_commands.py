@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 
 from viewer import commands
 from viewer.controller import Controller
+from viewer.methods import DEFAULT
 from viewer.preferences import Preferences
 from viewer.ui import Ui
 from viewer.views import View
@@ -64,4 +65,15 @@ def test_culling_is_switched(ui):
     culling.run()
     assert ui.controller.session.settings.method == "none" and not ui.controller.preferences.culling
     culling.run()
-    assert ui.controller.session.settings.method == "paper"
+    assert ui.controller.session.settings.method == DEFAULT
+    ui.controller.change(method="cells+cache")
+    culling.run()
+    assert ui.controller.session.settings.method == "none"
+    assert ui.controller.preferences.settings().method == "none"
+    culling.run()
+    assert ui.controller.session.settings.method == "cells+cache" == ui.controller.preferences.settings().method
+
+
+def test_the_keys_of_views_are_those_of_their_commands(ui):
+    by_name = {c.name: c for c in ui.commands}
+    assert [by_name[view.label].key for view in View] == [view.key for view in View]

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tracer.frame import Settings
 from viewer import preferences as prefs
 from viewer.preferences import Preferences, load_preferences, save_preferences
 
@@ -19,13 +20,25 @@ def test_what_was_saved_is_read(tmp_path: Path):
     assert load_preferences(tmp_path) == (mine, None)
 
 
+def test_the_method_to_cull_by_is_kept_while_culling_is_off(tmp_path: Path):
+    mine = Preferences()
+    mine.keep(Settings(method="certified+cache", certificate_seconds=0.02))
+    mine.keep(Settings(method="none", certificate_seconds=0.02))
+    save_preferences(mine, tmp_path)
+    read, _ = load_preferences(tmp_path)
+    assert (read.culling, read.method, read.settings().method) == (False, "certified+cache", "none")
+    assert read.settings().certificate_seconds == pytest.approx(0.02)
+    mine.keep(Settings())
+    assert mine.certificate_ms == prefs.LONGEST_BUDGET, "no budget is none that JSON knows"
+
+
 def test_without_a_file_there_are_defaults(tmp_path: Path):
     assert load_preferences(tmp_path / "nowhere") == (Preferences(), None)
 
 
 def test_odd_values_keep_their_defaults_and_the_rest_is_read(tmp_path: Path):
     odd = {"target_fps": 1e9, "loop": "yes", "fixed_width": True, "depth": 3, "unknown": 1, "recent": [1, "/b"],
-           "bookmarks": [], "speed": 2, "view": 7}  # fmt: skip
+           "bookmarks": [], "speed": 2, "view": 7, "method": "telepathy"}  # fmt: skip
     (tmp_path / prefs.SETTINGS_FILE).write_text(json.dumps(odd))
     read, problem = load_preferences(tmp_path)
     assert problem is None

@@ -231,3 +231,75 @@ def test_closing_cuts_a_trace_short():
     assert renderer.cancelled == [0.0]
     thread.submit(request(1.0))
     assert not thread.busy
+
+
+class Asked:
+    """A question that says when, and by which renderer, it was answered."""
+
+    def __init__(self, at: float, failing: Exception | None = None) -> None:
+        self.time, self.failing = at, failing
+        self.by: list = []
+        self.answered = Event()
+
+    def answer(self, renderer) -> None:
+        self.by.append((renderer, len(renderer.asked)))
+        self.answered.set()
+        if self.failing is not None:
+            raise self.failing
+
+
+def test_a_question_is_answered_between_frames_and_cuts_none_short(thread):
+    renderer, question = FakeRenderer(), Asked(0.0)
+    renderer.go.clear()
+    thread.use(renderer)
+    thread.submit(request(0.0))
+    assert renderer.started.wait(5.0)
+    thread.ask(question)
+    thread.submit(request(0.0, interactive=True, serial=1))
+    thread.submit(request(0.0, serial=2))
+    renderer.go.set()
+    idle(thread)
+    assert question.by == [(renderer, 1)], "not before the next frame"
+    assert len(renderer.asked) == 2
+
+
+def test_of_questions_only_the_newest_is_answered_and_none_about_a_time_that_was_left(thread):
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    thread.submit(request(1.0))
+    idle(thread)
+    left = Asked(0.0)
+    thread.ask(left)
+    renderer.go.clear()
+    renderer.started.clear()
+    thread.submit(request(2.0))
+    assert renderer.started.wait(5.0)
+    older, newer = Asked(2.0), Asked(2.0)
+    thread.ask(older)
+    thread.ask(newer)
+    renderer.go.set()
+    assert newer.answered.wait(5.0)
+    idle(thread)
+    assert not left.by and not older.by and len(newer.by) == 1
+
+
+def test_a_question_about_another_scene_is_dropped_and_one_that_fails_is_told_of(thread):
+    first, second = FakeRenderer(), FakeRenderer()
+    thread.use(first)
+    thread.submit(request(1.0))
+    idle(thread)
+    thread.use(second)
+    lost = Asked(1.0)
+    thread.ask(lost)
+    thread.submit(request(1.0))
+    assert taken(thread).frame.time == 1.0
+    assert not lost.by
+    failing = Asked(1.0, ValueError("no such light"))
+    thread.ask(failing)
+    assert failing.answered.wait(5.0)
+    end = time.monotonic() + 5.0
+    while (error := thread.take_error()) is None:
+        assert time.monotonic() < end
+    assert error == "no answer: no such light"
+    thread.submit(request(3.0))
+    assert taken(thread).frame.time == 3.0, "it goes on"

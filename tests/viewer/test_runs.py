@@ -28,7 +28,7 @@ from viewer.controller import Controller
 from viewer.preferences import Preferences
 from viewer.render_thread import Traced
 from viewer.resources import embedded_scenes
-from viewer.runs import duration
+from viewer.runs import ExperimentPlan, duration
 from viewer.views import View
 
 SIZE = (64, 48)
@@ -44,7 +44,7 @@ class Desk:
         self.runner = self.c.runner
         self.came: list[Frame] = []
         self.open(path)
-        self.runner.experiment_plan = replace(self.runner.experiment_plan, frames=5, size=(32, 24), depth=1)
+        self.runner.experiment_plan = ExperimentPlan({"paper"}, frames=5, size=(32, 24), depth=1)
         self.runner.zoom_plan = replace(self.runner.zoom_plan, steps=4, size=(32, 24))
 
     def open(self, path: Path) -> None:

@@ -42,6 +42,14 @@ def test_a_wipe_that_lies_nowhere_is_in_the_middle(kept, wipe):
     assert Snapshot.from_json(data | kept).wipe == wipe
 
 
+def test_what_belongs_to_this_machine_is_not_kept():
+    session = session_somewhere()
+    session.settings = replace(session.settings, certificate_seconds=0.05, threads=3)
+    kept = session.snapshot().to_json()["settings"]
+    assert kept["method"] == "none" and kept["zoom_factor"] == 7.5
+    assert not {"certificate_seconds", "certificates", "threads", "width", "record_work"} & set(kept)
+
+
 def test_following_is_restored_as_following():
     session = session_somewhere()
     session.free_camera = None

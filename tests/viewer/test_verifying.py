@@ -47,6 +47,32 @@ def desk():
     assert controller.close()
 
 
+@pytest.mark.parametrize("view", [View.SAVED, View.COST])
+def test_a_view_of_work_has_it_counted_once_and_other_views_trace_nothing(desk: Desk, view: View):
+    desk.c.set_view(view)
+    assert desk.c.tracing.drawn_view is View.COLOR and desk.c.tracing.outdated, "nothing has been counted yet"
+    assert "counting" in desk.c.tracing.title
+    assert desk.rest() == [False]
+    assert desk.c.frame.settings.record_work and desk.c.tracing.drawn_view is view and not desk.c.tracing.outdated
+    for other in (View.COLOR, View.COST, View.SAVED, View.CERTIFICATE):
+        desk.c.set_view(other)
+        assert not desk.c.tracing.outdated
+        assert desk.rest() == []
+    desk.c.step(1)
+    desk.rest()
+    assert not desk.c.frame.settings.record_work, "only frames of such a view"
+    assert not desk.c.session.settings.record_work
+
+
+def test_what_was_verified_is_counted_and_verified_again_when_both_are_wanted(desk: Desk):
+    desk.c.change(verify=True)
+    assert desk.rest() == [True]
+    desk.c.set_view(View.SAVED)
+    assert desk.rest() == [True] and desk.c.frame.settings.record_work
+    desk.c.set_view(View.DIFFERENCE)
+    assert desk.rest() == []
+
+
 @pytest.mark.parametrize("view", [View.DIFFERENCE, View.WIPE])
 def test_a_view_of_what_is_wrong_verifies_once_and_other_views_trace_nothing(desk: Desk, view: View):
     desk.c.set_view(view)

@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.conftest import make_frame, make_scene
+from tests.viewer.conftest import in_cells, make_frame, make_scene, with_certificates
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
-from viewer import views
+from viewer import legends, views
 from viewer.history import SERIES, History
 from viewer.panels.widgets import in_window_style, percent
 from viewer.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
@@ -20,27 +20,55 @@ from viewer.resolution import ResolutionControl, divided
 
 
 def test_the_occlusion_legend_counts_primitives_and_pixels():
-    rows = {r.name: r for r in views.occlusion_legend(make_frame())}
-    assert {name: r.primitives for name, r in rows.items()} == {
+    rows = {r.name: r for r in legends.occlusion_legend(make_frame())}
+    assert {name: r.units for name, r in rows.items()} == {
         "INIT": 1, "PARTIALLY_OCCLUDED": 1, "FULLY_RENDERED": 3, "DYNAMIC": 2,
     }  # fmt: skip
     assert rows["FULLY_RENDERED"].pixels == 3 * 16
     assert sum(r.pixel_share for r in rows.values()) == pytest.approx(1.0)
-    assert sum(r.primitive_share for r in rows.values()) == pytest.approx(1.0)
+    assert sum(r.unit_share for r in rows.values()) == pytest.approx(1.0)
 
 
 def test_the_shadow_legend_counts_what_moves_apart():
-    rows = {r.name: r.primitives for r in views.shadow_legend(make_frame(), 0)}
+    rows = {r.name: r.units for r in legends.shadow_legend(make_frame(), 0)}
     assert rows == {"INIT": 2, "FULL_SHADOW": 1, "NON_SHADOW": 1, "PARTIAL_SHADOW": 1, "DYNAMIC": 2}
-    assert views.shadow_legend(make_frame(), 31) == []
-    assert views.shadow_legend(make_frame(), 15) == []
+    assert legends.shadow_legend(make_frame(), 31) == []
+    assert legends.shadow_legend(make_frame(), 15) == []
+
+
+def test_the_certificate_legend_counts_the_cells_that_are_seen():
+    frame = with_certificates(make_frame())
+    rows = {r.name: r for r in legends.certificate_legend(frame, 1)}
+    dynamic = np.isin(frame.primitive, (4, 5))
+    for number, name in enumerate(("NONE", "FULL", "LIT", "CANDIDATES")):
+        there = (frame.primitive >= 0) & ~dynamic & ((frame.certificates >> 4) & 3 == number)
+        assert rows[name].pixels == there.sum()
+        assert rows[name].units == len(np.unique(frame.cells[there & (frame.cells >= 0)]))
+    assert (rows["DYNAMIC"].pixels, rows["DYNAMIC"].units) == (dynamic.sum(), 0)
+    assert sum(r.pixel_share for r in rows.values()) == pytest.approx(1.0)
+    assert sum(r.units for r in rows.values()) == frame.cells.max() + 1
+    assert legends.certificate_legend(make_frame(), 1) == legends.certificate_legend(frame, 15) == []
+
+
+@pytest.mark.parametrize("view", [views.View.SAVED, views.View.COST])
+def test_the_legend_of_work_sums_it_up(view):
+    frame = with_certificates(make_frame(Settings(width=160, height=80)))
+    found = legends.work_legend(frame, view)
+    work = frame.saved if view is views.View.SAVED else frame.cost
+    assert (found.total, found.most) == (work.sum(), work.max())
+    assert found.per_pixel == pytest.approx(work.mean())
+    assert np.percentile(work[frame.primitive >= 0], 98) <= found.top <= work.max()
+    for empty in (replace(frame, saved=work * 0, cost=work * 0), replace(frame, primitive=work * 0 - 1)):
+        assert legends.work_legend(empty, view).top == 1.0
+    with pytest.raises(ValueError, match="did not record"):
+        legends.work_legend(make_frame(), view)
 
 
 def test_wide_words_reach_light_30():
     frame = make_frame()
     words = frame.modes.astype(np.uint64) | (np.uint64(2) << np.uint64(62))
     frame = replace(frame, modes=words)
-    rows = {r.name: r.primitives for r in views.shadow_legend(frame, 30)}
+    rows = {r.name: r.units for r in legends.shadow_legend(frame, 30)}
     assert rows["NON_SHADOW"] == 5
     assert shadow_mode_of(frame, 0, 30) is ShadowMode.NON_SHADOW
     assert shadow_mode_of(frame, 0, 31) is None
@@ -72,11 +100,11 @@ def test_the_colour_of_wrong_answers_is_unmistakable():
 
 
 def test_the_difference_legend_counts_what_is_wrong():
-    legend = views.difference_legend(make_frame(Settings(width=16, height=8, verify=True)))
+    legend = legends.difference_legend(make_frame(Settings(width=16, height=8, verify=True)))
     assert (legend.answers, legend.due, legend.pixels) == (3, 4 * 128, 2)
     assert legend.pixel_share == pytest.approx(2 / 128) and legend.largest == pytest.approx(0.1)
     with pytest.raises(ValueError, match="not verified"):
-        views.difference_legend(make_frame())
+        legends.difference_legend(make_frame())
 
 
 @pytest.mark.parametrize(
@@ -116,7 +144,7 @@ def test_the_line_of_a_wipe_reaches_both_edges():
     assert [views.wipe_column(10, wipe) for wipe in (-1.0, 0.0, 0.05, 0.5, 0.99, 1.0, 2.0)] == [0, 0, 0, 5, 9, 10, 10]
 
 
-@pytest.mark.parametrize("palette", [views.OCCLUSION_COLORS, views.SHADOW_COLORS])
+@pytest.mark.parametrize("palette", [views.OCCLUSION_COLORS, views.SHADOW_COLORS, views.CERTIFICATE_COLORS])
 def test_mode_colours_can_be_told_apart_without_red_green_vision(palette):
     for a, b in itertools.combinations(palette.values(), 2):
         assert np.linalg.norm(dichromat(a) - dichromat(b)) > 0.15
@@ -157,6 +185,20 @@ def test_a_kept_pick_follows_its_primitives_modes():
     assert refreshed(found, later).point == found.point
 
 
+def test_a_kept_pick_goes_by_cells_where_those_carry_the_modes():
+    frame, cells = make_frame(), in_cells(make_frame())
+    at = ((2 * 3 + 1.5) / 16, 0.5)  # the fourth primitive's second column
+    found = pick(cells, make_scene(), *at)
+    assert (found.primitive, found.unit, found.in_cells, found.pixels) == (3, 7, True, 8)
+    assert found.shadows != pick(frame, make_scene(), *at).shadows
+    assert refreshed(found, frame) == replace(pick(frame, make_scene(), *at), in_cells=False)
+    assert refreshed(pick(frame, make_scene(), *at), cells) == found
+    elsewhere = in_cells(make_frame(time=1.0))
+    assert refreshed(pick(frame, make_scene(), *at), elsewhere).unit == 3, "which cell it is cannot be known"
+    certified = with_certificates(frame)
+    assert pick(certified, make_scene(), *at).unit == 3, "certificates are no modes"
+
+
 def test_a_pick_counts_the_pixels_wrong_answers_as_long_as_it_shows_the_same():
     verified = make_frame(Settings(width=16, height=8, verify=True))
     found = pick(verified, make_scene(), 5.5 / 16, 6.5 / 8)
@@ -187,6 +229,18 @@ def test_history_keeps_the_newest_in_order_and_contiguous():
     assert history.first == 8 and all(len(history.values(name)) == 5 for name in SERIES)
     history.clear()
     assert len(history) == 0 and len(history.values("due")) == 0
+
+
+def test_fates_of_shadow_rays_add_up_to_those_due():
+    history, frame = History(), make_frame()
+    shadow = frame.statistics.shadow
+    shadow.due, shadow.culled, shadow.candidates_only, shadow.dynamic_only, shadow.cache_hits = 100, 40, 25, 20, 10
+    frame.statistics.certificate_steps, frame.statistics.certificate_tests = 7, 3
+    history.add(frame, 0.0)
+    fates = ("culled", "candidates_only", "dynamic_only", "cache_hits", "traced")
+    assert [history.values(name)[0] for name in fates] == [40, 25, 20, 10, 5]
+    assert history.values("steps")[0] == history.values("shadow_steps")[0] == 7, "certificates count against it"
+    assert history.values("tests")[0] == history.values("shadow_tests")[0] == 3
 
 
 def test_resolution_drops_until_the_frame_rate_holds_and_comes_back():

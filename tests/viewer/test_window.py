@@ -13,8 +13,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 pytestmark = pytest.mark.gui
 
-SCENARIOS = ("views", "difference", "wiping", "culling", "flying", "orbiting", "playing", "capturing", "dropping",
-             "cancelling", "resizing", "closing_while_tracing", "closing_while_loading",
+SCENARIOS = ("views", "difference", "wiping", "culling", "certifying", "explaining", "flying", "orbiting", "playing",
+             "capturing", "dropping", "cancelling", "resizing", "closing_while_tracing", "closing_while_loading",
              "closing_while_experimenting", "experimenting", "zooming", "panels")  # fmt: skip
 
 

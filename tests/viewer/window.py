@@ -12,12 +12,14 @@ import sys
 import time
 import traceback
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from imgui_bundle import hello_imgui, imgui, immapp
 from imgui_bundle.immapp import testing
 
+from tests.viewer.conftest import with_certificates
 from viewer import app as viewer_app
 from viewer.app import App
 
@@ -70,6 +72,17 @@ class Driver:
         self._in_frame.append(lambda: got.append(self.ui.display.read()))
         self.wait(lambda: bool(got), "the picture to be read")
         return got[0]
+
+    def certify(self) -> None:
+        """Frames from now on come with cells and certificates drawn by lot, and with work where that was asked for."""
+        renderer = self.c.render._renderer
+        render = renderer.render
+
+        def with_more(*arguments, **options):
+            frame = with_certificates(render(*arguments, **options))
+            return frame if frame.settings.record_work else replace(frame, saved=None, cost=None)
+
+        renderer.render = with_more
 
     def press(self, key: int, count: int = 1) -> None:
         self.context.key_press(key, count)

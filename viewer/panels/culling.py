@@ -1,11 +1,27 @@
-"""The culling: on or off, its settings, and what is learnt."""
+"""The culling: its method and settings, and what is learnt."""
 
 from __future__ import annotations
 
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.panels.widgets import ERROR, GOOD, QUIET, checkbox, count, paragraph, percent, properties, row, wide_button
+from tracer.method import BASES, base_of, takes
+from viewer.methods import BASES_TOLD, EXTRAS_TOLD, toggled, with_base
+from viewer.panels.widgets import (
+    ERROR,
+    GOOD,
+    QUIET,
+    checkbox,
+    count,
+    em,
+    paragraph,
+    percent,
+    properties,
+    row,
+    tooltip,
+    wide_button,
+)
+from viewer.preferences import LONGEST_BUDGET
 from viewer.ui import Ui
 
 
@@ -13,19 +29,28 @@ def show(ui: Ui) -> None:
     """The panel."""
     c = ui.controller
     s, p = c.session.settings, c.preferences
-    checkbox("Shadow culling", s.method != "none", lambda _: c.toggle_culling(), "skip shadow rays that are known (C)")
+    _method(ui)
     tip = "test both pixels of a pair against each other's primitive, not just one of them (Y)"
+    imgui.begin_disabled(not _by_modes(s.method))
     checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.change(symmetric=on), tip)
+    imgui.end_disabled()
     tip = "trace every culled shadow ray as well, and count those that would have answered otherwise (V)"
     checkbox("Verify", s.verify, lambda on: c.change(verify=on), tip)
     _wrong(ui)
     with properties("culling", 6.5) as shown:
-        if shown:
+        if shown and _by_modes(s.method):
             row("Zoom factor", "a primitive that covers so many times more pixels than ever is looked at again")
             flags = int(imgui.SliderFlags_.logarithmic)
             changed, factor = imgui.slider_float("##zoom", s.zoom_factor, 1.0, 64.0, "%.1f", flags)
             if changed:
                 c.change(zoom_factor=factor)
+        if shown and base_of(s.method) == "certified":
+            row("Certify", "milliseconds of a frame for it, at most; what is wanted most comes first")
+            flags = int(imgui.SliderFlags_.logarithmic | imgui.SliderFlags_.always_clamp)
+            budget = min(1e3 * s.certificate_seconds, LONGEST_BUDGET)
+            changed, budget = imgui.slider_float("##budget", budget, 1.0, LONGEST_BUDGET, "%.0f ms", flags)
+            if changed:
+                c.change(certificate_seconds=budget / 1e3)
     if wide_button(f"{icons.ICON_FA_ERASER}  Reset modes", "forget all that was learnt (Backspace)", 2):
         c.reset_modes()
     imgui.same_line()
@@ -39,6 +64,34 @@ def show(ui: Ui) -> None:
     checkbox("Keep tracing at rest", p.keep_tracing, keep, "frame after frame, to watch the modes settle (K)")
 
 
+def _method(ui: Ui) -> None:
+    """What culls, and what it takes along."""
+    c = ui.controller
+    method = c.session.settings.method
+    base = base_of(method)
+    with properties("method", 4.0) as shown:
+        if shown:
+            row("Method", f"{BASES_TOLD[base]} (C: none, and back)")
+            if imgui.begin_combo("##method", base):
+                for other in BASES:
+                    if imgui.selectable(other, other == base)[0]:
+                        c.change(method=with_base(method, other))
+                    tooltip(BASES_TOLD[other])
+                imgui.end_combo()
+    for number, (extra, (label, told)) in enumerate(EXTRAS_TOLD.items()):
+        if number:
+            imgui.same_line(0.0, em(1.0))
+        changed, _ = imgui.checkbox(f"+{extra}", takes(method, extra))
+        tooltip(f"{label}: {told}")
+        if changed:
+            c.change(method=toggled(method, extra))
+
+
+def _by_modes(method: str) -> bool:
+    """Whether a method tests occlusion and sets modes."""
+    return base_of(method) in ("paper", "cells")
+
+
 def _wrong(ui: Ui) -> None:
     c = ui.controller
     if c.frame is None or not c.frame.settings.verify:
@@ -47,7 +100,7 @@ def _wrong(ui: Ui) -> None:
     imgui.same_line()
     if shadow.wrong:
         paragraph(f"{count(shadow.wrong)} wrong ({percent(shadow.wrong, shadow.due)})", ERROR)
-    elif not shadow.culled + shadow.dynamic_only:
+    elif not shadow.culled + shadow.candidates_only + shadow.dynamic_only + shadow.cache_hits:
         paragraph("nothing culled", QUIET)
     else:
         paragraph("none wrong", GOOD)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 
 from tracer import experiment
 from tracer.experiment import REFERENCE, Results, Row
-from tracer.frame import METHODS
+from tracer.method import BASES, EXTRAS
+from viewer.methods import BASES_TOLD, EXTRAS_TOLD, in_order, named
 from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
 from viewer.panels.runs import export_buttons, side_by_side, start_or_progress
 from viewer.panels.widgets import (
@@ -24,7 +27,7 @@ from viewer.panels.widgets import (
     tooltip,
 )
 from viewer.reports import LINES, WRONG
-from viewer.runs import LONGEST_SIDE, Experiment
+from viewer.runs import LONGEST_SIDE, Experiment, ExperimentPlan
 from viewer.ui import Ui
 
 _WORKS = (("steps", "steps"), ("tests", "tests"))
@@ -43,8 +46,14 @@ def show(ui: Ui) -> None:
         lambda: _controls(ui, run),
         lambda size: _plot(ui, run, results, size),
         lambda: _table(ui, run, results),
-        em(_HEADING + _REFERENCE + _METHOD * (columns - 1) + 1.2),
+        em(_table_width(columns)),
+        scrolls=True,
     )
+
+
+def _table_width(columns: int) -> float:
+    """Of the paper's table with so many methods, in ems."""
+    return _HEADING + _REFERENCE + _METHOD * (columns - 1) + 1.2
 
 
 def _controls(ui: Ui, run: Experiment | None) -> None:
@@ -65,14 +74,7 @@ def _plan(ui: Ui) -> None:
         if not shown:
             return
         row("Methods", f"each is compared with {REFERENCE}, which traces every shadow ray")
-        for method in METHODS:
-            imgui.begin_disabled(method == REFERENCE)
-            changed, _ = imgui.checkbox(method, method == REFERENCE or method in plan.methods)
-            imgui.end_disabled()
-            if changed:
-                plan.methods ^= {method}
-            imgui.same_line()
-        imgui.new_line()
+        _methods(plan)
         row("Frames", "over the whole path of the scene")
         changed, frames = imgui.input_int("##frames", plan.frames)
         if changed:
@@ -87,14 +89,50 @@ def _plan(ui: Ui) -> None:
         checkbox("##verify", plan.verify, lambda on: setattr(plan, "verify", on))
 
 
+def _methods(plan: ExperimentPlan) -> None:
+    """A list to be opened: a line for each base, a tick for each way to take extras along; the reference is always
+    among them."""
+    opened = imgui.begin_combo("##methods", ", ".join(in_order(plan.methods)), int(imgui.ComboFlags_.height_largest))
+    tooltip(", ".join(in_order({REFERENCE, *plan.methods})))
+    if opened:
+        _method_ticks(plan)
+        imgui.end_combo()
+
+
+def _method_ticks(plan: ExperimentPlan) -> None:
+    sets = [extras for n in range(len(EXTRAS) + 1) for extras in combinations(EXTRAS, n)]
+    if not imgui.begin_table("methods", 1 + len(sets), int(imgui.TableFlags_.sizing_fixed_fit)):
+        return
+    for heading in ("", *("+".join(("", *extras)) or "alone" for extras in sets)):
+        imgui.table_next_column()
+        imgui.text_colored(QUIET, heading)
+        if heading.startswith("+"):
+            tooltip("; ".join(f"+{extra}: {EXTRAS_TOLD[extra][1]}" for extra in heading[1:].split("+")))
+    for base in BASES:
+        imgui.table_next_column()
+        imgui.text_unformatted(base)
+        tooltip(BASES_TOLD[base])
+        for method in (named(base, extras) for extras in sets):
+            imgui.table_next_column()
+            imgui.begin_disabled(method == REFERENCE)
+            changed, _ = imgui.checkbox(f"##{method}", method == REFERENCE or method in plan.methods)
+            imgui.end_disabled()
+            if changed:
+                plan.methods ^= {method}
+    imgui.end_table()
+
+
 def _shown_method(run: Experiment) -> None:
     """Whose frames are the picture."""
     imgui.align_text_to_frame_padding()
     imgui.text_colored(QUIET, "show")
-    for method in run.methods:
-        imgui.same_line()
-        if imgui.radio_button(method, run.shown == method):
-            run.shown = method
+    imgui.same_line()
+    imgui.set_next_item_width(-1.0)
+    if imgui.begin_combo("##shown", run.shown):
+        for method in run.methods:
+            if imgui.selectable(method, run.shown == method)[0]:
+                run.shown = method
+        imgui.end_combo()
     width, height = run.settings.width, run.settings.height
     imgui.text_colored(QUIET, f"{width} x {height}, {run.settings.depth} bounces")
 
@@ -107,10 +145,11 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
         imgui.end_child()
         return
     wrong = run.settings.verify and any(any(figures["wrong"]) for figures in results.methods.values())
-    if not implot.begin_plot(f"{run.scene_path.name}: saved##{id(run)}", size, FLAGS):
+    savings = ui.cached("savings", results, 0, lambda: _savings(results))
+    thin = " (thin: tests)" if len(savings) > len(_WORKS) else ""
+    if not implot.begin_plot(f"{run.scene_path.name}: saved{thin}##{id(run)}", size, FLAGS):
         return
     frames = np.array(results.frames, np.float64)
-    savings = ui.cached("savings", results, 0, lambda: _savings(results))
     top = max([float(values.max()) for _, values in savings] or [0.0])
     bottom = min([float(values.min()) for _, values in savings] or [0.0])
     implot.setup_axes("", "", AXIS, AXIS)
@@ -124,19 +163,27 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
     implot.setup_legend(implot.Location_.south, LEGEND)
     if wrong:
         _plot_wrong(results, frames)
-    for number, (name, values) in enumerate(savings):
-        spec = implot.Spec(line_color=COLORS[number % len(COLORS)], line_weight=1.6)
+    for (name, values), spec in zip(savings, _looks(len(savings)), strict=True):
         if len(frames) == 1:  # is no line
             spec.marker = int(implot.Marker_.circle)
         implot.plot_line(name, frames, values, spec)
     implot.end_plot()
 
 
+def _looks(curves: int) -> list[implot.Spec]:
+    """How to draw so many curves, steps and tests of each method in turn: of several methods each has one colour and
+    one entry in the legend, and its tests are thin."""
+    if curves <= len(_WORKS):
+        return [implot.Spec(line_color=color, line_weight=1.6) for color in COLORS[:curves]]
+    pairs = [(COLORS[n // len(_WORKS) % len(COLORS)], n % len(_WORKS) == 0) for n in range(curves)]
+    return [implot.Spec(line_color=color, line_weight=2.2 if steps else 0.9) for color, steps in pairs]
+
+
 def _savings(results: Results) -> list[tuple[str, np.ndarray]]:
     methods = [method for method in results.methods if method != REFERENCE]
     many = len(methods) > 1
     return [
-        (f"{method}: {label}" if many else label, 100.0 * results.reductions(method, work))
+        (method if many else label, 100.0 * results.reductions(method, work))
         for method in methods
         for work, label in _WORKS
     ]
@@ -162,16 +209,21 @@ def _table(ui: Ui, run: Experiment | None, results: Results | None) -> None:
     done = f"{len(results.frames)} frame{plural}" if whole else f"{len(results.frames)} of {len(run.times)} frames"
     clipped(f"{done}, {run.settings.width} x {run.settings.height}, {run.settings.accelerator}", QUIET)
     flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg
+    scrolls = em(_table_width(len(rows)) - 1.2) > imgui.get_content_region_avail().x
+    if scrolls:
+        flags |= imgui.TableFlags_.scroll_x | imgui.TableFlags_.scroll_y
     if not imgui.begin_table("table 1", 1 + len(rows), int(flags)):
         return
-    imgui.table_setup_column("", int(imgui.TableColumnFlags_.width_stretch))
+    imgui.table_setup_scroll_freeze(1, 1)
+    stretch, fixed = imgui.TableColumnFlags_.width_stretch, imgui.TableColumnFlags_.width_fixed
+    imgui.table_setup_column("", int(fixed if scrolls else stretch), em(_HEADING) if scrolls else 0.0)
     for line in rows:
         width = em(_REFERENCE if line.method == REFERENCE else _METHOD)
-        imgui.table_setup_column(line.method, int(imgui.TableColumnFlags_.width_fixed), width)
+        imgui.table_setup_column(line.method, int(fixed), width)
     imgui.table_next_column()
     for line in rows:
         imgui.table_next_column()
-        imgui.text_colored(QUIET, line.method)
+        clipped(line.method, QUIET)
     for (heading, cell), short in zip(LINES, _SHORT, strict=True):
         if heading == WRONG and not run.settings.verify:
             continue

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import OcclusionMode, ShadowMode
-from viewer.panels.widgets import QUIET, count, em, heading, judged, paragraph, properties, tooltip, value
+from tracer.method import base_of
+from viewer.panels import explanation
+from viewer.panels.widgets import QUIET, count, em, heading, judged, paragraph, properties, swatch, tooltip, value
 from viewer.picking import Pick
 from viewer.ui import Ui
 from viewer.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
@@ -35,20 +37,26 @@ def show(ui: Ui) -> None:
 
 
 def _details(ui: Ui, pick: Pick) -> None:
+    frame = ui.controller.frame
+    by_modes = frame is None or base_of(frame.settings.method) != "certified"
     with properties("primitive", 5.8) as shown:
         if shown:
             value("Primitive", f"{pick.primitive}  ({pick.kind})")
             value("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""))
+            if pick.in_cells:
+                value("Cell", f"{pick.unit}", "the part of it that carries modes and counts")
             if pick.material is not None:
                 value("Material", pick.material.name, _describe(pick))
             tip = "that it covers now; its modes are judged by its highest count while fully rendered"
-            value("Pixels", f"{count(pick.pixels)} now, {judged(pick.highest)}", tip)
+            value("Pixels", f"{count(pick.pixels)} now{f', {judged(pick.highest)}' if by_modes else ''}", tip)
             if pick.wrong is not None:
                 answers = f"{count(pick.wrong)} shadow {'answer' if pick.wrong == 1 else 'answers'}"
                 value("Wrong here", answers, "of this pixel, of any light at any bounce: what is mirrored counts too")
-    heading("Modes")
-    _modes(ui, pick)
-    paragraph(_verdict(pick), QUIET)
+    explanation.rows(ui)
+    if by_modes:
+        heading("Modes of its cell" if pick.in_cells else "Modes")
+        _modes(ui, pick)
+        paragraph(_verdict(pick), QUIET)
     heading("Pixel")
     with properties("pixel", 5.8) as shown:
         if shown:
@@ -76,12 +84,7 @@ def _modes(ui: Ui, pick: Pick) -> None:
 
 
 def _mode(name: str, mode: str, color: tuple[float, float, float], meaning: str) -> None:
-    side = imgui.get_text_line_height()
-    at = imgui.get_cursor_screen_pos()
-    start, end = ImVec2(at.x, at.y + 0.1 * side), ImVec2(at.x + 0.8 * side, at.y + 0.9 * side)
-    imgui.get_window_draw_list().add_rect_filled(start, end, imgui.get_color_u32(ImVec4(*color, 1.0)), em(0.15))
-    imgui.dummy(ImVec2(0.8 * side, side))
-    imgui.same_line(0.0, em(0.4))
+    swatch(color)
     imgui.text_colored(QUIET, name)
     imgui.same_line(em(6.4))
     imgui.text_unformatted(mode.replace("_", " ").lower())

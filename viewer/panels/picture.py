@@ -12,7 +12,7 @@ import math
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer import navigation
-from viewer.panels import timeline, wipe
+from viewer.panels import explanation, timeline, wipe
 from viewer.panels.widgets import ERROR, QUIET, count, em, paragraph
 from viewer.picking import point_at
 from viewer.ui import Ui
@@ -60,6 +60,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     imgui.invisible_button("picture", size, _ALL_BUTTONS)
     end = ImVec2(corner.x + size.x, corner.y + size.y)
     imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), corner, end)
+    explanation.show(ui, corner, end)
     _pointer(ui, corner, size)
     wipe.show(ui, corner, end)
     _overlay(ui, corner, end)

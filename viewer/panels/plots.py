@@ -1,4 +1,4 @@
-"""The last frames' numbers as curves: shadow rays, work, milliseconds."""
+"""The last frames' numbers: what became of shadow rays as stacked areas, work and milliseconds as curves."""
 
 from __future__ import annotations
 
@@ -9,24 +9,30 @@ from numpy.typing import NDArray
 from viewer.panels.widgets import QUIET, checkbox, count, em, paragraph
 from viewer.ui import Ui
 
-_BLUE, _GREEN, _ORANGE, _SKY = (
+_BLUE, _GREEN, _ORANGE, _SKY, _PINK, _YELLOW = (
     ImVec4(0.25, 0.56, 0.86, 1.0),
     ImVec4(0.0, 0.72, 0.53, 1.0),
     ImVec4(0.93, 0.64, 0.10, 1.0),
     ImVec4(0.55, 0.78, 0.95, 1.0),
+    ImVec4(0.86, 0.53, 0.72, 1.0),
+    ImVec4(0.94, 0.89, 0.26, 1.0),
 )
 
+_FATES = "Shadow rays by fate"
 _LOGARITHMIC = "Milliseconds"
 _PLOTS = (
-    ("Shadow rays", (("due", "due", _SKY), ("culled", "culled", _GREEN), ("dynamic only", "dynamic_only", _ORANGE))),
-    ("Steps and tests", (("steps", "steps", _BLUE), ("of shadow rays", "shadow_steps", _SKY),
+    (_FATES, (("culled", "culled", _BLUE), ("dynamic", "dynamic_only", _YELLOW),
+              ("candidates", "candidates_only", _ORANGE), ("cache", "cache_hits", _PINK),
+              ("traced", "traced", ImVec4(0.55, 0.58, 0.64, 1.0)))),
+    ("Steps and tests", (("steps", "steps", _BLUE), ("for shadows", "shadow_steps", _SKY),
                          ("tests", "tests", _ORANGE))),
     (_LOGARITHMIC, (("traced", "traced_ms", _BLUE), ("drawn", "drawn_ms", _ORANGE))),
 )  # fmt: skip
+_SHARES = (0.44, 0.31, 0.25)  # of the panel's width: the first legend is the longest
 FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
 AXIS = int(implot.AxisFlags_.no_highlight)
 LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
-COLORS = (_BLUE, _ORANGE, _GREEN, _SKY)
+COLORS = (_BLUE, _ORANGE, _GREEN, _SKY, _PINK, _YELLOW)
 
 
 def wrong_axis(most: int, condition: int) -> None:
@@ -59,11 +65,11 @@ def show(ui: Ui) -> None:
     room = imgui.get_content_region_avail()
     spacing = imgui.get_style().item_spacing.x
     columns = 3 if room.x > em(42.0) else 1  # else one below the other, and the panel scrolls
-    size = ImVec2((room.x - (columns - 1) * spacing) / columns, max(room.y, em(8.0)))
-    for number, (title, series) in enumerate(_PLOTS):
+    shares = _SHARES if columns > 1 else (1.0,) * len(_PLOTS)
+    for number, ((title, series), share) in enumerate(zip(_PLOTS, shares, strict=True)):
         if number % columns:
             imgui.same_line()
-        _plot(ui, title, series, size)
+        _plot(ui, title, series, ImVec2(share * (room.x - (columns - 1) * spacing), max(room.y, em(8.0))))
 
 
 def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size: ImVec2) -> None:
@@ -74,6 +80,8 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
     curves = [(label, _values(ui, name, per_pixel), color) for label, name, color in series]
     last = history.first + max(len(history) - 1, 10)
     top = max(float(values.max()) for _, values, _ in curves)
+    if title == _FATES:
+        top = float(_values(ui, "due", per_pixel).max())
     implot.setup_axes("", "", AXIS, AXIS)
     implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
     implot.setup_axis_format(implot.ImAxis_.y1, "%.4g")
@@ -84,9 +92,26 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
         lowest, highest = 0.0, 1.12 * top if top > 0.0 else 1.0
     implot.setup_axes_limits(history.first, last, lowest, highest, int(imgui.Cond_.always))
     implot.setup_legend(implot.Location_.south, LEGEND)
-    for label, values, color in curves:
-        implot.plot_line(label, values, 1.0, float(history.first), implot.Spec(line_color=color, line_weight=1.6))
+    if title == _FATES:
+        _stack(curves, float(history.first))
+    else:
+        for label, values, color in curves:
+            implot.plot_line(label, values, 1.0, float(history.first), implot.Spec(line_color=color, line_weight=1.6))
     implot.end_plot()
+
+
+def _stack(curves: list[tuple[str, NDArray[np.float64], ImVec4]], first: float) -> None:
+    """Areas one above the other, which together are all rays that were due; a fate that no ray had is left out."""
+    below = np.zeros(len(curves[0][1]))
+    frames = first + np.arange(len(below), dtype=np.float64)
+    if len(frames) == 1:  # is no area
+        frames = np.array([first, first + 1.0])
+    for number, (label, values, color) in enumerate(curves):
+        above = below + values
+        if values.any() or number == len(curves) - 1:
+            lower, upper = (np.resize(edge, len(frames)) for edge in (below, above))
+            implot.plot_shaded(label, frames, lower, upper, implot.Spec(fill_color=color, fill_alpha=0.85))
+        below = above
 
 
 def _values(ui: Ui, name: str, per_pixel: bool) -> NDArray[np.float64]:

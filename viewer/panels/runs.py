@@ -21,12 +21,20 @@ _TIPS = {
 
 
 def side_by_side(
-    controls: Callable[[], None], plot: Callable[[ImVec2], None], table: Callable[[], None], table_width: float
+    controls: Callable[[], None],
+    plot: Callable[[ImVec2], None],
+    table: Callable[[], None],
+    table_width: float,
+    scrolls: bool = False,
 ) -> None:
-    """Controls, plot and table in a row; one below the other where the panel is too narrow for that."""
+    """Controls, plot and table in a row; one below the other where the panel is too narrow for that.
+
+    A table that `scrolls` does so in half of what the controls leave, where it is wider than that."""
     room = imgui.get_content_region_avail()
     spacing = imgui.get_style().item_spacing.x
     left = em(14.0)
+    if scrolls:
+        table_width = min(table_width, max(0.5 * (room.x - left), em(18.0)))
     middle = room.x - left - table_width - 2.0 * spacing
     if middle < em(12.0):
         controls()

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
+from tracer.method import base_of, takes
+from viewer.history import fully_traced
 from viewer.panels.widgets import (
     QUIET,
     clipped,
@@ -19,7 +21,7 @@ from viewer.panels.widgets import (
 )
 from viewer.ui import Ui
 
-_PHASE_ORDER = ("place", "primary", "occlusion testing", "shading", "mode setting")
+_PHASE_ORDER = ("place", "primary", "occlusion testing", "certification", "shading", "mode setting")
 
 
 def show(ui: Ui) -> None:
@@ -33,22 +35,35 @@ def show(ui: Ui) -> None:
     pixels = max(frame.width * frame.height, 1)
     divisor = c.traced.request.divisor
     coarse = f" (1/{divisor} of the window)" if divisor > 1 else ""
-    clipped(f"for {frame.width} x {frame.height} pixels{coarse}, {'culling' if _culls(frame) else 'no culling'}")
+    clipped(f"for {frame.width} x {frame.height} pixels{coarse}, method {frame.settings.method}")
     if c.tracing.outdated:
         paragraph("with the settings before; tracing ...", QUIET)
-    shadow = s.shadow
+    shadow, certifies = s.shadow, base_of(frame.settings.method) == "certified"
     heading("Shadow rays")
     with properties("shadow") as shown:
         if shown:
             value("Due", f"{count(shadow.due)}  ({shadow.due / pixels:.2f} / pixel)", "light on the viewer's side")
             value("Culled", _share(shadow.culled, shadow.due), "known to be in shadow: not traced at all")
             value("Dynamic only", _share(shadow.dynamic_only, shadow.due), "asked only the objects that move")
-            if shadow.candidates_only:
-                value("Candidates", _share(shadow.candidates_only, shadow.due), "asked only a list of primitives")
+            if certifies or shadow.candidates_only:
+                tip = "asked a list of a few primitives instead of the tree, and the objects that move"
+                value("Candidates", _share(shadow.candidates_only, shadow.due), tip)
+            if takes(frame.settings.method, "cache") or shadow.cache_hits:
+                tip = "blocked by what the occluder cache had asked about first"
+                value("Cache hits", _share(shadow.cache_hits, shadow.due), tip)
+            value("Traced", _share(fully_traced(shadow), shadow.due), "nothing was known: asked everything")
             if frame.settings.verify:
                 value("Wrong", _share(shadow.wrong, shadow.due), "culled, but a trace answers otherwise")
-            tests = f"{count(s.occlusion_tests)}  ({s.occlusion_tests / pixels:.3f} / pixel)"
-            value("Occlusion tests", tests, "against the neighbouring pixels' primitives")
+            if not certifies:
+                tests = f"{count(s.occlusion_tests)}  ({s.occlusion_tests / pixels:.3f} / pixel)"
+                value("Occlusion tests", tests, "against the neighbouring pixels' primitives")
+    if certifies:
+        heading("Certificates")
+        with properties("certificates") as shown:
+            if shown:
+                seconds = s.phases.get("certification", 0.0)
+                tip = "of cells that rays wanted, those that were wanted most first"
+                value("Made", f"{count(s.certificates)}  in {1e3 * seconds:.1f} ms", tip)
     heading("Work")
     _work(ui)
     heading("Time")
@@ -61,16 +76,12 @@ def show(ui: Ui) -> None:
             value("Drawn in", f"{1e3 * c.drawn_seconds:.1f} ms", "what the window itself takes for one of its frames")
 
 
-def _culls(frame: object) -> bool:
-    return frame.settings.method != "none"  # type: ignore[attr-defined]
-
-
 def _share(part: int, whole: int) -> str:
     return f"{count(part)}  ({percent(part, whole)})"
 
 
 def _work(ui: Ui) -> None:
-    """Rays, steps and tests of each kind of ray."""
+    """Rays, steps and tests of each kind of ray, and steps and tests of certificates."""
     frame = ui.controller.frame
     assert frame is not None
     s = frame.statistics
@@ -91,6 +102,10 @@ def _work(ui: Ui) -> None:
         numbers = (part.rays, part.traversal_steps, part.intersection_tests)
         total = [t + n for t, n in zip(total, numbers)]
         _cells(name, numbers)
+    if base_of(frame.settings.method) == "certified":
+        numbers = (0, s.certificate_steps, s.certificate_tests)
+        total = [t + n for t, n in zip(total, numbers)]
+        _cells("certificates", numbers)
     _cells("all", total)
     imgui.end_table()
 

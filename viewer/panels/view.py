@@ -6,7 +6,18 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 from numpy.typing import NDArray
 
+from tracer.method import base_of
 from tracer.renderer import Frame
+from viewer.legends import (
+    DifferenceLegend,
+    LegendRow,
+    WorkLegend,
+    certificate_legend,
+    difference_legend,
+    occlusion_legend,
+    shadow_legend,
+    work_legend,
+)
 from viewer.panels.widgets import (
     GOOD,
     QUIET,
@@ -18,24 +29,16 @@ from viewer.panels.widgets import (
     percent,
     properties,
     row,
+    swatch,
     tooltip,
     value,
 )
 from viewer.ui import Ui
-from viewer.views import (
-    GREY,
-    WRONG,
-    DifferenceLegend,
-    LegendRow,
-    View,
-    color_map,
-    difference_legend,
-    occlusion_legend,
-    shadow_legend,
-)
+from viewer.views import GREY, WRONG, View, color_map, has_modes_of_cells
 
 _GRADIENT_STEPS = 24
-_FLAT = (View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT)
+_FLAT = (View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT, View.CERTIFICATE)
+_OF_MODES = (View.OCCLUSION, View.SHADOW, View.PIXEL_COUNT)
 
 
 def show(ui: Ui) -> None:
@@ -44,12 +47,12 @@ def show(ui: Ui) -> None:
     views = list(View)
     with properties("view", 5.0) as shown:
         if shown:
-            row("View", "keys 1 to 9")
+            row("View", "keys 1 to 9, 0, H and Shift+H")
             chosen = views.index(c.session.view)
             changed, index = imgui.combo("##view", chosen, [f"{v.label}" for v in views])
             if changed:
                 c.set_view(views[index])
-            if c.session.view is View.SHADOW and c.session.scene is not None and c.session.scene.lights:
+            if c.session.view.of_light and c.session.scene is not None and c.session.scene.lights:
                 row("Light", "L and Shift+L")
                 names = [f"{i}  {light.name}" for i, light in enumerate(c.session.scene.lights)]
                 changed, light = imgui.combo("##light", c.session.light, names)
@@ -76,32 +79,59 @@ def _legend(ui: Ui, frame: Frame) -> None:
     """What the colours stand for, and how much of the frame each is."""
     view, light = ui.controller.session.view, ui.controller.session.light
     tip = view.explanation
+    if view in _OF_MODES and base_of(frame.settings.method) == "certified":
+        paragraph("This frame's method goes by certificates (0); modes are those of other methods.", WARNING)
+    units = "cells" if has_modes_of_cells(frame) else "primitives"
     if view is View.OCCLUSION:
-        _table(ui.cached("occlusion", frame, 0, lambda: occlusion_legend(frame)))
-    elif view is View.SHADOW:
-        rows = ui.cached("shadow", frame, light, lambda: shadow_legend(frame, light))
-        if rows:
-            _table(rows)
-        else:
-            tip = "Culling does not cover this light: its shadow rays are all traced."
-            paragraph(tip, WARNING)
+        _table(ui.cached("occlusion", frame, 0, lambda: occlusion_legend(frame)), units)
+    elif view.of_light:
+        if view is View.CERTIFICATE and frame.certificates is None:
+            paragraph(f"The method {frame.settings.method} makes no certificates; certified does.", WARNING)
             return
+        legend = shadow_legend if view is View.SHADOW else certificate_legend
+        rows = ui.cached(view.value, frame, light, lambda: legend(frame, light))
+        if not rows:
+            paragraph("Culling does not cover this light: its shadow rays are all traced.", WARNING)
+            return
+        _table(rows, units if view is View.SHADOW else "cells seen")
     elif view is View.DEPTH and ui.display is not None:
         near, far = ui.display.depth_range
         _gradient(f"{near:.4g}", f"{far:.4g}", reverse=True)
     elif view is View.PIXEL_COUNT:
         zoom = frame.settings.zoom_factor
         _gradient(f"1/{zoom:.3g}", f"{zoom:.3g} x", "as many")
-        _swatch(GREY)
+        swatch(GREY)
         imgui.text_unformatted("never fully rendered")
+    elif view.needs_work:
+        _work(ui, frame)
     elif view.needs_verify:
         run = ui.controller.runner.current
-        if run is not None and not run.verifies:
+        if run is not None and run.lacks(view):
             paragraph("This run does not verify; tick Verify in the Experiment panel before the next.", WARNING)
             return
         _difference(ui, frame)
         tip += " While it is chosen each culled ray is traced as well, so that frames take longer."
     paragraph(tip, QUIET)
+
+
+def _work(ui: Ui, frame: Frame) -> None:
+    """The scale of a heat map, and what it sums up to."""
+    view, run = ui.controller.session.view, ui.controller.runner.current
+    if not view.can_draw(frame):
+        lacks = run.lacks(view) if run is not None else ""
+        paragraph(f"This run {lacks}." if lacks else "Nothing has been counted yet; a frame is being traced ...", QUIET)
+        return
+    found: WorkLegend = ui.cached(view.value, frame, 0, lambda: work_legend(frame, view))
+    _gradient("0", f"{found.top:.4g} and more", f"{found.top / 2.0:.3g}")
+    saved = view is View.SAVED
+    with properties("work", 6.5) as shown:
+        if shown:
+            due = frame.statistics.shadow.due
+            tip = "of the first sample of each pixel; its share of all shadow rays that were due" if saved else ""
+            part = f"  ({percent(found.total, due)} of due)" if saved else ""
+            value("Saved" if saved else "Traced", f"{count(found.total)}{part}", tip)
+            value("Per pixel", f"{found.per_pixel:.2f}", "on average, the background counted")
+            value("At one pixel", f"{count(found.most)} at most", "99 % of what is seen lies within the scale")
 
 
 def _difference(ui: Ui, frame: Frame) -> None:
@@ -113,7 +143,7 @@ def _difference(ui: Ui, frame: Frame) -> None:
     shadow = frame.statistics.shadow
     if frame.settings.method == "none":
         paragraph("Culling is off (C): every shadow ray is traced, so nothing can be wrong.", WARNING)
-    elif not shadow.culled + shadow.dynamic_only:
+    elif not shadow.culled + shadow.candidates_only + shadow.dynamic_only + shadow.cache_hits:
         paragraph("No shadow ray of this frame was culled, so none can be wrong. Move, or trace again (T).", WARNING)
     elif found.pixels:
         _wrong_swatch(ui)
@@ -135,37 +165,38 @@ def _wrong_swatch(ui: Ui) -> None:
     """What the one colour of both views means: the pixels themselves, or the rings around them."""
     marked = ui.controller.preferences.mark_wrong
     if ui.controller.session.view is View.DIFFERENCE:
-        _swatch(WRONG)
+        swatch(WRONG)
         imgui.text_unformatted("a wrong shadow answer" + (", in a ring" if marked else ""))
     elif marked:
-        _swatch(WRONG)
+        swatch(WRONG)
         imgui.text_unformatted("around wrong shadow answers")
 
 
-def _table(rows: list[LegendRow]) -> None:
+def _table(rows: list[LegendRow], units: str) -> None:
+    """Each class of modes or certificates, with its pixels and its primitives or cells."""
     flags = int(imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg)
     if not imgui.begin_table("legend", 3, flags):
         return
     imgui.table_setup_column("mode", int(imgui.TableColumnFlags_.width_stretch), 1.7)
     imgui.table_setup_column("pixels", int(imgui.TableColumnFlags_.width_stretch), 0.8)
-    imgui.table_setup_column("primitives", int(imgui.TableColumnFlags_.width_stretch), 1.0)
-    for title in ("mode", "pixels", "primitives"):
+    imgui.table_setup_column(units, int(imgui.TableColumnFlags_.width_stretch), 1.0)
+    for title in ("proven" if units == "cells seen" else "mode", "pixels", units):
         imgui.table_next_column()
-        if title == "mode":
+        if title not in ("pixels", units):
             imgui.text_colored(QUIET, title)
         else:
             _right(title, QUIET)
     for entry in rows:
         imgui.table_next_column()
-        _swatch(entry.color)
+        swatch(entry.color)
         imgui.text_unformatted(entry.name.replace("_", " ").lower())
         tooltip(f"{entry.name}: {entry.meaning}")
         imgui.table_next_column()
         _right(f"{100.0 * entry.pixel_share:.1f} %")
         tooltip(f"{count(entry.pixels)} primary pixels")
         imgui.table_next_column()
-        _right(count(entry.primitives))
-        tooltip(f"{100.0 * entry.primitive_share:.2f} % of all primitives")
+        _right(count(entry.units))
+        tooltip(f"{100.0 * entry.unit_share:.2f} % of all {units}")
     imgui.end_table()
 
 
@@ -177,16 +208,6 @@ def _right(text: str, color: ImVec4 | None = None) -> None:
         imgui.text_unformatted(text)
     else:
         imgui.text_colored(color, text)
-
-
-def _swatch(color: tuple[float, float, float]) -> None:
-    side = imgui.get_text_line_height()
-    at = imgui.get_cursor_screen_pos()
-    end = ImVec2(at.x + 0.8 * side, at.y + 0.9 * side)
-    start = ImVec2(at.x, at.y + 0.1 * side)
-    imgui.get_window_draw_list().add_rect_filled(start, end, imgui.get_color_u32(ImVec4(*color, 1.0)), em(0.15))
-    imgui.dummy(ImVec2(0.8 * side, side))
-    imgui.same_line(0.0, em(0.4))
 
 
 def _opaque(color: NDArray[np.float32]) -> ImVec4:

@@ -141,6 +141,17 @@ def wide_button(label: str, tip: str = "", columns: int = 1, explain: Callable[[
     return clicked
 
 
+def swatch(color: tuple[float, float, float]) -> None:
+    """A square of a colour, for the word that follows on its line."""
+    side = imgui.get_text_line_height()
+    at = imgui.get_cursor_screen_pos()
+    end = ImVec2(at.x + 0.8 * side, at.y + 0.9 * side)
+    start = ImVec2(at.x, at.y + 0.1 * side)
+    imgui.get_window_draw_list().add_rect_filled(start, end, imgui.get_color_u32(ImVec4(*color, 1.0)), em(0.15))
+    imgui.dummy(ImVec2(0.8 * side, side))
+    imgui.same_line(0.0, em(0.4))
+
+
 def heading(text: str) -> None:
     imgui.dummy(ImVec2(0.0, em(0.15)))
     imgui.separator_text(text)

@@ -1,0 +1,146 @@
+"""Why is it in shadow there?  What each light meets on its way to what a pixel shows.
+
+One ray for each light that is due, as shading would trace it, and, where the renderer keeps certificates, what
+these say of the point.  The world is asked as it stands: it must be placed for the frame.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.shadow import LIGHT_MARGIN
+from tracer.geometry.camera import pinhole
+from tracer.geometry.facets import ACROSS, OBJECT
+from tracer.geometry.rays import ray_batch
+from tracer.scene.animation import light_positions
+from tracer.scene.model import SPHERE, Float32, Float64, Quadrics
+from tracer.shading.points import OFFSET
+
+if TYPE_CHECKING:
+    from tracer.frame import Frame
+    from tracer.geometry.world import World
+    from tracer.renderer import Renderer
+
+Point = tuple[float, float, float]
+
+NO_CERTIFICATE = "none"
+ROUND = 48  # corners of a circle's outline
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """One light at one point.  A ray is due where the light is on the viewer's side of the surface; `lit` is its true
+    answer, false where none is due, and `blocked_at` where the first thing on its way from the light stops it.
+
+    `certificate` names what is proven of the point's cell.  `occluders` are primitives: what blocks the ray, then
+    those that the certificate rests on.  `point` is where shadow rays end, a little above the surface.
+    """
+
+    light: int
+    due: bool
+    lit: bool
+    certificate: str
+    occluders: tuple[int, ...]
+    light_position: Point
+    point: Point
+    blocked_at: Point | None
+
+
+def explain(renderer: Renderer, frame: Frame, x: int, y: int) -> tuple[Explanation, ...]:
+    """An explanation for each light of what the pixel in column x and row y shows; none where that is nothing."""
+    primitive = int(frame.primitive[y, x])
+    if primitive < 0:
+        return ()
+    position, normal, point = _surface(renderer.world, frame, x, y)
+    lights = light_positions(renderer.scene, frame.time).astype(np.float32)
+    ways = point - lights
+    due = (lights - position) @ normal > 0
+    asked = np.flatnonzero(due)
+    hits = renderer.world.closest_hits(ray_batch(lights[asked], ways[asked], LIGHT_MARGIN, 1.0), threads=1)
+    met = np.full(len(lights), -1)
+    reach = np.zeros(len(lights))
+    met[asked], reach[asked] = hits.primitive, hits.t
+    certificates = getattr(renderer, "certificates", None)
+    explanations = []
+    for light in range(len(lights)):
+        certificate, named = NO_CERTIFICATE, ()
+        if due[light] and certificates is not None:
+            certificate, named = certificates.describe(primitive, point, light)
+        blocked = met[light] >= 0
+        occluders = (int(met[light]), *named) if blocked else named
+        explanations.append(
+            Explanation(
+                light=light,
+                due=bool(due[light]),
+                lit=bool(due[light] and not blocked),
+                certificate=certificate,
+                occluders=tuple(dict.fromkeys(int(number) for number in occluders)),
+                light_position=_triple(lights[light]),
+                point=_triple(point),
+                blocked_at=_triple(lights[light] + reach[light] * ways[light]) if blocked else None,
+            )
+        )
+    return tuple(explanations)
+
+
+def _surface(world: World, frame: Frame, x: int, y: int) -> tuple[Float32, Float32, Float32]:
+    """The point that a pixel shows, its geometric normal towards the viewer, and the end of its shadow rays."""
+    rays, primitive = pinhole(frame.camera, frame.width, frame.height), int(frame.primitive[y, x])
+    direction = rays.corner + np.float32(x) * rays.column + np.float32(y) * rays.row
+    direction /= np.linalg.norm(direction)
+    depth = frame.depth[y, x]
+    position = rays.origin + depth * direction
+    across = frame.normal[y, x].astype(np.float64)  # a quadric's shading normal is its own
+    if primitive < len(world.placed.triangles):
+        across = world.facets[primitive, ACROSS:OBJECT] @ _to_object(world, primitive)[:, :3]
+        across /= max(float(np.linalg.norm(across)), 1e-300)
+    normal: Float32 = (-across if across @ direction > 0 else across).astype(np.float32)
+    offset = OFFSET * max(depth, np.abs(position).max())
+    return position, normal, position + offset * normal
+
+
+def _to_object(world: World, primitive: int) -> Float64:
+    owner = int(world.object_of[primitive])
+    return world.placed.to_object[owner].reshape(3, 4).astype(np.float64) if owner else np.eye(3, 4)
+
+
+def outline(world: World, primitive: int) -> tuple[Float64, ...]:
+    """Lines (n, 3) that show a primitive where it is: a triangle's sides, three great circles of a sphere, or the ends
+    and four sides of a cone.  None of one that is not there at all."""
+    triangles = world.placed.triangles
+    if primitive < len(triangles):
+        first, *edges = triangles[primitive].reshape(3, 3).astype(np.float64)
+        lines = [np.stack([first, first + edges[0], first + edges[1], first])]
+    else:
+        lines = _quadric_lines(world, primitive)
+    to_object = _to_object(world, primitive)
+    try:
+        back = np.linalg.inv(to_object[:, :3])
+    except np.linalg.LinAlgError:
+        return ()
+    return tuple((line - to_object[:, 3]) @ back.T for line in lines)
+
+
+def _quadric_lines(world: World, primitive: int) -> list[Float64]:
+    """Of a quadric, in the space of its object."""
+    scene, owner = world.scene, world.scene.object_of(primitive)
+    quadrics: Quadrics = scene.objects[owner].quadrics
+    i = primitive - int(scene.quadric_offsets[owner])
+    turn = np.linspace(0.0, 2.0 * np.pi, ROUND + 1)
+    circle, level = np.stack([np.cos(turn), np.sin(turn)], axis=1), np.zeros((ROUND + 1, 1))
+    if quadrics.kind[i] == SPHERE:
+        flat = np.hstack([circle, level])
+        lines = [flat, np.roll(flat, 1, axis=1), np.roll(flat, 2, axis=1)]
+    else:
+        ends = [np.hstack([radius * circle, level + z]) for z, radius in enumerate(quadrics.radii[i])]
+        lines = [*ends, *(np.stack([ends[0][k], ends[1][k]]) for k in range(0, ROUND, ROUND // 4))]
+    place = quadrics.to_object[i]
+    return [line @ place[:, :3].T + place[:, 3] for line in lines]
+
+
+def _triple(v: NDArray) -> Point:
+    return float(v[0]), float(v[1]), float(v[2])

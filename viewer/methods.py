@@ -1,0 +1,48 @@
+"""Methods as they are offered: what each culls by, what it may take along, and in which order they are named."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tracer.method import BASES, EXTRAS, base_of, takes
+
+DEFAULT = "paper"
+"""What the window traces with until another method is chosen."""
+
+BASES_TOLD = {
+    "none": "no culling: every shadow ray is traced",
+    "paper": "the paper's method: what shadow rays of whole primitives met in the frames before",
+    "cells": "the paper's method on virtual cells of large triangles",
+    "certified": "what is proven of virtual cells: never a wrong answer",
+}
+
+EXTRAS_TOLD = {
+    "cache": ("Occluder cache", "ask first what blocked the light before"),
+    "rest": ("Rest is static", "what could move but does not now counts as static until it does"),
+}
+
+
+def named(base: str, extras: Iterable[str]) -> str:
+    """The name of a method that takes these extras along."""
+    chosen = set(extras)
+    return "+".join([base, *(extra for extra in EXTRAS if extra in chosen)])
+
+
+def extras_of(method: str) -> set[str]:
+    """What a method takes along."""
+    return {extra for extra in EXTRAS if takes(method, extra)}
+
+
+def with_base(method: str, base: str) -> str:
+    """What culls exchanged; what the method takes along stays."""
+    return named(base, extras_of(method))
+
+
+def toggled(method: str, extra: str) -> str:
+    """The method with an extra where it had none, or without."""
+    return named(base_of(method), extras_of(method) ^ {extra})
+
+
+def in_order(methods: Iterable[str]) -> list[str]:
+    """Each once, as bases are ordered, and those that take more along later."""
+    return sorted(set(methods), key=lambda name: (BASES.index(base_of(name)), [takes(name, extra) for extra in EXTRAS]))

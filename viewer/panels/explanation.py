@@ -1,0 +1,155 @@
+"""Why it is in shadow: the rows of the inspector, and the lights' ways and what blocks them over the picture."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from tracer.explanation import Explanation
+from tracer.frame import Frame
+from viewer.explaining import MOST_OCCLUDERS, Answer, Part
+from viewer.panels.widgets import QUIET, checkbox, clipped, em, heading, paragraph, swatch, tooltip
+from viewer.picking import kind_of
+from viewer.projection import place
+from viewer.ui import Ui
+from viewer.views import CERTIFICATE_COLORS, CERTIFICATE_MEANING, SHADOW_COLORS, Certificate, ShadowMode
+
+_LIT, _STOPPED = SHADOW_COLORS[ShadowMode.NON_SHADOW], (0.34, 0.71, 0.91)
+_BLOCKER = SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW]
+_COLORS = {Part.REACHING: _LIT, Part.STOPPED: _STOPPED, Part.BLOCKER: _BLOCKER, Part.OCCLUDER: (0.90, 0.62, 0.0)}
+_WIDTHS = {Part.REACHING: 0.13, Part.STOPPED: 0.13, Part.BLOCKER: 0.16, Part.OCCLUDER: 0.1}  # in ems
+_RESTS_ON = {Certificate.FULL.name: "covered by", Certificate.CANDIDATES.name: "only tested against"}
+_UNSEEN = 0.6  # of the width of what is seen
+_SHADE = ImVec4(0.05, 0.06, 0.08, 0.6)
+_FADED = 0.18  # opacity of other lights than the one that is pointed at
+
+
+def rows(ui: Ui) -> None:
+    """In the inspector: each light, whether it gets here, and what blocks it; nothing while that is not known."""
+    c = ui.controller
+    heading("Shadow rays")
+    p = c.preferences
+    tip = (
+        "over the picture, the lights' ways to this point (I): yellow as far as they get, blue where they are in "
+        "shadow; red what blocks them, orange what a certificate rests on, in dashes what is hidden"
+    )
+    checkbox("Draw in the picture", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), tip)
+    answer = c.explaining.answer
+    if answer is None:
+        imgui.same_line(0.0, em(1.0))
+        imgui.align_text_to_frame_padding()
+        imgui.text_colored(QUIET, "traced while the picture rests")
+        return
+    if not answer.lights:
+        paragraph("The scene has no lights.", QUIET)
+    for one in answer.lights:
+        imgui.push_id(one.light)
+        _row(ui, one)
+        imgui.pop_id()
+
+
+def _row(ui: Ui, one: Explanation) -> None:
+    """A light; resting on it picks it out over the picture."""
+    told, color = _answer(one)
+    swatch(color)
+    imgui.selectable(f"{ui.light_name(one.light)}##light", False)
+    if imgui.is_item_hovered():
+        ui.pointed_light = one.light
+    imgui.same_line(em(8.0))
+    imgui.text_unformatted(told)
+    if one.due:
+        _certificate(one.certificate)
+    blocked, others = (one.occluders[:1], one.occluders[1:]) if one.blocked_at is not None else ((), one.occluders)
+    for told, numbers in (("blocked by", blocked), (_RESTS_ON.get(one.certificate.upper(), "certified by"), others)):
+        if numbers:
+            names = [_named(ui, number) for number in numbers[:MOST_OCCLUDERS]]
+            more = f" and {len(numbers) - MOST_OCCLUDERS} more" if len(numbers) > MOST_OCCLUDERS else ""
+            imgui.indent(em(1.2))
+            clipped(f"{told} {', '.join(names)}{more}", QUIET)
+            imgui.unindent(em(1.2))
+
+
+def _answer(one: Explanation) -> tuple[str, tuple[float, float, float]]:
+    if not one.due:
+        return "faces away", (0.25, 0.27, 0.31)
+    return ("lit", _LIT) if one.lit else ("in shadow", SHADOW_COLORS[ShadowMode.FULL_SHADOW])
+
+
+def _certificate(name: str) -> None:
+    """The certificate and its colour, at the row's end."""
+    if name.upper() not in Certificate.__members__ or name.upper() == Certificate.NONE.name:
+        return
+    certificate = Certificate[name.upper()]
+    imgui.same_line(em(12.2))
+    swatch(CERTIFICATE_COLORS[certificate])
+    imgui.text_unformatted(certificate.name.lower())
+    tooltip(f"proven: {CERTIFICATE_MEANING[certificate]}")
+
+
+def _named(ui: Ui, primitive: int) -> str:
+    """A primitive as people find it again: its kind and number, its object where that moves, and its material."""
+    scene = ui.controller.session.scene
+    if scene is None or primitive >= scene.primitive_count:
+        return f"primitive {primitive}"
+    owner = scene.object_of(primitive)
+    whose = f"{scene.objects[owner].name}, " if owner else ""
+    return f"{kind_of(scene, primitive)} {primitive} ({whose}{scene.material_of(primitive).name})"
+
+
+def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
+    """Over the picture: the lights' ways to the point, and outlines of what blocks them."""
+    c = ui.controller
+    pointed, ui.pointed_light = ui.pointed_light, None  # the inspector says so in each frame
+    answer, frame = c.explaining.answer, c.frame
+    if answer is None or frame is None or not c.preferences.draw_explanation:
+        return
+    width, height = end.x - corner.x, end.y - corner.y
+
+    def on_screen(at: tuple[float, float]) -> ImVec2:
+        return ImVec2(corner.x + at[0] * width, corner.y + at[1] * height)
+
+    draw = imgui.get_window_draw_list()
+    draw.push_clip_rect(corner, end, True)
+    lines = c.explaining.lines(frame)
+    for shade in (True, False):
+        for part, light, strokes in lines:
+            alpha = _FADED if pointed not in (None, light) else 1.0
+            color = imgui.get_color_u32(_with_alpha(_SHADE, alpha) if shade else ImVec4(*_COLORS[part], alpha))
+            for stroke in strokes:
+                wide = em(_WIDTHS[part]) * (1.0 if stroke.seen else _UNSEEN) + (em(0.12) if shade else 0.0)
+                draw.add_line(on_screen(stroke.start), on_screen(stroke.end), color, max(1.0, wide))
+    _ends(answer, frame, pointed, on_screen, draw)
+    draw.pop_clip_rect()
+
+
+def _ends(
+    answer: Answer,
+    frame: Frame,
+    pointed: int | None,
+    on_screen: Callable[[tuple[float, float]], ImVec2],
+    draw: imgui.ImDrawList,
+) -> None:
+    """A disc at each light that is due, a cross where its way ends before the point, and a ring around the point."""
+    for one in answer.lights:
+        if not one.due:
+            continue
+        alpha = _FADED if pointed not in (None, one.light) else 1.0
+        at = place(frame, one.light_position)
+        if at is not None:
+            draw.add_circle_filled(on_screen(at), em(0.42), imgui.get_color_u32(_with_alpha(_SHADE, alpha)))
+            draw.add_circle_filled(on_screen(at), em(0.3), imgui.get_color_u32(ImVec4(*_LIT, alpha)))
+        stop = place(frame, one.blocked_at) if one.blocked_at is not None else None
+        if stop is not None:
+            x, y, arm = on_screen(stop).x, on_screen(stop).y, em(0.28)
+            color = imgui.get_color_u32(ImVec4(*_BLOCKER, alpha))
+            draw.add_line(ImVec2(x - arm, y - arm), ImVec2(x + arm, y + arm), color, em(0.14))
+            draw.add_line(ImVec2(x - arm, y + arm), ImVec2(x + arm, y - arm), color, em(0.14))
+    point = place(frame, answer.lights[0].point) if answer.lights else None
+    if point is not None:
+        draw.add_circle(on_screen(point), em(0.4), imgui.get_color_u32(_SHADE), 0, em(0.22))
+        draw.add_circle(on_screen(point), em(0.4), imgui.get_color_u32(ImVec4(1.0, 1.0, 1.0, 1.0)), 0, em(0.1))
+
+
+def _with_alpha(color: ImVec4, alpha: float) -> ImVec4:
+    return ImVec4(color.x, color.y, color.z, color.w * alpha)
