@@ -14,7 +14,6 @@ from tracer.method import choice, is_method
 from tracer.scene.model import Camera
 from tracer.statistics import FrameStatistics
 
-METHODS = ("none", "paper")  # that are offered, without what they may take along
 MAX_SIDE = 16384
 
 

@@ -157,7 +157,7 @@ _NOT_CERTIFIED = {
         np.empty(0, np.float32),
         np.empty(0, np.bool_),
         0.0,
-        np.float32(0),
+        0.0,
         0,
         False,
         _NOT_WANTED,
@@ -373,6 +373,13 @@ class UnfinishedFrame:
         if self._certificates is not None:
             self._certificates.left = [self._wanted]
 
+    def _cells_seen(self) -> np.ndarray | None:
+        """The cell at each pixel, -1 for none, where the method has such."""
+        if self._certificates is not None:
+            cell = self._buffers.cell.reshape(self._buffers.primitive.shape)
+            return np.where(cell > 0, cell, np.int32(-1))
+        return self._units if _has_cells(self._settings) else None
+
     def finished(self) -> Frame:
         buffers, memory = self._buffers, self.memory
         shape = buffers.primitive.shape
@@ -400,6 +407,11 @@ class UnfinishedFrame:
             lit=buffers.lit.reshape(*shape, lights) if recorded else None,
             reference=buffers.reference.reshape(*shape, 3) if self._settings.verify else None,
             wrong=buffers.wrong.reshape(shape) if self._settings.verify else None,
-            cells=self._units if _has_cells(self._settings) else None,
+            cells=self._cells_seen(),
+            certificates=None
+            if self._certificates is None
+            else self._certificates.at_pixels(buffers.cell).reshape(shape),
+            saved=buffers.saved.reshape(shape) if self._settings.record_work else None,
+            cost=buffers.cost.reshape(shape) if self._settings.record_work else None,
             statistics=statistics,
         )

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from tracer.method import BASES, EXTRAS, base_of, takes
 
-DEFAULT = "paper"
+DEFAULT = "certified"
 """What the window traces with until another method is chosen."""
 
 BASES_TOLD = {

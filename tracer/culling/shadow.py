@@ -229,7 +229,7 @@ def _ask_certified(points, light, number, certified, answers, v, counts):
         at = points.lifted[0, i], points.lifted[1, i], points.lifted[2, i]
         end = np.float64(at[0]), np.float64(at[1]), np.float64(at[2])
         start = np.float64(light[0]), np.float64(light[1]), np.float64(light[2])
-        count = np.int64(certified.cells.count[points.unit[i], number])
+        count = np.int64(certified.cells.amount[points.unit[i], number])
         if count > certified.few:
             continue
         first = np.int64(certified.cells.start[points.unit[i], number])

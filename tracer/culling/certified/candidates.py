@@ -14,7 +14,7 @@ from tracer.kernels import subkernel
 
 @subkernel
 def ask_candidates(names, first, count, rows, blurs, farthest, light, point):
-    """(verdict, tests made) of the candidates names[first : first + count] on a shadow ray from a light to a point, both
+    """(verdict, tests made) of candidates names[first : first + count] on a shadow ray from a light to a point, both
     (3,): triangles of rows (n, 9) with their blurs (n,), or quadrics, of which nothing is certain."""
     result = SURE_MISS
     for k in range(first, first + count):

@@ -32,7 +32,7 @@ class Cells(NamedTuple):
 
     words (n,) uint32 or uint64; child (n,) int32, the first of four, LEAF or FINAL; parent (n,) int32; owner
     (n,) int32, twice the triangle's number, plus 1 for its back; place (n, 3) float32, u, v and size; wanted (n,)
-    int32, how many rays have; start (n, lights) int32 and count (n, lights) uint8, the primitives that a
+    int32, how many rays have; start (n, lights) int32 and amount (n, lights) uint8, the primitives that a
     certificate names, in names (m,) int32, of which named (1,) int64 are in use.  receivers
     (primitives, RECEIVER) float32 lead rays to the roots; those of what has no cells are 0.  waiting (2 primitives,)
     int32 is how many rays have wanted a root that is not there yet; rooted (primitives,) int32 is 1 where there is one.
@@ -45,7 +45,7 @@ class Cells(NamedTuple):
     place: NDArray[np.float32]
     wanted: NDArray[np.int32]
     start: NDArray[np.int32]
-    count: NDArray[np.uint8]
+    amount: NDArray[np.uint8]
     names: NDArray[np.int32]
     used: NDArray[np.int64]
     named: NDArray[np.int64]
@@ -145,7 +145,7 @@ def add_cell(cells, parent, owner, u, v, size):
     cells.wanted[number] = 0
     for light in range(cells.start.shape[1]):
         cells.start[number, light] = 0
-        cells.count[number, light] = 0
+        cells.amount[number, light] = 0
     return number
 
 
@@ -173,6 +173,6 @@ def set_below(cells, number, light, state, stack):
         if child >= 0:
             for k in range(4):
                 set_state(cells, child + k, light, state)
-                cells.count[child + k, light] = 0
+                cells.amount[child + k, light] = 0
                 stack[pending] = child + k
                 pending += 1

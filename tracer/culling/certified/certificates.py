@@ -7,11 +7,23 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from tracer.culling.certified import certify
 from tracer.culling.certified.beam import OFFSET
-from tracer.culling.certified.cells import HIGHEST, Cells, bytes_of, make_cells, put_receivers, with_room
+from tracer.culling.certified.cells import (
+    ALONG_U,
+    ALONG_V,
+    CORNER,
+    HIGHEST,
+    NORMAL,
+    ROOTS,
+    Cells,
+    bytes_of,
+    make_cells,
+    put_receivers,
+    with_room,
+)
 from tracer.culling.certified.lookup import ROOM, Wanted
 from tracer.culling.certified.margins import LONGEST
 from tracer.culling.certified.occluders import BOXES, Occluders, blocks_of, joined, know_light, shape_of
@@ -21,6 +33,7 @@ from tracer.geometry.bvh8.tree import PADDING, WIDTH
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
+STATES = ("none", "full", "lit", "candidates")
 BATCH, CHUNK = 2048, 16  # tasks between two looks at the budget; tasks that a thread takes at a time
 
 
@@ -34,9 +47,11 @@ class Budget:
 
 def _bounds(rows: NDArray[np.float32], boxes: NDArray[np.float32]) -> NDArray[np.float64]:
     """Lower and upper corner (2, 3) of a box around triangles (t, 9) and boxes (q, 6)."""
-    corners = rows[:, :3].astype(np.float64)
-    points = [corners, corners + rows[:, 3:6], corners + rows[:, 6:], boxes[:, :3], boxes[:, 3:]]
-    every = np.concatenate(points) if len(rows) + len(boxes) else np.zeros((1, 3))
+    corner, e1, e2 = (rows[:, k : k + 3].astype(np.float64) for k in (0, 3, 6))
+    lower, upper = boxes[:, :3].astype(np.float64), boxes[:, 3:].astype(np.float64)
+    every = np.concatenate([corner, corner + e1, corner + e2, lower, upper])
+    if not len(every):
+        return np.zeros((2, 3))
     return np.stack([every.min(0), every.max(0)])
 
 
@@ -75,7 +90,7 @@ class Certificates:
         bounds = _bounds(rows[triangles], boxes)
         self._bounds = bounds
         self._largest = float(np.abs(bounds).max())
-        self.highest = np.float32(HIGHEST * OFFSET * self._largest)
+        self.highest = float(np.float32(HIGHEST * OFFSET * self._largest))
         put_receivers(rows, triangles.start, triangles.stop, self._largest, self.cells.receivers)
         self.left: list[Wanted] = []  # what the last frame's rays wanted and has not been looked into
         self.still = np.zeros(count, np.bool_)
@@ -89,7 +104,7 @@ class Certificates:
         for number in np.flatnonzero(moved):
             words = self.cells.words
             words &= ~words.dtype.type(3 << (2 + 2 * int(number)))
-            self.cells.count[:, number] = 0
+            self.cells.amount[:, number] = 0
         settled = ~moved & ~self.still | (moved & np.isnan(self._lights).any(axis=1))
         self._lights[:] = lights
         self.still[:] = ~moved
@@ -116,6 +131,8 @@ class Certificates:
         """Certify what rays wanted, within a budget; counters (COUNTERS,) int64 of what that took."""
         end = clock.perf_counter() + budget.seconds
         counts = counters(self._threads)
+        if not len(self._lights):
+            return counts.sum(0)
         kept = [(wanted, tile, n) for wanted in lists for tile, n in enumerate(wanted.of[:, 0]) if n]
         if not kept:
             return counts.sum(0)
@@ -123,13 +140,19 @@ class Certificates:
         points = Points(np.empty_like(key), np.empty_like(u), np.empty_like(v), np.empty((2, len(key)), np.float32))
         self.cells = with_room(self.cells, min(len(key), 2 * len(self.cells.receivers)), 0)
         todo = gather_roots(self.cells, key, u, v, patience[0], points)
+        pace = 1e-4 * len(self._lights)  # seconds a task takes, at first guessed too high
         while len(todo):
             todo = todo[np.argsort(todo[:, 1] - todo[:, 2], kind="stable")]
-            following = []
-            for first in range(0, len(todo), BATCH):
-                if clock.perf_counter() >= end or counts[:, certify.CERTIFICATES].sum() >= budget.certificates:
+            following, first = [], 0
+            while first < len(todo):
+                start = clock.perf_counter()
+                left = budget.certificates - counts[:, certify.CERTIFICATES].sum()
+                batch = int(min(BATCH, left // len(self._lights), 0.5 * (end - start) / pace))
+                if batch <= 0:
                     return counts.sum(0)
-                following.append(self._certify(todo[first : first + BATCH], points, patience[1], counts, cancel))
+                following.append(self._certify(todo[first : first + batch], points, patience[1], counts, cancel))
+                first += batch
+                pace = max(1e-6, (clock.perf_counter() - start) / batch)
             todo = np.concatenate(following)
         return counts.sum(0)
 
@@ -142,7 +165,8 @@ class Certificates:
         cancel: Callable[[], bool] | None,
     ) -> NDArray[np.int32]:
         """Work on tasks (n, 3); those that follow."""
-        tasks = make_tasks(*(np.ascontiguousarray(todo[:, k]) for k in range(3)), len(self._lights))
+        cell, start, end = (np.ascontiguousarray(todo[:, k]) for k in range(3))
+        tasks = make_tasks(cell, start, end, len(self._lights))
         reach = (float(self.highest), self._largest)
 
         def work(chunk: int, worker: int) -> None:
@@ -153,10 +177,45 @@ class Certificates:
             )  # fmt: skip
 
         for_each_chunk(work, -(-len(todo) // CHUNK), self._threads, cancel)
-        named = tasks.count[(tasks.state != 0xFF) & (tasks.count != certify.TOO_MANY)].sum(dtype=np.int64)
+        named = tasks.amount[(tasks.state != 0xFF) & (tasks.amount != certify.TOO_MANY)].sum(dtype=np.int64)
         self.cells = with_room(self.cells, 4 * len(todo), int(named))
         following = np.empty((4 * len(todo), 3), np.int32)
         return following[: commit(self.cells, self.occluders, reach, tasks, following)]
+
+    def at_pixels(self, cell: NDArray[np.int32]) -> NDArray[np.unsignedinteger]:
+        """The words of cells, of any shape."""
+        return self.cells.words[cell]
+
+    def describe(self, primitive: int, point: ArrayLike, light: int) -> tuple[str, tuple[int, ...]]:
+        """What is certified for a light of the cell in which shadow rays end at a point (3,) above a primitive: "full",
+        "lit", "candidates" or "none", and the numbers of the primitives that it names."""
+        number = self._cell_at(primitive, np.asarray(point, np.float64))
+        state = (int(self.cells.words[number]) >> (2 + 2 * light)) & 3 if light < len(self._lights) else 0
+        while number and state and self.cells.amount[number, light] == 0 and state != certify.LIT:
+            number = int(self.cells.parent[number])  # taken over from the cell that this one is a part of
+        amount = int(self.cells.amount[number, light]) if number else 0
+        start = int(self.cells.start[number, light]) if number else 0
+        names = self.cells.names[start : start + amount] if amount != certify.TOO_MANY else self.cells.names[:0]
+        return STATES[state], tuple(int(name) for name in names)
+
+    def _cell_at(self, primitive: int, point: NDArray[np.float64]) -> int:
+        """The leaf in which a point above a primitive lies; 0 for none."""
+        row = self.cells.receivers[primitive].astype(np.float64)
+        to = point - row[CORNER : CORNER + 3]
+        u, v, height = (float(row[at : at + 3] @ to) for at in (ALONG_U, ALONG_V, NORMAL))
+        number = int(self.cells.receivers.view(np.int32)[primitive, ROOTS + (height < 0.0)])
+        u, v = min(max(u, 0.0), 1.0), min(max(v, 0.0), 1.0)
+        while self.cells.child[number] >= 0:
+            number = int(self.cells.child[number])
+            if u + v <= 0.5:
+                u, v = 2 * u, 2 * v
+            elif u >= 0.5:
+                number, u, v = number + 1, 2 * u - 1, 2 * v
+            elif v >= 0.5:
+                number, u, v = number + 2, 2 * u, 2 * v - 1
+            else:
+                number, u, v = number + 3, 1 - 2 * u, 1 - 2 * v
+        return number
 
     @property
     def bytes(self) -> int:

@@ -36,15 +36,15 @@ class Points(NamedTuple):
 
 class Tasks(NamedTuple):
     """n tasks: cell (n,) int32, and first and last (n,) int32 of its points; results: state (n, lights) uint8, KEPT for
-    no news, count (n, lights) uint8 and names (n, lights, MOST) int32 of what each names; and parts (n, 5) int32, where
-    the points of each part begin and the last end, or all 0 where the cell need not be looked into.
+    no news, amount (n, lights) uint8 and names (n, lights, MOST) int32 of what each names; and parts (n, 5) int32,
+    where the points of each part begin and the last end, or all 0 where the cell need not be looked into.
     """
 
     cell: NDArray[np.int32]
     first: NDArray[np.int32]
     last: NDArray[np.int32]
     state: NDArray[np.uint8]
-    count: NDArray[np.uint8]
+    amount: NDArray[np.uint8]
     names: NDArray[np.int32]
     parts: NDArray[np.int32]
 
@@ -186,15 +186,14 @@ def _work_on(cells, o, lights, still, reach, task, tasks, points, patience, s, c
             given = cells.names[:0]
             given_count = TOO_MANY
             if parent != 0 and state_of(cells.words[parent], light) == CANDIDATES:
-                given_count = np.int64(cells.count[parent, light])
+                given_count = np.int64(cells.amount[parent, light])
                 start = np.int64(cells.start[parent, light])
                 given = cells.names[start : start + (given_count if given_count <= MOST else 0)]
             place = (np.float64(lights[light, 0]), np.float64(lights[light, 1]), np.float64(lights[light, 2]))
-            count = TOO_MANY
-            state = CANDIDATES
+            state, count = CANDIDATES, TOO_MANY
             if placed and put_light(s.beam, place):
                 state, count = certify(s, o, light, place, given, given_count, counts)
-            tasks.state[task, light], tasks.count[task, light] = state, count
+            tasks.state[task, light], tasks.amount[task, light] = state, count
             if count != TOO_MANY:
                 for k in range(count):
                     tasks.names[task, light, k] = s.found[k]
@@ -251,8 +250,8 @@ def commit(cells, o, reach, tasks, following):
             if state == KEPT:
                 continue
             set_state(cells, cell, light, state)
-            count = tasks.count[task, light]
-            cells.count[cell, light] = count
+            count = tasks.amount[task, light]
+            cells.amount[cell, light] = count
             if count != TOO_MANY and count > 0:
                 at = cells.named[0]
                 cells.start[cell, light] = at
