@@ -31,7 +31,8 @@ class Settings:
     and Frame.lit, `record_work` Frame.saved and Frame.cost.
 
     After a frame of method "certified" at most so many `certificates` are made, in at most so many
-    `certificate_seconds` (which leaves it to chance how many: inf for counters that repeat exactly).
+    `certificate_seconds` (which leaves it to chance how many: inf for counters that repeat exactly).  They take
+    about `certificate_memory` megabytes at most.
     """
 
     width: int = 512
@@ -48,6 +49,7 @@ class Settings:
     record_work: bool = False
     certificates: int = 100_000
     certificate_seconds: float = math.inf
+    certificate_memory: float = 256.0
 
     def validated(self) -> Settings:
         """Itself; raises ValueError, in one line, where a value is out of range."""
@@ -59,7 +61,10 @@ class Settings:
             (self.accelerator in ACCELERATORS, f"accelerator is one of {', '.join(ACCELERATORS)}"),
             (1 <= self.samples <= 4096, "samples lie in 1 to 4096"),
             (0 <= self.threads <= 1024, "threads lie in 0 to 1024"),
-            (self.certificates >= 0 and self.certificate_seconds >= 0, "budgets of certificates are 0 or more"),
+            (
+                min(self.certificates, self.certificate_seconds, self.certificate_memory) >= 0,
+                "budgets of certificates are 0 or more",
+            ),
         )
         for holds, message in checks:
             if not holds:

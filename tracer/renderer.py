@@ -234,8 +234,8 @@ class UnfinishedFrame:
         object that has come to rest, or rests no longer."""
         renderer = self._renderer
         world, rest, lights = renderer.world, renderer.rest, renderer._look.lights
-        # Certificates speak of what never moves alone: nothing else may be static to rays that go by them.
-        if takes(self._settings.method, "rest") and self._base != "certified":
+        certified = self._base == "certified"
+        if certified or takes(self._settings.method, "rest"):
             world.place(self._time, rest)
         else:
             rest.forget()
@@ -243,12 +243,11 @@ class UnfinishedFrame:
         lights[:] = light_positions(renderer.scene, self._time)
         self.memory.follow_lights(lights)
         self.memory.follow_rest(rest.now, world.outlines, self._workers)
-        self._certificates = None
-        if self._base == "certified":
+        if certified:
             if renderer.certificates is None:
-                renderer.certificates = Certificates(world, lights, self._workers)
+                renderer.certificates = Certificates(world, len(lights), self._workers)
             self._certificates = renderer.certificates
-            self._certificates.follow_lights(lights)
+            self._certificates.follow(lights, rest.now, self._workers)
 
     def trace_primary_rays(self) -> None:
         """What does each pixel see?"""
@@ -372,6 +371,7 @@ class UnfinishedFrame:
             memory.discard_frame()
         if self._certificates is not None:
             self._certificates.left = [self._wanted]
+            self._certificates.keep_within(1e6 * self._settings.certificate_memory, self._buffers.cell)
 
     def _cells_seen(self) -> np.ndarray | None:
         """The cell at each pixel, -1 for none, where the method has such."""

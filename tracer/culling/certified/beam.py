@@ -148,3 +148,19 @@ def _put_side(beam, light, i, j, opposite):
     for axis in range(3):
         beam.planes[i, axis] = n[axis]
     beam.planes[i, 3] = dot(n, light) + most if ln > 0.0 else np.inf
+
+
+@subkernel
+def meets_box(b, box):
+    """Whether a box (6,) may meet a beam."""
+    for axis in range(3):
+        if box[axis] > b.box[3 + axis] or box[3 + axis] < b.box[axis]:
+            return False
+    for k in range(PLANES):
+        least = -b.planes[k, 3]
+        for axis in range(3):
+            n = b.planes[k, axis]
+            least += n * (box[axis] if n > 0.0 else box[3 + axis])
+        if least > 0.0:
+            return False
+    return True

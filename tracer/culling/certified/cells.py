@@ -94,7 +94,7 @@ def with_room(cells: Cells, more: int, names: int) -> Cells:
     need, size = int(cells.used[0]) + more, len(cells.words)
     if need > size:
         size = max(need, 2 * size)
-        cells = Cells(*(_longer(a, size) for a in cells[:8]), *cells[8:])
+        cells = Cells._make([*(_longer(a, size) for a in cells[:8]), *cells[8:]])
     need = int(cells.named[0]) + names
     if need > len(cells.names):
         cells = cells._replace(names=_longer(cells.names, max(need, 2 * len(cells.names))))

@@ -24,12 +24,16 @@ from tracer.culling.certified.cells import (
     put_receivers,
     with_room,
 )
+from tracer.culling.certified.forget import all_marked, copy_kept, drop_certificates
 from tracer.culling.certified.lookup import ROOM, Wanted
-from tracer.culling.certified.margins import LONGEST
-from tracer.culling.certified.occluders import BOXES, Occluders, blocks_of, joined, know_light, shape_of
+from tracer.culling.certified.occluders import Occluders
+from tracer.culling.certified.still import Still
 from tracer.culling.certified.work import Points, commit, counters, gather_roots, make_tasks, work_on
+from tracer.culling.dependence import drop_dependent
 from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.geometry.bvh8.tree import PADDING, WIDTH
+from tracer.culling.modes import NON_SHADOW as LIT
+from tracer.culling.rest import Changed, Resting, changes, nothing_rests
+from tracer.geometry.primitives import Outlines
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
@@ -45,78 +49,119 @@ class Budget:
     seconds: float = np.inf
 
 
-def _bounds(rows: NDArray[np.float32], boxes: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Lower and upper corner (2, 3) of a box around triangles (t, 9) and boxes (q, 6)."""
-    corner, e1, e2 = (rows[:, k : k + 3].astype(np.float64) for k in (0, 3, 6))
-    lower, upper = boxes[:, :3].astype(np.float64), boxes[:, 3:].astype(np.float64)
-    every = np.concatenate([corner, corner + e1, corner + e2, lower, upper])
-    if not len(every):
-        return np.zeros((2, 3))
-    return np.stack([every.min(0), every.max(0)])
-
-
 class Certificates:
-    """The certified cells of the static geometry of a world."""
+    """The certified cells of what is static in a world: of what never moves and, once told, of objects that rest."""
 
-    def __init__(self, world: World, lights: NDArray[np.float32], threads: int) -> None:
-        """lights (n, 3), of which the first MAX_CULLED_LIGHTS are certified."""
-        self._threads = threads
-        self._world = world
-        self._scratch = [certify.scratch() for _ in range(threads)]
-        primitives = world.primitives
-        count = min(len(lights), MAX_CULLED_LIGHTS)
-        self._lights = np.full((count, 3), np.nan, np.float32)
-        self.cells: Cells = make_cells(len(primitives.object_of), count)
-        triangles, quadrics = primitives.triangles_of(0), primitives.quadrics_of(0)
-        boxes = primitives.quadric_boxes(quadrics, primitives.to_object[quadrics])
-        numbers = np.concatenate(
-            [np.arange(triangles.stop), len(primitives.triangles) + np.arange(quadrics.stop)]
-        ).astype(np.int32)
-        shape, roots = joined([shape_of(primitives.triangles[triangles], boxes, numbers, threads)])
-        rows = primitives.triangles
-        self.occluders = Occluders(
-            rows,
-            np.zeros(len(rows), np.float32),
-            boxes,
-            shape.children,
-            *blocks_of(shape, rows),
-            roots,
-            np.empty((count, len(shape.children), BOXES), np.float32),
-            np.empty((count, len(shape.leaves), WIDTH), np.float32),
-            np.zeros((count, len(rows)), np.int32),
-            np.zeros(count, np.int32),
-            PADDING * float(np.abs(_bounds(rows[triangles], boxes)).max()) / LONGEST,
-        )
-        bounds = _bounds(rows[triangles], boxes)
-        self._bounds = bounds
-        self._largest = float(np.abs(bounds).max())
-        self.highest = float(np.float32(HIGHEST * OFFSET * self._largest))
-        put_receivers(rows, triangles.start, triangles.stop, self._largest, self.cells.receivers)
+    def __init__(self, world: World, lights: int, threads: int) -> None:
+        """For so many lights, of which the first MAX_CULLED_LIGHTS are certified."""
+        self._world, self._threads = world, threads
+        self._scratch: list[certify.Scratch] = []
+        self._count = min(lights, MAX_CULLED_LIGHTS)
+        self._start()
+
+    def _start(self) -> None:
+        """With nothing known."""
+        self._still = Still(self._world, self._count, self._threads)
+        self._resting = nothing_rests(len(self._world.primitives.triangle_starts) - 1)
+        self._lights = np.full((self._count, 3), np.nan, np.float32)
+        self.still = np.zeros(self._count, np.bool_)
+        self.cells: Cells = make_cells(len(self._world.object_of), self._count)
+        self._seen = np.zeros(len(self.cells.waiting), np.int32)  # the frame that last saw each root
+        self._frame = 0
         self.left: list[Wanted] = []  # what the last frame's rays wanted and has not been looked into
-        self.still = np.zeros(count, np.bool_)
-        self.follow_lights(lights)
-        self.still[:] = True
+        self._largest = 1.5 * self._still.largest  # with room for what will come to rest
+        self.highest = float(np.float32(HIGHEST * OFFSET * self._largest))
+        self._receive(0)
 
-    def follow_lights(self, lights: NDArray[np.float32]) -> None:
-        """Drop what is certified of lights (n, 3) that moved, and know where they are once they stand still."""
-        lights = lights[: len(self._lights)]
+    @property
+    def occluders(self) -> Occluders:
+        """All that is static."""
+        return self._still.occluders
+
+    def _receive(self, index: int, cells: bool = True) -> None:
+        """Let an object's triangles have cells, or none."""
+        rows = self._world.primitives.triangles_of(index)
+        receivers = self.cells.receivers
+        if cells:
+            put_receivers(self._still.rows, rows.start, rows.stop, self._largest, receivers)
+        else:
+            receivers[rows] = 0
+        self.cells.rooted[rows] = 0
+        self.cells.waiting[2 * rows.start : 2 * rows.stop] = 0
+
+    def follow(self, lights: NDArray[np.float32], resting: Resting, threads: int) -> None:
+        """Drop what no longer holds, with lights (n, 3) and objects where they are now, and nothing else.
+
+        A light is certified once it has stood still for a frame.  From now on work is done by so many threads."""
+        self._threads = threads
+        self._scratch += [certify.scratch() for _ in range(len(self._scratch), threads)]
+        known = self._follow_rest(resting)
+        lights = lights[: self._count]
         moved = ~(lights == self._lights).all(axis=1)
         for number in np.flatnonzero(moved):
             words = self.cells.words
             words &= ~words.dtype.type(3 << (2 + 2 * int(number)))
             self.cells.amount[:, number] = 0
-        settled = ~moved & ~self.still | (moved & np.isnan(self._lights).any(axis=1))
+        new = np.isnan(self._lights).any(axis=1)
+        still = ~moved | new
+        settled = still & (~self.still | ~known)
         self._lights[:] = lights
-        self.still[:] = ~moved
-        numbers = [int(number) for number in np.flatnonzero(settled)]
+        self.still[:] = still
+        self._still.know([int(number) for number in np.flatnonzero(settled)], self._lights)
 
-        def know(chunk: int, worker: int) -> None:
-            light = self._lights[numbers[chunk]]
-            low, high = self._bounds
-            farthest = float(np.linalg.norm(np.maximum(np.abs(light - low), np.abs(light - high)))) * 1.001
-            know_light(self.occluders, numbers[chunk], light, farthest, self._largest)
+    def _follow_rest(self, resting: Resting) -> bool:
+        """Drop what depends on objects that have started or stopped; whether there are none."""
+        started, stopped = changes(self._resting, resting)
+        if not len(started.which) and not len(stopped.which):
+            return True
+        outlines, before = self._world.outlines(), self._resting
+        self._still.follow(started.which, stopped.which, outlines)
+        if self._still.largest > self._largest:  # what is known of rays' ends no longer holds
+            self._start()
+            started, stopped = changes(self._resting, resting)
+            self._still.follow(started.which, stopped.which, outlines)
+            self._largest = max(self._largest, 1.5 * self._still.largest)
+            self.highest = float(np.float32(HIGHEST * OFFSET * self._largest))
+            self._receive(0)
+        else:
+            self._drop(before, started, stopped, outlines)
+        self._resting = resting
+        for index in started.which:
+            self._receive(int(index), cells=False)
+        for index in stopped.which:
+            self._receive(int(index))
+        return False
 
-        for_each_chunk(know, len(numbers), self._threads)
+    def _drop(self, before: Resting, started: Changed, stopped: Changed, outlines: Outlines) -> None:
+        """Drop the certificates that name what has started, and those that what has stopped may come between."""
+        gone = np.isin(self._world.object_of, started.which)
+        near = all_marked(len(gone), self.cells.words.dtype.type)
+        lights = np.nan_to_num(self._lights)
+        drop_dependent(near, outlines, lights, stopped.boxes, LIT, self._threads)
+        boxes = stopped.boxes.astype(np.float64)
+        reach = (self.highest, self._largest)
+        drop_certificates(self.cells, self.occluders, lights, reach, gone, boxes, near, self._scratch[0])
+
+    def keep_within(self, most: float, cell: NDArray[np.int32]) -> None:
+        """Drop the cells of those triangles that were seen longest ago where all take more than `most` bytes, down to
+        three quarters of that.  cell (any,) are those that primary rays see now."""
+        self._frame += 1
+        taken = bytes_of(self.cells)
+        if taken > 0.5 * most:
+            self._seen[self.cells.owner[cell]] = self._frame
+        if taken <= most:
+            return
+        used = int(self.cells.used[0])
+        sizes = np.bincount(self.cells.owner[1:used], minlength=len(self._seen)) * (taken / used)
+        order = np.argsort(-self._seen, kind="stable")
+        kept = np.zeros(len(self._seen), np.bool_)
+        kept[order[np.cumsum(sizes[order]) <= 0.75 * most]] = True
+        empty = make_cells(len(self._world.object_of), self._count, used)
+        empty = empty._replace(
+            names=np.zeros(len(self.cells.names), np.int32), receivers=self.cells.receivers, rooted=self.cells.rooted
+        )
+        copy_kept(self.cells, kept, empty)
+        self.cells = empty
 
     def wanted(self, tiles: int) -> Wanted:
         """Room for what tiles ask for: arrays with a row each."""
@@ -131,7 +176,7 @@ class Certificates:
         """Certify what rays wanted, within a budget; counters (COUNTERS,) int64 of what that took."""
         end = clock.perf_counter() + budget.seconds
         counts = counters(self._threads)
-        if not len(self._lights):
+        if not self._count:
             return counts.sum(0)
         kept = [(wanted, tile, n) for wanted in lists for tile, n in enumerate(wanted.of[:, 0]) if n]
         if not kept:
@@ -140,14 +185,14 @@ class Certificates:
         points = Points(np.empty_like(key), np.empty_like(u), np.empty_like(v), np.empty((2, len(key)), np.float32))
         self.cells = with_room(self.cells, min(len(key), 2 * len(self.cells.receivers)), 0)
         todo = gather_roots(self.cells, key, u, v, patience[0], points)
-        pace = 1e-4 * len(self._lights)  # seconds a task takes, at first guessed too high
+        pace = 1e-4 * self._count  # seconds a task takes, at first guessed too high
         while len(todo):
             todo = todo[np.argsort(todo[:, 1] - todo[:, 2], kind="stable")]
             following, first = [], 0
             while first < len(todo):
                 start = clock.perf_counter()
                 left = budget.certificates - counts[:, certify.CERTIFICATES].sum()
-                batch = int(min(BATCH, left // len(self._lights), 0.5 * (end - start) / pace))
+                batch = int(min(BATCH, left // self._count, 0.5 * (end - start) / pace))
                 if batch <= 0:
                     return counts.sum(0)
                 following.append(self._certify(todo[first : first + batch], points, patience[1], counts, cancel))
@@ -166,8 +211,8 @@ class Certificates:
     ) -> NDArray[np.int32]:
         """Work on tasks (n, 3); those that follow."""
         cell, start, end = (np.ascontiguousarray(todo[:, k]) for k in range(3))
-        tasks = make_tasks(cell, start, end, len(self._lights))
-        reach = (float(self.highest), self._largest)
+        tasks = make_tasks(cell, start, end, self._count)
+        reach = (self.highest, self._largest)
 
         def work(chunk: int, worker: int) -> None:
             work_on(
@@ -190,7 +235,7 @@ class Certificates:
         """What is certified for a light of the cell in which shadow rays end at a point (3,) above a primitive: "full",
         "lit", "candidates" or "none", and the numbers of the primitives that it names."""
         number = self._cell_at(primitive, np.asarray(point, np.float64))
-        state = (int(self.cells.words[number]) >> (2 + 2 * light)) & 3 if light < len(self._lights) else 0
+        state = (int(self.cells.words[number]) >> (2 + 2 * light)) & 3 if light < self._count else 0
         while number and state and self.cells.amount[number, light] == 0 and state != certify.LIT:
             number = int(self.cells.parent[number])  # taken over from the cell that this one is a part of
         amount = int(self.cells.amount[number, light]) if number else 0

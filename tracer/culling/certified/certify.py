@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.beam import PLANES, Beam, make_beam
+from tracer.culling.certified.beam import PLANES, Beam, make_beam, meets_box
 from tracer.culling.certified.margins import (
     INSIDE,
     before_plane,
@@ -88,27 +88,11 @@ def _passes(b, o, i, q):
 
 
 @subkernel
-def _behind_plane(b, box):
-    """Whether a quadric's box (6,) may meet the beam."""
-    for axis in range(3):
-        if box[axis] > b.box[3 + axis] or box[3 + axis] < b.box[axis]:
-            return False
-    for k in range(PLANES):
-        least = -b.planes[k, 3]
-        for axis in range(3):
-            n = b.planes[k, axis]
-            least += n * (box[axis] if n > 0.0 else box[3 + axis])
-        if least > 0.0:
-            return False
-    return True
-
-
-@subkernel
 def _meet(s, o, light, i, count, counts):
     """Take primitive i among the `count` found, if it may come between: how many there are then, or -1 where it hides
     the whole cell and all others are forgotten."""
     if i >= len(o.rows):
-        if not _behind_plane(s.beam, o.quadric_boxes[i - len(o.rows)]):
+        if not meets_box(s.beam, o.quadric_boxes[i - len(o.rows)]):
             return count
     else:
         counts[TESTS] += 1

@@ -190,12 +190,13 @@ def _work_on(cells, o, lights, still, reach, task, tasks, points, patience, s, c
                 start = np.int64(cells.start[parent, light])
                 given = cells.names[start : start + (given_count if given_count <= MOST else 0)]
             place = (np.float64(lights[light, 0]), np.float64(lights[light, 1]), np.float64(lights[light, 2]))
-            state, count = CANDIDATES, TOO_MANY
+            amount = TOO_MANY
+            state = CANDIDATES
             if placed and put_light(s.beam, place):
-                state, count = certify(s, o, light, place, given, given_count, counts)
-            tasks.state[task, light], tasks.amount[task, light] = state, count
-            if count != TOO_MANY:
-                for k in range(count):
+                state, amount = certify(s, o, light, place, given, given_count, counts)
+            tasks.state[task, light], tasks.amount[task, light] = state, amount
+            if amount != TOO_MANY:
+                for k in range(amount):
                     tasks.names[task, light, k] = s.found[k]
         doubt |= state == CANDIDATES
     tasks.parts[task, :] = 0

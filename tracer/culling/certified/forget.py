@@ -1,0 +1,112 @@
+"""Dropping certificates that hold no longer, and cells that are used least."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.certified.beam import meets_box, put_cell, put_light
+from tracer.culling.certified.cells import ROOTS, set_state, state_of
+from tracer.culling.certified.certify import CANDIDATES, FULL, LIT, TOO_MANY, UNTRIED
+from tracer.culling.modes import FULLY_RENDERED
+from tracer.geometry.memory import borrowed
+from tracer.kernels import inlined, kernel, subkernel
+
+
+@inlined
+def _names_one(cells, cell, light, gone):
+    """Whether a certificate names a primitive that is gone."""
+    amount = np.int64(cells.amount[cell, light])
+    start = np.int64(cells.start[cell, light])
+    found = False
+    for k in range(start, start + (amount if amount != TOO_MANY else 0)):
+        found |= gone[cells.names[k]]
+    return found
+
+
+@subkernel
+def _meets_any(s, boxes, light):
+    if not put_light(s.beam, (np.float64(light[0]), np.float64(light[1]), np.float64(light[2]))):
+        return True
+    met = False
+    for k in range(len(boxes)):
+        met |= meets_box(s.beam, boxes[k])
+    return met
+
+
+@kernel
+def drop_certificates(cells, o, lights, reach, gone, boxes, near, s):
+    """Drop the certificates that name primitives which are `gone` (p,) bool, and those that nothing comes between but
+    for what is in boxes (k, 6) from now on.
+
+    lights (n, 3); reach is how high above rays may end, and the scene's largest coordinate; near (primitives,) are
+    words like modes, without the bits of those lights from which something in a box may come before a primitive.  A
+    cell that took its certificate over from another loses it with that one."""
+    cells, o, s = borrowed(cells), borrowed(o), borrowed(s)
+    highest, largest = reach
+    dropped = np.zeros(cells.used[0], np.uint64)
+    for cell in range(1, cells.used[0]):
+        word, owner, parent = cells.words[cell], np.int64(cells.owner[cell]), np.int64(cells.parent[cell])
+        placed, tried = False, False
+        for light in range(len(lights)):
+            state = state_of(word, light)
+            if state == UNTRIED or (state == CANDIDATES and cells.amount[cell, light] == TOO_MANY):
+                continue
+            bit = np.uint64(1) << np.uint64(light)
+            drop = _names_one(cells, cell, light, gone)
+            if state == FULL and cells.amount[cell, light] == 0:
+                drop = dropped[parent] & bit != 0
+            if not drop and state != FULL and state_of(near[owner >> 1], light) == UNTRIED:
+                if not tried:
+                    u, v, size = cells.place[cell, 0], cells.place[cell, 1], cells.place[cell, 2]
+                    side, at = 1.0 - 2.0 * (owner & 1), (np.float64(u), np.float64(v), np.float64(size))
+                    placed = put_cell(s.beam, o.rows, owner >> 1, side, at[0], at[1], at[2], highest, largest)
+                    tried = True
+                drop = not placed or _meets_any(s, boxes, lights[light])
+            if drop:
+                set_state(cells, cell, light, UNTRIED)
+                cells.amount[cell, light] = 0
+                dropped[cell] |= bit
+
+
+@kernel
+def copy_kept(cells, kept, target):
+    """Copy the cells of those owners that are `kept` (owners,) bool to a target with room, and lead rays there."""
+    cells, target = borrowed(cells), borrowed(target)
+    place = np.zeros(cells.used[0], np.int32)
+    roots = cells.receivers.view(np.int32)
+    for cell in range(1, cells.used[0]):
+        owner = cells.owner[cell]
+        if not kept[owner]:
+            continue
+        to = target.used[0]
+        target.used[0] = to + 1
+        place[cell] = to
+        target.words[to], target.child[to] = cells.words[cell], cells.child[cell]
+        target.parent[to], target.owner[to] = place[cells.parent[cell]], owner
+        target.wanted[to] = cells.wanted[cell]
+        for k in range(3):
+            target.place[to, k] = cells.place[cell, k]
+        for light in range(cells.start.shape[1]):
+            amount, start = cells.amount[cell, light], np.int64(cells.start[cell, light])
+            target.amount[to, light] = amount
+            if amount != TOO_MANY and amount > 0:
+                at = target.named[0]
+                target.start[to, light] = at
+                target.names[at : at + amount] = cells.names[start : start + amount]
+                target.named[0] = at + amount
+    for cell in range(1, target.used[0]):
+        if target.child[cell] >= 0:
+            target.child[cell] = place[target.child[cell]]
+    for owner in range(len(kept)):
+        root = roots[owner >> 1, ROOTS + (owner & 1)]
+        roots[owner >> 1, ROOTS + (owner & 1)] = place[root] if root < len(place) else 0
+        target.rooted[owner >> 1] = 0
+    for owner in range(len(kept)):
+        if roots[owner >> 1, ROOTS + (owner & 1)] != 0:
+            target.rooted[owner >> 1] = 1
+
+
+def all_marked(primitives: int, word: type[np.unsignedinteger]) -> NDArray[np.unsignedinteger]:
+    """A word for each primitive with the mode LIT of every light, to be taken from those that something may darken."""
+    return np.full(primitives, (~word(0) // word(3)) * word(LIT) & ~word(3) | word(FULLY_RENDERED), word)
