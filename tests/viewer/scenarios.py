@@ -176,6 +176,7 @@ def culling(d: Driver) -> None:
 
 def certifying(d: Driver) -> None:
     """A method is chosen with what it takes along; a view of certificates says where there are none; key C is off."""
+    d.c.change(method="paper")
     d.settle()
     d.press(KEY._0)
     assert d.c.session.view is View.CERTIFICATE and d.c.frame.certificates is None

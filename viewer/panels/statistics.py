@@ -71,7 +71,7 @@ def show(ui: Ui) -> None:
         if shown:
             value("Traced in", f"{1e3 * s.seconds:.1f} ms")
             for name in [*_PHASE_ORDER, *(n for n in s.phases if n not in _PHASE_ORDER)]:
-                if name in s.phases:
+                if name in s.phases and (certifies or name != "certification"):
                     value(f"  {name}", f"{1e3 * s.phases[name]:.1f} ms")
             value("Drawn in", f"{1e3 * c.drawn_seconds:.1f} ms", "what the window itself takes for one of its frames")
 
