@@ -1,0 +1,137 @@
+"""Pictures of method "certified" are those of "none", bit for bit: nasty scenes, and frames along real paths."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tracer
+from tests.tracing.nasty_worlds import NastyWalk, nasty_walk
+from tests.tracing.test_repeatable import contents
+from tracer import renderer
+from tracer.geometry.world import ACCELERATORS
+
+SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
+
+
+@pytest.fixture(autouse=True)
+def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Small pictures are to have many certificates on either structure, and to ask candidates."""
+    for name in ("PATIENCE", "FEW"):
+        monkeypatch.setattr(renderer, name, dict.fromkeys(ACCELERATORS, getattr(renderer, name)["kdtree"]))
+
+
+def _renderers(
+    scene: tracer.Scene, method: str = "certified", **settings: Any
+) -> tuple[tracer.Renderer, tracer.Renderer]:
+    """One that culls nothing and one that goes by certificates, of one world."""
+    accelerator = settings.get("accelerator", "bvh8")
+    world = tracer.World(scene, scene.time_range[0], accelerator)
+    none, certified = (tracer.Settings(method=name, **settings) for name in ("none", method))
+    return tracer.Renderer(scene, none, world=world), tracer.Renderer(scene, certified, world=world)
+
+
+def _count(seen: Counter[str], frame: tracer.Frame) -> None:
+    shadow = frame.statistics.shadow
+    seen.update({name: getattr(shadow, name) for name in ("due", "culled", "dynamic_only", "candidates_only")})
+    seen["certificates"] += frame.statistics.certificates
+
+
+def _differing(walk: NastyWalk, seen: Counter[str], **settings: Any) -> list[str]:
+    """Where a walk's pictures are not the same."""
+    none, certified = _renderers(walk.scene, **settings)
+    result = []
+    for number, (time, camera) in enumerate(walk.frames):
+        expected, frame = none.render(time, camera), certified.render(time, camera)
+        if expected.color.tobytes() != frame.color.tobytes():
+            pixels = int((expected.color != frame.color).any(axis=2).sum())
+            result.append(f"seed {walk.seed}, frame {number}, {settings['accelerator']}: {pixels} pixels differ")
+        _count(seen, frame)
+    return result
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+@pytest.mark.parametrize("method", ["certified", "certified+cache"])
+def test_pictures_of_nasty_scenes_are_those_without_culling(method: str, accelerator: str):
+    """Moving cameras, lights and objects."""
+    settings = {"method": method, "width": 24, "height": 24, "depth": 3, "accelerator": accelerator}
+    seen: Counter[str] = Counter()
+    assert not [wrong for seed in range(40) for wrong in _differing(nasty_walk(seed), seen, **settings)]
+    assert min(seen[name] for name in ("culled", "dynamic_only", "candidates_only", "certificates")) > 1000
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_pictures_stay_right_while_lights_are_dragged(accelerator: str):
+    """In each frame another light is somewhere else, and then back where it was."""
+    for seed in range(100, 110):
+        walk = nasty_walk(seed, lights=3, frames=8)
+        none, certified = _renderers(walk.scene, width=24, height=24, depth=2, accelerator=accelerator)
+        other = nasty_walk(seed + 1000, lights=3).scene.lights
+        for number, (_, camera) in enumerate(walk.frames):
+            lamps = list(walk.scene.lights)
+            if number in (2, 3, 5):
+                lamps[number % 3] = replace(lamps[number % 3], position=other[number % 3].position)
+            none.scene = certified.scene = replace(walk.scene, lights=tuple(lamps))
+            expected, frame = none.render(0.0, camera), certified.render(0.0, camera)
+            assert expected.color.tobytes() == frame.color.tobytes(), f"seed {seed}, frame {number}"
+
+
+def _everything(walk: NastyWalk, threads: int, accelerator: str) -> list[dict]:
+    """All that a walk leaves behind, frame by frame."""
+    settings = tracer.Settings(
+        96, 40, 3, "certified", accelerator=accelerator, threads=threads, verify=True, record_lights=True
+    )
+    certified, result = tracer.Renderer(walk.scene, settings), []
+    for time, camera in walk.frames:
+        held = contents(certified.render(time, camera))
+        assert certified.certificates is not None
+        cells = certified.certificates.cells
+        used, named = int(cells.used[0]), int(cells.named[0])
+        for name in ("words", "child", "parent", "owner", "place", "count", "start"):
+            held[f"cells: {name}"] = getattr(cells, name)[1:used].copy()
+        held["cells: names"] = cells.names[:named].copy()
+        result.append(held)
+    return result
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+@pytest.mark.parametrize("lights", [0, 33])  # more than words have room for
+def test_pictures_counters_and_cells_are_the_same_for_any_number_of_threads(lights: int, accelerator: str):
+    for seed in (6, 16) if lights else (1, 5, 9):
+        walk = nasty_walk(seed, lights, frames=4)
+        runs = {threads: _everything(walk, threads, accelerator) for threads in (1, 2, 4)}
+        for threads in (2, 4):
+            for number, (one, other) in enumerate(zip(runs[1], runs[threads], strict=True)):
+                for name, value in one.items():
+                    where = f"{name} of seed {seed}, frame {number}, {threads} threads"
+                    if isinstance(value, np.ndarray):
+                        assert value.tobytes() == other[name].tobytes(), where
+                    else:
+                        assert value == other[name], where
+
+
+def _assert_frames_alike(path: Path, frames: list[int], size: int, depth: int) -> None:
+    scene = tracer.load_scene(path)
+    none, certified = _renderers(scene, width=size, height=size, depth=depth, accelerator="bvh8")
+    seen: Counter[str] = Counter()
+    for number in frames:
+        time = scene.frame_time(number)
+        expected, frame = none.render(time), certified.render(time)
+        assert expected.color.tobytes() == frame.color.tobytes(), f"frame {number}"
+        _count(seen, frame)
+    assert seen["culled"] > 0 and seen["dynamic_only"] > 0
+
+
+@pytest.mark.parametrize("name", ["kitchen/kitchen.aff", "robot/Robot.aff", "museum/museum5.aff"])
+def test_frames_of_bart_are_those_without_culling(bart: Path, name: str):
+    """Neighbours, and cuts from one end of the path to the other."""
+    _assert_frames_alike(bart / name, [0, 1, 2, 150, 151, 152], 96, 10)
+
+
+def test_frames_of_the_default_scene_are_those_without_culling():
+    _assert_frames_alike(SCENES / "default.aff", [0, 1, 2, 10, 11, 12], 96, 10)
