@@ -92,7 +92,8 @@ def put_cell(beam, rows, i, side, u, v, size, highest, largest):
         y = v1 if k == 2 else v0
         for axis in range(3):
             beam.corners[axis, k] = a[axis] + x * e1[axis] + y * e2[axis]
-    lowest = LOWEST * OFFSET * _least_coordinate(beam.corners) - wrong
+    # Look-up goes by the largest coordinate of where rays end, which is not quite on the plane.
+    lowest = 0.999 * LOWEST * OFFSET * _least_coordinate(beam.corners) - wrong
     for axis in range(3):
         for k in range(3):
             at = beam.corners[axis, k]

@@ -190,8 +190,7 @@ def _work_on(cells, o, lights, still, reach, task, tasks, points, patience, s, c
                 start = np.int64(cells.start[parent, light])
                 given = cells.names[start : start + (given_count if given_count <= MOST else 0)]
             place = (np.float64(lights[light, 0]), np.float64(lights[light, 1]), np.float64(lights[light, 2]))
-            amount = TOO_MANY
-            state = CANDIDATES
+            state, amount = np.int64(CANDIDATES), np.int64(TOO_MANY)
             if placed and put_light(s.beam, place):
                 state, amount = certify(s, o, light, place, given, given_count, counts)
             tasks.state[task, light], tasks.amount[task, light] = state, amount
