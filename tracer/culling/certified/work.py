@@ -179,7 +179,7 @@ def _work_on(cells, o, lights, still, reach, task, tasks, points, patience, s, c
     doubt = False
     for light in range(len(lights)):
         tasks.state[task, light] = KEPT
-        state = state_of(word, light)
+        state = np.int64(state_of(word, light))
         if not still[light] or not _faces(o, triangle, side, lights[light]):
             continue
         if state == UNTRIED:
