@@ -1,7 +1,8 @@
-"""The README's scripts run as they are printed."""
+"""The README's scripts run as they are printed, and what its pages show and tell is there."""
 
 from __future__ import annotations
 
+import importlib
 import os
 import re
 import subprocess
@@ -9,6 +10,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 from PIL import Image
 
 import tracer
@@ -16,6 +18,8 @@ from tracer import experiment
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text()
+CERTIFIED = ROOT / "docs" / "certified-cells.md"
+PAGES = (ROOT / "README.md", ROOT / "ARCHITECTURE.md", CERTIFIED)
 SCENE = ROOT / "assets" / "scenes" / "figure4.aff"
 
 
@@ -70,10 +74,32 @@ def test_table_1_from_python(tmp_path: Path) -> None:
 
 def test_commands_have_the_options_that_are_shown() -> None:
     shown: dict[str, set[str]] = {}
-    for command, rest in re.findall(r"^shadowcull ([a-z]+) ([^#\n]*)", README, re.MULTILINE):
+    text = README + CERTIFIED.read_text().replace("\\\n", " ")
+    for command, rest in re.findall(r"^shadowcull ([a-z]+) ([^#\n]*)", text, re.MULTILINE):
         shown.setdefault(command, set()).update(re.findall(r"--[a-z-]+", rest))
     assert {"render", "bench", "zoom", "info"} <= set(shown)
     for command, options in shown.items():
         line = [sys.executable, "-m", "viewer", command, "--help"]
         told = subprocess.run(line, cwd=ROOT, capture_output=True, text=True).stdout
         assert options <= set(re.findall(r"--[a-z-]+", told.partition("examples:")[0])), command
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text()):
+        if target.startswith("https://"):
+            continue
+        path, _, heading = target.partition("#")
+        there = (page.parent / path) if path else page
+        assert there.is_file(), target
+        if heading:
+            headings = re.findall(r"^#+ (.*)$", there.read_text(), re.MULTILINE)
+            assert heading in [re.sub(r"[^a-z0-9-]", "", h.lower().replace(" ", "-")) for h in headings], target
+
+
+def test_certified_cells_are_told_with_the_numbers_they_have() -> None:
+    rows = re.findall(r"^\| `(\w+)\.(\w+)` \| (.*?) \|", CERTIFIED.read_text(), re.MULTILINE)
+    assert len(rows) > 10
+    for module, name, value in rows:
+        package = "tracer" if module == "renderer" else "tracer.culling.certified"
+        assert value == repr(getattr(importlib.import_module(f"{package}.{module}"), name)), name
