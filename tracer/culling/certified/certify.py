@@ -83,7 +83,7 @@ def _passes(b, o, i, q):
     a, e1, e2 = row_of(o.rows, i)
     parted = False
     for k in range(PLANES):
-        parted |= before_plane(a, e1, e2, b.planes[k], q, depth, b.reach[0])
+        parted |= before_plane(a, e1, e2, np.float64(o.blurs[i]), b.planes[k], q, depth, b.reach[0])
     return parted
 
 

@@ -37,7 +37,10 @@ sum of all of that, a quarter enlarged.
   compared one by one.
 
 What rests under a transform is known less well: it is carried to the world, or rays to it, in float32.  Its
-corners are taken to be anywhere within `blur` of where they are.
+corners are then somewhere within `blur` of where they are taken to be, and a ray that hits it passes that near
+by a point of the triangle as it is taken.  U changes by no more than |e| |d| for each unit of length between two such
+rays, five times that where the light is as near as the triangle is long; so the margins grow by 5 blur |e| |d|, and
+that of D - T by 4 blur |n|.  Only which side of the plane the light is on is known worse by as much as it is far.
 """
 
 from __future__ import annotations
@@ -109,9 +112,9 @@ def margins(s, e1, e2, across, blur, near, reach, largest, height):
     no further than `near` from the corner, directions no longer than `reach`, |D| no more than `largest` and
     |T| `height`."""
     ls, l1, l2 = length(s), length(e1), length(e2)
-    u = reach * (9 * EPSILON * ls * l2 + blur * (ls + l2))
-    v = reach * (9 * EPSILON * ls * l1 + blur * (ls + l1))
-    tilt = 4 * EPSILON * l1 * l2 + blur * (l1 + l2)
+    beside = 5.0 * blur * max(l1, l2)
+    u, v = reach * (9 * EPSILON * ls * l2 + beside), reach * (9 * EPSILON * ls * l1 + beside)
+    tilt = 4 * EPSILON * l1 * l2
     d = reach * (tilt + 5 * EPSILON * across)
     enlarged = (ENLARGED + 6 * EPSILON) * largest
     return (
@@ -119,8 +122,8 @@ def margins(s, e1, e2, across, blur, near, reach, largest, height):
         SURPLUS * (v + enlarged),
         SURPLUS * (u + v + d + enlarged),
         SURPLUS
-        * (near * tilt + blur * across + 5 * EPSILON * across * (reach + ls) + 6 * EPSILON * (largest + height)),
-        SURPLUS * d,
+        * (near * tilt + 4.0 * blur * across + 5 * EPSILON * across * (reach + ls) + 6 * EPSILON * (largest + height)),
+        SURPLUS * (d + reach * blur * (l1 + l2)),
     )
 
 
@@ -155,7 +158,7 @@ def measure(directions, reach, light, rows, i, blur):
 def firm_height(s, e1, e2, blur):
     """|T| beyond which its sign is sure."""
     ls, l1, l2 = length(s), length(e1), length(e2)
-    return ls * (32 * EPSILON * l1 * l2 + 4.0 * blur * (l1 + l2))
+    return ls * (32 * EPSILON * l1 * l2 + 1.25 * blur * (l1 + l2)) + blur * l1 * l2
 
 
 @inlined
@@ -224,12 +227,12 @@ def depth_of(q):
 
 
 @inlined
-def before_plane(a, e1, e2, plane, q, depth, reach):
+def before_plane(a, e1, e2, blur, plane, q, depth, reach):
     """Whether a triangle that was measured lies before a plane (4,), normal and offset, that no segment crosses, so
     that none hits it; depth > 0."""
     uncertain = max(q.of_u, max(q.of_v, q.of_w)) / depth
     n = plane[0], plane[1], plane[2]
-    g = dot(n, a) - plane[3]
+    g = dot(n, a) - plane[3] - blur
     g1, g2 = g + dot(n, e1), g + dot(n, e2)
     least, most = min(g, min(g1, g2)), max(g, max(g1, g2))
     return least > 2.0 * uncertain * (most - least) + q.of_beyond / depth * reach
@@ -256,11 +259,11 @@ def verdict(rows, i, blur, farthest, light, point):
     turned = 1.0 if height >= 0.0 else -1.0
     height, det = abs(height), turned * det
     ls, l1, l2, reach = _size(s), _size(e1), _size(e2), _size(d)
-    if not height > ls * (32 * EPSILON * l1 * l2 + 4.0 * blur * (l1 + l2)):
+    if not height > ls * (32 * EPSILON * l1 * l2 + 1.25 * blur * (l1 + l2)) + blur * l1 * l2:
         return UNSURE
-    across, tilt = _size(n), 4 * EPSILON * l1 * l2 + blur * (l1 + l2)
+    across, tilt, beside = _size(n), 4 * EPSILON * l1 * l2, 5.0 * blur * max(l1, l2)
     near = _size((d[0] + s[0], d[1] + s[1], d[2] + s[2]))
-    m = near * tilt + blur * across + 5 * EPSILON * across * (reach + ls) + 6 * EPSILON * (abs(det) + height)
+    m = near * tilt + 4.0 * blur * across + 5 * EPSILON * across * (reach + ls) + 6 * EPSILON * (abs(det) + height)
     behind = det - height
     if behind < -SURPLUS * m:
         return SURE_MISS
@@ -269,8 +272,8 @@ def verdict(rows, i, blur, farthest, light, point):
     u, v = turned * dot(e2, q), -turned * dot(e1, q)
     w = det - u - v
     enlarged = (ENLARGED + 6 * EPSILON) * abs(det)
-    mu = SURPLUS * (reach * (9 * EPSILON * ls * l2 + blur * (ls + l2)) + enlarged)
-    mv = SURPLUS * (reach * (9 * EPSILON * ls * l1 + blur * (ls + l1)) + enlarged)
+    mu = SURPLUS * (reach * (9 * EPSILON * ls * l2 + beside) + enlarged)
+    mv = SURPLUS * (reach * (9 * EPSILON * ls * l1 + beside) + enlarged)
     mw = mu + mv + SURPLUS * reach * (tilt + 5 * EPSILON * across)
     if u < -mu or v < -mv or w < -mw:
         return SURE_MISS

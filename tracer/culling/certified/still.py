@@ -13,7 +13,7 @@ from tracer.geometry.primitives import Outlines
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
-CARRIED = 16 * EPSILON  # of the coordinates: what is carried to the world, or rays to it, may be elsewhere by that
+CARRIED = 8 * EPSILON  # of the coordinates: what is carried to the world, or rays to it, may be elsewhere by that
 
 
 class Still:
