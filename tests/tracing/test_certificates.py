@@ -39,8 +39,8 @@ SAILING = scene(
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure."""
-    for name in ("PATIENCE", "FEW"):
-        monkeypatch.setattr(rendering, name, dict.fromkeys(ACCELERATORS, getattr(rendering, name)["kdtree"]))
+    monkeypatch.setattr(rendering, "PATIENCE", dict.fromkeys(ACCELERATORS, (2, 4)))
+    monkeypatch.setattr(rendering, "FEW", dict.fromkeys(ACCELERATORS, 8))
 
 
 @pytest.fixture(params=ACCELERATORS)
