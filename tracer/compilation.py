@@ -15,6 +15,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import suppress
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ import numpy as np
 from llvmlite.binding import get_host_cpu_name
 from numpy.typing import NDArray
 
+from tracer.culling.certified.certificates import Budget
 from tracer.culling.modes import word_type
 from tracer.frame import Settings
 from tracer.geometry.poses import Poses
@@ -50,13 +52,14 @@ _ready: set[str] = set()
 
 # What is made ready, with about how much of the whole time it takes when compiled.
 _SHARES = {
-    "nearest hits": 0.28,
-    "shadow rays": 0.12,
-    "the builder": 0.21,
+    "nearest hits": 0.19,
+    "shadow rays": 0.08,
+    "the builder": 0.14,
     "primary rays": 0.03,
     "occlusion testing": 0.03,
-    "shading and shadow testing": 0.32,
+    "shading and shadow testing": 0.23,
     "mode setting": 0.01,
+    "certificates": 0.29,
 }
 _POLL = 0.1  # seconds from one look at a process to the next
 
@@ -76,7 +79,7 @@ def warm_up(progress: Progress | None = None, lights: int = 1, accelerator: str 
         if not mark.exists():
             with suppress(OSError):
                 done = _compile_beside(report, lights, accelerator)
-        for step in (*_queries(accelerator), *_frame(lights, accelerator)):
+        for step in (*_queries(accelerator), *_frame(lights, accelerator), *_certificates(lights, accelerator)):
             report(f"{'loading' if step in done else 'compiling'} {step}", sum(_SHARES[s] for s in done))
             done.add(step)
         report("compiled", 1.0)
@@ -116,11 +119,26 @@ def _frame(lights: int, accelerator: str) -> Iterator[str]:
         phase()
 
 
-def _renderer(lights: int, accelerator: str) -> Renderer:
+def _certificates(lights: int, accelerator: str) -> Iterator[str]:
+    """All that is certified, and dropped again."""
+    yield "certificates"
+    renderer = _renderer(lights, accelerator, "certified+cache+rest")
+    frame = renderer.begin(0.0)
+    frame.place_objects_and_lights()  # an object has come to rest: what that darkens is looked for
+    frame._buffers.primitive.fill(MISS)
+    frame.certify_cells()
+    certificates = renderer.certificates
+    assert certificates is not None
+    wanted = certificates.wanted(1)
+    wanted.key[0, 0], wanted.u[0, 0], wanted.v[0, 0], wanted.of[0, 0] = 0, 0.25, 0.25, 1
+    certificates.certify([wanted], Budget(), (1, 1), None)
+    certificates.keep_within(0.0, np.zeros(1, np.int32))
+
+
+def _renderer(lights: int, accelerator: str, method: str = "cells+cache+rest") -> Renderer:
     # As many lights as make a word of that size, no more: each is traced.
     scene = _tiny_scene(1 if lights <= 15 else 16)
-    # Methods differ in what their kernels are told, and what they take along has a kernel more each.
-    method = "cells+cache+rest"
+    # Methods differ in what their kernels are told; what they take along, and certificates, have kernels more each.
     return Renderer(scene, Settings(width=4, height=4, method=method, threads=1, accelerator=accelerator))
 
 
@@ -147,7 +165,7 @@ def _tiny_scene(lights: int) -> Scene:
 
 # --- parts, in processes of their own ---------------------------------------------------------------
 
-_PARTS = ("queries", "trees", "frame")  # about as long each, and none needs what another compiles
+_PARTS = ("queries", "trees", "frame")  # about as long each; none compiles what another does
 
 
 def _compile_beside(report: Progress, lights: int, accelerator: str) -> set[str]:
@@ -251,7 +269,7 @@ def _steps(part: str, lights: int, accelerator: str) -> Iterator[str]:
     if part == "trees":
         queries = dict.fromkeys(("closest", "any_hit"), _Unasked)
         structures[accelerator] = type("Unasked", (structures[accelerator],), queries)
-        return _trees(lights, accelerator)
+        return chain(_trees(lights, accelerator), _certificates(lights, accelerator))
     structures[accelerator] = _Nowhere
     return (step for step in _frame(lights, accelerator) if step != "the builder")
 

@@ -80,6 +80,16 @@ EDITS = (
             ("single", 8, "STEPS", "rays", 1),
         )
     ),
+    *(  # likewise
+        Edit(f"tracer/culling/{file}.py", f"{indent * ' '}counts[{what}] += {by}\n", 1)
+        for file, indent, what, by in (
+            ("shadow", 8, "TESTS", "tests"),
+            ("shadow", 8, "TESTS", "ones(tested)"),
+            ("certified/certify", 16, "STEPS", "1"),
+            ("certified/certify", 12, "STEPS", "1"),
+            ("certified/certify", 8, "TESTS", "1"),
+        )
+    ),
 )
 
 

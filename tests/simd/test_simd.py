@@ -38,6 +38,7 @@ from tracer.simd import (
     load_columns,
     load_f32,
     load_f32x16,
+    load_f64x8,
     load_i32,
     load_i64,
     load_spread_bytes16,
@@ -353,6 +354,42 @@ def test_reductions_and_single_lanes(kind: Kind):
     run(a, low, high, single)
     assert np.array_equal(low, rows.min(axis=1)) and np.array_equal(high, rows.max(axis=1))
     assert same(single, rows)
+
+
+def test_vectors_of_float64():
+    """They do what others do, in twice as many bits, at any address."""
+
+    @compiled
+    def run(a, b, scalar, out, truths, single):
+        row = 8 * len(a)
+        for i in range(0, len(a), 8):
+            x, y, o = load_f64x8(address_of(a) + 8 * i), load_f64x8(address_of(b) + 8 * i), address_of(out) + 8 * i
+            store(o, x + y)
+            store(o + row, x - scalar)
+            store(o + 2 * row, scalar * x)
+            store(o + 3 * row, x / y)
+            store(o + 4 * row, -x)
+            store(o + 5 * row, select(x > y, x, y))
+            for k, truth in enumerate((x < y, x >= scalar, x == y, x > -1.0)):
+                told = truths[k, i // 8]
+                told[0], told[1], told[2] = bits_of(truth), any_lane(truth), all_lanes(truth)
+            for k in range(8):
+                single[i + k] = lane_of(x, k) + (largest(x) - smallest(x))
+
+    rng = np.random.default_rng(31)
+    a, b = (rng.normal(size=(2, N + 1)) * 10.0 ** rng.uniform(-200, 200, N + 1))[:, 1:]
+    a[:320], b[:320] = rng.integers(-2, 3, (2, 320))
+    a[:8] = 1.0
+    s, out, truths, single = 0.1, np.zeros((6, N)), np.zeros((4, N // 8, 3), np.int64), np.zeros(N)
+    with np.errstate(all="ignore"):
+        run(a, b, s, out, truths, single)
+        for found, right in zip(out, (a + b, a - s, s * a, a / b, -a, np.where(a > b, a, b)), strict=True):
+            assert np.array_equal(found, right, equal_nan=True)
+    for found, right in zip(truths, (a < b, a >= s, a == b, a > -1.0), strict=True):
+        rows = right.reshape(-1, 8)
+        assert np.array_equal(found, np.stack([rows @ (1 << np.arange(8)), rows.any(1), rows.all(1)], 1))
+    rows = a.reshape(-1, 8)
+    assert np.array_equal(single, (rows + (rows.max(1) - rows.min(1))[:, None]).ravel())
 
 
 @of_each_kind

@@ -49,7 +49,7 @@ class Twin:
 
     def names(self, cell: int, light: int) -> np.ndarray | None:
         """The primitives that a certificate names; None for too many."""
-        count, start = int(self.cells.count[cell, light]), int(self.cells.start[cell, light])
+        count, start = int(self.cells.amount[cell, light]), int(self.cells.start[cell, light])
         return None if count == TOO_MANY else self.cells.names[start : start + count]
 
     def cells_of(self, owner: int, points: np.ndarray) -> np.ndarray:

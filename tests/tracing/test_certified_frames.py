@@ -92,7 +92,7 @@ def _everything(walk: NastyWalk, threads: int, accelerator: str) -> list[dict]:
         assert certified.certificates is not None
         cells = certified.certificates.cells
         used, named = int(cells.used[0]), int(cells.named[0])
-        for name in ("words", "child", "parent", "owner", "place", "count", "start"):
+        for name in ("words", "child", "parent", "owner", "place", "amount", "start"):
             held[f"cells: {name}"] = getattr(cells, name)[1:used].copy()
         held["cells: names"] = cells.names[:named].copy()
         result.append(held)

@@ -192,7 +192,7 @@ class Certificates:
             while first < len(todo):
                 start = clock.perf_counter()
                 left = budget.certificates - counts[:, certify.CERTIFICATES].sum()
-                batch = int(min(BATCH, left // self._count, 0.5 * (end - start) / pace))
+                batch = int(min(BATCH, left / self._count, 0.5 * (end - start) / pace))
                 if batch <= 0:
                     return counts.sum(0)
                 following.append(self._certify(todo[first : first + batch], points, patience[1], counts, cancel))

@@ -184,7 +184,7 @@ def _work_on(cells, o, lights, still, reach, task, tasks, points, patience, s, c
             continue
         if state == UNTRIED:
             given = cells.names[:0]
-            given_count = TOO_MANY
+            given_count = np.int64(TOO_MANY)
             if parent != 0 and state_of(cells.words[parent], light) == CANDIDATES:
                 given_count = np.int64(cells.amount[parent, light])
                 start = np.int64(cells.start[parent, light])
