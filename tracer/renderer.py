@@ -41,7 +41,7 @@ ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
 BY_MODES = ("paper", "cells")  # methods that cull by modes
 # How many rays must have wanted a triangle's first cell, and a part of a cell: that depends on what tracing them costs.
-PATIENCE = {"kdtree": (8, 16), "bvh8": (256, 1024)}
+PATIENCE = {"kdtree": (8, 16), "bvh8": (64, 256)}
 FEW = {"kdtree": 8, "bvh8": 0}  # candidates that are asked instead of the tree, at most
 Cancel = Callable[[], bool] | None
 

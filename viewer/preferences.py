@@ -66,7 +66,7 @@ class Preferences:
     keep_tracing: bool = False
     culling: bool = True
     method: str = DEFAULT
-    certificate_ms: float = 50.0
+    certificate_ms: float = 10.0
     symmetric: bool = False
     zoom_factor: float = 4.0
     depth: int = 10
