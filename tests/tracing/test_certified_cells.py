@@ -28,7 +28,7 @@ STATES = (FULL, LIT, CANDIDATES)
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure."""
-    monkeypatch.setattr(renderer, "PATIENCE", dict.fromkeys(ACCELERATORS, renderer.PATIENCE["kdtree"]))
+    monkeypatch.setattr(renderer, "PATIENCE", dict.fromkeys(ACCELERATORS, (2, 4)))
 
 
 def _chosen(twin: Twin, rng: np.random.Generator, each: int) -> np.ndarray:

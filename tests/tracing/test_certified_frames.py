@@ -22,8 +22,8 @@ SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure, and to ask candidates."""
-    for name in ("PATIENCE", "FEW"):
-        monkeypatch.setattr(renderer, name, dict.fromkeys(ACCELERATORS, getattr(renderer, name)["kdtree"]))
+    for name, value in (("PATIENCE", (2, 4)), ("FEW", 8)):
+        monkeypatch.setattr(renderer, name, dict.fromkeys(ACCELERATORS, value))
 
 
 def _renderers(
