@@ -28,7 +28,7 @@ from tracer.culling.certified.forget import all_marked, copy_kept, drop_certific
 from tracer.culling.certified.lookup import ROOM, Wanted
 from tracer.culling.certified.occluders import Occluders
 from tracer.culling.certified.still import Still
-from tracer.culling.certified.work import Points, commit, counters, gather_roots, make_tasks, work_on
+from tracer.culling.certified.work import KEPT, Points, commit, counters, gather_roots, make_tasks, work_on
 from tracer.culling.dependence import drop_dependent
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.modes import NON_SHADOW as LIT
@@ -69,6 +69,10 @@ class Certificates:
         self._seen = np.zeros(len(self.cells.waiting), np.int32)  # the frame that last saw each root
         self._frame = 0
         self.left: list[Wanted] = []  # what the last frame's rays wanted and has not been looked into
+        self._scale()
+
+    def _scale(self) -> None:
+        """Let cells be as coarse as the coordinates of all that is static ask for."""
         self._largest = 1.5 * self._still.largest  # with room for what will come to rest
         self.highest = float(np.float32(HIGHEST * OFFSET * self._largest))
         self._receive(0)
@@ -120,9 +124,7 @@ class Certificates:
             self._start()
             started, stopped = changes(self._resting, resting)
             self._still.follow(started.which, stopped.which, outlines)
-            self._largest = max(self._largest, 1.5 * self._still.largest)
-            self.highest = float(np.float32(HIGHEST * OFFSET * self._largest))
-            self._receive(0)
+            self._scale()
         else:
             self._drop(before, started, stopped, outlines)
         self._resting = resting
@@ -222,7 +224,7 @@ class Certificates:
             )  # fmt: skip
 
         for_each_chunk(work, -(-len(todo) // CHUNK), self._threads, cancel)
-        named = tasks.amount[(tasks.state != 0xFF) & (tasks.amount != certify.TOO_MANY)].sum(dtype=np.int64)
+        named = tasks.amount[(tasks.state != KEPT) & (tasks.amount != certify.TOO_MANY)].sum(dtype=np.int64)
         self.cells = with_room(self.cells, 4 * len(todo), int(named))
         following = np.empty((4 * len(todo), 3), np.int32)
         return following[: commit(self.cells, self.occluders, reach, tasks, following)]
