@@ -23,7 +23,7 @@ import numpy as np
 from llvmlite.binding import get_host_cpu_name
 from numpy.typing import NDArray
 
-from tracer.culling.certified.certificates import Budget
+from tracer.culling.certified.certificates import Budget, Effort
 from tracer.culling.modes import word_type
 from tracer.frame import Settings
 from tracer.geometry.poses import Poses
@@ -131,7 +131,7 @@ def _certificates(lights: int, accelerator: str) -> Iterator[str]:
     assert certificates is not None
     wanted = certificates.wanted(1)
     wanted.key[0, 0], wanted.u[0, 0], wanted.v[0, 0], wanted.of[0, 0] = 0, 0.25, 0.25, 1
-    certificates.certify([wanted], Budget(), (1, 1), None)
+    certificates.certify([wanted], Budget(), Effort(1, 1, 8, True), None)
     certificates.keep_within(0.0, np.zeros(1, np.int32))
 
 
@@ -252,7 +252,7 @@ class _Nowhere:
         primitives = self._primitives
         to_object = poses.to_object.reshape(-1, 12).astype(np.float32)
         arrays = (primitives.triangles, primitives.quadrics, to_object, primitives.object_of)
-        return Placed(*arrays, _no_hit.address, _nothing.address, 0, False)
+        return Placed(*arrays, _no_hit.address, _nothing.address, 0, False, np.zeros(6, np.float32))
 
 
 class _Unasked:

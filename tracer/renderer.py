@@ -17,15 +17,16 @@ import numpy as np
 from tracer.culling.cache import NO_CACHE, OccluderCache
 from tracer.culling.cells import first_units, primitives_are_units, units_of
 from tracer.culling.certified.cells import make_cells
-from tracer.culling.certified.certificates import Budget, Certificates
+from tracer.culling.certified.certificates import Budget, Certificates, Effort
 from tracer.culling.certified.certify import CERTIFICATES, STEPS, TESTS
 from tracer.culling.certified.certify import COUNTERS as CERTIFYING
-from tracer.culling.certified.lookup import Wanted
+from tracer.culling.certified.lookup import Certified, Wanted
+from tracer.culling.certified.margins import ROW
 from tracer.culling.memory import Memory
 from tracer.culling.modes import MAX_CULLED_LIGHTS, merge_words, word_type
 from tracer.culling.occlusion import count_pixels, occlusion_testing, set_occlusion_modes
 from tracer.culling.rest import Rest
-from tracer.culling.shadow import Certified, Knowledge
+from tracer.culling.shadow import Knowledge
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import Pinhole, pinhole
 from tracer.geometry.world import World
@@ -40,9 +41,8 @@ from tracer.statistics import gather
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
 BY_MODES = ("paper", "cells")  # methods that cull by modes
-# How many rays must have wanted a triangle's first cell, and a part of a cell: that depends on what tracing them costs.
-PATIENCE = {"kdtree": (8, 16), "bvh8": (64, 256)}
-FEW = {"kdtree": 8, "bvh8": 0}  # candidates that are asked instead of the tree, at most
+# What certifying is worth, by what a shadow ray costs: some 250 ns, and 50.
+EFFORT = {"kdtree": Effort(8, 16, 6, True), "bvh8": Effort(128, 512, 0, False)}
 Cancel = Callable[[], bool] | None
 
 
@@ -153,8 +153,7 @@ _NOT_WANTED = Wanted(np.empty(0, np.int32), np.empty(0, np.float32), np.empty(0,
 _NOT_CERTIFIED = {
     np.dtype(word_type(lights)).itemsize: Certified(
         make_cells(1, lights, 1),
-        np.empty((0, 9), np.float32),
-        np.empty(0, np.float32),
+        np.empty((0, ROW), np.float32),
         np.empty(0, np.bool_),
         0.0,
         0.0,
@@ -289,8 +288,8 @@ class UnfinishedFrame:
 
         self._for_each_tile(work)
         budget = Budget(self._settings.certificates, self._settings.certificate_seconds)
-        patience = PATIENCE[self._settings.accelerator]
-        self._certifying = certificates.certify([sought, *certificates.left], budget, patience, self._cancel)
+        effort = EFFORT[self._settings.accelerator]
+        self._certifying = certificates.certify([sought, *certificates.left], budget, effort, self._cancel)
         self._wanted = certificates.wanted(len(self._tiles))
 
     def shade(self) -> None:
@@ -304,16 +303,15 @@ class UnfinishedFrame:
         if certificates is None:
             return _NOT_CERTIFIED[self.memory.words.dtype.itemsize]
         o, rows = certificates.occluders, Wanted(*(a[tile] for a in wanted))
-        few = FEW[self._settings.accelerator]
+        effort = EFFORT[self._settings.accelerator]
         return Certified(
             certificates.cells,
             o.rows,
-            o.blurs,
             certificates.still,
             o.farthest,
             certificates.highest,
-            few,
-            few > 0,
+            effort.few,
+            effort.dear,
             rows,
         )
 

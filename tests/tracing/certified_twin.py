@@ -12,13 +12,14 @@ import numpy as np
 import tracer
 from tests.tracing.brute import meet_all
 from tracer.culling.certified.beam import LOWEST, OFFSET
-from tracer.culling.certified.cells import HIGHEST, state_of
+from tracer.culling.certified.candidates import verdicts
+from tracer.culling.certified.cells import CANDIDATES, FULL, HIGHEST, LIT, named_by, state_of
 from tracer.culling.certified.certificates import Certificates
-from tracer.culling.certified.certify import CANDIDATES, FULL, LIT, TOO_MANY
-from tracer.culling.certified.margins import EPSILON, SURE_HIT, SURE_MISS, UNSURE, verdict
+from tracer.culling.certified.margins import EPSILON
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import ACCELERATORS
 from tracer.kernels import kernel
+from tracer.simd import address_of, load_three
 
 LAMP = 1e-5  # of the way from the light: where shadow rays begin
 NAMES = {FULL: "FULL", LIT: "LIT", CANDIDATES: "CANDIDATES"}
@@ -32,7 +33,7 @@ class Twin:
         self.worlds = {name: tracer.World(scene, accelerator=name) for name in ACCELERATORS}
         self.certificates, self.lights = certificates, np.asarray(lights, np.float32)
         self.cells, self.rows = certificates.cells, certificates.occluders.rows
-        self.blurs, self.farthest = certificates.occluders.blurs, np.float64(certificates.occluders.farthest)
+        self.farthest = np.float32(certificates.occluders.farthest)
         world = self.worlds["kdtree"]
         self.primitives = len(world.object_of)
         used = int(self.cells.used[0])
@@ -49,13 +50,12 @@ class Twin:
 
     def names(self, cell: int, light: int) -> np.ndarray | None:
         """The primitives that a certificate names; None for too many."""
-        count, start = int(self.cells.amount[cell, light]), int(self.cells.start[cell, light])
-        return None if count == TOO_MANY else self.cells.names[start : start + count]
+        return named_by(self.cells, cell, light)
 
     def cells_of(self, owner: int, points: np.ndarray) -> np.ndarray:
         """(n,) the leaves that rays to points (n, 3) are looked up in, all on one side of a triangle; 0 for none."""
         row = self.rows[owner >> 1].astype(np.float64)
-        a, e1, e2 = row[:3], row[3:6], row[6:]
+        a, e1, e2 = row[:3], row[3:6], row[6:9]
         n = np.cross(e1, e2)
         across = np.linalg.norm(n)
         dual = [np.cross(e2, n) / across**2, np.cross(n, e1) / across**2, n / across]
@@ -97,7 +97,7 @@ class Twin:
         """Points (n, 3) float32 where rays that end in a cell may end."""
         owner, (u, v, size) = int(self.cells.owner[cell]), self.cells.place[cell].astype(np.float64)
         row = self.rows[owner >> 1].astype(np.float64)
-        a, e1, e2 = row[:3], row[3:6], row[6:]
+        a, e1, e2 = row[:3], row[3:6], row[6:9]
         normal = np.cross(e1, e2) * (1 - 2 * (owner & 1))
         normal /= np.linalg.norm(normal)
         weights = _weights(rng, count)
@@ -159,14 +159,14 @@ class Twin:
         ]
 
     def _wrong_verdicts(self, names, light: int, name: str, asked: _Asked, rays: np.ndarray) -> list:
-        if not len(names) or (names >= len(self.rows)).any():
+        if not len(names):
             return []
-        found = np.empty((len(rays), len(names)), np.int64)
-        start = self.lights[light].astype(np.float64)
-        _verdicts(self.rows, self.blurs, self.farthest, names, start, asked.ends[rays], found)
-        hit, missed = (found == SURE_HIT).any(1), (found == SURE_MISS).all(1)
+        hits, misses = np.empty((2, len(names), len(rays)), np.bool_)
+        ends = np.ascontiguousarray(asked.ends[rays].T, np.float32)
+        _verdicts(self.rows, self.farthest, names, self.lights[light], ends, hits, misses)
+        hit, missed = hits.any(0), misses.all(0)
         blocked = asked.blocked[name][rays]
-        assert ((found == SURE_HIT) | (found == SURE_MISS) | (found == UNSURE)).all()
+        assert not (hits & misses).any()
         return [
             (f"sure hits miss in {name}", rays[hit & ~blocked]),
             (f"sure misses hit in {name}", rays[missed & blocked]),
@@ -214,9 +214,14 @@ def _states(words, lights):
 
 
 @kernel
-def _verdicts(rows, blurs, farthest, names, light, ends, found):
-    for k in range(len(ends)):
-        start = light[0], light[1], light[2]
-        end = np.float64(ends[k, 0]), np.float64(ends[k, 1]), np.float64(ends[k, 2])
+def _verdicts(rows, farthest, names, light, ends, hits, misses):
+    """hits and misses (names, n): of which rays to ends (3, n) each of rows (any, ROW) is certain."""
+    numbers, padded = np.zeros(16, np.int32), np.zeros((3, 16), np.float32)
+    for first in range(0, ends.shape[1], 16):
+        count = min(16, ends.shape[1] - first)
+        padded[:, :count] = ends[:, first : first + count]
         for j in range(len(names)):
-            found[k, j] = verdict(rows, names[j], np.float64(blurs[names[j]]), farthest, start, end)
+            numbers[:] = names[j]
+            hit, missed = verdicts(rows, address_of(numbers), farthest, light, load_three(padded, 0))
+            for k in range(count):
+                hits[j, first + k], misses[j, first + k] = (hit >> k) & 1, (missed >> k) & 1

@@ -15,8 +15,8 @@ from tests.tracing.test_culling import BEHIND, floor, roof
 from tests.tracing.test_rest import GOING, MIDDLES, going, kite
 from tests.tracing.worlds import quad, scene
 from tracer import renderer as rendering
-from tracer.culling.certified.certificates import Certificates
-from tracer.culling.certified.certify import CANDIDATES, FULL, LIT, TOO_MANY
+from tracer.culling.certified.cells import CANDIDATES, FULL, LIT, NOBODY, named_by
+from tracer.culling.certified.certificates import Certificates, Effort
 from tracer.explanation import explain
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import ACCELERATORS
@@ -39,8 +39,7 @@ SAILING = scene(
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure."""
-    monkeypatch.setattr(rendering, "PATIENCE", dict.fromkeys(ACCELERATORS, (2, 4)))
-    monkeypatch.setattr(rendering, "FEW", dict.fromkeys(ACCELERATORS, 8))
+    monkeypatch.setattr(rendering, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 2, True)))
 
 
 @pytest.fixture(params=ACCELERATORS)
@@ -65,21 +64,21 @@ def _states(renderer: tracer.Renderer) -> np.ndarray:
     """(cells, lights) what is certified, by number of the cell; cell 0 is none."""
     certificates = _certificates(renderer)
     words = certificates.cells.words[: int(certificates.cells.used[0])].astype(np.uint64)
-    lights = certificates.cells.start.shape[1]
+    lights = certificates.cells.lists.shape[1]
     return np.stack([(words >> np.uint64(2 + 2 * light)) & np.uint64(3) for light in range(lights)], axis=1)
 
 
 def _naming(renderer: tracer.Renderer, primitives: np.ndarray) -> np.ndarray:
     """(cells, lights) whether a certificate rests on one of primitives (k,), its own or that of the whole it is of."""
     cells = _certificates(renderer).cells
-    result = np.zeros((int(cells.used[0]), cells.start.shape[1]), np.bool_)
+    result = np.zeros((int(cells.used[0]), cells.lists.shape[1]), np.bool_)
     for (number, light), state in np.ndenumerate(_states(renderer)):
         holder = number
-        while state == FULL and cells.amount[holder, light] == 0:
+        while state == FULL and cells.lists[holder, light] == NOBODY:
             holder = cells.parent[holder]
-        amount, start = int(cells.amount[holder, light]), int(cells.start[holder, light])
-        if state and amount != TOO_MANY:
-            result[number, light] = np.isin(cells.names[start : start + amount], primitives).any()
+        named = named_by(cells, int(holder), light)
+        if state and named is not None:
+            result[number, light] = np.isin(named, primitives).any()
     return result
 
 

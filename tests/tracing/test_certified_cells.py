@@ -17,7 +17,8 @@ from tests.tracing.nasty_worlds import nasty_walk, static_part
 from tests.tracing.random_worlds import quickly
 from tests.tracing.worlds import quad, scene
 from tracer import renderer
-from tracer.culling.certified.certify import CANDIDATES, FULL, LIT
+from tracer.culling.certified.cells import CANDIDATES, FULL, LIT
+from tracer.culling.certified.certificates import Effort
 from tracer.geometry.world import ACCELERATORS
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera
@@ -28,7 +29,7 @@ STATES = (FULL, LIT, CANDIDATES)
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure."""
-    monkeypatch.setattr(renderer, "PATIENCE", dict.fromkeys(ACCELERATORS, (2, 4)))
+    monkeypatch.setattr(renderer, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 0, True)))
 
 
 def _chosen(twin: Twin, rng: np.random.Generator, each: int) -> np.ndarray:

@@ -14,6 +14,7 @@ import tracer
 from tests.tracing.nasty_worlds import NastyWalk, nasty_walk
 from tests.tracing.test_repeatable import contents
 from tracer import renderer
+from tracer.culling.certified.certificates import Effort
 from tracer.geometry.world import ACCELERATORS
 
 SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
@@ -22,8 +23,7 @@ SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure, and to ask candidates."""
-    for name, value in (("PATIENCE", (2, 4)), ("FEW", 8)):
-        monkeypatch.setattr(renderer, name, dict.fromkeys(ACCELERATORS, value))
+    monkeypatch.setattr(renderer, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 3, True)))
 
 
 def _renderers(
@@ -92,7 +92,7 @@ def _everything(walk: NastyWalk, threads: int, accelerator: str) -> list[dict]:
         assert certified.certificates is not None
         cells = certified.certificates.cells
         used, named = int(cells.used[0]), int(cells.named[0])
-        for name in ("words", "child", "parent", "owner", "place", "amount", "start"):
+        for name in ("words", "child", "parent", "owner", "place", "lists"):
             held[f"cells: {name}"] = getattr(cells, name)[1:used].copy()
         held["cells: names"] = cells.names[:named].copy()
         result.append(held)

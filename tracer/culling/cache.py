@@ -52,6 +52,7 @@ from tracer.simd import (
     maximum,
     minimum,
     ones,
+    size_of,
     to_i32,
 )
 
@@ -119,12 +120,6 @@ def merge_occluders(occluders, found):
 
 
 @inlined
-def _size(a):
-    """Sum of a vector's absolute coordinates."""
-    return maximum(a[0], -a[0]) + maximum(a[1], -a[1]) + maximum(a[2], -a[2])
-
-
-@inlined
 def _range_of(x, scale):
     """Number of the range that a coordinate falls into, from 0 on; any where it is no number."""
     return to_i32(minimum(maximum(x * scale + DIRECTIONS, ZERO), DIRECTIONS + DIRECTIONS))
@@ -164,8 +159,8 @@ def surely_blocked(triangles, light, direction, t_min, numbers, padding):
     terms = terms_of(light[0], light[1], light[2], Triangle(a[0], a[1], a[2], e1[0], e1[1], e1[2], e2[0], e2[1], e2[2]))
     crosses, sign, u, v, area = crossing(direction[0], direction[1], direction[2], terms)
     height = as_f32(as_i32(terms.height) ^ sign)
-    ray, edge = _size(direction), maximum(_size(e1), _size(e2))
-    away = _size((light[0] - a[0], light[1] - a[1], light[2] - a[2]))
+    ray, edge = size_of(direction), maximum(size_of(e1), size_of(e2))
+    away = size_of((light[0] - a[0], light[1] - a[1], light[2] - a[2]))
     margin = maximum(ROUNDINGS * edge * (ray * edge + away * ray + away * edge), SMALLEST)
     sure = (
         crosses & (u > margin) & (v > margin) & (area - u - v > margin) & (maximum(edge, maximum(ray, away)) < LARGEST)

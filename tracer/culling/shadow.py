@@ -25,10 +25,9 @@ from numpy.typing import NDArray
 
 from tracer.culling.cache import Cache, occluders_in, remember, slots_of, surely_blocked
 from tracer.culling.certified.candidates import ask_candidates
-from tracer.culling.certified.cells import Cells
-from tracer.culling.certified.lookup import Wanted
-from tracer.culling.certified.margins import SURE_HIT, UNSURE
+from tracer.culling.certified.lookup import Certified
 from tracer.culling.modes import DYNAMIC, FULL_SHADOW, FULLY_RENDERED, MAX_CULLED_LIGHTS, NON_SHADOW, add_shadow
+from tracer.geometry.bvh8.packet import inverse
 from tracer.geometry.queries import DYNAMIC as MOVING
 from tracer.geometry.queries import STATIC, any_hits, any_hits_by
 from tracer.geometry.rays import MISS, Rays
@@ -39,13 +38,17 @@ from tracer.simd import (
     f32x16,
     gather_i32x16,
     i32x16,
+    lane_numbers_x16,
     lanes_below,
     load_i32x16,
     load_spread_bytes16,
     load_three,
     lowest_bit,
     mask16,
+    maximum,
+    minimum,
     ones,
+    pack,
     pack_three,
     select,
     store,
@@ -57,24 +60,8 @@ STEPS, TESTS, RAYS, DUE, CULLED, DYNAMIC_ONLY, CANDIDATES_ONLY, CACHE_HITS, WRON
 SHADOW_COUNTERS = 9
 
 LIGHT_MARGIN = np.float32(1e-5)  # of the way from the light: what lies nearer to it is the lamp itself
+ROUNDED = np.float32(1e-5)  # of coordinates
 ZERO, ONE = np.float32(0), np.float32(1)
-
-
-class Certified(NamedTuple):
-    """Certified cells (`tracer.culling.certified`) and what rays ask of them: the triangles, rows (n, 9) float32, and
-    how far these may be elsewhere, blurs (n,); still (lights,) bool, which lights are certified; how long a
-    ray may be to be sure of a hit, and how high above a cell it may end; how many candidates are asked at most; whether
-    rays cost so much that every look-up pays; and what a tile wants."""
-
-    cells: Cells
-    rows: NDArray[np.float32]
-    blurs: NDArray[np.float32]
-    still: NDArray[np.bool_]
-    farthest: float
-    highest: float
-    few: int
-    dear: bool
-    wanted: Wanted
 
 
 class Knowledge(NamedTuple):
@@ -98,11 +85,12 @@ class Answers(NamedTuple):
     """What is known of the shadow rays of n points to one light, as bits of int32, 16 points a number:
     which are due, which of those reach the light and, where knowledge asks to verify, which truly do.
 
-    For asking: low and high (n,) int32, halves of the points' words, and whether these have been looked up,
-    vector by vector; live, the bits of those to be traced, their rays, one after the other, and blocked, a
-    byte for each ray.  Of certified cells, over all lights: untried, the bits of points with a light of which
-    nothing is known, and doubtful, of those with one of which only candidates are.  Of the cache: slots (n,) int32 of
-    the points, and occluders (n,) int32 of the rays, one after the other."""
+    For asking: low and high (n,) int32, halves of the points' words, and whether these have been looked up, vector
+    by vector; live, the bits of those to be traced, their rays, one after the other, and blocked, a byte for each
+    ray. Of certified cells, over all lights: untried, the bits of points with a light of which nothing is known,
+    and doubtful, of those with one of which only candidates are; asked (n,) int32, the points with candidates, one
+    after the other, and after that the bits of those that what moves is asked about. Of the cache: slots (n,) int32
+    of the points, and occluders (n,) int32 of the rays, one after the other."""
 
     due: NDArray[np.int32]
     lit: NDArray[np.int32]
@@ -115,14 +103,15 @@ class Answers(NamedTuple):
     blocked: NDArray[np.float32]
     untried: NDArray[np.int32]
     doubtful: NDArray[np.int32]
+    asked: NDArray[np.int32]
     slots: NDArray[np.int32]
     occluders: NDArray[np.int32]
 
 
 # Rows of the memory that answers lie in, the first eight of which are the rays.
 DUE_ROW, LIT_ROW, TRUTH_ROW, LOW_ROW, HIGH_ROW, LOOKED_UP_ROW, LIVE_ROW, BLOCKED_ROW = range(8, 16)
-UNTRIED_ROW, DOUBTFUL_ROW, SLOT_ROW, OCCLUDER_ROW = range(16, 20)
-ANSWER_ROWS = 20
+UNTRIED_ROW, DOUBTFUL_ROW, ASKED_ROW, SLOT_ROW, OCCLUDER_ROW = range(16, 21)
+ANSWER_ROWS = 21
 
 
 @inlined
@@ -142,6 +131,7 @@ def answers_in(memory, count):
         memory[BLOCKED_ROW],
         memory[UNTRIED_ROW].view(np.int32),
         memory[DOUBTFUL_ROW].view(np.int32),
+        memory[ASKED_ROW].view(np.int32),
         memory[SLOT_ROW].view(np.int32),
         memory[OCCLUDER_ROW].view(np.int32),
     )
@@ -194,7 +184,7 @@ def _known(answers, number, v):
 @subkernel
 def _choose_fates(points, light, number, knowledge, count, answers, counts):
     """What is due, and what of it is known: answers.lit is what is known to be lit, live what is to be asked."""
-    vectors = (count + 15) // 16
+    vectors, asked = (count + 15) // 16, np.int64(0)
     for v in range(vectors):
         due = _due(points, light, v) & lanes_below(count, v)
         full, non = np.int64(0), np.int64(0)
@@ -206,42 +196,31 @@ def _choose_fates(points, light, number, knowledge, count, answers, counts):
         counts[CULLED] += ones(due & full)
         counts[DYNAMIC_ONLY] += ones(due & non)
         if knowledge.certify and answers.live[v] != 0:
-            _ask_certified(points, light, number, knowledge.certified, answers, v, counts)
+            asked = _note_candidates(number, knowledge.certified, answers, v, asked)
+    if asked > 0:
+        certified, live, lit = knowledge.certified, answers.live, answers.lit
+        known, tests = ask_candidates(certified, points, light, number, answers.asked, asked, live, lit)
+        counts[CANDIDATES_ONLY] += known
+        counts[TESTS] += tests
 
 
 @inlined
-def _ask_certified(points, light, number, certified, answers, v, counts):
-    """Ask candidates about the live points of a vector, and note which certificates are wanting."""
+def _note_candidates(number, certified, answers, v, asked):
+    """Note which certificates are wanting at the live points of a vector, and those that have candidates in
+    answers.asked, where there are so many of others; how many there are."""
+    if number >= len(certified.still) or not certified.still[number]:
+        return asked
     live = np.int64(answers.live[v])
     _, field, shift = _words(answers, number, v)
     field = field & np.int32(3 << shift)
     some = bits_of(field == np.int32(3 << shift)) & live
-    if number >= len(certified.still) or not certified.still[number]:
-        return
     answers.untried[v] |= live & ~some
     answers.doubtful[v] |= some
-    if certified.few == 0:
-        return
-    while some != 0:
-        lane = lowest_bit(some)
-        some &= some - 1
-        i = 16 * v + lane
-        at = points.lifted[0, i], points.lifted[1, i], points.lifted[2, i]
-        end = np.float64(at[0]), np.float64(at[1]), np.float64(at[2])
-        start = np.float64(light[0]), np.float64(light[1]), np.float64(light[2])
-        count = np.int64(certified.cells.amount[points.unit[i], number])
-        if count > certified.few:
-            continue
-        first = np.int64(certified.cells.start[points.unit[i], number])
-        names, farthest = certified.cells.names, certified.farthest
-        found, tests = ask_candidates(names, first, count, certified.rows, certified.blurs, farthest, start, end)
-        counts[TESTS] += tests
-        if found == UNSURE:
-            continue
-        counts[CANDIDATES_ONLY] += 1
-        answers.live[v] &= ~(1 << lane)
-        if found != SURE_HIT:
-            answers.lit[v] |= 1 << lane
+    if certified.few > 0:
+        which = lane_numbers_x16() + np.int32(16 * v)
+        store(address_of(answers.asked) + 4 * asked, pack(which, mask16(some)))
+        asked += ones(some)
+    return asked
 
 
 @subkernel
@@ -312,8 +291,25 @@ def _take_blocked(bits, asked, vectors, answers):
 @subkernel
 def _ask_about_known(world, points, light, vectors, answers, counts):
     """Ask dynamic objects alone about the points that are known to be lit by all that is static."""
-    counts[RAYS] += _ask(world, points, light, vectors, answers.lit, MOVING, answers, counts)
-    _take_blocked(answers.lit, answers.lit, vectors, answers)
+    for v in range(vectors):
+        answers.asked[v] = 0 if answers.lit[v] == 0 else answers.lit[v] & _towards(world.moving_box, points, light, v)
+    counts[RAYS] += _ask(world, points, light, vectors, answers.asked, MOVING, answers, counts)
+    _take_blocked(answers.lit, answers.asked, vectors, answers)
+
+
+@inlined
+def _towards(box, points, light, v):
+    """Bits of the points of a vector between which and the light a box (6,) may lie: none is left out that a tree with
+    this box at its root would let in, as the box is made larger here by more than roundings."""
+    x, y, z = load_three(points.lifted, v)
+    enter, leave = f32x16(ZERO), f32x16(ONE)
+    for axis in range(3):
+        start, end = light[axis], x if axis == 0 else (y if axis == 1 else z)
+        room = ROUNDED * (abs(start) + abs(box[axis]) + abs(box[3 + axis]))
+        backwards = inverse(end - start)
+        first, last = (box[axis] - room - start) * backwards, (box[3 + axis] + room - start) * backwards
+        enter, leave = maximum(enter, minimum(first, last)), minimum(leave, maximum(first, last))
+    return bits_of(enter <= leave)
 
 
 @subkernel

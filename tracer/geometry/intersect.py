@@ -18,6 +18,7 @@ from tracer.scene.model import SPHERE
 ZERO = np.float32(0)
 ONE = np.float32(1)
 TINY = np.float32(1e-20)
+NEAR = np.float32(1e-5)  # of the distance of a ray's origin: more than t is wrong by on triangles it does not graze
 
 # Where a quadric's row has these; the map to canonical space fills the first 12 places.
 KIND, R0, R1, INSIDE = 12, 13, 14, 15
@@ -45,7 +46,9 @@ def hit_box(ray, boxes, i):
 @inlined
 def hit_triangle(ray, triangles, i):
     """(t, u, v) of a ray on the i-th triangle, t = inf for a miss, two-sided: the triple products of Moeller and
-    Trumbore (1997), by one normal for det and t, so that what lies just above a triangle is seen there."""
+    Trumbore (1997), by one normal for det and t, so that what lies just above a triangle is seen there.
+
+    Where a ray runs in the triangle's plane these are noise; so a hit counts only near the triangle (`_is_near`)."""
     r = 9 * i
     e1x, e1y, e1z = triangles[r + 3], triangles[r + 4], triangles[r + 5]
     e2x, e2y, e2z = triangles[r + 6], triangles[r + 7], triangles[r + 8]
@@ -65,7 +68,24 @@ def hit_triangle(ray, triangles, i):
     t = f * (sx * nx + sy * ny + sz * nz)
     if not (t > ray.t_min and t < ray.t_max):
         return INFINITY, ZERO, ZERO
-    return t, u, v
+    near = _is_near(sx + t * ray.dx, sy + t * ray.dy, sz + t * ray.dz, abs(sx) + abs(sy) + abs(sz), triangles, r)
+    return (t, u, v) if near else (INFINITY, ZERO, ZERO)
+
+
+@inlined
+def _is_near(x, y, z, away, triangles, r):
+    """Whether (x, y, z) from a triangle's corner lies no further outside the box around the triangle than that is wide,
+    and a little of the ray's origin's distance."""
+    x1, y1, z1, x2, y2, z2 = (triangles[r + 3], triangles[r + 4], triangles[r + 5],
+                              triangles[r + 6], triangles[r + 7], triangles[r + 8])  # fmt: skip
+    low_x, low_y, low_z = min(ZERO, min(x1, x2)), min(ZERO, min(y1, y2)), min(ZERO, min(z1, z2))
+    high_x, high_y, high_z = max(ZERO, max(x1, x2)), max(ZERO, max(y1, y2)), max(ZERO, max(z1, z2))
+    room = max(high_x - low_x, max(high_y - low_y, high_z - low_z)) + NEAR * away
+    return (
+        x >= low_x - room and x <= high_x + room
+        and y >= low_y - room and y <= high_y + room
+        and z >= low_z - room and z <= high_z + room
+    )  # fmt: skip
 
 
 @inlined

@@ -49,6 +49,16 @@ class Outlines(NamedTuple):
     boxes: Float32
 
 
+class WorldTriangles(NamedTuple):
+    """What a structure intersects, as the world sees it: rows (n, 9) float32, corner and edges; blurs (n,), how far
+    their corners may truly be elsewhere; and boxes (n, 6), outside of which no hit on them is reported, but for
+    roundings no larger than 2e-5 of the distance between ray origin and corner."""
+
+    rows: Float32
+    blurs: Float32
+    boxes: Float32
+
+
 class Primitives:
     """All primitives of a scene's n objects, in the space of their object.
 

@@ -42,7 +42,8 @@ class Placed(NamedTuple):
     triangles (t, 9) and quadrics (q, 16) float32 are in the space of their object, to which to_object
     (objects, 12) float32 leads from the world: triangle i is primitive i, quadric j primitive t + j, and
     object_of (t + q,) int32 tells whose they are; object 0 is static.  closest and any_hit are the
-    addresses of a structure's entries, and data what they are given.
+    addresses of a structure's entries, and data what they are given.  moving_box (6,) float32 is around all that
+    moves, where has_dynamic says that anything does.
     """
 
     triangles: NDArray[np.float32]
@@ -53,6 +54,7 @@ class Placed(NamedTuple):
     any_hit: int
     data: int
     has_dynamic: bool
+    moving_box: NDArray[np.float32]
 
 
 @inlined

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tracer.geometry.bvh8 import place as bvh8
 from tracer.geometry.kdtree import place as kdtree
 from tracer.geometry.poses import Poses, poses_at
-from tracer.geometry.primitives import Outlines, Primitives
+from tracer.geometry.primitives import Outlines, Primitives, WorldTriangles
 from tracer.geometry.queries import batch_of
 from tracer.geometry.rays import Hits, Rays
 from tracer.kernels import Entry
@@ -79,6 +79,10 @@ class World:
         if rest is not None:
             resting[:] = rest.follow(self._poses, self._primitives)
         self.placed = self.structure.place(self._poses, resting)
+
+    def triangles_of(self, index: int) -> WorldTriangles:
+        """The triangles of an object that is there, as rays meet them."""
+        return self.structure.triangles_of(index, self._poses.to_world[index])
 
     def outlines(self) -> Outlines:
         """Where each primitive is."""

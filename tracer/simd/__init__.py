@@ -40,7 +40,16 @@ from tracer.simd.addresses import (
     u8_at,
 )
 from tracer.simd.bits import as_f32, as_i32, leading_zeros, lowest_bit, ones
-from tracer.simd.functions import binary_logarithm, floor, lanes_below, load_three, pack_three, power, store_three
+from tracer.simd.functions import (
+    binary_logarithm,
+    floor,
+    lanes_below,
+    load_three,
+    pack_three,
+    power,
+    size_of,
+    store_three,
+)
 from tracer.simd.rearranging import gather_f32x16, gather_i32x16, load_columns, load_spread_bytes16, pack
 from tracer.simd.vectors import (
     F32x8,
@@ -127,6 +136,7 @@ __all__ = [
     "pack_three",
     "power",
     "select",
+    "size_of",
     "smallest",
     "square_root",
     "prefetch",

@@ -81,6 +81,12 @@ def pack_three(a, mask):
 
 
 @inlined
+def size_of(a):
+    """Sum of the absolute coordinates of three vectors."""
+    return maximum(a[0], -a[0]) + maximum(a[1], -a[1]) + maximum(a[2], -a[2])
+
+
+@inlined
 def lanes_below(count, v):
     """Bits of those lanes of the v-th vector of sixteen that a row of `count` has."""
     rest = count - 16 * v

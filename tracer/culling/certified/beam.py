@@ -13,11 +13,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.margins import CORNERS, EPSILON, cross, dot, length, row_of
+from tracer.culling.certified.margins import EPSILON, cross, dot, length, row_of
 from tracer.kernels import inlined, subkernel
 
 OFFSET = 2e-5  # of the largest coordinate at hand: how far above a surface its rays end
 LOWEST = 0.5  # of that offset: what ends lower belongs to no cell
+CORNERS = 6  # of a cell: three below and three above
 PLANES = 4  # three through the light and an edge of the cell, and the cell's own
 
 
@@ -72,7 +73,7 @@ def _least_coordinate(corners):
 
 @subkernel
 def put_cell(beam, rows, i, side, u, v, size, highest, largest):
-    """The corners of a cell of triangle i of rows (n, 9), on its front for side 1 and on its back for -1.
+    """The corners of a cell of triangle i of rows (n, ROW), on its front for side 1 and on its back for -1.
 
     Its place in the triangle is (u, v), (u + size, v) and (u, v + size); highest is how far above rays end at
     most, largest the scene's largest coordinate.  False where it is too thin to tell above from below."""
@@ -99,8 +100,6 @@ def put_cell(beam, rows, i, side, u, v, size, highest, largest):
             at = beam.corners[axis, k]
             beam.corners[axis, k] = at + lowest * normal[axis]
             beam.corners[axis, 3 + k] = at + (highest + wrong) * normal[axis]
-        for k in range(6, CORNERS):
-            beam.corners[axis, k] = beam.corners[axis, 5]
         beam.planes[3, axis] = -normal[axis]
     beam.planes[3, 3] = -dot(normal, _corner(beam.corners, 0))
     return True
@@ -121,12 +120,12 @@ def put_light(beam, light):
         longest = max(longest, square)
     for axis in range(3):
         low = high = light[axis]
-        for k in range(6):
+        for k in range(CORNERS):
             low, high = min(low, beam.corners[axis, k]), max(high, beam.corners[axis, k])
         beam.box[axis], beam.box[3 + axis] = low, high
     beam.reach[0] = math.sqrt(longest)
     below = beam.planes[3, 0], beam.planes[3, 1], beam.planes[3, 2]
-    for k in range(3, 6):  # the light must see the cell's plane from above, at more than a graze
+    for k in range(3, CORNERS):  # the light must see the cell's plane from above, at more than a graze
         if not dot(below, _corner(beam.directions, k)) > 1e-4 * beam.reach[0]:
             return False
     for j in range(3):
@@ -144,7 +143,7 @@ def _put_side(beam, light, i, j, opposite):
         scale = -scale
     n = n[0] * scale, n[1] * scale, n[2] * scale
     most = 0.0
-    for k in range(6):
+    for k in range(CORNERS):
         most = max(most, dot(n, _corner(beam.directions, k)))
     for axis in range(3):
         beam.planes[i, axis] = n[axis]
@@ -152,16 +151,16 @@ def _put_side(beam, light, i, j, opposite):
 
 
 @subkernel
-def meets_box(b, box):
-    """Whether a box (6,) may meet a beam."""
+def meets_box(b, box, room):
+    """Whether a box (6,), made larger by `room` on all sides, may meet a beam."""
     for axis in range(3):
-        if box[axis] > b.box[3 + axis] or box[3 + axis] < b.box[axis]:
+        if box[axis] - room > b.box[3 + axis] or box[3 + axis] + room < b.box[axis]:
             return False
     for k in range(PLANES):
         least = -b.planes[k, 3]
         for axis in range(3):
             n = b.planes[k, axis]
-            least += n * (box[axis] if n > 0.0 else box[3 + axis])
+            least += n * (box[axis] if n > 0.0 else box[3 + axis]) - abs(n) * room
         if least > 0.0:
             return False
     return True

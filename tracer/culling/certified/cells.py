@@ -15,27 +15,32 @@ from numpy.typing import NDArray
 
 from tracer.culling.certified.beam import slack_of
 from tracer.culling.certified.margins import EPSILON, cross, length, row_of
-from tracer.culling.modes import FULLY_RENDERED, word_type
+from tracer.culling.modes import FULL_SHADOW, FULLY_RENDERED, NON_SHADOW, word_type
 from tracer.geometry.memory import aligned_rows
 from tracer.kernels import kernel, subkernel
 
-LEAF, FINAL = -1, -2  # instead of children: none yet, and none ever
+UNTRIED, FULL, LIT, CANDIDATES = 0, FULL_SHADOW, NON_SHADOW, 3
+LEAF, FINAL, CONTENT = -1, -2, -3  # instead of children: none yet, none ever, and none needed as far as is known
+TOO_MANY = 255  # instead of how many a list names
+SETTLED = 64  # added to that where rays will ask these, and the cell need not be divided for the light
+OVERFLOW, NOBODY = 0, 1  # the lists of TOO_MANY and of none
 # Columns of a receiver's row: a corner, the dual vectors that give u and v, the normal, by how much u and v may
 # lie outside, and, as the bits of int32, the roots of both sides.
 CORNER, ALONG_U, ALONG_V, NORMAL, BEYOND_U, BEYOND_V, ROOTS = 0, 3, 6, 9, 12, 13, 14
 RECEIVER = 16
+ARRAYS = 7  # with a row for each cell
 HIGHEST = 2.0  # times the scene's largest coordinate and OFFSET: rays that end higher above are traced
 
 
 class Cells(NamedTuple):
     """n cells, of which `used` (1,) int64 are in use.
 
-    words (n,) uint32 or uint64; child (n,) int32, the first of four, LEAF or FINAL; parent (n,) int32; owner
-    (n,) int32, twice the triangle's number, plus 1 for its back; place (n, 3) float32, u, v and size; wanted (n,)
-    int32, how many rays have; start (n, lights) int32 and amount (n, lights) uint8, the primitives that a
-    certificate names, in names (m,) int32, of which named (1,) int64 are in use.  receivers
-    (primitives, RECEIVER) float32 lead rays to the roots; those of what has no cells are 0.  waiting (2 primitives,)
-    int32 is how many rays have wanted a root that is not there yet; rooted (primitives,) int32 is 1 where there is one.
+    words (n,) uint32 or uint64; child (n,) int32, the first of four, LEAF or FINAL; parent (n,) int32; owner (n,)
+    int32, twice the triangle's number, plus 1 for its back; place (n, 3) float32, u, v and size; wanted (n,) int32,
+    how many rays have; lists (n, lights) int32, where in names (m,) int32 the primitives are listed that a
+    certificate names, how many first; named (1,) int64, how much of names is in use. receivers (primitives,
+    RECEIVER) float32 lead rays to the roots; those of what has no cells are 0. waiting (2 primitives,) int32 is how
+    many rays have wanted a root that is not there yet; rooted (primitives,) int32 is 1 where there is one.
     """
 
     words: NDArray[np.unsignedinteger]
@@ -44,8 +49,7 @@ class Cells(NamedTuple):
     owner: NDArray[np.int32]
     place: NDArray[np.float32]
     wanted: NDArray[np.int32]
-    start: NDArray[np.int32]
-    amount: NDArray[np.uint8]
+    lists: NDArray[np.int32]
     names: NDArray[np.int32]
     used: NDArray[np.int64]
     named: NDArray[np.int64]
@@ -65,11 +69,10 @@ def make_cells(primitives: int, lights: int, room: int = 1 << 12) -> Cells:
         np.zeros(room, np.int32),
         np.zeros((room, 3), np.float32),
         np.zeros(room, np.int32),
-        np.zeros((room, lights), np.int32),
-        np.zeros((room, lights), np.uint8),
-        np.zeros(4 * room, np.int32),
+        np.full((room, lights), NOBODY, np.int32),
+        np.array([TOO_MANY, 0] + 4 * room * [0], np.int32),
         np.ones(1, np.int64),
-        np.zeros(1, np.int64),
+        np.full(1, 2, np.int64),
         receivers,
         np.zeros(2 * len(receivers), np.int32),
         np.zeros(len(receivers), np.int32),
@@ -79,7 +82,7 @@ def make_cells(primitives: int, lights: int, room: int = 1 << 12) -> Cells:
 
 def bytes_of(cells: Cells) -> int:
     """Memory that the cells in use take."""
-    each = sum(a.itemsize * (a.shape[1] if a.ndim > 1 else 1) for a in cells[:8])
+    each = sum(a.itemsize * (a.shape[1] if a.ndim > 1 else 1) for a in cells[:ARRAYS])
     return int(cells.used[0]) * each + 4 * int(cells.named[0])
 
 
@@ -94,7 +97,7 @@ def with_room(cells: Cells, more: int, names: int) -> Cells:
     need, size = int(cells.used[0]) + more, len(cells.words)
     if need > size:
         size = max(need, 2 * size)
-        cells = Cells._make([*(_longer(a, size) for a in cells[:8]), *cells[8:]])
+        cells = Cells._make([*(_longer(a, size) for a in cells[:ARRAYS]), *cells[ARRAYS:]])
     need = int(cells.named[0]) + names
     if need > len(cells.names):
         cells = cells._replace(names=_longer(cells.names, max(need, 2 * len(cells.names))))
@@ -103,7 +106,7 @@ def with_room(cells: Cells, more: int, names: int) -> Cells:
 
 @subkernel
 def _put_receiver(rows, i, largest, row):
-    """The row of triangle i of rows (n, 9); False where it is too thin to have one."""
+    """The row of triangle i of rows (n, ROW); False where it is too thin to have one."""
     a, e1, e2 = row_of(rows, i)
     n = cross(e1, e2)
     across = length(n)
@@ -125,7 +128,7 @@ def _put_receiver(rows, i, largest, row):
 
 @kernel
 def put_receivers(rows, first, last, largest, receivers):
-    """Rows (p, RECEIVER) of triangles first to last - 1 of rows (n, 9), in a scene of this largest coordinate.
+    """Rows (p, RECEIVER) of triangles first to last - 1 of rows (n, ROW), in a scene of this largest coordinate.
 
     What had a root before has none then."""
     for i in range(first, last):
@@ -143,9 +146,7 @@ def add_cell(cells, parent, owner, u, v, size):
     cells.child[number], cells.parent[number], cells.owner[number] = LEAF, parent, owner
     cells.place[number, 0], cells.place[number, 1], cells.place[number, 2] = u, v, size
     cells.wanted[number] = 0
-    for light in range(cells.start.shape[1]):
-        cells.start[number, light] = 0
-        cells.amount[number, light] = 0
+    cells.lists[number, :] = NOBODY
     return number
 
 
@@ -164,15 +165,25 @@ def set_state(cells, number, light, state):
 
 
 @subkernel
-def set_below(cells, number, light, state, stack):
-    """Put a certificate for a light into the words of all cells that a cell is divided into."""
+def set_below(cells, number, light, stack):
+    """Let all cells that a cell is divided into take over its certificate for a light: where it is CANDIDATES, those
+    that have none."""
+    state, named = state_of(cells.words[number], light), cells.lists[number, light]
     stack[0], pending = number, 1
     while pending > 0:
         pending -= 1
         child = np.int64(cells.child[stack[pending]])
         if child >= 0:
             for k in range(4):
-                set_state(cells, child + k, light, state)
-                cells.amount[child + k, light] = 0
+                if state != CANDIDATES or state_of(cells.words[child + k], light) == UNTRIED:
+                    set_state(cells, child + k, light, state)
+                    cells.lists[child + k, light] = named if state == CANDIDATES else NOBODY
                 stack[pending] = child + k
                 pending += 1
+
+
+def named_by(cells: Cells, number: int, light: int) -> NDArray[np.int32] | None:
+    """(k,) the primitives that a cell's certificate for a light names, None for too many; where it is FULL and names
+    nobody, it is taken over from the cell that this one is a part of."""
+    at = int(cells.lists[number, light])
+    return None if at == OVERFLOW else cells.names[at + 1 : at + 1 + (cells.names[at] & (SETTLED - 1))]

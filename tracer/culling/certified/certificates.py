@@ -5,6 +5,7 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,11 +17,15 @@ from tracer.culling.certified.cells import (
     ALONG_V,
     CORNER,
     HIGHEST,
+    NOBODY,
     NORMAL,
     ROOTS,
+    SETTLED,
+    TOO_MANY,
     Cells,
     bytes_of,
     make_cells,
+    named_by,
     put_receivers,
     with_room,
 )
@@ -38,7 +43,7 @@ from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
 STATES = ("none", "full", "lit", "candidates")
-BATCH, CHUNK = 2048, 16  # tasks between two looks at the budget; tasks that a thread takes at a time
+BATCH, CHUNK = 2048, 64  # tasks between two looks at the budget; tasks that a thread takes at a time
 
 
 @dataclass(frozen=True)
@@ -47,6 +52,17 @@ class Budget:
 
     certificates: float = np.inf
     seconds: float = np.inf
+
+
+class Effort(NamedTuple):
+    """What certifying is worth where rays cost what they do: how many must have wanted a triangle's first cell,
+    `roots`, and a part of one, `parts`; how many candidates are asked instead of tracing, at most; and whether rays
+    are so dear that every look-up pays."""
+
+    roots: int
+    parts: int
+    few: int
+    dear: bool
 
 
 class Certificates:
@@ -99,25 +115,25 @@ class Certificates:
         A light is certified once it has stood still for a frame.  From now on work is done by so many threads."""
         self._threads = threads
         self._scratch += [certify.scratch() for _ in range(len(self._scratch), threads)]
-        known = self._follow_rest(resting)
+        self._follow_rest(resting)
         lights = lights[: self._count]
         moved = ~(lights == self._lights).all(axis=1)
         for number in np.flatnonzero(moved):
             words = self.cells.words
             words &= ~words.dtype.type(3 << (2 + 2 * int(number)))
-            self.cells.amount[:, number] = 0
+            self.cells.lists[:, number] = NOBODY
         new = np.isnan(self._lights).any(axis=1)
         still = ~moved | new
-        settled = still & (~self.still | ~known)
+        settled = still & ~self.still
         self._lights[:] = lights
         self.still[:] = still
         self._still.know([int(number) for number in np.flatnonzero(settled)], self._lights)
 
-    def _follow_rest(self, resting: Resting) -> bool:
-        """Drop what depends on objects that have started or stopped; whether there are none."""
+    def _follow_rest(self, resting: Resting) -> None:
+        """Drop what depends on objects that have started or stopped."""
         started, stopped = changes(self._resting, resting)
         if not len(started.which) and not len(stopped.which):
-            return True
+            return
         outlines, before = self._world.outlines(), self._resting
         self._still.follow(started.which, stopped.which, outlines)
         if self._still.largest > self._largest:  # what is known of rays' ends no longer holds
@@ -132,15 +148,22 @@ class Certificates:
             self._receive(int(index), cells=False)
         for index in stopped.which:
             self._receive(int(index))
-        return False
 
     def _drop(self, before: Resting, started: Changed, stopped: Changed, outlines: Outlines) -> None:
         """Drop the certificates that name what has started, and those that what has stopped may come between."""
         gone = np.isin(self._world.object_of, started.which)
         near = all_marked(len(gone), self.cells.words.dtype.type)
         lights = np.nan_to_num(self._lights)
-        drop_dependent(near, outlines, lights, stopped.boxes, LIT, self._threads)
-        boxes = stopped.boxes.astype(np.float64)
+        known = [int(number) for number in np.flatnonzero(self.still)]
+        self._still.know(known, self._lights)
+        boxes = np.zeros((self._count, len(stopped.which), 6))  # by light, of which the others have no certificates
+        for number in known:
+            for k, index in enumerate(stopped.which):
+                boxes[number, k] = self._still.reported_within(int(index), number)
+        around = np.concatenate(
+            [boxes[known, :, :3].min(0, initial=np.inf), boxes[known, :, 3:].max(0, initial=-np.inf)], 1
+        )
+        drop_dependent(near, outlines, lights, around.astype(np.float32), LIT, self._threads)
         reach = (self.highest, self._largest)
         drop_certificates(self.cells, self.occluders, lights, reach, gone, boxes, near, self._scratch[0])
 
@@ -173,7 +196,7 @@ class Certificates:
         return Wanted(np.empty(shape, np.int32), np.empty(shape, np.float32), np.empty(shape, np.float32), of)
 
     def certify(
-        self, lists: list[Wanted], budget: Budget, patience: tuple[int, int], cancel: Callable[[], bool] | None
+        self, lists: list[Wanted], budget: Budget, effort: Effort, cancel: Callable[[], bool] | None
     ) -> NDArray:
         """Certify what rays wanted, within a budget; counters (COUNTERS,) int64 of what that took."""
         end = clock.perf_counter() + budget.seconds
@@ -186,7 +209,7 @@ class Certificates:
         key, u, v = (np.concatenate([wanted[k][tile, :n] for wanted, tile, n in kept]) for k in range(3))
         points = Points(np.empty_like(key), np.empty_like(u), np.empty_like(v), np.empty((2, len(key)), np.float32))
         self.cells = with_room(self.cells, min(len(key), 2 * len(self.cells.receivers)), 0)
-        todo = gather_roots(self.cells, key, u, v, patience[0], points)
+        todo = gather_roots(self.cells, key, u, v, effort.roots, points)
         pace = 1e-4 * self._count  # seconds a task takes, at first guessed too high
         while len(todo):
             todo = todo[np.argsort(todo[:, 1] - todo[:, 2], kind="stable")]
@@ -197,7 +220,7 @@ class Certificates:
                 batch = int(min(BATCH, left / self._count, 0.5 * (end - start) / pace))
                 if batch <= 0:
                     return counts.sum(0)
-                following.append(self._certify(todo[first : first + batch], points, patience[1], counts, cancel))
+                following.append(self._certify(todo[first : first + batch], points, effort, counts, cancel))
                 first += batch
                 pace = max(1e-6, (clock.perf_counter() - start) / batch)
             todo = np.concatenate(following)
@@ -207,7 +230,7 @@ class Certificates:
         self,
         todo: NDArray[np.int32],
         points: Points,
-        patience: int,
+        effort: Effort,
         counts: NDArray[np.int64],
         cancel: Callable[[], bool] | None,
     ) -> NDArray[np.int32]:
@@ -220,12 +243,12 @@ class Certificates:
             work_on(
                 self.cells, self.occluders, self._lights, self.still, reach,
                 chunk * CHUNK, min(len(todo), (chunk + 1) * CHUNK),
-                tasks, points, patience, self._scratch[worker], counts[worker],
+                tasks, points, effort.parts, effort.few, self._scratch[worker], counts[worker],
             )  # fmt: skip
 
         for_each_chunk(work, -(-len(todo) // CHUNK), self._threads, cancel)
-        named = tasks.amount[(tasks.state != KEPT) & (tasks.amount != certify.TOO_MANY)].sum(dtype=np.int64)
-        self.cells = with_room(self.cells, 4 * len(todo), int(named))
+        named = 1 + tasks.amount[(tasks.state != KEPT) & (tasks.amount != TOO_MANY)].astype(np.int64) % SETTLED
+        self.cells = with_room(self.cells, 4 * len(todo), int(named.sum()))
         following = np.empty((4 * len(todo), 3), np.int32)
         return following[: commit(self.cells, self.occluders, reach, tasks, following)]
 
@@ -238,12 +261,10 @@ class Certificates:
         "lit", "candidates" or "none", and the numbers of the primitives that it names."""
         number = self._cell_at(primitive, np.asarray(point, np.float64))
         state = (int(self.cells.words[number]) >> (2 + 2 * light)) & 3 if light < self._count else 0
-        while number and state and self.cells.amount[number, light] == 0 and state != certify.LIT:
+        while number and state == certify.FULL and self.cells.lists[number, light] == NOBODY:
             number = int(self.cells.parent[number])  # taken over from the cell that this one is a part of
-        amount = int(self.cells.amount[number, light]) if number else 0
-        start = int(self.cells.start[number, light]) if number else 0
-        names = self.cells.names[start : start + amount] if amount != certify.TOO_MANY else self.cells.names[:0]
-        return STATES[state], tuple(int(name) for name in names)
+        names = named_by(self.cells, number, light)
+        return STATES[state], tuple(int(name) for name in (() if names is None else names))
 
     def _cell_at(self, primitive: int, point: NDArray[np.float64]) -> int:
         """The leaf in which a point above a primitive lies; 0 for none."""

@@ -14,27 +14,29 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.beam import PLANES, Beam, make_beam, meets_box
-from tracer.culling.certified.margins import (
-    INSIDE,
-    before_plane,
-    depth_of,
-    is_past_the_lamp,
-    measure,
-    row_of,
-    surely_hit,
-    surely_missed,
-)
+from tracer.culling.certified.beam import Beam, make_beam
+from tracer.culling.certified.cells import CANDIDATES, FULL, LIT, SETTLED, TOO_MANY
+from tracer.culling.certified.meeting import FUNCTIONS, meet_beam, put_parts
 from tracer.culling.certified.occluders import BLOCK, BOXES, STACK, children_met, triangles_met
-from tracer.culling.modes import FULL_SHADOW, NON_SHADOW
 from tracer.geometry.bvh8.tree import WIDTH
 from tracer.kernels import inlined, subkernel
-from tracer.simd import address_of, i64_at, lane_of, local_memory, lowest_bit
+from tracer.simd import (
+    address_of,
+    i32_at,
+    i64_at,
+    lanes_below,
+    load_i32x16,
+    local_memory,
+    lowest_bit,
+    mask16,
+    ones,
+    pack,
+    store,
+)
 
-UNTRIED, FULL, LIT, CANDIDATES = 0, FULL_SHADOW, NON_SHADOW, 3
+LANES = 16
+WAITING = 4 * (LANES + WIDTH)  # bytes: one leaf more than are asked together
 MOST = 48  # candidates that a cell keeps for its parts
-TOO_MANY = 255  # instead of how many there are
-FUNCTIONS = 4
 FUSED = 12  # candidates that are fused at most
 PIECES, VERTICES = 24, 12  # of a cell of which parts are cut off
 SLIVER = 1e-15  # of the cell: pieces with less area are narrower by far than any margin
@@ -44,13 +46,15 @@ COUNTERS = 3
 
 
 class Scratch(NamedTuple):
-    """What a worker certifies in: a beam; found (MOST + 1,) int32; parts (FUSED, FUNCTIONS, 3) float64, the functions
-    of fused occluders at the cell's corners; pieces (PIECES, VERTICES, 3) float64, polygons in barycentric
-    coordinates, and vertices (PIECES,) int64, how many each has; spare (2, VERTICES, 3)."""
+    """What a worker certifies in: a beam; found (MOST + 16,) int32; parts (FUNCTIONS, 3, 16) float32, the functions
+    of fused occluders at the cell's corners, and lanes (16,) int64, which of them are; pieces (PIECES, VERTICES, 3)
+    float64, polygons in barycentric coordinates, and vertices (PIECES,) int64, how many each has; spare (2,
+    VERTICES, 3)."""
 
     beam: Beam
     found: NDArray[np.int32]
-    parts: NDArray[np.float64]
+    parts: NDArray[np.float32]
+    lanes: NDArray[np.int64]
     pieces: NDArray[np.float64]
     vertices: NDArray[np.int64]
     spare: NDArray[np.float64]
@@ -59,60 +63,40 @@ class Scratch(NamedTuple):
 def scratch() -> Scratch:
     return Scratch(
         make_beam(),
-        np.zeros(MOST + 1, np.int32),
-        np.zeros((FUSED, FUNCTIONS, 3)),
+        np.zeros(MOST + LANES, np.int32),
+        np.zeros((FUNCTIONS, 3, LANES), np.float32),
+        np.zeros(LANES, np.int64),
         np.zeros((PIECES, VERTICES, 3)),
         np.zeros(PIECES, np.int64),
         np.zeros((2, VERTICES, 3)),
     )
 
 
-@inlined
-def _measured(b, o, light, i):
-    return measure(b.directions, b.reach[0], light, o.rows, i, np.float64(o.blurs[i]))
-
-
-@inlined
-def _passes(b, o, i, q):
-    """Whether no ray of the beam hits the triangle that was measured."""
-    if surely_missed(q):
-        return True
-    depth = depth_of(q)
-    if not depth > 0.0:
-        return False
-    a, e1, e2 = row_of(o.rows, i)
-    parted = False
-    for k in range(PLANES):
-        parted |= before_plane(a, e1, e2, np.float64(o.blurs[i]), b.planes[k], q, depth, b.reach[0])
-    return parted
-
-
 @subkernel
-def _meet(s, o, light, i, count, counts):
-    """Take primitive i among the `count` found, if it may come between: how many there are then, or -1 where it hides
-    the whole cell and all others are forgotten."""
-    if i >= len(o.rows):
-        if not meets_box(s.beam, o.quadric_boxes[i - len(o.rows)]):
-            return count
-    else:
-        counts[TESTS] += 1
-        q = _measured(s.beam, o, light, i)
-        if surely_hit(q) and s.beam.reach[0] < o.farthest:
-            s.found[0] = i
-            return -1
-        if _passes(s.beam, o, i, q):
-            return count
-    if count <= MOST:
-        s.found[count] = i
-    return count + 1
+def _meet(s, o, light, numbers, n, count, counts):
+    """Take those of n <= 16 primitives, their numbers at an address, that may come between, to the `count` found.
+
+    How many there are then, or -1 where one hides the whole cell: all others are forgotten."""
+    counts[TESTS] += n
+    hit, missed = meet_beam(o.rows, numbers, o.farthest, light, s.beam)
+    there = lanes_below(n, 0)
+    hit &= there
+    if hit != 0:
+        s.found[0] = i32_at(numbers)[lowest_bit(hit)]
+        return -1
+    kept = there & ~missed
+    store(address_of(s.found) + 4 * min(count, MOST), pack(load_i32x16(numbers), mask16(kept)))
+    return count + ones(kept)
 
 
 @subkernel
 def _from_list(s, o, light, given, given_count, counts):
     """Take primitives from given (given_count,) int32."""
-    count = 0
-    for k in range(given_count):
-        count = _meet(s, o, light, given[k], count, counts)
+    count, numbers = np.int64(0), local_memory(64)
+    for first in range(0, given_count, LANES):
+        for k in range(LANES):
+            i32_at(numbers)[k] = given[min(first + k, given_count - 1)]
+        count = _meet(s, o, light, numbers, min(LANES, given_count - first), count, counts)
         if count < 0:
             return count
     return count
@@ -121,13 +105,11 @@ def _from_list(s, o, light, given, given_count, counts):
 @subkernel
 def _from_tree(s, o, number, light, counts):
     """Take primitives from the tree; more than MOST where they are too many."""
-    count, stack = 0, i64_at(local_memory(STACK))
-    for k in range(o.loose_count[number]):
-        count = _meet(s, o, light, o.loose[number, k], count, counts)
-        if count < 0:
-            return count
-    boxes, pending = address_of(o.boxes[number]), 0
-    blocks, reaches = address_of(o.blocks), address_of(o.reaches[number])
+    count, stack, waiting = np.int64(0), i64_at(local_memory(STACK)), local_memory(WAITING)
+    numbers, n = i32_at(waiting), 0
+    for k in range(LANES + WIDTH):
+        numbers[k] = 0
+    boxes, blocks, beside = address_of(o.boxes[number]), address_of(o.blocks), address_of(o.beside[number])
     for root in o.roots:
         stack[0], pending = np.int64(root), 1
         while pending > 0:
@@ -145,27 +127,30 @@ def _from_tree(s, o, number, light, counts):
                     continue
                 counts[STEPS] += 1
                 leaf = ~code
-                if o.numbers[leaf, 0] >= len(o.rows):
-                    triangles = np.int64(1)
+                if o.numbers[leaf, 0] >= o.first_quadric:
+                    those = np.int64(1)
                 else:
-                    triangles = triangles_met(blocks + 4 * BLOCK * leaf, reaches + 4 * WIDTH * leaf, s.beam)
-                while triangles != 0:
-                    i = np.int64(o.numbers[leaf, lowest_bit(triangles)])
-                    triangles &= triangles - 1
-                    count = _meet(s, o, light, i, count, counts)
-                    if count < 0:
+                    those = triangles_met(blocks + 4 * BLOCK * leaf, beside + 4 * WIDTH * leaf, s.beam)
+                while those != 0:
+                    numbers[n] = o.numbers[leaf, lowest_bit(those)]
+                    those &= those - 1
+                    n += 1
+                if n >= LANES:
+                    count = _meet(s, o, light, waiting, LANES, count, counts)
+                    if count < 0 or count > MOST:
                         return count
-                if count > MOST:
-                    return count
-    return count
+                    n -= LANES
+                    for k in range(n):
+                        numbers[k] = numbers[LANES + k]
+    return _meet(s, o, light, waiting, n, count, counts) if n > 0 else count
 
 
 @subkernel
-def certify(s, o, number, light, given, given_count, counts):
+def certify(s, o, number, light, given, given_count, few, counts):
     """(certificate, how many primitives it names) of the cell and light that s.beam was put to; s.found names them.
 
     Candidates are those of `given` (given_count,), where there are no more than MOST, or come from the tree.
-    More than MOST make CANDIDATES of TOO_MANY, which are not named."""
+    More than MOST make CANDIDATES of TOO_MANY, which are not named; `few` that rays can ask are SETTLED besides."""
     counts[CERTIFICATES] += 1
     if given_count <= MOST:
         count = _from_list(s, o, light, given, given_count, counts)
@@ -180,38 +165,33 @@ def certify(s, o, number, light, given, given_count, counts):
     fused = _fused(s, o, light, count)
     if fused > 0:
         return FULL, fused
-    return CANDIDATES, count
+    return CANDIDATES, count + (SETTLED if count <= few else 0)
 
 
 # --- fused occluders --------------------------------------------------------------------------------
 
 
-@subkernel
-def _put_part(s, o, light, i, part):
-    """The functions of triangle i less their margins, at the cell's three corners, whatever the height above; False
-    where it hides nothing, or cannot be told to."""
-    if i >= len(o.rows):
-        return False
-    q = _measured(s.beam, o, light, i)
-    if not is_past_the_lamp(q):
-        return False
-    return (
-        _put_function(s.parts[part, 0], q.u, INSIDE * q.of_u)
-        and _put_function(s.parts[part, 1], q.v, INSIDE * q.of_v)
-        and _put_function(s.parts[part, 2], q.w, INSIDE * q.of_w)
-        and _put_function(s.parts[part, 3], q.beyond, q.of_beyond)
-    )
+@inlined
+def _hides_some(parts, lane):
+    """Whether each function of the lane's triangle is positive somewhere."""
+    some = True
+    for j in range(FUNCTIONS):
+        some &= parts[j, 0, lane] > 0.0 or parts[j, 1, lane] > 0.0 or parts[j, 2, lane] > 0.0
+    return some
 
 
 @inlined
-def _put_function(row, function, margin):
-    """A function less its margin at the three corners, whichever is less of below and above; whether it is positive
-    somewhere."""
-    some = False
-    for k in range(3):
-        row[k] = min(lane_of(function, k), lane_of(function, 3 + k)) - margin
-        some |= row[k] > 0.0
-    return some
+def _hide_corners(s, count):
+    """Whether each corner of the cell is hidden by some of the triangles of s.lanes: few others are worth cutting."""
+    corners = 0
+    for part in range(count):
+        lane = s.lanes[part]
+        for k in range(3):
+            inside = True
+            for j in range(FUNCTIONS):
+                inside &= s.parts[j, k, lane] >= 0.0
+            corners |= inside << k
+    return corners == 7
 
 
 @inlined
@@ -253,8 +233,8 @@ def _area(polygon, count):
 
 
 @subkernel
-def _cut_off(s, part, pieces):
-    """Cut a part off all pieces; how many are left, or -1 where they are too many."""
+def _cut_off(s, lane, pieces):
+    """Cut off all pieces what the lane's triangle hides; how many are left, or -1 where they are too many."""
     left = pieces
     for p in range(pieces - 1, -1, -1):
         inside, spare = s.spare[0], s.spare[1]
@@ -269,7 +249,7 @@ def _cut_off(s, part, pieces):
         for j in range(FUNCTIONS):
             if left >= PIECES:
                 return -1
-            f = s.parts[part, j]
+            f = s.parts[j, 0, lane], s.parts[j, 1, lane], s.parts[j, 2, lane]
             outside = _cut(inside, count, f, -1.0, s.pieces[left])
             if outside < 0:
                 return -1
@@ -289,13 +269,13 @@ def _fused(s, o, light, count):
     """How many of the primitives found hide the whole cell together, those first; 0 where they do not."""
     if count > FUSED or count < 2 or s.beam.reach[0] >= o.farthest:
         return 0
+    told = put_parts(o.rows, address_of(s.found), light, s.beam, address_of(s.parts)) & lanes_below(count, 0)
     parts = 0
     for k in range(count):
-        i = s.found[k]
-        if _put_part(s, o, light, i, parts):
-            s.found[k], s.found[parts] = s.found[parts], i
+        if (told >> k) & 1 and _hides_some(s.parts, k):
+            s.lanes[parts] = k
             parts += 1
-    if parts < 2:
+    if parts < 2 or not _hide_corners(s, parts):
         return 0
     s.pieces[0, :3] = 0.0
     for k in range(3):
@@ -303,9 +283,11 @@ def _fused(s, o, light, count):
     s.vertices[0] = 3
     pieces = 1
     for part in range(parts):
-        pieces = _cut_off(s, part, pieces)
+        pieces = _cut_off(s, s.lanes[part], pieces)
         if pieces < 0:
             return 0
         if pieces == 0:
+            for k in range(part + 1):  # lanes ascend, so none is overwritten before it is read
+                s.found[k] = s.found[s.lanes[k]]
             return part + 1
     return 0

@@ -6,8 +6,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.certified.beam import meets_box, put_cell, put_light
-from tracer.culling.certified.cells import ROOTS, set_state, state_of
-from tracer.culling.certified.certify import CANDIDATES, FULL, LIT, TOO_MANY, UNTRIED
+from tracer.culling.certified.cells import (
+    CANDIDATES,
+    FULL,
+    LIT,
+    NOBODY,
+    OVERFLOW,
+    ROOTS,
+    SETTLED,
+    UNTRIED,
+    set_state,
+    state_of,
+)
 from tracer.culling.modes import FULLY_RENDERED
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
@@ -16,10 +26,8 @@ from tracer.kernels import inlined, kernel, subkernel
 @inlined
 def _names_one(cells, cell, light, gone):
     """Whether a certificate names a primitive that is gone."""
-    amount = np.int64(cells.amount[cell, light])
-    start = np.int64(cells.start[cell, light])
-    found = False
-    for k in range(start, start + (amount if amount != TOO_MANY else 0)):
+    at, found = np.int64(cells.lists[cell, light]), False
+    for k in range(at + 1, at + 1 + (cells.names[at] & (SETTLED - 1) if at != OVERFLOW else 0)):
         found |= gone[cells.names[k]]
     return found
 
@@ -30,14 +38,14 @@ def _meets_any(s, boxes, light):
         return True
     met = False
     for k in range(len(boxes)):
-        met |= meets_box(s.beam, boxes[k])
+        met |= meets_box(s.beam, boxes[k], 0.0)
     return met
 
 
 @kernel
 def drop_certificates(cells, o, lights, reach, gone, boxes, near, s):
     """Drop the certificates that name primitives which are `gone` (p,) bool, and those that nothing comes between but
-    for what is in boxes (k, 6) from now on.
+    for what is in boxes (lights, k, 6) from now on.
 
     lights (n, 3); reach is how high above rays may end, and the scene's largest coordinate; near (primitives,) are
     words like modes, without the bits of those lights from which something in a box may come before a primitive.  A
@@ -50,11 +58,11 @@ def drop_certificates(cells, o, lights, reach, gone, boxes, near, s):
         placed, tried = False, False
         for light in range(len(lights)):
             state = state_of(word, light)
-            if state == UNTRIED or (state == CANDIDATES and cells.amount[cell, light] == TOO_MANY):
+            if state == UNTRIED or (state == CANDIDATES and cells.lists[cell, light] == OVERFLOW):
                 continue
             bit = np.uint64(1) << np.uint64(light)
             drop = _names_one(cells, cell, light, gone)
-            if state == FULL and cells.amount[cell, light] == 0:
+            if state == FULL and cells.lists[cell, light] == NOBODY:
                 drop = dropped[parent] & bit != 0
             if not drop and state != FULL and state_of(near[owner >> 1], light) == UNTRIED:
                 if not tried:
@@ -62,10 +70,10 @@ def drop_certificates(cells, o, lights, reach, gone, boxes, near, s):
                     side, at = 1.0 - 2.0 * (owner & 1), (np.float64(u), np.float64(v), np.float64(size))
                     placed = put_cell(s.beam, o.rows, owner >> 1, side, at[0], at[1], at[2], highest, largest)
                     tried = True
-                drop = not placed or _meets_any(s, boxes, lights[light])
+                drop = not placed or _meets_any(s, boxes[light], lights[light])
             if drop:
                 set_state(cells, cell, light, UNTRIED)
-                cells.amount[cell, light] = 0
+                cells.lists[cell, light] = NOBODY
                 dropped[cell] |= bit
 
 
@@ -87,14 +95,14 @@ def copy_kept(cells, kept, target):
         target.wanted[to] = cells.wanted[cell]
         for k in range(3):
             target.place[to, k] = cells.place[cell, k]
-        for light in range(cells.start.shape[1]):
-            amount, start = cells.amount[cell, light], np.int64(cells.start[cell, light])
-            target.amount[to, light] = amount
-            if amount != TOO_MANY and amount > 0:
-                at = target.named[0]
-                target.start[to, light] = at
-                target.names[at : at + amount] = cells.names[start : start + amount]
-                target.named[0] = at + amount
+        for light in range(cells.lists.shape[1]):
+            start = np.int64(cells.lists[cell, light])
+            target.lists[to, light] = start
+            if start != OVERFLOW and start != NOBODY:
+                at, length = target.named[0], 1 + (cells.names[start] & (SETTLED - 1))
+                target.lists[to, light] = at
+                target.names[at : at + length] = cells.names[start : start + length]
+                target.named[0] = at + length
     for cell in range(1, target.used[0]):
         if target.child[cell] >= 0:
             target.child[cell] = place[target.child[cell]]

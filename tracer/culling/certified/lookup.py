@@ -12,7 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.certified.beam import LOWEST, OFFSET
-from tracer.culling.certified.cells import ALONG_U, ALONG_V, BEYOND_U, BEYOND_V, CORNER, LEAF, NORMAL, RECEIVER, ROOTS
+from tracer.culling.certified.cells import (
+    ALONG_U,
+    ALONG_V,
+    BEYOND_U,
+    BEYOND_V,
+    CANDIDATES,
+    CORNER,
+    LEAF,
+    NORMAL,
+    RECEIVER,
+    ROOTS,
+    UNTRIED,
+    Cells,
+)
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
@@ -51,6 +64,22 @@ class Wanted(NamedTuple):
     u: NDArray[np.float32]
     v: NDArray[np.float32]
     of: NDArray[np.int64]
+
+
+class Certified(NamedTuple):
+    """What a tile is told of certified cells, and asks: the cells; rows (n, ROW) float32 of the triangles (`margins`);
+    still (lights,) bool, which lights are certified; how long a ray may be to be sure of a hit, and how high above a
+    cell it may end; how many candidates are asked at most; whether rays cost so much that every look-up pays; and
+    what the tile wants."""
+
+    cells: Cells
+    rows: NDArray[np.float32]
+    still: NDArray[np.bool_]
+    farthest: float
+    highest: float
+    few: int
+    dear: bool
+    wanted: Wanted
 
 
 @inlined
@@ -173,7 +202,7 @@ def _wanting(cells, lights, still, cell, facing):
         faces = bits_of(load_f32x16(facing + 64 * number) > ZERO)
         field, shift = (low if 2 + 2 * number < 32 else high), (2 + 2 * number) % 32
         field = (field >> np.int32(shift)) & np.int32(3)
-        bits |= faces & (bits_of(field == np.int32(0)) | (bits_of(field == np.int32(3)) & leaf))
+        bits |= faces & (bits_of(field == np.int32(UNTRIED)) | (bits_of(field == np.int32(CANDIDATES)) & leaf))
     return bits
 
 

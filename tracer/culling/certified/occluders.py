@@ -1,8 +1,8 @@
 """Which static primitives may come between a light and a cell: an 8-wide tree whose boxes know a light.
 
 Its shape is made once.  For each light every triangle's box is enlarged by how far from it a ray could
-still report a hit (`margins`), and the boxes above follow.  A triangle in whose plane the light lies, as far
-as float32 can tell, is in no box, but in a list that is always looked through.
+still report a hit (`margins`), and the boxes above follow.  Of a triangle in whose plane the light
+lies, as far as float32 can tell, that is all of the box in which the structure reports hits.
 """
 
 from __future__ import annotations
@@ -13,56 +13,65 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.certified.beam import PLANES
-from tracer.culling.certified.margins import cross, dot, firm_height, length, margins, row_of
+from tracer.culling.certified.margins import BOX, REPORTED, TWO, ZERO, margins, rows_at, seen_from
 from tracer.geometry.bvh8.build import build_shape
 from tracer.geometry.bvh8.collapse import VACANT, Shape
 from tracer.geometry.bvh8.tree import WIDTH
+from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.simd import (
+    address_of,
     bits_of,
     f32x8,
+    f32x16,
+    i32x16,
+    lane_numbers_x16,
     load_f32x8,
+    local_memory,
     maximum,
     minimum,
+    select,
+    store,
 )
 
 BOXES = 6 * WIDTH  # float32 of a node: lower x of its eight children, then lower y and so on
 BLOCK = 9 * WIDTH
 NONE = -1
+LANES = 16
 STACK = 64 * 8 * 8
 FAR = np.float32(3e37)
+DIAGONAL = np.float32(1.7321)  # of a cube, of its side
 ROUNDED = 1e-6  # of the largest coordinate, by which boxes are larger for planes in float32
 
 
 class Occluders(NamedTuple):
     """All that is static, for any number of trees back to back.
 
-    rows (triangles, 9) float32, corner and edges in the world, by number; blurs (triangles,) float32, how far
-    their corners may be elsewhere; quadric_boxes (quadrics, 6) float32; children (nodes, 8) int32 as in a `Shape`;
-    blocks (leaves, BLOCK) float32, corners and edges of a leaf's triangles as structure of arrays, and numbers
-    (leaves, 8) int32, NONE for none, or that of a quadric; roots (trees,) int32; boxes (lights, nodes, BOXES) float32;
-    reaches (lights, leaves, 8) float32, how far from each triangle a ray from the light can report a hit, negative
-    where there is none in the box; loose (lights, n) int32, numbers of those in no box, and loose_count (lights,).
-    Longer rays than `farthest` are never sure of a hit.
+    rows (primitives, ROW) float32, in the world, by number (`margins`), those from first_quadric on of quadrics;
+    children (nodes, 8) int32 as in a `Shape`; blocks (leaves, BLOCK) float32, corners and edges of a leaf's
+    triangles as structure of arrays, and numbers (leaves, 8) int32, NONE for none, or that of a quadric; roots
+    (trees,) int32; boxes (lights, nodes, BOXES) float32; reaches (lights, n) float32, how far from each
+    triangle a ray from the light can report a hit, and beside (lights, leaves, 8), those of a leaf side by side,
+    negative for none.  Longer rays than `farthest` are never sure of a hit.
     """
 
     rows: NDArray[np.float32]
-    blurs: NDArray[np.float32]
-    quadric_boxes: NDArray[np.float32]
+    first_quadric: int
     children: NDArray[np.int32]
     blocks: NDArray[np.float32]
     numbers: NDArray[np.int32]
     roots: NDArray[np.int32]
     boxes: NDArray[np.float32]
     reaches: NDArray[np.float32]
-    loose: NDArray[np.int32]
-    loose_count: NDArray[np.int32]
+    beside: NDArray[np.float32]
     farthest: float
 
 
-def shape_of(rows: NDArray[np.float32], boxes: NDArray[np.float32], numbers: NDArray[np.int32], threads: int) -> Shape:
+def shape_of(
+    triangles: NDArray[np.float32], boxes: NDArray[np.float32], numbers: NDArray[np.int32], threads: int
+) -> Shape:
     """The shape of a tree over triangles (t, 9) and boxes (q, 6), whose primitives have these numbers (t + q,)."""
-    shape = build_shape(np.ascontiguousarray(rows), np.ascontiguousarray(boxes), np.zeros(2, np.int64), threads)
+    shape = build_shape(np.ascontiguousarray(triangles), np.ascontiguousarray(boxes), np.zeros(2, np.int64), threads)
     return Shape(shape.children, shape.leaves, numbers[shape.order])
 
 
@@ -82,22 +91,29 @@ def joined(shapes: list[Shape]) -> tuple[Shape, NDArray[np.int32]]:
 
 
 @subkernel
-def _reach_of(rows, i, blur, light, farthest):
-    """How far from triangle i a ray from the light can report a hit; inf where that is anywhere."""
-    a, e1, e2 = row_of(rows, i)
-    s = light[0] - a[0], light[1] - a[1], light[2] - a[2]
-    across = cross(e1, e2)
-    height = abs(dot(s, across))
-    if not height > firm_height(s, e1, e2, blur):
-        return np.inf
-    # In the margins |D| counts by the same part of itself, whatever it is: that is added at the end.
-    m = margins(s, e1, e2, length(across), blur, 2.0 * farthest, farthest, height, height)
-    depth = height - m[3]
-    if not depth > 0.0:
-        return np.inf
-    uncertain = max(m[0], max(m[1], m[2])) / depth + 1e-5
-    longest = max(length(e1), max(length(e2), length((e1[0] - e2[0], e1[1] - e2[1], e1[2] - e2[2]))))
-    return 2.0 * uncertain * longest + (m[3] / depth + 1e-6) * farthest
+def _find_reaches(o, number, light, farthest, rounded):
+    """How far from each triangle a ray from the light can report a hit, into o.reaches[number]."""
+    reaches, numbers = address_of(o.reaches[number]), local_memory(64)
+    light = np.float32(light[0]), np.float32(light[1]), np.float32(light[2])
+    farthest, rounded = np.float32(farthest), np.float32(rounded)
+    for first in range(0, len(o.rows), LANES):
+        which = minimum(lane_numbers_x16() + np.int32(first), i32x16(np.int32(len(o.rows) - 1)))
+        store(numbers, which)
+        row = rows_at(o.rows, numbers)
+        t = seen_from(light, row)
+        # In the margins |D| counts by the same part of itself, whatever it is: that is added at the end.
+        m = margins(t, TWO * farthest, farthest, t.height, ZERO)
+        depth = t.height - m.behind
+        part = maximum(m.u, maximum(m.v, m.w)) / depth + np.float32(1e-5)
+        reach = part * (t.first + t.second) + (m.behind / depth + np.float32(1e-6)) * farthest + t.blur
+        reach = select(t.firm & (depth > ZERO), reach, FAR)
+        room = f32x16(ZERO)
+        for axis in range(3):
+            corner, e1, e2 = row[axis], row[3 + axis], row[6 + axis]
+            room = maximum(room, corner + minimum(ZERO, minimum(e1, e2)) - row[BOX + axis])
+            room = maximum(room, row[BOX + 3 + axis] - corner - maximum(ZERO, maximum(e1, e2)))
+        room = DIAGONAL * (room + np.float32(REPORTED) * t.away)
+        store(reaches + 4 * first, minimum(minimum(reach, room) + rounded, FAR))
 
 
 @inlined
@@ -139,35 +155,30 @@ def _triangle_box(rows, i, more):
 
 
 @subkernel
-def _leaf_box(o, leaf, number, light, farthest, rounded, loose):
-    """The box of a leaf's primitives for a light; what has none goes to the list of loose ones, of which there are so
-    many, which are returned too."""
+def _leaf_box(o, leaf, number):
+    """The box of a leaf's primitives for a light; their reaches are put side by side."""
     low, high = _empty()
-    triangles, reaches = len(o.rows), o.reaches[number, leaf]
+    beside = o.beside[number, leaf]
     for k in range(WIDTH):
         i = o.numbers[leaf, k]
-        reaches[k] = -FAR
-        if i >= triangles:
-            b = o.quadric_boxes[i - triangles]
-            low, high = _around(low, high, (b[0], b[1], b[2]), (b[3], b[4], b[5]))
+        beside[k] = -FAR
+        if i >= o.first_quadric:
+            b = o.rows[i]
+            low, high = _around(low, high, (b[BOX], b[BOX + 1], b[BOX + 2]), (b[BOX + 3], b[BOX + 4], b[BOX + 5]))
         elif i != NONE:
-            reach = _reach_of(o.rows, i, np.float64(o.blurs[i]), light, farthest) + rounded + o.blurs[i]
-            if reach < 0.5 * farthest:
-                reaches[k] = reach
-                low2, high2 = _triangle_box(o.rows, i, reach)
-                low, high = _around(low, high, low2, high2)
-            else:
-                o.loose[number, loose] = i
-                loose += 1
-    return low, high, loose
+            beside[k] = o.reaches[number, i]
+            low2, high2 = _triangle_box(o.rows, i, beside[k])
+            low, high = _around(low, high, low2, high2)
+    return low, high
 
 
 @kernel
 def know_light(o, number, light, farthest, largest):
     """Enlarge the boxes for light `number`, now at light (3,): no ray from it is longer than `farthest`, and no
     coordinate larger than `largest`."""
-    light = (np.float64(light[0]), np.float64(light[1]), np.float64(light[2]))
-    loose, boxes, rounded = 0, o.boxes[number], ROUNDED * largest
+    o = borrowed(o)
+    boxes = o.boxes[number]
+    _find_reaches(o, number, light, farthest, ROUNDED * largest)
     for node in range(len(o.children) - 1, -1, -1):  # children come after their parents
         for child in range(WIDTH):
             code = o.children[node, child]
@@ -181,9 +192,8 @@ def know_light(o, number, light, farthest, largest):
                         (boxes[code, 3 * WIDTH + k], boxes[code, 4 * WIDTH + k], boxes[code, 5 * WIDTH + k]),
                     )
             elif code != VACANT:
-                low, high, loose = _leaf_box(o, ~code, number, light, farthest, rounded, loose)
+                low, high = _leaf_box(o, ~code, number)
             _put_box(boxes[node], child, low, high)
-    o.loose_count[number] = loose
 
 
 @inlined
@@ -205,12 +215,13 @@ def children_met(box, beam):
 
 
 @inlined
-def triangles_met(block, reaches, beam):
-    """Bits of the eight triangles of a block, at an address, that may meet a beam, made larger by their reaches."""
+def triangles_met(block, beside, beam):
+    """Bits of the eight triangles of a block, at an address, that may meet a beam, made larger by their reaches,
+    which are `beside` each other."""
     x, y, z = load_f32x8(block), load_f32x8(block + 32), load_f32x8(block + 64)
     ax, ay, az = load_f32x8(block + 96), load_f32x8(block + 128), load_f32x8(block + 160)
     bx, by, bz = load_f32x8(block + 192), load_f32x8(block + 224), load_f32x8(block + 256)
-    reach, zero, b = load_f32x8(reaches), f32x8(np.float32(0)), beam.box
+    reach, zero, b = load_f32x8(beside), f32x8(np.float32(0)), beam.box
     met = reach > zero
     for k in range(3):
         c, e1, e2 = (x, ax, bx) if k == 0 else ((y, ay, by) if k == 1 else (z, az, bz))
@@ -224,15 +235,16 @@ def triangles_met(block, reaches, beam):
     return bits_of(met)
 
 
-def blocks_of(shape: Shape, rows: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-    """blocks (leaves, BLOCK) and numbers (leaves, WIDTH) of a shape whose items are numbers of rows (t, 9), or of
-    quadrics after them."""
+def blocks_of(
+    shape: Shape, rows: NDArray[np.float32], first_quadric: int
+) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+    """blocks (leaves, BLOCK) and numbers (leaves, WIDTH) of a shape whose items are numbers of rows (n, ROW)."""
     first, count = shape.leaves.T
-    count = np.where(shape.order[first] < len(rows), count, 1)
+    count = np.where(shape.order[first] < first_quadric, count, 1)
     slots = first[:, None] + np.arange(WIDTH)
     there = np.arange(WIDTH) < count[:, None]
     numbers = np.where(there, shape.order[np.minimum(slots, len(shape.order) - 1)], NONE).astype(np.int32)
-    triangles = there & (numbers < len(rows))
+    triangles = there & (numbers < first_quadric)
     blocks = np.zeros((len(first), 9, WIDTH), np.float32)
-    blocks.transpose(0, 2, 1)[triangles] = rows[numbers[triangles]]
+    blocks.transpose(0, 2, 1)[triangles] = rows[numbers[triangles], :9]
     return blocks.reshape(-1, BLOCK), numbers

@@ -5,55 +5,69 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.margins import EPSILON, LONGEST
-from tracer.culling.certified.occluders import BOXES, Occluders, blocks_of, joined, know_light, shape_of
+from tracer.culling.certified.margins import BLUR, BOX, LONGEST, ROW
+from tracer.culling.certified.occluders import BOXES, LANES, ROUNDED, Occluders, blocks_of, joined, know_light, shape_of
 from tracer.geometry.bvh8.collapse import Shape
 from tracer.geometry.bvh8.tree import PADDING, WIDTH
+from tracer.geometry.kdtree.place import triangle_boxes
+from tracer.geometry.memory import aligned_rows
 from tracer.geometry.primitives import Outlines
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
-CARRIED = 8 * EPSILON  # of the coordinates: what is carried to the world, or rays to it, may be elsewhere by that
-
 
 class Still:
-    """rows (t, 9) float32 and blurs (t,) of triangles as in `Occluders`, of which those of objects that rest are where
-    they rest; bounds (2, 3) float64 around all that is static; largest, its largest coordinate."""
+    """rows (t, ROW) float32 of triangles as in `Occluders`, of which those of objects that rest are where they rest;
+    bounds (2, 3) float64 around all that is static; largest, its largest coordinate."""
 
     def __init__(self, world: World, lights: int, threads: int) -> None:
-        self._primitives, self._lights, self._threads = world.primitives, lights, threads
-        primitives = world.primitives
-        self.rows = primitives.triangles.copy()
-        self.blurs = np.zeros(len(self.rows), np.float32)
-        quadrics = primitives.quadrics_of(0)
-        self._boxes = np.zeros((len(primitives.quadrics), 6), np.float32)
-        self._boxes[quadrics] = primitives.quadric_boxes(quadrics, primitives.to_object[quadrics])
-        self._shapes: dict[int, Shape] = {0: self._shape(0)}
-        self._bounds_of = {0: self._bounds(0)}
+        self._world, self._lights, self._threads = world, lights, threads
+        self._primitives = world.primitives
+        self.first_quadric = len(world.primitives.triangles)
+        self.rows = aligned_rows(self.first_quadric + len(world.primitives.quadrics), ROW)
+        self.rows[:] = 0
+        self._shapes: dict[int, Shape] = {}
+        self._bounds_of: dict[int, NDArray[np.float64]] = {}
+        self._add(0, world.outlines())
         self._join()
 
-    def _rest(self, index: int, outlines: Outlines) -> None:
+    def _add(self, index: int, outlines: Outlines) -> None:
         """An object is static from now on, where it is."""
-        triangles, quadrics = self._primitives.triangles_of(index), self._primitives.quadrics_of(index)
-        to_world = outlines.to_world[index].reshape(3, 4)
-        local = outlines.triangles[triangles].astype(np.float64).reshape(-1, 3, 3)
-        world = local @ to_world[:, :3].T
-        world[:, 0] += to_world[:, 3]
-        self.rows[triangles] = world.reshape(-1, 9)
-        scale = np.linalg.norm(to_world[:, :3], 2)
-        reach = (
-            np.abs(local).max(initial=0.0) * 2 * scale + np.abs(to_world[:, 3]).max() + np.abs(world).max(initial=0.0)
-        )
-        self.blurs[triangles] = CARRIED * reach
-        self._boxes[quadrics] = outlines.boxes[quadrics]
-        self._shapes[index], self._bounds_of[index] = self._shape(index), self._bounds(index)
+        triangles, quadrics = self._rows_of(index)
+        placed = self._world.triangles_of(index)
+        self.rows[triangles, :BLUR], self.rows[triangles, BLUR], self.rows[triangles, BOX:] = placed
+        self.rows[quadrics, BOX:] = outlines.boxes[self._primitives.quadrics_of(index)]
+        for rows in (self.rows[triangles, BOX:], self.rows[quadrics, BOX:]):
+            rows += ROUNDED * np.abs(rows).max(1, initial=0.0, keepdims=True) * np.array([-1] * 3 + [1] * 3, np.float32)
+        boxes, numbers = self.rows[quadrics, BOX:], np.r_[triangles, quadrics].astype(np.int32)
+        self._shapes[index] = shape_of(self.rows[triangles, :BLUR], boxes, numbers, self._threads)
+        self._bounds_of[index] = self._bounds(index)
+
+    def _rows_of(self, index: int) -> tuple[slice, slice]:
+        """The rows of an object's triangles, and of its quadrics."""
+        quadrics, first = self._primitives.quadrics_of(index), self.first_quadric
+        return self._primitives.triangles_of(index), slice(first + quadrics.start, first + quadrics.stop)
+
+    def reported_within(self, index: int, light: int) -> NDArray[np.float64]:
+        """A box (6,) outside of which no ray from a light that is known reports a hit on an object that is static;
+        inverted for an object of nothing."""
+        triangles, quadrics = self._rows_of(index)
+        boxes = triangle_boxes(self.rows[triangles, :BLUR]).astype(np.float64)
+        boxes += self.occluders.reaches[light, triangles, None] * np.array([-1.0] * 3 + [1.0] * 3)
+        boxes = np.concatenate([boxes, self.rows[quadrics, BOX:]])
+        return np.concatenate([boxes[:, :3].min(0, initial=np.inf), boxes[:, 3:].max(0, initial=-np.inf)])
+
+    @staticmethod
+    def _farthest(light: NDArray[np.float32], bounds: NDArray[np.float64]) -> float:
+        """No less than the distance of a light from any point of bounds (2, 3)."""
+        return float(np.linalg.norm(np.abs(light - bounds).max(0))) * 1.001
 
     def follow(self, started: NDArray[np.int64], stopped: NDArray[np.int64], outlines: Outlines) -> None:
         """Of these objects (k,) some move now, others rest."""
         for index in started:
             del self._shapes[int(index)], self._bounds_of[int(index)]
         for index in stopped:
-            self._rest(int(index), outlines)
+            self._add(int(index), outlines)
         self._join()
 
     def know(self, numbers: list[int], lights: NDArray[np.float32]) -> None:
@@ -61,21 +75,15 @@ class Still:
 
         def know(chunk: int, worker: int) -> None:
             light = lights[numbers[chunk]]
-            farthest = float(np.linalg.norm(np.abs(light - self.bounds).max(0))) * 1.001
-            know_light(self.occluders, numbers[chunk], light, farthest, self.largest)
+            know_light(self.occluders, numbers[chunk], light, self._farthest(light, self.bounds), self.largest)
 
         for_each_chunk(know, len(numbers), self._threads)
 
-    def _shape(self, index: int) -> Shape:
-        triangles, quadrics = self._primitives.triangles_of(index), self._primitives.quadrics_of(index)
-        numbers = np.r_[triangles, len(self.rows) + np.r_[quadrics]].astype(np.int32)
-        return shape_of(self.rows[triangles], self._boxes[quadrics], numbers, self._threads)
-
     def _bounds(self, index: int) -> NDArray[np.float64]:
         """Lower and upper corner (2, 3) of a box around an object."""
-        rows = self.rows[self._primitives.triangles_of(index)]
-        corner, e1, e2 = (rows[:, k : k + 3].astype(np.float64) for k in (0, 3, 6))
-        boxes = self._boxes[self._primitives.quadrics_of(index)].astype(np.float64)
+        triangles, quadrics = self._rows_of(index)
+        corner, e1, e2 = (self.rows[triangles, k : k + 3].astype(np.float64) for k in (0, 3, 6))
+        boxes = self.rows[quadrics, BOX:].astype(np.float64)
         every = np.concatenate([corner, corner + e1, corner + e2, boxes[:, :3], boxes[:, 3:]])
         return np.stack([every.min(0), every.max(0)]) if len(every) else np.zeros((2, 3))
 
@@ -90,14 +98,12 @@ class Still:
         count = self._lights
         self.occluders = Occluders(
             self.rows,
-            self.blurs,
-            self._boxes,
+            self.first_quadric,
             shape.children,
-            *blocks_of(shape, self.rows),
+            *blocks_of(shape, self.rows, self.first_quadric),
             roots,
             np.empty((count, len(shape.children), BOXES), np.float32),
+            np.empty((count, -(-len(self.rows) // LANES) * LANES), np.float32),
             np.empty((count, len(shape.leaves), WIDTH), np.float32),
-            np.zeros((count, len(self.rows)), np.int32),
-            np.zeros(count, np.int32),
             padding / LONGEST,
         )

@@ -14,8 +14,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.certified.beam import put_cell, put_light
-from tracer.culling.certified.cells import FINAL, LEAF, ROOTS, add_cell, set_below, set_state, state_of
-from tracer.culling.certified.certify import CANDIDATES, COUNTERS, MOST, TOO_MANY, UNTRIED, certify
+from tracer.culling.certified.cells import (
+    CANDIDATES,
+    CONTENT,
+    FINAL,
+    LEAF,
+    NOBODY,
+    OVERFLOW,
+    ROOTS,
+    SETTLED,
+    TOO_MANY,
+    UNTRIED,
+    add_cell,
+    set_below,
+    set_state,
+    state_of,
+)
+from tracer.culling.certified.certify import COUNTERS, MOST, certify
 from tracer.culling.certified.margins import cross, dot, row_of
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
@@ -36,7 +51,8 @@ class Points(NamedTuple):
 
 class Tasks(NamedTuple):
     """n tasks: cell (n,) int32, and first and last (n,) int32 of its points; results: state (n, lights) uint8, KEPT for
-    no news, amount (n, lights) uint8 and names (n, lights, MOST) int32 of what each names; and parts (n, 5) int32,
+    no news, amount (n, lights) uint8 and names (n, lights, MOST) int32 of what each names; doubt (n,) bool, whether
+    there is more to be known of some light; and parts (n, 5) int32,
     where the points of each part begin and the last end, or all 0 where the cell need not be looked into.
     """
 
@@ -45,6 +61,7 @@ class Tasks(NamedTuple):
     last: NDArray[np.int32]
     state: NDArray[np.uint8]
     amount: NDArray[np.uint8]
+    doubt: NDArray[np.bool_]
     names: NDArray[np.int32]
     parts: NDArray[np.int32]
 
@@ -57,6 +74,7 @@ def make_tasks(cell: NDArray[np.int32], first: NDArray[np.int32], last: NDArray[
         last,
         np.empty((n, lights), np.uint8),
         np.empty((n, lights), np.uint8),
+        np.empty(n, np.bool_),
         np.empty((n, lights, MOST), np.int32),
         np.zeros((n, 5), np.int32),
     )
@@ -158,7 +176,7 @@ def _faces(o, triangle, side, light):
 
 
 @subkernel
-def _work_on(cells, o, lights, still, reach, task, tasks, points, patience, s, counts):
+def _work_on(cells, o, lights, still, reach, task, tasks, points, patience, few, s, counts):
     cell = np.int64(tasks.cell[task])
     first, last = tasks.first[task], tasks.last[task]
     owner = np.int64(cells.owner[cell])
@@ -186,40 +204,50 @@ def _work_on(cells, o, lights, still, reach, task, tasks, points, patience, s, c
             given = cells.names[:0]
             given_count = np.int64(TOO_MANY)
             if parent != 0 and state_of(cells.words[parent], light) == CANDIDATES:
-                given_count = np.int64(cells.amount[parent, light])
-                start = np.int64(cells.start[parent, light])
-                given = cells.names[start : start + (given_count if given_count <= MOST else 0)]
+                start = np.int64(cells.lists[parent, light])
+                if cells.names[start] <= MOST:
+                    given_count = np.int64(cells.names[start])
+                    given = cells.names[start + 1 : start + 1 + given_count]
             place = (np.float64(lights[light, 0]), np.float64(lights[light, 1]), np.float64(lights[light, 2]))
             state, amount = np.int64(CANDIDATES), np.int64(TOO_MANY)
             if placed and put_light(s.beam, place):
-                state, amount = certify(s, o, light, place, given, given_count, counts)
+                state, amount = certify(s, o, light, place, given, given_count, few, counts)
             tasks.state[task, light], tasks.amount[task, light] = state, amount
             if amount != TOO_MANY:
-                for k in range(amount):
+                for k in range(amount & (SETTLED - 1)):
                     tasks.names[task, light, k] = s.found[k]
-        doubt |= state == CANDIDATES
+            doubt |= state == CANDIDATES and (amount & SETTLED == 0 or amount == TOO_MANY)
+        else:
+            doubt |= state == CANDIDATES and not _is_settled(cells, cell, light)
     tasks.parts[task, :] = 0
+    tasks.doubt[task] = doubt
     if doubt and placed:
-        leaf = cells.child[cell] == LEAF
+        leaf = cells.child[cell] == LEAF or cells.child[cell] == CONTENT
         if cells.child[cell] >= 0 or (
             leaf and cells.wanted[cell] + last - first >= patience and _can_split(cells, o, cell, highest)
         ):
             _sort_points(cells, cell, points, first, last, tasks.parts[task])
 
 
+@inlined
+def _is_settled(cells, cell, light):
+    length = cells.names[cells.lists[cell, light]]
+    return length & SETTLED != 0 and length != TOO_MANY
+
+
 @kernel
-def work_on(cells, o, lights, still, reach, first, last, tasks, points, patience, s, counts):
+def work_on(cells, o, lights, still, reach, first, last, tasks, points, patience, few, s, counts):
     """Certify tasks first to last - 1 for lights (n, 3), those of them that stand `still` (n,) bool.
 
     reach is how high above rays may end and the scene's largest coordinate; a leaf is divided once so many
-    rays have wanted it."""
+    rays have wanted it, but not for lights of which rays can ask a `few` candidates."""
     cells, o, tasks, points, s = borrowed(cells), borrowed(o), borrowed(tasks), borrowed(points), borrowed(s)
     for task in range(first, last):
-        _work_on(cells, o, lights, still, reach, task, tasks, points, patience, s, counts)
+        _work_on(cells, o, lights, still, reach, task, tasks, points, patience, few, s, counts)
 
 
 @subkernel
-def _divide(cells, cell):
+def _divide(cells, cell, stack):
     """Make the four parts of a leaf, which take over what is certified of it."""
     u, v, size = cells.place[cell, 0], cells.place[cell, 1], cells.place[cell, 2]
     half = np.float32(0.5) * size
@@ -228,13 +256,24 @@ def _divide(cells, cell):
     add_cell(cells, cell, owner, u + half, v, half)
     add_cell(cells, cell, owner, u, v + half, half)
     add_cell(cells, cell, owner, u + half, v + half, -half)
-    for light in range(cells.start.shape[1]):
-        state = state_of(cells.words[cell], light)
-        if state != UNTRIED and state != CANDIDATES:
-            for k in range(4):
-                set_state(cells, child + k, light, state)
     cells.child[cell] = child
+    for light in range(cells.lists.shape[1]):
+        if state_of(cells.words[cell], light) != CANDIDATES or _is_settled(cells, cell, light):
+            set_below(cells, cell, light, stack)
     return child
+
+
+@inlined
+def _put_list(cells, cell, light, amount, names):
+    """Let a cell's certificate for a light name the first of these."""
+    if amount == TOO_MANY or amount == 0:
+        cells.lists[cell, light] = OVERFLOW if amount == TOO_MANY else NOBODY
+        return
+    at, count = cells.named[0], np.int64(amount) & (SETTLED - 1)
+    cells.lists[cell, light] = at
+    cells.names[at] = amount
+    cells.names[at + 1 : at + 1 + count] = names[:count]
+    cells.named[0] = at + 1 + count
 
 
 @kernel
@@ -250,25 +289,20 @@ def commit(cells, o, reach, tasks, following):
             if state == KEPT:
                 continue
             set_state(cells, cell, light, state)
-            count = tasks.amount[task, light]
-            cells.amount[cell, light] = count
-            if count != TOO_MANY and count > 0:
-                at = cells.named[0]
-                cells.start[cell, light] = at
-                cells.names[at : at + count] = tasks.names[task, light, :count]
-                cells.named[0] = at + count
-            if state != CANDIDATES and cells.child[cell] >= 0:
-                set_below(cells, cell, light, state, stack)
+            _put_list(cells, cell, light, tasks.amount[task, light], tasks.names[task, light])
+            if cells.child[cell] >= 0 and (state != CANDIDATES or _is_settled(cells, cell, light)):
+                set_below(cells, cell, light, stack)
         parts = tasks.parts[task]
         if parts[4] == 0:
-            if cells.child[cell] == LEAF:
+            if cells.child[cell] == LEAF or cells.child[cell] == CONTENT:
                 cells.wanted[cell] += tasks.last[task] - tasks.first[task]
+                cells.child[cell] = LEAF if tasks.doubt[task] else CONTENT
                 if not _can_split(cells, o, cell, highest):
                     cells.child[cell] = FINAL
             continue
         child = np.int64(cells.child[cell])
         if child < 0:
-            child = _divide(cells, cell)
+            child = _divide(cells, cell, stack)
         for k in range(4):
             if parts[k + 1] > parts[k]:
                 following[more, 0], following[more, 1], following[more, 2] = child + k, parts[k], parts[k + 1]

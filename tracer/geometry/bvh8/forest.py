@@ -54,6 +54,11 @@ def plant(shapes: Sequence[Shape], triangles: NDArray[np.int32], quadrics: NDArr
     return Forest(tree, links, np.empty((len(tree.blocks), 9 * WIDTH), np.float32), starts)
 
 
+def blocks_of(forest: Forest, index: int) -> NDArray[np.float32]:
+    """The blocks (n, BLOCK_SIZE) of an object."""
+    return forest.tree.blocks[forest.starts[index, BLOCK] : forest.starts[index + 1, BLOCK]]
+
+
 @kernel
 def gather(forest, corners, first, last):
     """Take the corners of objects first to last - 1 from corners (d, 9) of the triangles of objects 1 to n - 1."""

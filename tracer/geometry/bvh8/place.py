@@ -14,11 +14,11 @@ from tracer.geometry.building import watched
 from tracer.geometry.bvh8 import traverse
 from tracer.geometry.bvh8.build import build_shape, build_tree
 from tracer.geometry.bvh8.collapse import Shape
-from tracer.geometry.bvh8.forest import crown, gather, move, plant
-from tracer.geometry.bvh8.tree import CHILDREN, WIDTH, Tree
+from tracer.geometry.bvh8.forest import blocks_of, crown, gather, move, plant
+from tracer.geometry.bvh8.tree import BOX, CHILDREN, PRIMITIVES, WIDTH, Tree
 from tracer.geometry.bvh8.trees import FIXED, MOVING, RESTING
 from tracer.geometry.poses import Poses, products
-from tracer.geometry.primitives import Primitives, triangle_rows
+from tracer.geometry.primitives import Primitives, WorldTriangles, triangle_rows
 from tracer.geometry.queries import Placed
 from tracer.parallel import thread_count
 from tracer.scene.animation import deformed
@@ -112,6 +112,7 @@ class Trees8:
             self.any_hit.address,
             self._data.ctypes.data,
             bool(moving.any()),
+            tree_box(self.dynamic),
         )
 
     def _move_quadrics(self, poses: Poses) -> None:
@@ -124,6 +125,18 @@ class Trees8:
         maps = products(primitives.to_canonical[which], poses.to_object[owners])
         self.world_quadrics[which, :12] = maps.reshape(-1, 12)
         self._quadric_boxes[which] = primitives.placed_quadric_boxes(which, poses)
+
+    def triangles_of(self, index: int, to_world: Float64) -> WorldTriangles:
+        """The triangles of an object where it is placed: just what is intersected, and the boxes of their blocks."""
+        triangles = self._primitives.triangles_of(index)
+        blocks = self.static.blocks if index == 0 else blocks_of(self._forest, index)
+        numbers = blocks.view(np.int32)[:, PRIMITIVES : PRIMITIVES + WIDTH]
+        block, lane = np.nonzero((numbers >= triangles.start) & (numbers < triangles.stop))
+        where, count = numbers[block, lane] - triangles.start, triangles.stop - triangles.start
+        rows, boxes = np.zeros((count, 9), np.float32), np.zeros((count, 6), np.float32)
+        rows[where] = blocks[:, : 9 * WIDTH].reshape(-1, 9, WIDTH)[block, :, lane]
+        boxes[where] = blocks[block, BOX : BOX + 6]
+        return WorldTriangles(rows, np.zeros(count, np.float32), boxes)
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""
