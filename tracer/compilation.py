@@ -131,7 +131,7 @@ def _certificates(lights: int, accelerator: str) -> Iterator[str]:
     assert certificates is not None
     wanted = certificates.wanted(1)
     wanted.key[0, 0], wanted.u[0, 0], wanted.v[0, 0], wanted.of[0, 0] = 0, 0.25, 0.25, 1
-    certificates.certify([wanted], Budget(), Effort(1, 1, 8, True), None)
+    certificates.certify([wanted], Budget(), Effort(1, 1, 8, 8, True), None)
     certificates.keep_within(0.0, np.zeros(1, np.int32))
 
 

@@ -16,12 +16,10 @@ import numpy as np
 
 from tracer.culling.cache import NO_CACHE, OccluderCache
 from tracer.culling.cells import first_units, primitives_are_units, units_of
-from tracer.culling.certified.cells import make_cells
 from tracer.culling.certified.certificates import Budget, Certificates, Effort
 from tracer.culling.certified.certify import CERTIFICATES, STEPS, TESTS
 from tracer.culling.certified.certify import COUNTERS as CERTIFYING
-from tracer.culling.certified.lookup import Certified, Wanted
-from tracer.culling.certified.margins import ROW
+from tracer.culling.certified.lookup import Certified, Wanted, nothing_told, nothing_wanted
 from tracer.culling.memory import Memory
 from tracer.culling.modes import MAX_CULLED_LIGHTS, merge_words, word_type
 from tracer.culling.occlusion import count_pixels, occlusion_testing, set_occlusion_modes
@@ -42,7 +40,7 @@ ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
 BY_MODES = ("paper", "cells")  # methods that cull by modes
 # What certifying is worth, by what a shadow ray costs: some 250 ns, and 50.
-EFFORT = {"kdtree": Effort(8, 16, 6, True), "bvh8": Effort(128, 512, 0, False)}
+EFFORT = {"kdtree": Effort(16, 48, 6, 48, True), "bvh8": Effort(128, 512, 0, 0, False)}
 Cancel = Callable[[], bool] | None
 
 
@@ -149,20 +147,7 @@ def _has_cells(settings: Settings) -> bool:
     return base_of(settings.method) == "cells"
 
 
-_NOT_WANTED = Wanted(np.empty(0, np.int32), np.empty(0, np.float32), np.empty(0, np.float32), np.zeros(3, np.int64))
-_NOT_CERTIFIED = {
-    np.dtype(word_type(lights)).itemsize: Certified(
-        make_cells(1, lights, 1),
-        np.empty((0, ROW), np.float32),
-        np.empty(0, np.bool_),
-        0.0,
-        0.0,
-        0,
-        False,
-        _NOT_WANTED,
-    )
-    for lights in (1, MAX_CULLED_LIGHTS)
-}
+_NOT_CERTIFIED = {np.dtype(word_type(lights)).itemsize: nothing_told(lights) for lights in (1, MAX_CULLED_LIGHTS)}
 
 
 class UnfinishedFrame:
@@ -181,7 +166,7 @@ class UnfinishedFrame:
         self._phases: dict[str, float] = {}
         self._started = clock.perf_counter()
         self._certificates: Certificates | None = None
-        self._wanted = _NOT_WANTED
+        self._wanted = nothing_wanted()
         self._base = base_of(settings.method)
         self._certifying = np.zeros(CERTIFYING, np.int64)
         self._rays = pinhole(camera, settings.width, settings.height)
@@ -288,7 +273,7 @@ class UnfinishedFrame:
 
         self._for_each_tile(work)
         budget = Budget(self._settings.certificates, self._settings.certificate_seconds)
-        effort = EFFORT[self._settings.accelerator]
+        effort = certificates.effort(EFFORT[self._settings.accelerator])
         self._certifying = certificates.certify([sought, *certificates.left], budget, effort, self._cancel)
         self._wanted = certificates.wanted(len(self._tiles))
 
@@ -302,18 +287,7 @@ class UnfinishedFrame:
         """What a tile knows of certified cells, and where it says what it wants."""
         if certificates is None:
             return _NOT_CERTIFIED[self.memory.words.dtype.itemsize]
-        o, rows = certificates.occluders, Wanted(*(a[tile] for a in wanted))
-        effort = EFFORT[self._settings.accelerator]
-        return Certified(
-            certificates.cells,
-            o.rows,
-            certificates.still,
-            o.farthest,
-            certificates.highest,
-            effort.few,
-            effort.dear,
-            rows,
-        )
+        return certificates.told(EFFORT[self._settings.accelerator], Wanted(*(a[tile] for a in wanted)))
 
     def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray, first: bool = True) -> None:
         placed, look, memory = self._renderer.world.placed, self._renderer._look, self.memory
@@ -386,6 +360,8 @@ class UnfinishedFrame:
         statistics.certificates = int(self._certifying[CERTIFICATES])
         statistics.certificate_steps = int(self._certifying[STEPS])
         statistics.certificate_tests = int(self._certifying[TESTS])
+        if self._certificates is not None:
+            self._certificates.finish_frame(statistics.certificates, statistics.shadow.due)
         statistics.seconds = clock.perf_counter() - self._started
         lights = len(self._renderer.scene.lights)
         recorded = self._settings.record_lights

@@ -33,7 +33,7 @@ class Twin:
         self.worlds = {name: tracer.World(scene, accelerator=name) for name in ACCELERATORS}
         self.certificates, self.lights = certificates, np.asarray(lights, np.float32)
         self.cells, self.rows = certificates.cells, certificates.occluders.rows
-        self.farthest = np.float32(certificates.occluders.farthest)
+        self.farthest = certificates.occluders.farthest
         world = self.worlds["kdtree"]
         self.primitives = len(world.object_of)
         used = int(self.cells.used[0])

@@ -39,7 +39,7 @@ SAILING = scene(
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure."""
-    monkeypatch.setattr(rendering, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 2, True)))
+    monkeypatch.setattr(rendering, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 2, 8, True)))
 
 
 @pytest.fixture(params=ACCELERATORS)

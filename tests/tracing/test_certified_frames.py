@@ -23,7 +23,7 @@ SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure, and to ask candidates."""
-    monkeypatch.setattr(renderer, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 3, True)))
+    monkeypatch.setattr(renderer, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 3, 48, True)))
 
 
 def _renderers(

@@ -18,6 +18,7 @@ from tracer.culling.certified.margins import (
     REPORTED,
     ROW,
     ZERO,
+    farthest_of,
     functions,
     length16,
     margins,
@@ -55,7 +56,7 @@ def verdicts(rows, numbers, farthest, light, point):
 
     Each of one of rows (n, ROW), whose numbers, int32, are at an address: bits of those that hit, of those that miss.
 
-    No ray that is not shorter than `farthest` is certain to hit."""
+    No ray that is not shorter than `farthest` says is certain to hit."""
     row = rows_at(rows, numbers)
     direction = point[0] - light[0], point[1] - light[1], point[2] - light[2]
     t, reach = seen_from(light, row), size_of(direction)
@@ -64,7 +65,7 @@ def verdicts(rows, numbers, farthest, light, point):
     along = maximum(d, -d)
     m = margins(t, reach, near, along, size_of(point))
     missed = (behind < -m.behind) | (u < -m.u) | (v < -m.v) | (w < -m.w)
-    hit = (behind > m.behind) & (t.height > LAMP * along) & (reach < farthest)
+    hit = (behind > m.behind) & (t.height > LAMP * along) & (farthest_of(farthest, numbers) > reach)
     hit = hit & (u > INSIDE * m.u) & (v > INSIDE * m.v) & (w > INSIDE * m.w)
     firm = t.firm & (reach < LARGE)
     return bits_of(hit & firm), bits_of((missed & firm) | _beside(row[BOX:ROW], light, direction, t.away))
@@ -91,7 +92,7 @@ def ask_candidates(certified, points, light, number, asked, count, live, lit):
     Points of which these are certain are taken out of the bits `live`, and put into the bits `lit` where the light
     reaches them.  (how many they are, tests made)."""
     cells, rows = certified.cells, certified.rows
-    lists, names, farthest = address_of(cells.lists), address_of(cells.names), np.float32(certified.farthest)
+    lists, names, farthest = address_of(cells.lists), address_of(cells.names), certified.farthest
     at, stride, numbers = address_of(points.lifted), 4 * points.lifted.shape[1], local_memory(64)
     tests, answered = np.int64(0), np.int64(0)
     for k in range((count + 15) // 16):
@@ -100,7 +101,7 @@ def ask_candidates(certified, points, light, number, asked, count, live, lit):
         cell = gather_i32x16(address_of(points.unit), which)
         first = gather_i32x16(lists, cell * np.int32(cells.lists.shape[1]) + np.int32(number))
         length = gather_i32x16(names, first) & np.int32(SETTLED - 1)  # TOO_MANY stays more than a few
-        asking = there & bits_of(length <= np.int32(certified.few))
+        asking = there & bits_of(length <= np.int32(certified.asked))
         point = (
             gather_f32x16(at, which),
             gather_f32x16(at + stride, which),

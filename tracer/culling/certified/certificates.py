@@ -30,7 +30,7 @@ from tracer.culling.certified.cells import (
     with_room,
 )
 from tracer.culling.certified.forget import all_marked, copy_kept, drop_certificates
-from tracer.culling.certified.lookup import ROOM, Wanted
+from tracer.culling.certified.lookup import ROOM, Certified, Wanted
 from tracer.culling.certified.occluders import Occluders
 from tracer.culling.certified.still import Still
 from tracer.culling.certified.work import KEPT, Points, commit, counters, gather_roots, make_tasks, work_on
@@ -56,13 +56,18 @@ class Budget:
 
 class Effort(NamedTuple):
     """What certifying is worth where rays cost what they do: how many must have wanted a triangle's first cell,
-    `roots`, and a part of one, `parts`; how many candidates are asked instead of tracing, at most; and whether rays
-    are so dear that every look-up pays."""
+    `roots`, and a part of one, `parts`; how many candidates are `few`, so that a cell need not be divided for them;
+    how many are `asked` instead of tracing, at most; and whether rays are so dear that every look-up pays."""
 
     roots: int
     parts: int
     few: int
+    asked: int
     dear: bool
+
+
+RARE = 1e-3  # certificates made for each shadow ray that was due, in the last frame: below that one can be EAGER
+EAGER = 8  # times less patient
 
 
 class Certificates:
@@ -84,6 +89,7 @@ class Certificates:
         self.cells: Cells = make_cells(len(self._world.object_of), self._count)
         self._seen = np.zeros(len(self.cells.waiting), np.int32)  # the frame that last saw each root
         self._frame = 0
+        self._rate = np.inf  # certificates that the last frame made, for each shadow ray due
         self.left: list[Wanted] = []  # what the last frame's rays wanted and has not been looked into
         self._scale()
 
@@ -187,6 +193,21 @@ class Certificates:
         )
         copy_kept(self.cells, kept, empty)
         self.cells = empty
+
+    def effort(self, usual: Effort) -> Effort:
+        """What certifying is worth now: more than usual where there is little to certify."""
+        if self._rate >= RARE:
+            return usual
+        return usual._replace(roots=-(-usual.roots // EAGER), parts=-(-usual.parts // EAGER))
+
+    def finish_frame(self, made: int, due: int) -> None:
+        """A frame has made so many certificates, with so many shadow rays due."""
+        self._rate = made / due if due else np.inf
+
+    def told(self, effort: Effort, wanted: Wanted) -> Certified:
+        """What a tile is told, which puts what it wants there."""
+        o = self.occluders
+        return Certified(self.cells, o.rows, self.still, o.farthest, self.highest, effort.asked, effort.dear, wanted)
 
     def wanted(self, tiles: int) -> Wanted:
         """Room for what tiles ask for: arrays with a row each."""

@@ -267,9 +267,10 @@ def _cut_off(s, lane, pieces):
 @subkernel
 def _fused(s, o, light, count):
     """How many of the primitives found hide the whole cell together, those first; 0 where they do not."""
-    if count > FUSED or count < 2 or s.beam.reach[0] >= o.farthest:
+    if count > FUSED or count < 2:
         return 0
-    told = put_parts(o.rows, address_of(s.found), light, s.beam, address_of(s.parts)) & lanes_below(count, 0)
+    told = put_parts(o.rows, address_of(s.found), o.farthest, light, s.beam, address_of(s.parts))
+    told &= lanes_below(count, 0)
     parts = 0
     for k in range(count):
         if (told >> k) & 1 and _hides_some(s.parts, k):

@@ -25,7 +25,9 @@ from tracer.culling.certified.cells import (
     ROOTS,
     UNTRIED,
     Cells,
+    make_cells,
 )
+from tracer.culling.certified.margins import ROW, Farthest
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
@@ -75,11 +77,22 @@ class Certified(NamedTuple):
     cells: Cells
     rows: NDArray[np.float32]
     still: NDArray[np.bool_]
-    farthest: float
+    farthest: Farthest
     highest: float
-    few: int
+    asked: int
     dear: bool
     wanted: Wanted
+
+
+def nothing_wanted() -> Wanted:
+    """Room for nothing."""
+    return Wanted(np.empty(0, np.int32), np.empty(0, np.float32), np.empty(0, np.float32), np.zeros(3, np.int64))
+
+
+def nothing_told(lights: int) -> Certified:
+    """What tiles are told where nothing is certified."""
+    rows, still = np.empty((0, ROW), np.float32), np.empty(0, np.bool_)
+    return Certified(make_cells(1, lights, 1), rows, still, Farthest(0, 0.0, 0.0), 0.0, 0, False, nothing_wanted())
 
 
 @inlined

@@ -24,7 +24,7 @@ close to the triangle.
   triangle's plane by more than its own margin and than where rays begin, the test reports a hit for every ray.
   The structures must let it: they ask only where the ray's t lies in a box, or passes a plane, and t is wrong by
   up to 13 eps |s| |n| / D.  Across the triangle's plane that is 13 eps |d|, which the fast structure's boxes are
-  padded for if no ray is longer than `farthest`; along it the point must lie so far inside the triangle that
+  padded for if no ray is longer than `Farthest` says; along it the point must lie so far inside the triangle that
   it stays there, for which U, V and D - U - V must exceed 13 eps |s| |e| |d| more: 2.5 m in all.
 - *Miss*: where one function is less than -m at all corners, no ray does.  The same holds of any sum of two
   functions with positive factors, as both would have to be at least -m: that is a plane through
@@ -55,7 +55,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tracer.kernels import inlined
-from tracer.simd import address_of, load_columns, maximum, select, square_root
+from tracer.simd import address_of, load_columns, load_i32x16, maximum, select, square_root
 
 EPSILON = 2.0**-24  # the largest relative error of a float32 rounding
 ENLARGED = 2.5e-6  # of a triangle, by which the fast structure takes it to be larger, and a little
@@ -96,6 +96,15 @@ class Seen(NamedTuple):
     blur: Any
     firm: Any
     sane: Any
+
+
+class Farthest(NamedTuple):
+    """How long rays are at most that can be sure to hit one of the first `fixed` triangles, which never move, and
+    others, that rest."""
+
+    fixed: int
+    static: float
+    resting: float
 
 
 class Margins(NamedTuple):
@@ -142,6 +151,13 @@ def row_of(rows, i):
         (np.float64(rows[i, 3]), np.float64(rows[i, 4]), np.float64(rows[i, 5])),
         (np.float64(rows[i, 6]), np.float64(rows[i, 7]), np.float64(rows[i, 8])),
     )
+
+
+@inlined
+def farthest_of(farthest, numbers):
+    """How long rays are at most that can be sure to hit those of sixteen numbers, int32, at an address."""
+    fixed = load_i32x16(numbers) < np.int32(farthest.fixed)
+    return select(fixed, np.float32(farthest.static), np.float32(farthest.resting))
 
 
 @inlined

@@ -13,6 +13,7 @@ from tracer.culling.certified.margins import (
     REPORTED,
     ZERO,
     dot,
+    farthest_of,
     functions,
     length16,
     margins,
@@ -121,7 +122,7 @@ def meet_beam(rows, numbers, farthest, light, beam):
     """Of sixteen of rows (n, ROW), whose numbers, int32, are at an address: bits of those that every ray of a beam from
     the light (3,) is certain to hit, and of those that none is.
 
-    Nothing is certain to be hit by rays that may be as long as `farthest`."""
+    Nothing is certain to be hit by rays that may be as long as `farthest` says."""
     row = rows_at(rows, numbers)
     t = seen_from(_short(light), row)
     us, vs, ws, bs, ds, m, along = _over(t, beam)
@@ -137,11 +138,12 @@ def meet_beam(rows, numbers, farthest, light, beam):
     missed = missed | (t.sane & _before_planes(t, m, depth, light, beam)) | _beside(row, t.away, beam)
     if any_lane(t.firm & ~missed & ~hit):
         missed = missed | (t.firm & _parted_by_two(t, beam, m))
-    return bits_of(hit) if beam.reach[0] < farthest else np.int64(0), bits_of(missed)
+    hit = hit & (farthest_of(farthest, numbers) > np.float32(beam.reach[0]))
+    return bits_of(hit), bits_of(missed)
 
 
 @subkernel
-def put_parts(rows, numbers, light, beam, parts):
+def put_parts(rows, numbers, farthest, light, beam, parts):
     """Functions less their margins at a cell's three corners, whatever the height above, into parts (FUNCTIONS, 3, 16);
     bits of those rows (n, ROW), whose numbers, int32, are at an address, of which these tell what they hide."""
     t = seen_from(_short(light), rows_at(rows, numbers))
@@ -153,4 +155,4 @@ def put_parts(rows, numbers, light, beam, parts):
         store(parts + 64 * (BELOW + k), minimum(below[1], above[1]) - INSIDE * m.v)
         store(parts + 64 * (2 * BELOW + k), minimum(below[2], above[2]) - INSIDE * m.w)
         store(parts + 64 * (3 * BELOW + k), minimum(below[3], above[3]) - m.behind)
-    return bits_of(t.firm & (t.height > LAMP * along))
+    return bits_of(t.firm & (t.height > LAMP * along) & (farthest_of(farthest, numbers) > np.float32(beam.reach[0])))

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.certified.beam import PLANES
-from tracer.culling.certified.margins import BOX, REPORTED, TWO, ZERO, margins, rows_at, seen_from
+from tracer.culling.certified.margins import BOX, REPORTED, TWO, ZERO, Farthest, margins, rows_at, seen_from
 from tracer.geometry.bvh8.build import build_shape
 from tracer.geometry.bvh8.collapse import VACANT, Shape
 from tracer.geometry.bvh8.tree import WIDTH
@@ -52,7 +52,8 @@ class Occluders(NamedTuple):
     triangles as structure of arrays, and numbers (leaves, 8) int32, NONE for none, or that of a quadric; roots
     (trees,) int32; boxes (lights, nodes, BOXES) float32; reaches (lights, n) float32, how far from each
     triangle a ray from the light can report a hit, and beside (lights, leaves, 8), those of a leaf side by side,
-    negative for none.  Longer rays than `farthest` are never sure of a hit.
+    negative for none.  `farthest` tells which rays are too long to be
+    sure of a hit.
     """
 
     rows: NDArray[np.float32]
@@ -64,7 +65,7 @@ class Occluders(NamedTuple):
     boxes: NDArray[np.float32]
     reaches: NDArray[np.float32]
     beside: NDArray[np.float32]
-    farthest: float
+    farthest: Farthest
 
 
 def shape_of(
@@ -107,11 +108,11 @@ def _find_reaches(o, number, light, farthest, rounded):
         part = maximum(m.u, maximum(m.v, m.w)) / depth + np.float32(1e-5)
         reach = part * (t.first + t.second) + (m.behind / depth + np.float32(1e-6)) * farthest + t.blur
         reach = select(t.firm & (depth > ZERO), reach, FAR)
-        room = f32x16(ZERO)
+        room = f32x16(ZERO)  # from the triangle to anywhere in the box that hits are reported in, along an axis
         for axis in range(3):
             corner, e1, e2 = row[axis], row[3 + axis], row[6 + axis]
-            room = maximum(room, corner + minimum(ZERO, minimum(e1, e2)) - row[BOX + axis])
-            room = maximum(room, row[BOX + 3 + axis] - corner - maximum(ZERO, maximum(e1, e2)))
+            low, high = corner + minimum(ZERO, minimum(e1, e2)), corner + maximum(ZERO, maximum(e1, e2))
+            room = maximum(room, maximum(high - row[BOX + axis], row[BOX + 3 + axis] - low))
         room = DIAGONAL * (room + np.float32(REPORTED) * t.away)
         store(reaches + 4 * first, minimum(minimum(reach, room) + rounded, FAR))
 
@@ -155,9 +156,10 @@ def _triangle_box(rows, i, more):
 
 
 @subkernel
-def _leaf_box(o, leaf, number):
+def _leaf_box(o, leaf, number, farthest):
     """The box of a leaf's primitives for a light; their reaches are put side by side."""
     low, high = _empty()
+    room = np.float32(REPORTED * farthest)
     beside = o.beside[number, leaf]
     for k in range(WIDTH):
         i = o.numbers[leaf, k]
@@ -168,6 +170,9 @@ def _leaf_box(o, leaf, number):
         elif i != NONE:
             beside[k] = o.reaches[number, i]
             low2, high2 = _triangle_box(o.rows, i, beside[k])
+            b = o.rows[i]
+            low2 = max(low2[0], b[BOX] - room), max(low2[1], b[BOX + 1] - room), max(low2[2], b[BOX + 2] - room)
+            high2 = min(high2[0], b[BOX + 3] + room), min(high2[1], b[BOX + 4] + room), min(high2[2], b[BOX + 5] + room)
             low, high = _around(low, high, low2, high2)
     return low, high
 
@@ -192,7 +197,7 @@ def know_light(o, number, light, farthest, largest):
                         (boxes[code, 3 * WIDTH + k], boxes[code, 4 * WIDTH + k], boxes[code, 5 * WIDTH + k]),
                     )
             elif code != VACANT:
-                low, high = _leaf_box(o, ~code, number)
+                low, high = _leaf_box(o, ~code, number, farthest)
             _put_box(boxes[node], child, low, high)
 
 

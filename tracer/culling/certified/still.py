@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.margins import BLUR, BOX, LONGEST, ROW
+from tracer.culling.certified.margins import BLUR, BOX, LONGEST, ROW, Farthest
 from tracer.culling.certified.occluders import BOXES, LANES, ROUNDED, Occluders, blocks_of, joined, know_light, shape_of
 from tracer.geometry.bvh8.collapse import Shape
-from tracer.geometry.bvh8.tree import PADDING, WIDTH
+from tracer.geometry.bvh8.tree import WIDTH
 from tracer.geometry.kdtree.place import triangle_boxes
 from tracer.geometry.memory import aligned_rows
 from tracer.geometry.primitives import Outlines
@@ -92,9 +92,10 @@ class Still:
         every = np.concatenate(list(self._bounds_of.values()))
         self.bounds = np.stack([every.min(0), every.max(0)])
         self.largest = float(np.abs(self.bounds).max())
-        # The fast structure pads what never moves and what may each by the largest coordinate there is.
         extents = [np.abs(bounds).max() for index, bounds in self._bounds_of.items() if index > 0]
-        padding = PADDING * float(min(np.abs(self._bounds_of[0]).max(), max(extents, default=np.inf)))
+        static, resting = np.abs(self._bounds_of[0]).max(), max(extents, default=0.0)
+        padding = self._world.structure.padding / LONGEST  # what never moves and what may are padded apart
+        farthest = Farthest(self._primitives.triangles_of(0).stop, padding * static, padding * resting)
         count = self._lights
         self.occluders = Occluders(
             self.rows,
@@ -105,5 +106,5 @@ class Still:
             np.empty((count, len(shape.children), BOXES), np.float32),
             np.empty((count, -(-len(self.rows) // LANES) * LANES), np.float32),
             np.empty((count, len(shape.leaves), WIDTH), np.float32),
-            padding / LONGEST,
+            farthest,
         )

@@ -15,7 +15,7 @@ from tracer.geometry.bvh8 import traverse
 from tracer.geometry.bvh8.build import build_shape, build_tree
 from tracer.geometry.bvh8.collapse import Shape
 from tracer.geometry.bvh8.forest import blocks_of, crown, gather, move, plant
-from tracer.geometry.bvh8.tree import BOX, CHILDREN, PRIMITIVES, WIDTH, Tree
+from tracer.geometry.bvh8.tree import BOX, CHILDREN, PADDING, PRIMITIVES, WIDTH, Tree
 from tracer.geometry.bvh8.trees import FIXED, MOVING, RESTING
 from tracer.geometry.poses import Poses, products
 from tracer.geometry.primitives import Primitives, WorldTriangles, triangle_rows
@@ -31,6 +31,7 @@ class Trees8:
     """Built over all primitives of a scene; raises Cancelled if `progress` does meanwhile."""
 
     closest, any_hit = traverse.closest, traverse.any_hit
+    padding = PADDING  # of the largest coordinate, by how much boxes are larger that t must lie in
 
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
         self._primitives, self._objects = primitives, objects
