@@ -65,8 +65,8 @@ def verdicts(rows, numbers, farthest, light, point):
     along = maximum(d, -d)
     m = margins(t, reach, near, along, size_of(point))
     missed = (behind < -m.behind) | (u < -m.u) | (v < -m.v) | (w < -m.w)
-    hit = (behind > m.behind) & (t.height > LAMP * along) & (farthest_of(farthest, numbers) > reach)
-    hit = hit & (u > INSIDE * m.u) & (v > INSIDE * m.v) & (w > INSIDE * m.w)
+    hit = (behind > m.behind) & (t.height > np.float32(LAMP) * along) & (farthest_of(farthest, numbers) > reach)
+    hit = hit & (u > np.float32(INSIDE) * m.u) & (v > np.float32(INSIDE) * m.v) & (w > np.float32(INSIDE) * m.w)
     firm = t.firm & (reach < LARGE)
     return bits_of(hit & firm), bits_of((missed & firm) | _beside(row[BOX:ROW], light, direction, t.away))
 

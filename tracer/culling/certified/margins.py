@@ -60,9 +60,9 @@ from tracer.simd import address_of, load_columns, load_i32x16, maximum, select, 
 EPSILON = 2.0**-24  # the largest relative error of a float32 rounding
 ENLARGED = 2.5e-6  # of a triangle, by which the fast structure takes it to be larger, and a little
 SURPLUS = 1.25
-INSIDE = np.float32(1.75)  # margins that a hit is to be inside of a triangle by: 2.5 m and our own error
+INSIDE = 1.75  # margins that a hit is to be inside of a triangle by: 2.5 m and our own error
 LONGEST = 13 * EPSILON  # times a ray's length: what boxes must be padded by for it to be sure of a hit
-LAMP = np.float32(2e-5)  # of a segment from the light: what lies in it may be nearer than rays begin
+LAMP = 2e-5  # of a segment from the light: what lies in it may be nearer than rays begin
 # Columns of a primitive's row: a corner, two edges, how far its corners may be elsewhere, and a box (6,) outside of
 # which no hit is reported, but for REPORTED of the light's distance.  Quadrics have the box alone.
 BLUR, BOX, ROW = 9, 10, 16

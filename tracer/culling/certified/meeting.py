@@ -126,8 +126,14 @@ def meet_beam(rows, numbers, farthest, light, beam):
     row = rows_at(rows, numbers)
     t = seen_from(_short(light), row)
     us, vs, ws, bs, ds, m, along = _over(t, beam)
-    hit = t.firm & (us[0] > INSIDE * m.u) & (vs[0] > INSIDE * m.v) & (ws[0] > INSIDE * m.w) & (bs[0] > m.behind)
-    hit = hit & (t.height > LAMP * along)
+    hit = (
+        t.firm
+        & (us[0] > np.float32(INSIDE) * m.u)
+        & (vs[0] > np.float32(INSIDE) * m.v)
+        & (ws[0] > np.float32(INSIDE) * m.w)
+        & (bs[0] > m.behind)
+    )
+    hit = hit & (t.height > np.float32(LAMP) * along)
     beyond = (us[1] < -m.u) | (vs[1] < -m.v) | (ws[1] < -m.w)
     missed = t.firm & (beyond | (bs[1] < -m.behind))
     # Where the light lies in a triangle's plane, as far as one can tell, D may have either sign.
@@ -151,8 +157,10 @@ def put_parts(rows, numbers, farthest, light, beam, parts):
     for k in range(BELOW):
         (near, low), (far, high) = _at(beam, k), _at(beam, BELOW + k)
         below, above = functions(t, near, low), functions(t, far, high)
-        store(parts + 64 * k, minimum(below[0], above[0]) - INSIDE * m.u)
-        store(parts + 64 * (BELOW + k), minimum(below[1], above[1]) - INSIDE * m.v)
-        store(parts + 64 * (2 * BELOW + k), minimum(below[2], above[2]) - INSIDE * m.w)
+        store(parts + 64 * k, minimum(below[0], above[0]) - np.float32(INSIDE) * m.u)
+        store(parts + 64 * (BELOW + k), minimum(below[1], above[1]) - np.float32(INSIDE) * m.v)
+        store(parts + 64 * (2 * BELOW + k), minimum(below[2], above[2]) - np.float32(INSIDE) * m.w)
         store(parts + 64 * (3 * BELOW + k), minimum(below[3], above[3]) - m.behind)
-    return bits_of(t.firm & (t.height > LAMP * along) & (farthest_of(farthest, numbers) > np.float32(beam.reach[0])))
+    return bits_of(
+        t.firm & (t.height > np.float32(LAMP) * along) & (farthest_of(farthest, numbers) > np.float32(beam.reach[0]))
+    )
