@@ -87,7 +87,7 @@ EDITS = (
             ("shadow", 8, "TESTS", "ones(tested)"),
             ("certified/certify", 16, "STEPS", "1"),
             ("certified/certify", 12, "STEPS", "1"),
-            ("certified/certify", 8, "TESTS", "1"),
+            ("certified/certify", 4, "TESTS", "n"),
         )
     ),
 )
