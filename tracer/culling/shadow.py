@@ -292,8 +292,10 @@ def _take_blocked(bits, asked, vectors, answers):
 def _ask_about_known(world, points, light, vectors, answers, counts):
     """Ask dynamic objects alone about the points that are known to be lit by all that is static."""
     for v in range(vectors):
-        answers.asked[v] = 0 if answers.lit[v] == 0 else answers.lit[v] & _towards(world.moving_box, points, light, v)
-    counts[RAYS] += _ask(world, points, light, vectors, answers.asked, MOVING, answers, counts)
+        lit = np.int64(answers.lit[v])
+        counts[RAYS] += ones(lit)  # those that miss the box around all that moves are done with that
+        answers.asked[v] = 0 if lit == 0 else lit & _towards(world.moving_box, points, light, v)
+    _ask(world, points, light, vectors, answers.asked, MOVING, answers, counts)
     _take_blocked(answers.lit, answers.asked, vectors, answers)
 
 
