@@ -166,6 +166,7 @@ class UnfinishedFrame:
         self._phases: dict[str, float] = {}
         self._started = clock.perf_counter()
         self._certificates: Certificates | None = None
+        self._words_seen: np.ndarray | None = None
         self._wanted = nothing_wanted()
         self._base = base_of(settings.method)
         self._certifying = np.zeros(CERTIFYING, np.int64)
@@ -342,6 +343,7 @@ class UnfinishedFrame:
         else:
             memory.discard_frame()
         if self._certificates is not None:
+            self._words_seen = self._certificates.at_pixels(self._buffers.cell)  # cells may get other numbers now
             self._certificates.left = [self._wanted]
             self._certificates.keep_within(1e6 * self._settings.certificate_memory, self._buffers.cell)
 
@@ -382,9 +384,7 @@ class UnfinishedFrame:
             reference=buffers.reference.reshape(*shape, 3) if self._settings.verify else None,
             wrong=buffers.wrong.reshape(shape) if self._settings.verify else None,
             cells=self._cells_seen(),
-            certificates=None
-            if self._certificates is None
-            else self._certificates.at_pixels(buffers.cell).reshape(shape),
+            certificates=None if self._words_seen is None else self._words_seen.reshape(shape),
             saved=buffers.saved.reshape(shape) if self._settings.record_work else None,
             cost=buffers.cost.reshape(shape) if self._settings.record_work else None,
             statistics=statistics,

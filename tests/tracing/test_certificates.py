@@ -15,8 +15,9 @@ from tests.tracing.test_culling import BEHIND, floor, roof
 from tests.tracing.test_rest import GOING, MIDDLES, going, kite
 from tests.tracing.worlds import quad, scene
 from tracer import renderer as rendering
-from tracer.culling.certified.cells import CANDIDATES, FULL, LIT, NOBODY, named_by
+from tracer.culling.certified.cells import CANDIDATES, FINAL, FULL, LIT, NOBODY, SETTLED, make_cells, named_by
 from tracer.culling.certified.certificates import Certificates, Effort
+from tracer.culling.certified.forget import copy_kept
 from tracer.explanation import explain
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import ACCELERATORS
@@ -295,3 +296,19 @@ def test_cancelled_frames_leave_nothing_wrong_behind(accelerator: str):
         expected, frame = none.render(at), certified.render(at)
         assert expected.color.tobytes() == frame.color.tobytes(), f"after {number} questions"
     assert cancelled > 5 and frame.statistics.shadow.culled > 0 and (_states(certified) == CANDIDATES).any()
+
+
+def test_cells_that_share_a_list_of_candidates_share_it_when_others_are_dropped():
+    room, lights = 40, 4
+    cells, few = make_cells(2, lights, room), np.array([7, 8, 9], np.int32)
+    cells.names[2], cells.names[3:6] = len(few) + SETTLED, few
+    cells.named[0], cells.used[0] = 6, room
+    cells.lists[1:] = 2
+    cells.owner[1:], cells.child[1:] = np.arange(1, room) % 2, FINAL
+    target = make_cells(2, lights, room)._replace(names=np.zeros(len(cells.names), np.int32))
+    copy_kept(cells, np.array([False, True, False, False]), target)
+    assert int(target.used[0]) == 1 + room // 2 and int(target.named[0]) == 6
+    for cell in range(1, int(target.used[0])):
+        for light in range(lights):
+            named = named_by(target, cell, light)
+            assert named is not None and np.array_equal(named, few)

@@ -52,7 +52,7 @@ class Outlines(NamedTuple):
 class WorldTriangles(NamedTuple):
     """What a structure intersects, as the world sees it: rows (n, 9) float32, corner and edges; blurs (n,), how far
     their corners may truly be elsewhere; and boxes (n, 6), outside of which no hit on them is reported, but for
-    roundings no larger than 2e-5 of the distance between ray origin and corner."""
+    roundings no larger than 4e-5 of the distance between ray origin and corner."""
 
     rows: Float32
     blurs: Float32

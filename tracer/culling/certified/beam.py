@@ -151,16 +151,16 @@ def _put_side(beam, light, i, j, opposite):
 
 
 @subkernel
-def meets_box(b, box, room):
-    """Whether a box (6,), made larger by `room` on all sides, may meet a beam."""
+def meets_box(b, box):
+    """Whether a box (6,) may meet a beam."""
     for axis in range(3):
-        if box[axis] - room > b.box[3 + axis] or box[3 + axis] + room < b.box[axis]:
+        if box[axis] > b.box[3 + axis] or box[3 + axis] < b.box[axis]:
             return False
     for k in range(PLANES):
         least = -b.planes[k, 3]
         for axis in range(3):
             n = b.planes[k, axis]
-            least += n * (box[axis] if n > 0.0 else box[3 + axis]) - abs(n) * room
+            least += n * (box[axis] if n > 0.0 else box[3 + axis])
         if least > 0.0:
             return False
     return True

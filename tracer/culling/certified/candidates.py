@@ -56,7 +56,7 @@ def verdicts(rows, numbers, farthest, light, point):
 
     Each of one of rows (n, ROW), whose numbers, int32, are at an address: bits of those that hit, of those that miss.
 
-    No ray that is not shorter than `farthest` says is certain to hit."""
+    A hit is certain only of rays shorter than `farthest`."""
     row = rows_at(rows, numbers)
     direction = point[0] - light[0], point[1] - light[1], point[2] - light[2]
     t, reach = seen_from(light, row), size_of(direction)
@@ -101,7 +101,7 @@ def ask_candidates(certified, points, light, number, asked, count, live, lit):
         cell = gather_i32x16(address_of(points.unit), which)
         first = gather_i32x16(lists, cell * np.int32(cells.lists.shape[1]) + np.int32(number))
         length = gather_i32x16(names, first) & np.int32(SETTLED - 1)  # TOO_MANY stays more than a few
-        asking = there & bits_of(length <= np.int32(certified.asked))
+        asking = there & bits_of((length > np.int32(0)) & (length <= np.int32(certified.asked)))
         point = (
             gather_f32x16(at, which),
             gather_f32x16(at + stride, which),

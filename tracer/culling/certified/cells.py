@@ -35,12 +35,13 @@ HIGHEST = 2.0  # times the scene's largest coordinate and OFFSET: rays that end 
 class Cells(NamedTuple):
     """n cells, of which `used` (1,) int64 are in use.
 
-    words (n,) uint32 or uint64; child (n,) int32, the first of four, LEAF or FINAL; parent (n,) int32; owner (n,)
-    int32, twice the triangle's number, plus 1 for its back; place (n, 3) float32, u, v and size; wanted (n,) int32,
-    how many rays have; lists (n, lights) int32, where in names (m,) int32 the primitives are listed that a
-    certificate names, how many first; named (1,) int64, how much of names is in use. receivers (primitives,
-    RECEIVER) float32 lead rays to the roots; those of what has no cells are 0. waiting (2 primitives,) int32 is how
-    many rays have wanted a root that is not there yet; rooted (primitives,) int32 is 1 where there is one.
+    words (n,) uint32 or uint64; child (n,) int32, the first of four, LEAF, CONTENT or FINAL; parent (n,) int32;
+    owner (n,) int32, twice the triangle's number, plus 1 for its back; place (n, 3) float32, u, v and size;
+    wanted (n,) int32, how many rays have; lists (n, lights) int32, where in names (m,) int32 the primitives are
+    listed that a certificate names, how many first; named (1,) int64, how much of names is in use. receivers
+    (primitives, RECEIVER) float32 lead rays to the roots; those of what has no cells are 0. waiting (2
+    primitives,) int32 is how many rays have wanted a root that is not there yet; rooted (primitives,) int32 is
+    1 where there is one.
     """
 
     words: NDArray[np.unsignedinteger]

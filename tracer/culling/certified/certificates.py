@@ -121,6 +121,8 @@ class Certificates:
         A light is certified once it has stood still for a frame.  From now on work is done by so many threads."""
         self._threads = threads
         self._scratch += [certify.scratch() for _ in range(len(self._scratch), threads)]
+        if self._world.structure.extent > self._still.allowed:  # boxes may have grown beyond those that are known
+            self._start()
         self._follow_rest(resting)
         lights = lights[: self._count]
         moved = ~(lights == self._lights).all(axis=1)
@@ -133,7 +135,7 @@ class Certificates:
         settled = still & ~self.still
         self._lights[:] = lights
         self.still[:] = still
-        self._still.know([int(number) for number in np.flatnonzero(settled)], self._lights)
+        self._still.know([int(number) for number in np.flatnonzero(settled)], self._lights, self.highest)
 
     def _follow_rest(self, resting: Resting) -> None:
         """Drop what depends on objects that have started or stopped."""
@@ -161,7 +163,7 @@ class Certificates:
         near = all_marked(len(gone), self.cells.words.dtype.type)
         lights = np.nan_to_num(self._lights)
         known = [int(number) for number in np.flatnonzero(self.still)]
-        self._still.know(known, self._lights)
+        self._still.know(known, self._lights, self.highest)
         boxes = np.zeros((self._count, len(stopped.which), 6))  # by light, of which the others have no certificates
         for number in known:
             for k, index in enumerate(stopped.which):
@@ -169,6 +171,7 @@ class Certificates:
         around = np.concatenate(
             [boxes[known, :, :3].min(0, initial=np.inf), boxes[known, :, 3:].max(0, initial=-np.inf)], 1
         )
+        around += 2.0 * self.highest * np.array([-1.0] * 3 + [1.0] * 3)  # rays end above what they are asked for
         drop_dependent(near, outlines, lights, around.astype(np.float32), LIT, self._threads)
         reach = (self.highest, self._largest)
         drop_certificates(self.cells, self.occluders, lights, reach, gone, boxes, near, self._scratch[0])

@@ -269,6 +269,7 @@ def _fused(s, o, light, count):
     """How many of the primitives found hide the whole cell together, those first; 0 where they do not."""
     if count > FUSED or count < 2:
         return 0
+    s.found[count:LANES] = s.found[0]  # all sixteen are looked at
     told = put_parts(o.rows, address_of(s.found), o.farthest, light, s.beam, address_of(s.parts))
     told &= lanes_below(count, 0)
     parts = 0

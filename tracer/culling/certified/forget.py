@@ -38,7 +38,7 @@ def _meets_any(s, boxes, light):
         return True
     met = False
     for k in range(len(boxes)):
-        met |= meets_box(s.beam, boxes[k], 0.0)
+        met |= meets_box(s.beam, boxes[k])
     return met
 
 
@@ -81,7 +81,7 @@ def drop_certificates(cells, o, lights, reach, gone, boxes, near, s):
 def copy_kept(cells, kept, target):
     """Copy the cells of those owners that are `kept` (owners,) bool to a target with room, and lead rays there."""
     cells, target = borrowed(cells), borrowed(target)
-    place = np.zeros(cells.used[0], np.int32)
+    place, moved = np.zeros(cells.used[0], np.int32), np.zeros(cells.named[0], np.int32)
     roots = cells.receivers.view(np.int32)
     for cell in range(1, cells.used[0]):
         owner = cells.owner[cell]
@@ -98,11 +98,14 @@ def copy_kept(cells, kept, target):
         for light in range(cells.lists.shape[1]):
             start = np.int64(cells.lists[cell, light])
             target.lists[to, light] = start
-            if start != OVERFLOW and start != NOBODY:
+            if start in (OVERFLOW, NOBODY):
+                continue
+            if moved[start] == 0:  # several cells may share a list
                 at, length = target.named[0], 1 + (cells.names[start] & (SETTLED - 1))
-                target.lists[to, light] = at
                 target.names[at : at + length] = cells.names[start : start + length]
                 target.named[0] = at + length
+                moved[start] = at
+            target.lists[to, light] = moved[start]
     for cell in range(1, target.used[0]):
         if target.child[cell] >= 0:
             target.child[cell] = place[target.child[cell]]

@@ -109,7 +109,7 @@ def _beside(row, away, beam):
         low, high = row[BOX + axis] - room, row[BOX + 3 + axis] + room
         apart = apart | (low > np.float32(beam.box[3 + axis])) | (high < np.float32(beam.box[axis]))
     for k in range(PLANES):
-        nearest = -room * np.float32(0)
+        nearest = f32x16(ZERO)
         for axis in range(3):
             n, low, high = np.float32(beam.planes[k, axis]), row[BOX + axis] - room, row[BOX + 3 + axis] + room
             nearest = nearest + n * (low if n > ZERO else high)
@@ -122,7 +122,7 @@ def meet_beam(rows, numbers, farthest, light, beam):
     """Of sixteen of rows (n, ROW), whose numbers, int32, are at an address: bits of those that every ray of a beam from
     the light (3,) is certain to hit, and of those that none is.
 
-    Nothing is certain to be hit by rays that may be as long as `farthest` says."""
+    A hit is certain only of rays shorter than `farthest`."""
     row = rows_at(rows, numbers)
     t = seen_from(_short(light), row)
     us, vs, ws, bs, ds, m, along = _over(t, beam)

@@ -8,12 +8,15 @@ from numpy.typing import NDArray
 from tracer.culling.certified.margins import BLUR, BOX, LONGEST, ROW, Farthest
 from tracer.culling.certified.occluders import BOXES, LANES, ROUNDED, Occluders, blocks_of, joined, know_light, shape_of
 from tracer.geometry.bvh8.collapse import Shape
-from tracer.geometry.bvh8.tree import WIDTH
+from tracer.geometry.bvh8.tree import PADDING, WIDTH
 from tracer.geometry.kdtree.place import triangle_boxes
 from tracer.geometry.memory import aligned_rows
 from tracer.geometry.primitives import Outlines
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
+
+GROWTH = 4  # times what moves may grow before all is certified anew
+QUADRIC = 4e-6  # of the coordinates: how far from a quadric rays that are carried to it may hit it
 
 
 class Still:
@@ -26,6 +29,7 @@ class Still:
         self.first_quadric = len(world.primitives.triangles)
         self.rows = aligned_rows(self.first_quadric + len(world.primitives.quadrics), ROW)
         self.rows[:] = 0
+        self.allowed = np.inf  # how large what moves may be for boxes to hold, which are padded by a part of that
         self._shapes: dict[int, Shape] = {}
         self._bounds_of: dict[int, NDArray[np.float64]] = {}
         self._add(0, world.outlines())
@@ -37,8 +41,16 @@ class Still:
         placed = self._world.triangles_of(index)
         self.rows[triangles, :BLUR], self.rows[triangles, BLUR], self.rows[triangles, BOX:] = placed
         self.rows[quadrics, BOX:] = outlines.boxes[self._primitives.quadrics_of(index)]
+        room = 0.0
+        if index > 0:
+            extent = GROWTH * self._world.structure.extent
+            self.allowed = min(self.allowed, extent)
+            there = outlines.to_world[index].reshape(3, 4)[:, 3]
+            world = np.abs(self.rows[quadrics, BOX:]).max(initial=0.0)
+            room = PADDING * extent + QUADRIC * (np.abs(there).max() + world)
+        outwards = np.array([-1] * 3 + [1] * 3, np.float32)
         for rows in (self.rows[triangles, BOX:], self.rows[quadrics, BOX:]):
-            rows += ROUNDED * np.abs(rows).max(1, initial=0.0, keepdims=True) * np.array([-1] * 3 + [1] * 3, np.float32)
+            rows += (ROUNDED * np.abs(rows).max(1, initial=0.0, keepdims=True) + room) * outwards
         boxes, numbers = self.rows[quadrics, BOX:], np.r_[triangles, quadrics].astype(np.int32)
         self._shapes[index] = shape_of(self.rows[triangles, :BLUR], boxes, numbers, self._threads)
         self._bounds_of[index] = self._bounds(index)
@@ -70,12 +82,13 @@ class Still:
             self._add(int(index), outlines)
         self._join()
 
-    def know(self, numbers: list[int], lights: NDArray[np.float32]) -> None:
-        """Know where lights of these numbers are, of lights (n, 3)."""
+    def know(self, numbers: list[int], lights: NDArray[np.float32], highest: float) -> None:
+        """Know where lights of these numbers are, of lights (n, 3), whose rays end no higher above what is static."""
 
         def know(chunk: int, worker: int) -> None:
             light = lights[numbers[chunk]]
-            know_light(self.occluders, numbers[chunk], light, self._farthest(light, self.bounds), self.largest)
+            farthest = self._farthest(light, self.bounds) + 2.0 * highest
+            know_light(self.occluders, numbers[chunk], light, farthest, self.largest)
 
         for_each_chunk(know, len(numbers), self._threads)
 

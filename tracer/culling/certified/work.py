@@ -20,6 +20,7 @@ from tracer.culling.certified.cells import (
     FINAL,
     LEAF,
     NOBODY,
+    NORMAL,
     OVERFLOW,
     ROOTS,
     SETTLED,
@@ -41,7 +42,7 @@ KEPT = 0xFF  # instead of a result: the light has its certificate, or needs none
 
 
 class Points(NamedTuple):
-    """Points (n,) that wanted more, by root: key int32, u and v float32; and room to sort them, (3, n) float32."""
+    """Points (n,) that wanted more, by root: key int32, u and v float32; and room to sort them, (2, n) float32."""
 
     key: NDArray[np.int32]
     u: NDArray[np.float32]
@@ -80,6 +81,11 @@ def make_tasks(cell: NDArray[np.int32], first: NDArray[np.int32], last: NDArray[
     )
 
 
+@inlined
+def _has_cells(row):
+    return row[NORMAL] != 0 or row[NORMAL + 1] != 0 or row[NORMAL + 2] != 0
+
+
 @kernel
 def gather_roots(cells, key, u, v, patience, points):
     """Sort points by their roots' keys into points, whose arrays are as long: tasks' (cell, first, last), (n, 3) int32.
@@ -98,6 +104,8 @@ def gather_roots(cells, key, u, v, patience, points):
     for k in range(len(cells.waiting)):
         if starts[k + 1] > starts[k]:
             root = receivers[k >> 1, ROOTS + (k & 1)]
+            if not _has_cells(cells.receivers[k >> 1]):  # it has begun to move since
+                continue
             if root == 0:
                 cells.waiting[k] += starts[k + 1] - starts[k]
                 if cells.waiting[k] < patience:
@@ -205,8 +213,8 @@ def _work_on(cells, o, lights, still, reach, task, tasks, points, patience, few,
             given_count = np.int64(TOO_MANY)
             if parent != 0 and state_of(cells.words[parent], light) == CANDIDATES:
                 start = np.int64(cells.lists[parent, light])
-                if cells.names[start] <= MOST:
-                    given_count = np.int64(cells.names[start])
+                if start != OVERFLOW:
+                    given_count = np.int64(cells.names[start]) & (SETTLED - 1)
                     given = cells.names[start + 1 : start + 1 + given_count]
             place = (np.float64(lights[light, 0]), np.float64(lights[light, 1]), np.float64(lights[light, 2]))
             state, amount = np.int64(CANDIDATES), np.int64(TOO_MANY)

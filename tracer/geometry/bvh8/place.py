@@ -99,6 +99,8 @@ class Trees8:
         self.resting_root = crown(self._forest, moving, 0)
         crown(self._forest, resting, self.resting_root)
         self.dynamic = self._forest.tree
+        there_now = [tree_box(self.dynamic, root) for root in (0, self.resting_root)]
+        self.extent = float(np.abs(there_now).max())  # by a part of which boxes of what moves or rests are padded
         roots = ((self.static, 0), (self.dynamic, self.resting_root), (self.dynamic, 0))
         trees = [number for tree, root in roots for number in (tree.nodes.ctypes.data, tree.blocks.ctypes.data, root)]
         there = 1 << FIXED | bool(resting.any()) << RESTING | bool(moving.any()) << MOVING
@@ -113,7 +115,7 @@ class Trees8:
             self.any_hit.address,
             self._data.ctypes.data,
             bool(moving.any()),
-            tree_box(self.dynamic),
+            there_now[0],
         )
 
     def _move_quadrics(self, poses: Poses) -> None:

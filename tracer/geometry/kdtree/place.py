@@ -46,6 +46,7 @@ class KdTrees:
     """Built over all primitives of a scene; raises Cancelled if `progress` does meanwhile."""
 
     closest, any_hit = traverse.closest, traverse.any_hit
+    extent = 0.0  # the largest coordinate by a part of which boxes of what moves or rests are padded now: none
     padding = 1e30  # of the largest coordinate, how far t may be wrong for a hit to count: anything
 
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
