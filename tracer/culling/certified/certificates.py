@@ -198,8 +198,8 @@ class Certificates:
         self.cells = empty
 
     def effort(self, usual: Effort) -> Effort:
-        """What certifying is worth now: more than usual where there is little to certify."""
-        if self._rate >= RARE:
+        """What certifying is worth now: more than usual where rays are dear and there is little to certify."""
+        if self._rate >= RARE or not usual.dear:
             return usual
         return usual._replace(roots=-(-usual.roots // EAGER), parts=-(-usual.parts // EAGER))
 
