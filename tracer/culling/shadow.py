@@ -27,7 +27,7 @@ from tracer.culling.cache import Cache, occluders_in, remember, slots_of, surely
 from tracer.culling.certified.candidates import ask_candidates
 from tracer.culling.certified.lookup import Certified
 from tracer.culling.modes import DYNAMIC, FULL_SHADOW, FULLY_RENDERED, MAX_CULLED_LIGHTS, NON_SHADOW, add_shadow
-from tracer.geometry.bvh8.packet import inverse
+from tracer.geometry.bvh8.packet import segments_miss_box
 from tracer.geometry.queries import DYNAMIC as MOVING
 from tracer.geometry.queries import STATIC, any_hits, any_hits_by
 from tracer.geometry.rays import MISS, Rays
@@ -45,8 +45,6 @@ from tracer.simd import (
     load_three,
     lowest_bit,
     mask16,
-    maximum,
-    minimum,
     ones,
     pack,
     pack_three,
@@ -304,14 +302,13 @@ def _towards(box, points, light, v):
     """Bits of the points of a vector between which and the light a box (6,) may lie: none is left out that a tree with
     this box at its root would let in, as the box is made larger here by more than roundings."""
     x, y, z = load_three(points.lifted, v)
-    enter, leave = f32x16(ZERO), f32x16(ONE)
-    for axis in range(3):
-        start, end = light[axis], x if axis == 0 else (y if axis == 1 else z)
-        room = ROUNDED * (abs(start) + abs(box[axis]) + abs(box[3 + axis]))
-        backwards = inverse(end - start)
-        first, last = (box[axis] - room - start) * backwards, (box[3 + axis] + room - start) * backwards
-        enter, leave = maximum(enter, minimum(first, last)), minimum(leave, maximum(first, last))
-    return bits_of(enter <= leave)
+    rx, ry, rz = (
+        ROUNDED * (abs(light[0]) + abs(box[0]) + abs(box[3])),
+        ROUNDED * (abs(light[1]) + abs(box[1]) + abs(box[4])),
+        ROUNDED * (abs(light[2]) + abs(box[2]) + abs(box[5])),
+    )
+    low, high = (box[0] - rx, box[1] - ry, box[2] - rz), (box[3] + rx, box[4] + ry, box[5] + rz)
+    return bits_of(~segments_miss_box(light, (x - light[0], y - light[1], z - light[2]), low, high))
 
 
 @subkernel

@@ -13,6 +13,8 @@ from tracer.kernels import kernel
 from tracer.scene.animation import deformed
 from tracer.scene.model import SPHERE, Float32, Float64, Int32, Scene
 
+OUTWARDS = np.array([-1.0, -1.0, -1.0, 1.0, 1.0, 1.0])  # times a number, what makes a box (6,) larger by it
+
 
 def triangle_rows(corners: Float32) -> Float32:
     """Corner and two edges, (n, 9) float32, of corners (n, 3, 3)."""
@@ -128,7 +130,7 @@ class Primitives:
             boxes[k, :3] = np.minimum(boxes[k, :3], round_ones[:, :3].min(0))
             boxes[k, 3:] = np.maximum(boxes[k, 3:], round_ones[:, 3:].max(0))
         slack = 2e-6 * np.abs(boxes).max(axis=1, keepdims=True, initial=0.0)
-        return (boxes + slack * (-1, -1, -1, 1, 1, 1)).astype(np.float32)
+        return (boxes + slack * OUTWARDS).astype(np.float32)
 
     def placed_quadric_boxes(self, which: slice, poses: Poses) -> NDArray[np.float32]:
         """Boxes (n, 6) around quadrics where they are in the world."""

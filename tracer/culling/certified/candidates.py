@@ -14,10 +14,8 @@ from tracer.culling.certified.margins import (
     INSIDE,
     LAMP,
     LARGE,
-    ONE,
     REPORTED,
     ROW,
-    ZERO,
     farthest_of,
     functions,
     length16,
@@ -25,12 +23,11 @@ from tracer.culling.certified.margins import (
     rows_at,
     seen_from,
 )
-from tracer.geometry.bvh8.packet import inverse
+from tracer.geometry.bvh8.packet import segments_miss_box
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     bits_of,
-    f32x16,
     gather_f32x16,
     gather_i32x16,
     i32x16,
@@ -40,7 +37,6 @@ from tracer.simd import (
     lowest_bit,
     mask16,
     maximum,
-    minimum,
     ones,
     select,
     size_of,
@@ -76,13 +72,8 @@ def _beside(box, light, direction, away):
     """In which lanes the segments pass by the boxes in which hits are reported, by more than roundings."""
     x0, y0, z0, x1, y1, z1 = box
     room = WIDE * away + ROUNDING * ((x1 - x0) + (y1 - y0) + (z1 - z0))
-    enter, leave = f32x16(ZERO), f32x16(ONE)
-    for axis in range(3):
-        low, high = (x0, x1) if axis == 0 else ((y0, y1) if axis == 1 else (z0, z1))
-        backwards = inverse(direction[axis])
-        first, last = (low - room - light[axis]) * backwards, (high + room - light[axis]) * backwards
-        enter, leave = maximum(enter, minimum(first, last)), minimum(leave, maximum(first, last))
-    return enter > leave
+    low, high = (x0 - room, y0 - room, z0 - room), (x1 + room, y1 + room, z1 + room)
+    return segments_miss_box(light, direction, low, high)
 
 
 @subkernel

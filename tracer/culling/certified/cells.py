@@ -71,13 +71,14 @@ def make_cells(primitives: int, lights: int, room: int = 1 << 12) -> Cells:
         np.zeros((room, 3), np.float32),
         np.zeros(room, np.int32),
         np.full((room, lights), NOBODY, np.int32),
-        np.array([TOO_MANY, 0] + 4 * room * [0], np.int32),
+        np.zeros(2 + 4 * room, np.int32),
         np.ones(1, np.int64),
         np.full(1, 2, np.int64),
         receivers,
         np.zeros(2 * len(receivers), np.int32),
         np.zeros(len(receivers), np.int32),
     )
+    cells.names[OVERFLOW], cells.names[NOBODY] = TOO_MANY, 0
     return cells
 
 

@@ -38,7 +38,7 @@ from tracer.culling.dependence import drop_dependent
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.modes import NON_SHADOW as LIT
 from tracer.culling.rest import Changed, Resting, changes, nothing_rests
-from tracer.geometry.primitives import Outlines
+from tracer.geometry.primitives import OUTWARDS, Outlines
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
@@ -142,7 +142,7 @@ class Certificates:
         started, stopped = changes(self._resting, resting)
         if not len(started.which) and not len(stopped.which):
             return
-        outlines, before = self._world.outlines(), self._resting
+        outlines = self._world.outlines()
         self._still.follow(started.which, stopped.which, outlines)
         if self._still.largest > self._largest:  # what is known of rays' ends no longer holds
             self._start()
@@ -150,14 +150,14 @@ class Certificates:
             self._still.follow(started.which, stopped.which, outlines)
             self._scale()
         else:
-            self._drop(before, started, stopped, outlines)
+            self._drop(started, stopped, outlines)
         self._resting = resting
         for index in started.which:
             self._receive(int(index), cells=False)
         for index in stopped.which:
             self._receive(int(index))
 
-    def _drop(self, before: Resting, started: Changed, stopped: Changed, outlines: Outlines) -> None:
+    def _drop(self, started: Changed, stopped: Changed, outlines: Outlines) -> None:
         """Drop the certificates that name what has started, and those that what has stopped may come between."""
         gone = np.isin(self._world.object_of, started.which)
         near = all_marked(len(gone), self.cells.words.dtype.type)
@@ -171,7 +171,7 @@ class Certificates:
         around = np.concatenate(
             [boxes[known, :, :3].min(0, initial=np.inf), boxes[known, :, 3:].max(0, initial=-np.inf)], 1
         )
-        around += 2.0 * self.highest * np.array([-1.0] * 3 + [1.0] * 3)  # rays end above what they are asked for
+        around += 2.0 * self.highest * OUTWARDS  # rays end above what they are asked for
         drop_dependent(near, outlines, lights, around.astype(np.float32), LIT, self._threads)
         reach = (self.highest, self._largest)
         drop_certificates(self.cells, self.occluders, lights, reach, gone, boxes, near, self._scratch[0])

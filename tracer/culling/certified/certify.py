@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from tracer.culling.certified.beam import Beam, make_beam
 from tracer.culling.certified.cells import CANDIDATES, FULL, LIT, SETTLED, TOO_MANY
 from tracer.culling.certified.meeting import FUNCTIONS, meet_beam, put_parts
-from tracer.culling.certified.occluders import BLOCK, BOXES, STACK, children_met, triangles_met
+from tracer.culling.certified.occluders import BLOCK, BOXES, LANES, STACK, children_met, triangles_met
 from tracer.geometry.bvh8.tree import WIDTH
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
@@ -34,7 +34,6 @@ from tracer.simd import (
     store,
 )
 
-LANES = 16
 WAITING = 4 * (LANES + WIDTH)  # bytes: one leaf more than are asked together
 MOST = 48  # candidates that a cell keeps for its parts
 FUSED = 12  # candidates that are fused at most

@@ -201,7 +201,7 @@ def _note(wanted, key, u, v):
 
 
 @subkernel
-def _wanting(cells, lights, still, cell, facing):
+def _wanting(cells, still, cell, facing):
     """Bits of the cells of sixteen points in which a light of which more could be known faces them; facing
     (lights, 16) are more than 0 where it does."""
     words, size = address_of(cells.words), cells.words.itemsize
@@ -246,7 +246,7 @@ def seek(certified, lights, wave):
         root = select(back, as_i32(row[ROOTS + 1]), as_i32(row[ROOTS]))
         cell = _descend(child, select(mask16(there), root, i32x16(0)), u, v)
         # A root that is not there yet is cell 0, of which nothing is known: wanted where any light faces it.
-        bits = there & _wanting(cells, lights, certified.still, cell, facing)
+        bits = there & _wanting(cells, certified.still, cell, facing)
         bits |= there & bits_of(cell == np.int32(0)) & _any_facing(certified.still, facing)
         while bits != 0:
             lane = lowest_bit(bits)

@@ -11,7 +11,7 @@ from tracer.geometry.bvh8.collapse import Shape
 from tracer.geometry.bvh8.tree import PADDING, WIDTH
 from tracer.geometry.kdtree.place import triangle_boxes
 from tracer.geometry.memory import aligned_rows
-from tracer.geometry.primitives import Outlines
+from tracer.geometry.primitives import OUTWARDS, Outlines
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
@@ -48,7 +48,7 @@ class Still:
             there = outlines.to_world[index].reshape(3, 4)[:, 3]
             world = np.abs(self.rows[quadrics, BOX:]).max(initial=0.0)
             room = PADDING * extent + QUADRIC * (np.abs(there).max() + world)
-        outwards = np.array([-1] * 3 + [1] * 3, np.float32)
+        outwards = OUTWARDS.astype(np.float32)
         for rows in (self.rows[triangles, BOX:], self.rows[quadrics, BOX:]):
             rows += (ROUNDED * np.abs(rows).max(1, initial=0.0, keepdims=True) + room) * outwards
         boxes, numbers = self.rows[quadrics, BOX:], np.r_[triangles, quadrics].astype(np.int32)
@@ -65,7 +65,7 @@ class Still:
         inverted for an object of nothing."""
         triangles, quadrics = self._rows_of(index)
         boxes = triangle_boxes(self.rows[triangles, :BLUR]).astype(np.float64)
-        boxes += self.occluders.reaches[light, triangles, None] * np.array([-1.0] * 3 + [1.0] * 3)
+        boxes += self.occluders.reaches[light, triangles, None] * OUTWARDS
         boxes = np.concatenate([boxes, self.rows[quadrics, BOX:]])
         return np.concatenate([boxes[:, :3].min(0, initial=np.inf), boxes[:, 3:].max(0, initial=-np.inf)])
 

@@ -100,6 +100,17 @@ def inverse(x):
 
 
 @inlined
+def segments_miss_box(start, direction, low, high):
+    """In which lanes the segments from a start (3,), on to t = 1, miss boxes between low (3,) and high (3,)."""
+    enter, leave = f32x16(np.float32(0)), f32x16(np.float32(1))
+    for axis in range(3):
+        backwards = inverse(direction[axis])
+        first, last = (low[axis] - start[axis]) * backwards, (high[axis] - start[axis]) * backwards
+        enter, leave = maximum(enter, minimum(first, last)), minimum(leave, maximum(first, last))
+    return enter > leave
+
+
+@inlined
 def _row(memory, row, source, count, rest):
     """Copy a row of `count` numbers into a packet's memory, and fill its last vector up with `rest`; what the
     next packet will copy is asked for."""

@@ -17,7 +17,7 @@ from tracer.geometry.kdtree import traverse
 from tracer.geometry.kdtree.build import bounds_of, build_tree
 from tracer.geometry.kdtree.tree import LEAF, Parts, Trees
 from tracer.geometry.poses import Poses
-from tracer.geometry.primitives import Primitives, WorldTriangles
+from tracer.geometry.primitives import OUTWARDS, Primitives, WorldTriangles
 from tracer.geometry.queries import Placed
 from tracer.scene.model import Float32, Float64, Progress
 
@@ -143,7 +143,7 @@ class KdTrees:
         """The triangles of an object that is at to_world (3, 4): rays are carried to its space, in float32."""
         local = self._primitives.triangles[self._primitives.triangles_of(index)]
         near = triangle_boxes(local).astype(np.float64)  # a hit lies no further outside than the box is wide
-        near += (near[:, 3:] - near[:, :3]).max(1, initial=0.0)[:, None] * np.array([-1.0001] * 3 + [1.0001] * 3)
+        near += (near[:, 3:] - near[:, :3]).max(1, initial=0.0)[:, None] * 1.0001 * OUTWARDS
         if index == 0:
             return WorldTriangles(local, np.zeros(len(local), np.float32), near.astype(np.float32))
         linear = to_world[:, :3]
@@ -154,10 +154,10 @@ class KdTrees:
         reach += np.abs(to_world[:, 3]).max() + np.abs(world).max(initial=0.0)
         blurs = np.full(len(local), CARRIED * reach, np.float32)
         if scales[0] > 1.1 * scales[-1]:  # a little in the object's space may be much here
-            boxes = np.broadcast_to(np.array([-EVERYWHERE] * 3 + [EVERYWHERE] * 3), (len(local), 6))
+            boxes = np.broadcast_to(EVERYWHERE * OUTWARDS, (len(local), 6))
         else:
             boxes = transform_boxes(near, np.broadcast_to(to_world, (len(local), 3, 4)))
-            boxes = boxes + CARRIED * reach * np.array([-1] * 3 + [1] * 3)
+            boxes = boxes + CARRIED * reach * OUTWARDS
         return WorldTriangles(world.reshape(-1, 9).astype(np.float32), blurs, boxes.astype(np.float32))
 
     def bounds(self) -> Float32:
