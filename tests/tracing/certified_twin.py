@@ -12,10 +12,10 @@ import numpy as np
 import tracer
 from tests.tracing.brute import meet_all
 from tracer.culling.certified.beam import LOWEST, OFFSET
-from tracer.culling.certified.candidates import verdicts
 from tracer.culling.certified.cells import CANDIDATES, FULL, HIGHEST, LIT, named_by, state_of
 from tracer.culling.certified.certificates import Certificates
 from tracer.culling.certified.margins import EPSILON
+from tracer.culling.certified.sights import verdicts
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import ACCELERATORS
 from tracer.kernels import kernel
@@ -33,7 +33,7 @@ class Twin:
         self.worlds = {name: tracer.World(scene, accelerator=name) for name in ACCELERATORS}
         self.certificates, self.lights = certificates, np.asarray(lights, np.float32)
         self.cells, self.rows = certificates.cells, certificates.occluders.rows
-        self.farthest = certificates.occluders.farthest
+        self.sights = certificates.occluders.sights
         world = self.worlds["kdtree"]
         self.primitives = len(world.object_of)
         used = int(self.cells.used[0])
@@ -163,7 +163,7 @@ class Twin:
             return []
         hits, misses = np.empty((2, len(names), len(rays)), np.bool_)
         ends = np.ascontiguousarray(asked.ends[rays].T, np.float32)
-        _verdicts(self.rows, self.farthest, names, self.lights[light], ends, hits, misses)
+        _verdicts(self.sights[light], names, self.lights[light], ends, hits, misses)
         hit, missed = hits.any(0), misses.all(0)
         blocked = asked.blocked[name][rays]
         assert not (hits & misses).any()
@@ -214,14 +214,16 @@ def _states(words, lights):
 
 
 @kernel
-def _verdicts(rows, farthest, names, light, ends, hits, misses):
-    """hits and misses (names, n): of which rays to ends (3, n) each of rows (any, ROW) is certain."""
+def _verdicts(sights, names, light, ends, hits, misses):
+    """hits and misses (names, n): of which rays to ends (3, n) each of sights (any, SIGHT) is certain."""
     numbers, padded = np.zeros(16, np.int32), np.zeros((3, 16), np.float32)
     for first in range(0, ends.shape[1], 16):
         count = min(16, ends.shape[1] - first)
         padded[:, :count] = ends[:, first : first + count]
         for j in range(len(names)):
             numbers[:] = names[j]
-            hit, missed = verdicts(rows, address_of(numbers), farthest, light, load_three(padded, 0))
+            end = load_three(padded, 0)
+            direction = end[0] - light[0], end[1] - light[1], end[2] - light[2]
+            hit, missed = verdicts(address_of(sights), address_of(numbers), light, direction, end)
             for k in range(count):
                 hits[j, first + k], misses[j, first + k] = (hit >> k) & 1, (missed >> k) & 1

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.cache import Cache, occluders_in, remember, slots_of, surely_blocked
-from tracer.culling.certified.candidates import ask_candidates
+from tracer.culling.certified.candidates import QUESTION_ROWS, ask_candidates
 from tracer.culling.certified.lookup import Certified
 from tracer.culling.modes import DYNAMIC, FULL_SHADOW, FULLY_RENDERED, MAX_CULLED_LIGHTS, NON_SHADOW, add_shadow
 from tracer.geometry.bvh8.packet import segments_miss_box
@@ -87,7 +87,8 @@ class Answers(NamedTuple):
     by vector; live, the bits of those to be traced, their rays, one after the other, and blocked, a byte for each
     ray. Of certified cells, over all lights: untried, the bits of points with a light of which nothing is known,
     and doubtful, of those with one of which only candidates are; asked (n,) int32, the points with candidates, one
-    after the other, and after that the bits of those that what moves is asked about. Of the cache: slots (n,) int32
+    after the other, and after that the bits of those that what moves is asked about; questions (QUESTION_ROWS, n)
+    float32, where the rays will lie. Of the cache: slots (n,) int32
     of the points, and occluders (n,) int32 of the rays, one after the other."""
 
     due: NDArray[np.int32]
@@ -102,6 +103,7 @@ class Answers(NamedTuple):
     untried: NDArray[np.int32]
     doubtful: NDArray[np.int32]
     asked: NDArray[np.int32]
+    questions: NDArray[np.float32]
     slots: NDArray[np.int32]
     occluders: NDArray[np.int32]
 
@@ -130,6 +132,7 @@ def answers_in(memory, count):
         memory[UNTRIED_ROW].view(np.int32),
         memory[DOUBTFUL_ROW].view(np.int32),
         memory[ASKED_ROW].view(np.int32),
+        memory[:QUESTION_ROWS],
         memory[SLOT_ROW].view(np.int32),
         memory[OCCLUDER_ROW].view(np.int32),
     )
@@ -197,7 +200,9 @@ def _choose_fates(points, light, number, knowledge, count, answers, counts):
             asked = _note_candidates(number, knowledge.certified, answers, v, asked)
     if asked > 0:
         certified, live, lit = knowledge.certified, answers.live, answers.lit
-        known, tests = ask_candidates(certified, points, light, number, answers.asked, asked, live, lit)
+        known, tests = ask_candidates(
+            certified, points, light, number, answers.asked, asked, answers.questions, live, lit
+        )
         counts[CANDIDATES_ONLY] += known
         counts[TESTS] += tests
 

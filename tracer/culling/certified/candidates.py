@@ -1,7 +1,11 @@
 """Rays that end in a cell with few candidates: these are asked instead of the tree, sixteen rays at a time.
 
-Each candidate's answer is taken where it is certain (`verdicts`).  One certain hit blocks the ray; where all are
-certain to be missed nothing static does; any other ray is traced as if nothing were known.
+Each candidate's answer is taken where it is certain (`sights.verdicts`).  One certain hit blocks the ray; where all
+are certain to be missed nothing static does; any other ray is traced as if nothing were known.
+
+All rays ask their first candidate, then those that are still open their second, and so on: these are packed anew each
+time, so that sixteen are always asked together, however many candidates each has.  And what is asked next is known
+early, so that memory has the time of a round to bring it.
 """
 
 from __future__ import annotations
@@ -9,116 +13,150 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.culling.certified.cells import SETTLED
-from tracer.culling.certified.margins import (
-    BOX,
-    INSIDE,
-    LAMP,
-    LARGE,
-    REPORTED,
-    ROW,
-    farthest_of,
-    functions,
-    length16,
-    margins,
-    rows_at,
-    seen_from,
-)
-from tracer.geometry.bvh8.packet import segments_miss_box
+from tracer.culling.certified.sights import SIGHT, verdicts
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     bits_of,
     gather_f32x16,
     gather_i32x16,
+    i32_at,
     i32x16,
     lanes_below,
+    load_f32x16,
     load_i32x16,
-    local_memory,
     lowest_bit,
     mask16,
-    maximum,
     ones,
+    pack,
+    prefetch,
     select,
-    size_of,
     store,
 )
 
-WIDE, ROUNDING = np.float32(2 * REPORTED), np.float32(1e-6)
-
-
-@subkernel
-def verdicts(rows, numbers, farthest, light, point):
-    """What sixteen shadow rays, from a light (3,) to their points, are certain to find.
-
-    Each of one of rows (n, ROW), whose numbers, int32, are at an address: bits of those that hit, of those that miss.
-
-    A hit is certain only of rays shorter than `farthest`."""
-    row = rows_at(rows, numbers)
-    direction = point[0] - light[0], point[1] - light[1], point[2] - light[2]
-    t, reach = seen_from(light, row), size_of(direction)
-    u, v, w, behind, d = functions(t, direction, point)
-    near = length16((point[0] - t.corner[0], point[1] - t.corner[1], point[2] - t.corner[2]))
-    along = maximum(d, -d)
-    m = margins(t, reach, near, along, size_of(point))
-    missed = (behind < -m.behind) | (u < -m.u) | (v < -m.v) | (w < -m.w)
-    hit = (behind > m.behind) & (t.height > np.float32(LAMP) * along) & (farthest_of(farthest, numbers) > reach)
-    hit = hit & (u > np.float32(INSIDE) * m.u) & (v > np.float32(INSIDE) * m.v) & (w > np.float32(INSIDE) * m.w)
-    firm = t.firm & (reach < LARGE)
-    return bits_of(hit & firm), bits_of((missed & firm) | _beside(row[BOX:ROW], light, direction, t.away))
+# Rows of open questions: the point's number, where in names its next candidate is, how many are left to ask, which
+# that is, and where the ray ends.
+POINT, NEXT, LEFT, NAME, END = range(5)
+QUESTION_ROWS = 7
+UNSURE = 64  # added to how many are left where one that was asked did not know
 
 
 @inlined
-def _beside(box, light, direction, away):
-    """In which lanes the segments pass by the boxes in which hits are reported, by more than roundings."""
-    x0, y0, z0, x1, y1, z1 = box
-    room = WIDE * away + ROUNDING * ((x1 - x0) + (y1 - y0) + (z1 - z0))
-    low, high = (x0 - room, y0 - room, z0 - room), (x1 + room, y1 + room, z1 + room)
-    return segments_miss_box(light, direction, low, high)
+def _prefetch_lanes(table, size, numbers):
+    """Ask for the rows of so many bytes, at sixteen int32 numbers that lie at an address."""
+    for lane in range(16):
+        prefetch(table + size * np.int64(i32_at(numbers)[lane]))
 
 
 @subkernel
-def ask_candidates(certified, points, light, number, asked, count, live, lit):
+def _open(certified, points, number, asked, count, room, stride):
+    """Open questions, at an address, of those of `count` points that have a few candidates; how many."""
+    cells = certified.cells
+    lists, names, sights = address_of(cells.lists), address_of(cells.names), address_of(certified.sights[number])
+    lights, at, step = np.int32(cells.lists.shape[1]), address_of(points.lifted), 4 * points.lifted.shape[1]
+    for k in range((count + 15) // 16):
+        which = select(mask16(lanes_below(count, k)), load_i32x16(address_of(asked) + 64 * k), i32x16(0))
+        cell = gather_i32x16(address_of(points.unit), which)
+        store(room + NEXT * stride + 64 * k, gather_i32x16(lists, cell * lights + np.int32(number)))
+        _prefetch_lanes(names, 4, room + NEXT * stride + 64 * k)
+    n = 0
+    for k in range((count + 15) // 16):
+        first = load_i32x16(room + NEXT * stride + 64 * k)
+        left = gather_i32x16(names, first) & np.int32(SETTLED - 1)  # TOO_MANY stays more than a few
+        few = (left > np.int32(0)) & (left <= np.int32(certified.asked)) & mask16(lanes_below(count, k))
+        if bits_of(few) == 0:
+            continue
+        which = select(few, load_i32x16(address_of(asked) + 64 * k), i32x16(0))
+        name = gather_i32x16(names, select(few, first + np.int32(1), i32x16(0)))
+        end = gather_f32x16(at, which), gather_f32x16(at + step, which), gather_f32x16(at + 2 * step, which)
+        _keep(room + 4 * n, stride, few, which, first + np.int32(1), left, name, end)
+        _prefetch_lanes(sights, 4 * SIGHT, room + NAME * stride + 4 * n)
+        n += ones(bits_of(few))
+    _fill_up(room + 4 * n, stride)
+    return n
+
+
+@inlined
+def _keep(at, stride, mask, which, following, left, name, end):
+    """Pack questions to an address."""
+    store(at + POINT * stride, pack(which, mask))
+    store(at + NEXT * stride, pack(following, mask))
+    store(at + LEFT * stride, pack(left, mask))
+    store(at + NAME * stride, pack(name, mask))
+    for axis in range(3):
+        store(at + (END + axis) * stride, pack(end[axis], mask))
+
+
+@inlined
+def _fill_up(at, stride):
+    """Let the lanes of the last vector that nobody has name a primitive that there is."""
+    store(at + NAME * stride, i32x16(0))
+
+
+@subkernel
+def _ask_next(names, sights, light, count, room, stride, live, lit):
+    """Ask the next candidate of `count` open questions, and keep those that are open still.
+
+    (how many, of how many the ray is known now)."""
+    n, known = 0, np.int64(0)
+    for k in range((count + 15) // 16):
+        at, there = room + 64 * k, lanes_below(count, k)
+        which, following, left = (
+            load_i32x16(at + POINT * stride),
+            load_i32x16(at + NEXT * stride),
+            load_i32x16(at + LEFT * stride),
+        )
+        x, y, z = (
+            load_f32x16(at + END * stride),
+            load_f32x16(at + (END + 1) * stride),
+            load_f32x16(at + (END + 2) * stride),
+        )
+        direction = x - light[0], y - light[1], z - light[2]
+        hit, missed = verdicts(sights, at + NAME * stride, light, direction, (x, y, z))
+        unsure = ~(hit | missed)
+        left = select(mask16(unsure), left | np.int32(UNSURE), left) - np.int32(1)
+        hit &= there
+        last = there & bits_of((left & np.int32(UNSURE - 1)) == np.int32(0))
+        free = last & ~hit & bits_of(left == np.int32(0))
+        known += ones(hit | free)
+        _answer(at + POINT * stride, hit, free, live, lit)
+        more = mask16(there & ~hit & ~last)
+        if bits_of(more) != 0:
+            following = following + np.int32(1)
+            name = gather_i32x16(names, select(more, following, i32x16(0)))
+            _keep(room + 4 * n, stride, more, which, following, left, name, (x, y, z))
+            _prefetch_lanes(sights, 4 * SIGHT, room + NAME * stride + 4 * n)
+            n += ones(bits_of(more))
+    _fill_up(room + 4 * n, stride)
+    return n, known
+
+
+@inlined
+def _answer(points, hit, free, live, lit):
+    """Take points, sixteen numbers at an address, out of the bits `live` and put those that are `free` into `lit`."""
+    known = hit | free
+    while known != 0:
+        lane = lowest_bit(known)
+        known &= known - 1
+        i = np.int64(i32_at(points)[lane])
+        bit = np.int32(1) << np.int32(i & 15)
+        live[i >> 4] &= ~bit
+        if (free >> lane) & 1:
+            lit[i >> 4] |= bit
+
+
+@subkernel
+def ask_candidates(certified, points, light, number, asked, count, questions, live, lit):
     """Ask the candidates of `count` points, whose numbers are `asked`, about light `number` at light (3,).
 
     Points of which these are certain are taken out of the bits `live`, and put into the bits `lit` where the light
-    reaches them.  (how many they are, tests made)."""
-    cells, rows = certified.cells, certified.rows
-    lists, names, farthest = address_of(cells.lists), address_of(cells.names), certified.farthest
-    at, stride, numbers = address_of(points.lifted), 4 * points.lifted.shape[1], local_memory(64)
-    tests, answered = np.int64(0), np.int64(0)
-    for k in range((count + 15) // 16):
-        there = lanes_below(count, k)
-        which = select(mask16(there), load_i32x16(address_of(asked) + 64 * k), i32x16(0))
-        cell = gather_i32x16(address_of(points.unit), which)
-        first = gather_i32x16(lists, cell * np.int32(cells.lists.shape[1]) + np.int32(number))
-        length = gather_i32x16(names, first) & np.int32(SETTLED - 1)  # TOO_MANY stays more than a few
-        asking = there & bits_of((length > np.int32(0)) & (length <= np.int32(certified.asked)))
-        point = (
-            gather_f32x16(at, which),
-            gather_f32x16(at + stride, which),
-            gather_f32x16(at + 2 * stride, which),
-        )
-        hit, unsure, j = np.int64(0), np.int64(0), 0
-        testing = asking
-        while testing != 0:
-            j += 1
-            testing = asking & ~hit & bits_of(length >= np.int32(j))
-            if testing == 0:
-                break
-            name = gather_i32x16(names, select(mask16(testing), first + np.int32(j), i32x16(0)))
-            store(numbers, select(mask16(testing), name, i32x16(0)))
-            surely, missed = verdicts(rows, numbers, farthest, light, point)
-            tests += ones(testing)
-            hit |= testing & surely
-            unsure |= testing & ~(surely | missed)
-        known = asking & (hit | ~unsure)
-        answered += ones(known)
-        while known != 0:
-            lane = lowest_bit(known)
-            known &= known - 1
-            i = np.int64(asked[16 * k + lane])
-            bit = np.int32(1) << np.int32(i & 15)
-            live[i >> 4] &= ~bit
-            if (hit >> lane) & 1 == 0:
-                lit[i >> 4] |= bit
-    return answered, tests
+    reaches them.  `questions` (QUESTION_ROWS, n) float32 is memory.  (how many are known, tests made)."""
+    room, stride = address_of(questions), 4 * questions.shape[1]
+    names, sights = address_of(certified.cells.names), address_of(certified.sights[number])
+    tests, known = np.int64(0), np.int64(0)
+    count = _open(certified, points, number, asked, count, room, stride)
+    while count > 0:
+        tests += count
+        count, answered = _ask_next(names, sights, light, count, room, stride, live, lit)
+        known += answered
+    return known, tests

@@ -33,7 +33,7 @@ from tracer.culling.certified.forget import all_marked, copy_kept, drop_certific
 from tracer.culling.certified.lookup import ROOM, Certified, Wanted
 from tracer.culling.certified.occluders import Occluders
 from tracer.culling.certified.still import Still
-from tracer.culling.certified.work import KEPT, Points, commit, counters, gather_roots, make_tasks, work_on
+from tracer.culling.certified.work import KEPT, Points, commit, counters, gather_roots, make_tasks, tasks_in, work_on
 from tracer.culling.dependence import drop_dependent
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.modes import NON_SHADOW as LIT
@@ -43,7 +43,8 @@ from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
 STATES = ("none", "full", "lit", "candidates")
-BATCH, CHUNK = 2048, 64  # tasks between two looks at the budget; tasks that a thread takes at a time
+BATCH = 4096  # tasks between two looks at the budget
+SHARES, CHUNK = 4, 32  # of a batch that each thread takes, one at a time, and tasks that are worth one
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,7 @@ class Certificates:
         self._world, self._threads = world, threads
         self._scratch: list[certify.Scratch] = []
         self._count = min(lights, MAX_CULLED_LIGHTS)
+        self._room = make_tasks(BATCH, self._count)
         self._start()
 
     def _start(self) -> None:
@@ -210,7 +212,7 @@ class Certificates:
     def told(self, effort: Effort, wanted: Wanted) -> Certified:
         """What a tile is told, which puts what it wants there."""
         o = self.occluders
-        return Certified(self.cells, o.rows, self.still, o.farthest, self.highest, effort.asked, effort.dear, wanted)
+        return Certified(self.cells, o.sights, self.still, self.highest, effort.asked, effort.dear, wanted)
 
     def wanted(self, tiles: int) -> Wanted:
         """Room for what tiles ask for: arrays with a row each."""
@@ -259,18 +261,17 @@ class Certificates:
         cancel: Callable[[], bool] | None,
     ) -> NDArray[np.int32]:
         """Work on tasks (n, 3); those that follow."""
-        cell, start, end = (np.ascontiguousarray(todo[:, k]) for k in range(3))
-        tasks = make_tasks(cell, start, end, self._count)
-        reach = (self.highest, self._largest)
+        tasks, reach = tasks_in(self._room, todo), (self.highest, self._largest)
+        size = max(CHUNK, -(-len(todo) // (SHARES * self._threads)))
 
         def work(chunk: int, worker: int) -> None:
             work_on(
                 self.cells, self.occluders, self._lights, self.still, reach,
-                chunk * CHUNK, min(len(todo), (chunk + 1) * CHUNK),
+                chunk * size, min(len(todo), (chunk + 1) * size),
                 tasks, points, effort.parts, effort.few, self._scratch[worker], counts[worker],
             )  # fmt: skip
 
-        for_each_chunk(work, -(-len(todo) // CHUNK), self._threads, cancel)
+        for_each_chunk(work, -(-len(todo) // size), self._threads, cancel)
         named = 1 + tasks.amount[(tasks.state != KEPT) & (tasks.amount != TOO_MANY)].astype(np.int64) % SETTLED
         self.cells = with_room(self.cells, 4 * len(todo), int(named.sum()))
         following = np.empty((4 * len(todo), 3), np.int32)

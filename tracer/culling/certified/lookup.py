@@ -27,7 +27,7 @@ from tracer.culling.certified.cells import (
     Cells,
     make_cells,
 )
-from tracer.culling.certified.margins import ROW, Farthest
+from tracer.culling.certified.sights import SIGHT
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
@@ -69,15 +69,13 @@ class Wanted(NamedTuple):
 
 
 class Certified(NamedTuple):
-    """What a tile is told of certified cells, and asks: the cells; rows (n, ROW) float32 of the triangles (`margins`);
-    still (lights,) bool, which lights are certified; how long a ray may be to be sure of a hit, and how high above a
-    cell it may end; how many candidates are asked at most; whether rays cost so much that every look-up pays; and
-    what the tile wants."""
+    """What a tile is told of certified cells, and asks: the cells; sights (lights, n, SIGHT) float32 of what they name;
+    still (lights,) bool, which lights are certified; how high above a cell a ray may end; how many candidates are asked
+    at most; whether rays cost so much that every look-up pays; and what the tile wants."""
 
     cells: Cells
-    rows: NDArray[np.float32]
+    sights: NDArray[np.float32]
     still: NDArray[np.bool_]
-    farthest: Farthest
     highest: float
     asked: int
     dear: bool
@@ -91,8 +89,8 @@ def nothing_wanted() -> Wanted:
 
 def nothing_told(lights: int) -> Certified:
     """What tiles are told where nothing is certified."""
-    rows, still = np.empty((0, ROW), np.float32), np.empty(0, np.bool_)
-    return Certified(make_cells(1, lights, 1), rows, still, Farthest(0, 0.0, 0.0), 0.0, 0, False, nothing_wanted())
+    sights, still = np.empty((0, 0, SIGHT), np.float32), np.empty(0, np.bool_)
+    return Certified(make_cells(1, lights, 1), sights, still, 0.0, 0, False, nothing_wanted())
 
 
 @inlined

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.certified.beam import PLANES
 from tracer.culling.certified.margins import BOX, REPORTED, TWO, ZERO, Farthest, margins, rows_at, seen_from
+from tracer.culling.certified.sights import put_sights
 from tracer.geometry.bvh8.build import build_shape
 from tracer.geometry.bvh8.collapse import VACANT, Shape
 from tracer.geometry.bvh8.tree import WIDTH
@@ -52,8 +53,8 @@ class Occluders(NamedTuple):
     triangles as structure of arrays, and numbers (leaves, 8) int32, NONE for none, or that of a quadric; roots
     (trees,) int32; boxes (lights, nodes, BOXES) float32; reaches (lights, n) float32, how far from each
     triangle a ray from the light can report a hit, and beside (lights, leaves, 8), those of a leaf side by side,
-    negative for none.  `farthest` tells which rays are too long to be
-    sure of a hit.
+    negative for none; sights (lights, primitives, SIGHT) float32, what rays from the light ask (`sights`).  `farthest`
+    tells which rays are too long to be sure of a hit.
     """
 
     rows: NDArray[np.float32]
@@ -65,6 +66,7 @@ class Occluders(NamedTuple):
     boxes: NDArray[np.float32]
     reaches: NDArray[np.float32]
     beside: NDArray[np.float32]
+    sights: NDArray[np.float32]
     farthest: Farthest
 
 
@@ -184,6 +186,7 @@ def know_light(o, number, light, farthest, largest):
     o = borrowed(o)
     boxes = o.boxes[number]
     _find_reaches(o, number, light, farthest, ROUNDED * largest)
+    put_sights(o.rows, o.farthest, light, o.sights[number])
     for node in range(len(o.children) - 1, -1, -1):  # children come after their parents
         for child in range(WIDTH):
             code = o.children[node, child]

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.certified.margins import BLUR, BOX, LONGEST, ROW, Farthest
 from tracer.culling.certified.occluders import BOXES, LANES, ROUNDED, Occluders, blocks_of, joined, know_light, shape_of
+from tracer.culling.certified.sights import SIGHT
 from tracer.geometry.bvh8.collapse import Shape
 from tracer.geometry.bvh8.tree import PADDING, WIDTH
 from tracer.geometry.kdtree.place import triangle_boxes
@@ -29,6 +30,7 @@ class Still:
         self.first_quadric = len(world.primitives.triangles)
         self.rows = aligned_rows(self.first_quadric + len(world.primitives.quadrics), ROW)
         self.rows[:] = 0
+        self._sights = aligned_rows(lights * len(self.rows), SIGHT).reshape(lights, -1, SIGHT)
         self.allowed = np.inf  # how large what moves may be for boxes to hold, which are padded by a part of that
         self._shapes: dict[int, Shape] = {}
         self._bounds_of: dict[int, NDArray[np.float64]] = {}
@@ -119,5 +121,6 @@ class Still:
             np.empty((count, len(shape.children), BOXES), np.float32),
             np.empty((count, -(-len(self.rows) // LANES) * LANES), np.float32),
             np.empty((count, len(shape.leaves), WIDTH), np.float32),
+            self._sights,
             farthest,
         )

@@ -67,18 +67,25 @@ class Tasks(NamedTuple):
     parts: NDArray[np.int32]
 
 
-def make_tasks(cell: NDArray[np.int32], first: NDArray[np.int32], last: NDArray[np.int32], lights: int) -> Tasks:
-    n = len(cell)
+def make_tasks(n: int, lights: int) -> Tasks:
+    """Room for n tasks."""
     return Tasks(
-        cell,
-        first,
-        last,
+        np.empty(n, np.int32),
+        np.empty(n, np.int32),
+        np.empty(n, np.int32),
         np.empty((n, lights), np.uint8),
         np.empty((n, lights), np.uint8),
         np.empty(n, np.bool_),
         np.empty((n, lights, MOST), np.int32),
-        np.zeros((n, 5), np.int32),
+        np.empty((n, 5), np.int32),
     )
+
+
+def tasks_in(room: Tasks, todo: NDArray[np.int32]) -> Tasks:
+    """Tasks for todo (n, 3) int32, cell, first and last point, in the room for more."""
+    tasks = Tasks(*(a[: len(todo)] for a in room))
+    tasks.cell[:], tasks.first[:], tasks.last[:] = todo.T
+    return tasks
 
 
 @inlined
@@ -177,62 +184,74 @@ def _can_split(cells, o, cell, highest):
 
 
 @subkernel
-def _faces(o, triangle, side, light):
-    """Whether a light lies on a side of a triangle's plane."""
-    a, e1, e2 = row_of(o.rows, triangle)
-    return side * dot(cross(e1, e2), (light[0] - a[0], light[1] - a[1], light[2] - a[2])) > 0.0
-
-
-@subkernel
-def _work_on(cells, o, lights, still, reach, task, tasks, points, patience, few, s, counts):
-    cell = np.int64(tasks.cell[task])
-    first, last = tasks.first[task], tasks.last[task]
-    owner = np.int64(cells.owner[cell])
-    triangle, side = owner >> 1, 1.0 - 2.0 * (owner & 1)
-    word, parent = cells.words[cell], np.int64(cells.parent[cell])
-    highest, largest = reach
-    placed = put_cell(
+def _put_cell(cells, o, cell, reach, s):
+    """Put the worker's beam to a cell; False where that cannot be certified."""
+    owner, (highest, largest) = np.int64(cells.owner[cell]), reach
+    return put_cell(
         s.beam,
         o.rows,
-        triangle,
-        side,
+        owner >> 1,
+        1.0 - 2.0 * (owner & 1),
         np.float64(cells.place[cell, 0]),
         np.float64(cells.place[cell, 1]),
         np.float64(cells.place[cell, 2]),
         highest,
         largest,
     )
-    doubt = False
+
+
+@subkernel
+def _certify(cells, o, place, light, cell, few, s, counts):
+    """Certify the cell that the worker's beam was put to for a light at a place: (certificate, how many it names)."""
+    if not put_light(s.beam, place):
+        return np.int64(CANDIDATES), np.int64(TOO_MANY)
+    parent, given, count = np.int64(cells.parent[cell]), cells.names[:0], np.int64(TOO_MANY)
+    if parent != 0 and state_of(cells.words[parent], light) == CANDIDATES:
+        start = np.int64(cells.lists[parent, light])
+        if start != OVERFLOW:
+            count = np.int64(cells.names[start]) & (SETTLED - 1)
+            given = cells.names[start + 1 : start + 1 + count]
+    return certify(s, o, light, place, given, count, few, counts)
+
+
+@subkernel
+def _work_on(cells, o, lights, still, reach, task, tasks, points, patience, few, s, counts):
+    cell = np.int64(tasks.cell[task])
+    first, last = tasks.first[task], tasks.last[task]
+    owner, word, highest = np.int64(cells.owner[cell]), cells.words[cell], reach[0]
+    a, e1, e2 = row_of(o.rows, owner >> 1)
+    up, side = cross(e1, e2), 1.0 - 2.0 * (owner & 1)
+    put, placed, doubt = False, True, False
     for light in range(len(lights)):
         tasks.state[task, light] = KEPT
-        state = np.int64(state_of(word, light))
-        if not still[light] or not _faces(o, triangle, side, lights[light]):
+        place = np.float64(lights[light, 0]), np.float64(lights[light, 1]), np.float64(lights[light, 2])
+        if not still[light] or not side * dot(up, (place[0] - a[0], place[1] - a[1], place[2] - a[2])) > 0.0:
             continue
-        if state == UNTRIED:
-            given = cells.names[:0]
-            given_count = np.int64(TOO_MANY)
-            if parent != 0 and state_of(cells.words[parent], light) == CANDIDATES:
-                start = np.int64(cells.lists[parent, light])
-                if start != OVERFLOW:
-                    given_count = np.int64(cells.names[start]) & (SETTLED - 1)
-                    given = cells.names[start + 1 : start + 1 + given_count]
-            place = (np.float64(lights[light, 0]), np.float64(lights[light, 1]), np.float64(lights[light, 2]))
-            state, amount = np.int64(CANDIDATES), np.int64(TOO_MANY)
-            if placed and put_light(s.beam, place):
-                state, amount = certify(s, o, light, place, given, given_count, few, counts)
-            tasks.state[task, light], tasks.amount[task, light] = state, amount
-            if amount != TOO_MANY:
-                for k in range(amount & (SETTLED - 1)):
-                    tasks.names[task, light, k] = s.found[k]
-            doubt |= state == CANDIDATES and (amount & SETTLED == 0 or amount == TOO_MANY)
-        else:
+        state = np.int64(state_of(word, light))
+        if state != UNTRIED:
             doubt |= state == CANDIDATES and not _is_settled(cells, cell, light)
+            continue
+        if not put:
+            put, placed = True, _put_cell(cells, o, cell, reach, s)
+        amount = np.int64(TOO_MANY)
+        if placed:
+            state, amount = _certify(cells, o, place, light, cell, few, s, counts)
+        else:
+            state = np.int64(CANDIDATES)
+        tasks.state[task, light], tasks.amount[task, light] = state, amount
+        if amount != TOO_MANY:
+            for k in range(amount & (SETTLED - 1)):
+                tasks.names[task, light, k] = s.found[k]
+        doubt |= state == CANDIDATES and (amount & SETTLED == 0 or amount == TOO_MANY)
     tasks.parts[task, :] = 0
     tasks.doubt[task] = doubt
     if doubt and placed:
         leaf = cells.child[cell] == LEAF or cells.child[cell] == CONTENT
         if cells.child[cell] >= 0 or (
-            leaf and cells.wanted[cell] + last - first >= patience and _can_split(cells, o, cell, highest)
+            leaf
+            and cells.wanted[cell] + last - first >= patience
+            and _can_split(cells, o, cell, highest)
+            and (put or _put_cell(cells, o, cell, reach, s))
         ):
             _sort_points(cells, cell, points, first, last, tasks.parts[task])
 

@@ -1,0 +1,127 @@
+"""Triangles as a light sees them, found once: what a shadow ray needs to know to be certain of one.
+
+`margins` tells what is certain of a triangle and any light; here all that does not depend on the ray is gathered in a
+row of sixteen numbers, which one line of the cache holds: the coefficients of U, V and D, the corner that D - T is
+taken from, and three of the margins,
+
+    U:            of_u |d| + 2.5 (enlarged) |D|
+    V:            of_v |d| + 2.5 (enlarged) |D|
+    D - U - V:    (of_u + of_v) |d| + 2.5 (enlarged) |D|
+    D - T:        behind (19 |P - a| + 11 |d| + 2 |P|)
+
+These are no narrower than those of `margins`.  Half of D's own goes to U and to V each, so that their sum is right
+for D - U - V.  In that of D - T, the normal's length is taken for |e1| |e2|, of which it is never more, |T| for
+|n| |s|, and |s| for |d| + |P - a|.
+
+A row whose `FARTHEST` is negative is that of a primitive of which its plane cannot tell: of a quadric, or of a triangle
+that the light is in the plane of. It begins with the box outside of which no hit is reported.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracer.culling.certified.margins import (
+    BOX,
+    ENLARGED,
+    EPSILON,
+    FIVE,
+    FOUR,
+    INSIDE,
+    LAMP,
+    LARGE,
+    REPORTED,
+    ROW,
+    SMALL,
+    ZERO,
+    farthest_of,
+    length16,
+    rows_at,
+    seen_from,
+)
+from tracer.geometry.bvh8.packet import segments_miss_box
+from tracer.kernels import inlined, subkernel
+from tracer.simd import (
+    any_lane,
+    bits_of,
+    f32_at,
+    i32x16,
+    lane_numbers_x16,
+    load_columns,
+    local_memory,
+    maximum,
+    minimum,
+    select,
+    size_of,
+    store,
+)
+
+U, V, D, CORNER, OF_U, OF_V, BEHIND, FARTHEST = 0, 3, 6, 9, 12, 13, 14, 15
+SIGHT, LANES = 16, 16
+COLUMNS = 64 * SIGHT  # bytes of sixteen
+_ENLARGED = np.float32(2.5 * (ENLARGED + 7 * EPSILON))
+_NINE, _HALF_D, _BEHIND = np.float32(2.5 * 9.01 * EPSILON), np.float32(1.25 * EPSILON), np.float32(1.26 * EPSILON)
+_BLURRED, _BLURRED_BEHIND = np.float32(2.5 * 5.01), np.float32(5.01 / 11)
+_NEAR, _REACH, _AT = np.float32(19), np.float32(11), np.float32(2)
+_PAST, _NONE = np.float32(0.999 / LAMP), np.float32(-1)
+_INSIDE = np.float32(INSIDE)
+_WIDE, _ROUNDING = np.float32(2 * REPORTED), np.float32(1e-6)
+
+
+@subkernel
+def put_sights(rows, farthest, light, sights):
+    """Rows (n, ROW) as a light at (3,) float32 sees them, into sights (n, SIGHT); rays that are sure of a hit are no
+    longer than `farthest`."""
+    numbers, columns = local_memory(64), local_memory(COLUMNS)
+    made = f32_at(columns)
+    for first in range(0, len(rows), LANES):
+        store(numbers, minimum(lane_numbers_x16() + np.int32(first), i32x16(np.int32(len(rows) - 1))))
+        row = rows_at(rows, numbers)
+        t = seen_from(light, row)
+        edges = t.first * t.second
+        half_d = _HALF_D * (FOUR * edges + FIVE * t.across)
+        blurred = _BLURRED * t.blur * maximum(t.first, t.second)
+        sure = minimum(farthest_of(farthest, numbers), minimum(t.height / t.across * _PAST, LARGE))
+        box, room = row[BOX:ROW], _WIDE * t.away
+        for axis in range(3):
+            room = room + _ROUNDING * (box[3 + axis] - box[axis])
+        for axis in range(3):
+            low, high = box[axis] - room, box[3 + axis] + room
+            store(columns + 64 * (U + axis), select(t.firm, t.u[axis], low))
+            store(columns + 64 * (V + axis), select(t.firm, t.v[axis], high))
+            store(columns + 64 * (D + axis), t.d[axis])
+            store(columns + 64 * (CORNER + axis), t.corner[axis])
+        store(columns + 64 * OF_U, _NINE * t.away * t.second + blurred + half_d)
+        store(columns + 64 * OF_V, _NINE * t.away * t.first + blurred + half_d)
+        store(columns + 64 * BEHIND, _BEHIND * edges + _BLURRED_BEHIND * t.blur * t.across / t.away)
+        store(columns + 64 * FARTHEST, select(t.firm, sure, _NONE))
+        for k in range(min(LANES, len(rows) - first)):
+            for column in range(SIGHT):
+                sights[first + k, column] = made[LANES * column + k]
+
+
+@inlined
+def verdicts(sights, numbers, light, direction, end):
+    """What sixteen shadow rays, from a light (3,) to their ends, are certain to find.
+
+    Each of one of the rows (n, SIGHT) at the address `sights`, whose numbers, int32, are at an address: bits of those
+    that hit, of those that miss."""
+    t = load_columns(sights, numbers, SIGHT)
+    x, y, z = direction
+    ax, ay, az = end[0] - t[CORNER], end[1] - t[CORNER + 1], end[2] - t[CORNER + 2]
+    reach, near = size_of(direction), length16((ax, ay, az))
+    u = t[U] * x + t[U + 1] * y + t[U + 2] * z
+    v = t[V] * x + t[V + 1] * y + t[V + 2] * z
+    d = t[D] * x + t[D + 1] * y + t[D + 2] * z
+    w, behind = d - u - v, t[D] * ax + t[D + 1] * ay + t[D + 2] * az
+    of_d = _ENLARGED * maximum(d, -d) + SMALL
+    of_u, of_v, of_w = t[OF_U] * reach + of_d, t[OF_V] * reach + of_d, (t[OF_U] + t[OF_V]) * reach + of_d
+    of_behind = t[BEHIND] * (_NEAR * near + _REACH * reach + _AT * size_of(end)) + SMALL
+    missed = (behind < -of_behind) | (u < -of_u) | (v < -of_v) | (w < -of_w)
+    hit = (behind > of_behind) & (t[FARTHEST] > reach)
+    hit = hit & (u > _INSIDE * of_u) & (v > _INSIDE * of_v) & (w > _INSIDE * of_w)
+    boxed = t[FARTHEST] < ZERO
+    missed = missed & ~boxed & (reach < LARGE)
+    if any_lane(boxed):
+        missed = missed | (boxed & segments_miss_box(light, direction, t[U:V], t[V:D]))
+    return bits_of(hit), bits_of(missed)
