@@ -83,7 +83,7 @@ def make_tasks(n: int, lights: int) -> Tasks:
 
 def tasks_in(room: Tasks, todo: NDArray[np.int32]) -> Tasks:
     """Tasks for todo (n, 3) int32, cell, first and last point, in the room for more."""
-    tasks = Tasks(*(a[: len(todo)] for a in room))
+    tasks = Tasks._make(a[: len(todo)] for a in room)
     tasks.cell[:], tasks.first[:], tasks.last[:] = todo.T
     return tasks
 
