@@ -230,7 +230,8 @@ class UnfinishedFrame:
         self.memory.follow_rest(rest.now, world.outlines, self._workers)
         if certified:
             if renderer.certificates is None:
-                renderer.certificates = Certificates(world, len(lights), self._workers)
+                asks = EFFORT[self._settings.accelerator].asked > 0
+                renderer.certificates = Certificates(world, len(lights), self._workers, asks)
             self._certificates = renderer.certificates
             self._certificates.follow(lights, rest.now, self._workers)
 
@@ -266,6 +267,7 @@ class UnfinishedFrame:
         certificates = self._certificates
         if certificates is None:
             return
+        until = clock.perf_counter() + self._settings.certificate_seconds
         sought, lights = certificates.wanted(len(self._tiles)), self._renderer._look.lights
 
         def work(tile: tuple[int, int, int, int], worker: int) -> None:
@@ -273,7 +275,7 @@ class UnfinishedFrame:
             seek_tile(self._rays, tile, certified, lights, self._buffers, self._spaces[worker])
 
         self._for_each_tile(work)
-        budget = Budget(self._settings.certificates, self._settings.certificate_seconds)
+        budget = Budget(self._settings.certificates, until)
         effort = certificates.effort(EFFORT[self._settings.accelerator])
         self._certifying = certificates.certify([sought, *certificates.left], budget, effort, self._cancel)
         self._wanted = certificates.wanted(len(self._tiles))

@@ -24,13 +24,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.cache import Cache, occluders_in, remember, slots_of, surely_blocked
-from tracer.culling.certified.candidates import QUESTION_ROWS, ask_candidates
+from tracer.culling.certified.candidates import ask_candidates
 from tracer.culling.certified.lookup import Certified
 from tracer.culling.modes import DYNAMIC, FULL_SHADOW, FULLY_RENDERED, MAX_CULLED_LIGHTS, NON_SHADOW, add_shadow
 from tracer.geometry.bvh8.packet import segments_miss_box
 from tracer.geometry.queries import DYNAMIC as MOVING
 from tracer.geometry.queries import STATIC, any_hits, any_hits_by
-from tracer.geometry.rays import MISS, Rays
+from tracer.geometry.rays import MISS
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
@@ -77,65 +77,6 @@ class Knowledge(NamedTuple):
     certify: bool
     certified: Certified
     cache: Cache
-
-
-class Answers(NamedTuple):
-    """What is known of the shadow rays of n points to one light, as bits of int32, 16 points a number:
-    which are due, which of those reach the light and, where knowledge asks to verify, which truly do.
-
-    For asking: low and high (n,) int32, halves of the points' words, and whether these have been looked up, vector
-    by vector; live, the bits of those to be traced, their rays, one after the other, and blocked, a byte for each
-    ray. Of certified cells, over all lights: untried, the bits of points with a light of which nothing is known,
-    and doubtful, of those with one of which only candidates are; asked (n,) int32, the points with candidates, one
-    after the other, and after that the bits of those that what moves is asked about; questions (QUESTION_ROWS, n)
-    float32, where the rays will lie. Of the cache: slots (n,) int32
-    of the points, and occluders (n,) int32 of the rays, one after the other."""
-
-    due: NDArray[np.int32]
-    lit: NDArray[np.int32]
-    truth: NDArray[np.int32]
-    low: NDArray[np.int32]
-    high: NDArray[np.int32]
-    looked_up: NDArray[np.int32]
-    rays: Rays
-    live: NDArray[np.int32]
-    blocked: NDArray[np.float32]
-    untried: NDArray[np.int32]
-    doubtful: NDArray[np.int32]
-    asked: NDArray[np.int32]
-    questions: NDArray[np.float32]
-    slots: NDArray[np.int32]
-    occluders: NDArray[np.int32]
-
-
-# Rows of the memory that answers lie in, the first eight of which are the rays.
-DUE_ROW, LIT_ROW, TRUTH_ROW, LOW_ROW, HIGH_ROW, LOOKED_UP_ROW, LIVE_ROW, BLOCKED_ROW = range(8, 16)
-UNTRIED_ROW, DOUBTFUL_ROW, ASKED_ROW, SLOT_ROW, OCCLUDER_ROW = range(16, 21)
-ANSWER_ROWS = 21
-
-
-@inlined
-def answers_in(memory, count):
-    """Answers for `count` points, of which nothing has been looked up, in memory (ANSWER_ROWS, n) float32."""
-    for row in (LOOKED_UP_ROW, UNTRIED_ROW, DOUBTFUL_ROW):
-        memory[row, : (count + 15) // 16] = 0
-    return Answers(
-        memory[DUE_ROW].view(np.int32),
-        memory[LIT_ROW].view(np.int32),
-        memory[TRUTH_ROW].view(np.int32),
-        memory[LOW_ROW].view(np.int32),
-        memory[HIGH_ROW].view(np.int32),
-        memory[LOOKED_UP_ROW].view(np.int32),
-        Rays(memory[0:3], memory[3:6], memory[6], memory[7]),
-        memory[LIVE_ROW].view(np.int32),
-        memory[BLOCKED_ROW],
-        memory[UNTRIED_ROW].view(np.int32),
-        memory[DOUBTFUL_ROW].view(np.int32),
-        memory[ASKED_ROW].view(np.int32),
-        memory[:QUESTION_ROWS],
-        memory[SLOT_ROW].view(np.int32),
-        memory[OCCLUDER_ROW].view(np.int32),
-    )
 
 
 @inlined

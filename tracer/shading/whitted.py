@@ -13,8 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.answers import ANSWER_ROWS, answers_in
 from tracer.culling.certified.lookup import find_cells, seek, want
-from tracer.culling.shadow import ANSWER_ROWS, RAYS, SHADOW_COUNTERS, answers_in, shadow_testing
+from tracer.culling.shadow import RAYS, SHADOW_COUNTERS, shadow_testing
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.shading.bounce import next_wave

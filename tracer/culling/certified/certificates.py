@@ -49,10 +49,10 @@ SHARES, CHUNK = 4, 32  # of a batch that each thread takes, one at a time, and t
 
 @dataclass(frozen=True)
 class Budget:
-    """How much may be certified after a frame: so many cells and lights, and so many seconds (inf for any)."""
+    """How much may be certified in a frame: so many cells and lights, and until when by `perf_counter` (inf for any)."""
 
     certificates: float = np.inf
-    seconds: float = np.inf
+    until: float = np.inf
 
 
 class Effort(NamedTuple):
@@ -74,9 +74,9 @@ EAGER = 8  # times less patient
 class Certificates:
     """The certified cells of what is static in a world: of what never moves and, once told, of objects that rest."""
 
-    def __init__(self, world: World, lights: int, threads: int) -> None:
-        """For so many lights, of which the first MAX_CULLED_LIGHTS are certified."""
-        self._world, self._threads = world, threads
+    def __init__(self, world: World, lights: int, threads: int, asks: bool) -> None:
+        """For so many lights, of which the first MAX_CULLED_LIGHTS are certified; whether rays ask candidates."""
+        self._world, self._threads, self._asks = world, threads, asks
         self._scratch: list[certify.Scratch] = []
         self._count = min(lights, MAX_CULLED_LIGHTS)
         self._room = make_tasks(BATCH, self._count)
@@ -84,7 +84,7 @@ class Certificates:
 
     def _start(self) -> None:
         """With nothing known."""
-        self._still = Still(self._world, self._count, self._threads)
+        self._still = Still(self._world, self._count, self._threads, self._asks)
         self._resting = nothing_rests(len(self._world.primitives.triangle_starts) - 1)
         self._lights = np.full((self._count, 3), np.nan, np.float32)
         self.still = np.zeros(self._count, np.bool_)
@@ -225,7 +225,6 @@ class Certificates:
         self, lists: list[Wanted], budget: Budget, effort: Effort, cancel: Callable[[], bool] | None
     ) -> NDArray:
         """Certify what rays wanted, within a budget; counters (COUNTERS,) int64 of what that took."""
-        end = clock.perf_counter() + budget.seconds
         counts = counters(self._threads)
         if not self._count:
             return counts.sum(0)
@@ -233,7 +232,7 @@ class Certificates:
         if not kept:
             return counts.sum(0)
         key, u, v = (np.concatenate([wanted[k][tile, :n] for wanted, tile, n in kept]) for k in range(3))
-        points = Points(np.empty_like(key), np.empty_like(u), np.empty_like(v), np.empty((2, len(key)), np.float32))
+        points = Points(np.empty_like(u), np.empty_like(v), np.empty((2, len(u)), np.float32))
         self.cells = with_room(self.cells, min(len(key), 2 * len(self.cells.receivers)), 0)
         todo = gather_roots(self.cells, key, u, v, effort.roots, points)
         pace = 1e-4 * self._count  # seconds a task takes, at first guessed too high
@@ -243,7 +242,7 @@ class Certificates:
             while first < len(todo):
                 start = clock.perf_counter()
                 left = budget.certificates - counts[:, certify.CERTIFICATES].sum()
-                batch = int(min(BATCH, left / self._count, 0.5 * (end - start) / pace))
+                batch = int(min(BATCH, left / self._count, 0.5 * (budget.until - start) / pace))
                 if batch <= 0:
                     return counts.sum(0)
                 following.append(self._certify(todo[first : first + batch], points, effort, counts, cancel))

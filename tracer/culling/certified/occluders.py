@@ -53,7 +53,8 @@ class Occluders(NamedTuple):
     triangles as structure of arrays, and numbers (leaves, 8) int32, NONE for none, or that of a quadric; roots
     (trees,) int32; boxes (lights, nodes, BOXES) float32; reaches (lights, n) float32, how far from each
     triangle a ray from the light can report a hit, and beside (lights, leaves, 8), those of a leaf side by side,
-    negative for none; sights (lights, primitives, SIGHT) float32, what rays from the light ask (`sights`).  `farthest`
+    negative for none; sights (lights, primitives, SIGHT) float32, what rays from the light ask (`sights`), or
+    (lights, 0, SIGHT).  `farthest`
     tells which rays are too long to be sure of a hit.
     """
 

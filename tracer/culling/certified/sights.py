@@ -70,11 +70,11 @@ _WIDE, _ROUNDING = np.float32(2 * REPORTED), np.float32(1e-6)
 
 @subkernel
 def put_sights(rows, farthest, light, sights):
-    """Rows (n, ROW) as a light at (3,) float32 sees them, into sights (n, SIGHT); rays that are sure of a hit are no
-    longer than `farthest`."""
+    """Rows (n, ROW) as a light at (3,) float32 sees them, into sights (n, SIGHT), or (0, SIGHT) where nobody asks; rays
+    that are sure of a hit are no longer than `farthest`."""
     numbers, columns = local_memory(64), local_memory(COLUMNS)
     made = f32_at(columns)
-    for first in range(0, len(rows), LANES):
+    for first in range(0, len(sights), LANES):
         store(numbers, minimum(lane_numbers_x16() + np.int32(first), i32x16(np.int32(len(rows) - 1))))
         row = rows_at(rows, numbers)
         t = seen_from(light, row)

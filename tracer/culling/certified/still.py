@@ -22,15 +22,17 @@ QUADRIC = 4e-6  # of the coordinates: how far from a quadric rays that are carri
 
 class Still:
     """rows (t, ROW) float32 of triangles as in `Occluders`, of which those of objects that rest are where they rest;
-    bounds (2, 3) float64 around all that is static; largest, its largest coordinate."""
+    bounds (2, 3) float64 around all that is static; largest, its largest coordinate.  Where rays ask candidates, it is
+    known how each light sees them."""
 
-    def __init__(self, world: World, lights: int, threads: int) -> None:
+    def __init__(self, world: World, lights: int, threads: int, asks: bool) -> None:
         self._world, self._lights, self._threads = world, lights, threads
         self._primitives = world.primitives
         self.first_quadric = len(world.primitives.triangles)
         self.rows = aligned_rows(self.first_quadric + len(world.primitives.quadrics), ROW)
         self.rows[:] = 0
-        self._sights = aligned_rows(lights * len(self.rows), SIGHT).reshape(lights, -1, SIGHT)
+        seen = len(self.rows) if asks else 0
+        self._sights = aligned_rows(lights * seen, SIGHT).reshape(lights, seen, SIGHT)
         self.allowed = np.inf  # how large what moves may be for boxes to hold, which are padded by a part of that
         self._shapes: dict[int, Shape] = {}
         self._bounds_of: dict[int, NDArray[np.float64]] = {}

@@ -42,9 +42,8 @@ KEPT = 0xFF  # instead of a result: the light has its certificate, or needs none
 
 
 class Points(NamedTuple):
-    """Points (n,) that wanted more, by root: key int32, u and v float32; and room to sort them, (2, n) float32."""
+    """Points (n,) that wanted more, root by root: u and v float32; and room to sort them, (2, n) float32."""
 
-    key: NDArray[np.int32]
     u: NDArray[np.float32]
     v: NDArray[np.float32]
     spare: NDArray[np.float32]
@@ -125,7 +124,7 @@ def gather_roots(cells, key, u, v, patience, points):
     for i in range(len(key)):
         at = starts[key[i]]
         starts[key[i]] += 1
-        points.key[at], points.u[at], points.v[at] = key[i], u[i], v[i]
+        points.u[at], points.v[at] = u[i], v[i]
     return tasks[:n]
 
 
