@@ -44,12 +44,14 @@ from tracer.parallel import for_each_chunk
 
 STATES = ("none", "full", "lit", "candidates")
 BATCH = 4096  # tasks between two looks at the budget
+FIRST, FASTER = 8, 8  # tasks of a frame's first batch, where time counts, and how many times as many the next may have
+LEAST = 5e-4  # seconds: less time is not worth a batch
 SHARES, CHUNK = 4, 32  # of a batch that each thread takes, one at a time, and tasks that are worth one
 
 
 @dataclass(frozen=True)
 class Budget:
-    """How much may be certified in a frame: so many cells and lights, and until when by `perf_counter` (inf for any)."""
+    """How much may be certified in a frame: so many cells and lights, and until when (`perf_counter`; inf for ever)."""
 
     certificates: float = np.inf
     until: float = np.inf
@@ -235,19 +237,21 @@ class Certificates:
         points = Points(np.empty_like(u), np.empty_like(v), np.empty((2, len(u)), np.float32))
         self.cells = with_room(self.cells, min(len(key), 2 * len(self.cells.receivers)), 0)
         todo = gather_roots(self.cells, key, u, v, effort.roots, points)
-        pace = 1e-4 * self._count  # seconds a task takes, at first guessed too high
+        batch = FIRST if budget.until < np.inf else BATCH
         while len(todo):
             todo = todo[np.argsort(todo[:, 1] - todo[:, 2], kind="stable")]
             following, first = [], 0
             while first < len(todo):
                 start = clock.perf_counter()
                 left = budget.certificates - counts[:, certify.CERTIFICATES].sum()
-                batch = int(min(BATCH, left / self._count, 0.5 * (budget.until - start) / pace))
-                if batch <= 0:
+                batch = int(min(batch, left / self._count))
+                if batch <= 0 or start > budget.until - LEAST:
                     return counts.sum(0)
-                following.append(self._certify(todo[first : first + batch], points, effort, counts, cancel))
+                those = todo[first : first + batch]
+                following.append(self._certify(those, points, effort, counts, cancel))
                 first += batch
-                pace = max(1e-6, (clock.perf_counter() - start) / batch)
+                pace = max(1e-6, (clock.perf_counter() - start) / len(those))  # seconds a task takes
+                batch = int(min(BATCH, FASTER * batch, 0.5 * (budget.until - clock.perf_counter()) / pace))
             todo = np.concatenate(following)
         return counts.sum(0)
 
