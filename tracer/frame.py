@@ -30,9 +30,9 @@ class Settings:
     coherent, or "kdtree", the paper's, which counts them ray by ray.  `record_lights` fills Frame.due
     and Frame.lit, `record_work` Frame.saved and Frame.cost.
 
-    After a frame of method "certified" at most so many `certificates` are made, in at most so many
-    `certificate_seconds` (which leaves it to chance how many: inf for counters that repeat exactly).  They take
-    about `certificate_memory` megabytes at most.
+    In a frame of method "certified" at most so many `certificates` are made, in at most so many
+    `certificate_seconds` (which leaves it to chance how many: inf for counters that repeat exactly), of which half is
+    theirs however long it takes to look for what is wanted.  They take about `certificate_memory` megabytes at most.
     """
 
     width: int = 512

@@ -267,7 +267,8 @@ class UnfinishedFrame:
         certificates = self._certificates
         if certificates is None:
             return
-        until = clock.perf_counter() + self._settings.certificate_seconds
+        seconds = self._settings.certificate_seconds
+        until = clock.perf_counter() + seconds
         sought, lights = certificates.wanted(len(self._tiles)), self._renderer._look.lights
 
         def work(tile: tuple[int, int, int, int], worker: int) -> None:
@@ -275,7 +276,7 @@ class UnfinishedFrame:
             seek_tile(self._rays, tile, certified, lights, self._buffers, self._spaces[worker])
 
         self._for_each_tile(work)
-        budget = Budget(self._settings.certificates, until)
+        budget = Budget(self._settings.certificates, max(until, clock.perf_counter() + 0.5 * seconds))
         effort = certificates.effort(EFFORT[self._settings.accelerator])
         self._certifying = certificates.certify([sought, *certificates.left], budget, effort, self._cancel)
         self._wanted = certificates.wanted(len(self._tiles))

@@ -11,12 +11,15 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from tracer.frame import Frame, Settings
+from tracer.method import base_of
 from viewer.render_thread import RenderRequest, Traced
 from viewer.resolution import ResolutionControl, divided
 from viewer.views import View
 
 if TYPE_CHECKING:
     from viewer.controller import Controller
+
+LESSONS = 12  # frames at rest that certificates are made in, at most
 
 
 class Tracing:
@@ -28,6 +31,7 @@ class Tracing:
         self._resolution = ResolutionControl()
         self._serial = 0
         self._settled: RenderRequest | None = None
+        self._lessons = 0  # frames at rest that may still be traced to learn from
         self._asked: RenderRequest | None = None
         self._chosen: Settings | None = None
         self._glance = False
@@ -71,16 +75,22 @@ class Tracing:
         self._glance = False
         self._resolution.observe(frame.statistics.seconds, frame.width * frame.height)
         if not self._c.moving and not self._c.session.playing:
-            self._settle(traced.request)
+            self._settle(traced.request, frame)
         return frame
 
-    def _settle(self, request: RenderRequest) -> None:
-        """At rest the first fine frame of a view teaches the modes; a second one shows what they save."""
+    def _settle(self, request: RenderRequest, frame: Frame) -> None:
+        """At rest the first fine frame of a view teaches the modes; a second one shows what they save.  Certificates
+        are made within a budget: some more frames follow, until none are wanted."""
         seen = replace(request.settings, verify=False, record_work=False)
         view = replace(request, settings=seen, interactive=False, serial=0)
         learns = request.divisor == 1 and request.settings.method != "none" and request.settings.samples == 1
-        if self._c.preferences.keep_tracing or (learns and view != self._settled):
+        if learns and view != self._settled:
             self._settled = view
+            self._lessons = LESSONS if base_of(seen.method) == "certified" else 1
+        elif frame.statistics.certificates == 0:
+            self._lessons = 0
+        if self._c.preferences.keep_tracing or (learns and self._lessons > 0):
+            self._lessons -= 1
             self._serial += 1
 
     def ask(self) -> None:
