@@ -148,8 +148,14 @@ def statistics_table(statistics: FrameStatistics, title: str, verified: bool = F
     table.add_row("shadow rays due", "", "", f"{shadow.due:,}")
     table.add_row("  culled", f"{shadow.culled / due:.1%}", "", f"{shadow.culled:,}")
     table.add_row("  dynamic objects alone", f"{shadow.dynamic_only / due:.1%}", "", f"{shadow.dynamic_only:,}")
+    if shadow.candidates_only:
+        table.add_row("  candidates", f"{shadow.candidates_only / due:.1%}", "", f"{shadow.candidates_only:,}")
     if verified:
         table.add_row("  wrong answers", f"{shadow.wrong / due:.3%}", "", f"{shadow.wrong:,}")
+    if statistics.certificates:
+        table.add_row("certificates made", "", "", f"{statistics.certificates:,}")
+        table.add_row("  traversal steps", "", "", f"{statistics.certificate_steps:,}")
+        table.add_row("  intersection tests", "", "", f"{statistics.certificate_tests:,}")
     table.add_row("occlusion tests", f"{statistics.occlusion_tests:,}", "", "", end_section=True)
     for name, seconds in statistics.phases.items():
         table.add_row(name, f"{1000.0 * seconds:,.1f} ms", "", "")

@@ -18,9 +18,9 @@ from tracer.scene.model import Camera, Scene
 from viewer.methods import DEFAULT
 from viewer.views import View
 
-# Settings that say how a frame was asked for, not what the user chose, and those of this machine.
+# Settings that say how a frame was asked for, not what the user chose; those of this machine and of the open scene.
 _NOT_RESTORED = {
-    "width", "height", "threads", "record_lights", "record_work", "certificates", "certificate_seconds",
+    "width", "height", "threads", "accelerator", "record_lights", "record_work", "certificates", "certificate_seconds",
 }  # fmt: skip
 
 

@@ -81,6 +81,20 @@ def test_pictures_stay_right_while_lights_are_dragged(accelerator: str):
             assert expected.color.tobytes() == frame.color.tobytes(), f"seed {seed}, frame {number}"
 
 
+def test_settings_of_another_structure_change_nothing_of_a_world_that_is_there():
+    """As when a picture that was traced with the kd-tree is opened again: no ray asks what was not made for asking."""
+    renderer.EFFORT["bvh8"] = Effort(2, 4, 3, 0, True)
+    for seed in range(3):
+        walk = nasty_walk(seed, lights=3)
+        none, certified = _renderers(walk.scene, width=24, height=24, depth=2, accelerator="bvh8")
+        for number, (time, camera) in enumerate(walk.frames):
+            if number == 2:
+                certified.settings = replace(certified.settings, accelerator="kdtree")
+            frame = certified.render(time, camera)
+            assert none.render(time, camera).color.tobytes() == frame.color.tobytes(), f"seed {seed}, frame {number}"
+            assert frame.statistics.shadow.candidates_only == 0
+
+
 def _everything(walk: NastyWalk, threads: int, accelerator: str) -> list[dict]:
     """All that a walk leaves behind, frame by frame."""
     settings = tracer.Settings(

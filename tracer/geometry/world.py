@@ -50,7 +50,7 @@ class World:
     ) -> None:
         if accelerator not in ACCELERATORS:
             raise ValueError(f"there is no accelerator {accelerator!r}; there is {', '.join(ACCELERATORS)}")
-        self._accelerator = accelerator
+        self.accelerator = accelerator
         self._primitives = Primitives(scene)
         self.facets, self.normals = self._primitives.facets, self._primitives.normals
         self.object_of = self._primitives.object_of

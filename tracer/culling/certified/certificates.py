@@ -43,10 +43,10 @@ from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
 STATES = ("none", "full", "lit", "candidates")
-BATCH = 4096  # tasks between two looks at the budget
+BATCH = 4096  # tasks between two looks at the budget, at most
 FIRST, FASTER = 8, 8  # tasks of a frame's first batch, where time counts, and how many times as many the next may have
 LEAST = 5e-4  # seconds: less time is not worth a batch
-SHARES, CHUNK = 4, 32  # of a batch that each thread takes, one at a time, and tasks that are worth one
+SHARES, CHUNK = 4, (32, 256)  # of a batch that each thread takes, one at a time; least and most tasks of one
 
 
 @dataclass(frozen=True)
@@ -213,8 +213,8 @@ class Certificates:
 
     def told(self, effort: Effort, wanted: Wanted) -> Certified:
         """What a tile is told, which puts what it wants there."""
-        o = self.occluders
-        return Certified(self.cells, o.sights, self.still, self.highest, effort.asked, effort.dear, wanted)
+        asked = effort.asked if self._asks else 0  # else there are no sights
+        return Certified(self.cells, self.occluders.sights, self.still, self.highest, asked, effort.dear, wanted)
 
     def wanted(self, tiles: int) -> Wanted:
         """Room for what tiles ask for: arrays with a row each."""
@@ -265,7 +265,7 @@ class Certificates:
     ) -> NDArray[np.int32]:
         """Work on tasks (n, 3); those that follow."""
         tasks, reach = tasks_in(self._room, todo), (self.highest, self._largest)
-        size = max(CHUNK, -(-len(todo) // (SHARES * self._threads)))
+        size = min(max(CHUNK[0], -(-len(todo) // (SHARES * self._threads))), CHUNK[1])
 
         def work(chunk: int, worker: int) -> None:
             work_on(

@@ -9,12 +9,12 @@ taken from, and three of the margins,
     D - U - V:    (of_u + of_v) |d| + 2.5 (enlarged) |D|
     D - T:        behind (19 |P - a| + 11 |d| + 2 |P|)
 
-These are no narrower than those of `margins`.  Half of D's own goes to U and to V each, so that their sum is right
-for D - U - V.  In that of D - T, the normal's length is taken for |e1| |e2|, of which it is never more, |T| for
-|n| |s|, and |s| for |d| + |P - a|.
+These are no narrower than those of `margins`.  What D - U - V has for D, beyond what it has for U and for V, is split
+between of_u and of_v.  For D - T, |e1| |e2| stands for the normal's length, which is never more, |n| |s| for |T|, and
+|d| + |P - a| for |s|.
 
-A row whose `FARTHEST` is negative is that of a primitive of which its plane cannot tell: of a quadric, or of a triangle
-that the light is in the plane of. It begins with the box outside of which no hit is reported.
+A row whose `FARTHEST` is negative is that of a primitive that hides no light for certain: of a quadric, or of a
+triangle that is not `firm`.  It begins with the box outside of which no hit is reported.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ U, V, D, CORNER, OF_U, OF_V, BEHIND, FARTHEST = 0, 3, 6, 9, 12, 13, 14, 15
 SIGHT, LANES = 16, 16
 COLUMNS = 64 * SIGHT  # bytes of sixteen
 _ENLARGED = np.float32(2.5 * (ENLARGED + 7 * EPSILON))
-_NINE, _HALF_D, _BEHIND = np.float32(2.5 * 9.01 * EPSILON), np.float32(1.25 * EPSILON), np.float32(1.26 * EPSILON)
+_NINE, _HALF_D, _BEHIND = np.float32(2.5 * 9.01 * EPSILON), np.float32(1.251 * EPSILON), np.float32(1.26 * EPSILON)
 _BLURRED, _BLURRED_BEHIND = np.float32(2.5 * 5.01), np.float32(5.01 / 11)
 _NEAR, _REACH, _AT = np.float32(19), np.float32(11), np.float32(2)
 _PAST, _NONE = np.float32(0.999 / LAMP), np.float32(-1)
