@@ -37,8 +37,9 @@ class Traces(Protocol):
 
 @dataclass(frozen=True)
 class RenderRequest:
-    """What to trace.  `interactive` marks a coarse frame of a camera in motion; `divisor` is how much
-    coarser than the window it is; `serial` tells requests apart that are otherwise alike."""
+    """What to trace.  `interactive` marks a coarse frame of a camera in motion; `divisor` is how much coarser than the
+    window it is; `serial` tells requests apart that are otherwise alike; `patience` is for how many seconds, at least,
+    certificates may be made, where nobody waits for the picture."""
 
     time: float
     camera: Camera
@@ -46,6 +47,7 @@ class RenderRequest:
     interactive: bool = False
     divisor: int = 1
     serial: int = 0
+    patience: float = 0.0
 
     def supersedes(self, running: RenderRequest) -> bool:
         """Whether a trace of `running` is no longer worth finishing now that this is wanted."""
@@ -222,7 +224,8 @@ class RenderThread:
         try:
             if reset:
                 renderer.reset_modes()
-            renderer.settings = request.settings
+            seconds = max(request.settings.certificate_seconds, request.patience)
+            renderer.settings = replace(request.settings, certificate_seconds=seconds)
             frame = renderer.render(request.time, request.camera, lambda: self._cancel)
         except Cancelled:
             pass

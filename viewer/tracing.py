@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from viewer.controller import Controller
 
 LESSONS = 12  # frames at rest that certificates are made in, at most
+PATIENCE = 0.4  # seconds that these may give them: the picture is there, and a motion ends them at once
 
 
 class Tracing:
@@ -32,6 +33,7 @@ class Tracing:
         self._serial = 0
         self._settled: RenderRequest | None = None
         self._lessons = 0  # frames at rest that may still be traced to learn from
+        self._learning = False  # whether such a one was asked for last
         self._asked: RenderRequest | None = None
         self._chosen: Settings | None = None
         self._glance = False
@@ -82,7 +84,7 @@ class Tracing:
         """At rest the first fine frame of a view teaches the modes; a second one shows what they save.  Certificates
         are made within a budget: some more frames follow, until none are wanted."""
         seen = replace(request.settings, verify=False, record_work=False)
-        view = replace(request, settings=seen, interactive=False, serial=0)
+        view = replace(request, settings=seen, interactive=False, serial=0, patience=0.0)
         learns = request.divisor == 1 and request.settings.method != "none" and request.settings.samples == 1
         if learns and view != self._settled:
             self._settled = view
@@ -92,6 +94,7 @@ class Tracing:
         if self._c.preferences.keep_tracing or (learns and self._lessons > 0):
             self._lessons -= 1
             self._serial += 1
+            self._learning = True
 
     def ask(self) -> None:
         """Ask for what should be seen now, unless it has been asked for, or is there."""
@@ -106,11 +109,13 @@ class Tracing:
         if self._jumped():
             self.glance()
         moving = c.moving or self._glance
+        self._learning = self._learning and not moving and not session.playing
         coarse = moving and c.preferences.dynamic_resolution
         divisor = self._resolution.choose(width, height, c.preferences.target_fps) if coarse else 1
         width, height = divided(width, height, divisor)
         settings = replace(self.settings, width=width, height=height)
-        wanted = RenderRequest(session.time, session.camera, settings, moving, divisor, self._serial)
+        patience = PATIENCE if self._learning else 0.0
+        wanted = RenderRequest(session.time, session.camera, settings, moving, divisor, self._serial, patience)
         if self._answered(wanted):
             return
         self._asked, self._chosen = wanted, session.settings
@@ -205,5 +210,12 @@ class Tracing:
 
 
 def _as_asked(settings: Settings, asked: Settings) -> Settings:
-    """Settings at the size, and with as much recorded, as others."""
-    return replace(settings, width=asked.width, height=asked.height, verify=asked.verify, record_work=asked.record_work)
+    """Settings at the size, with as much recorded and as much time for certificates, as others."""
+    return replace(
+        settings,
+        width=asked.width,
+        height=asked.height,
+        verify=asked.verify,
+        record_work=asked.record_work,
+        certificate_seconds=asked.certificate_seconds,
+    )
