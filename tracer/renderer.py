@@ -230,8 +230,8 @@ class UnfinishedFrame:
         self.memory.follow_rest(rest.now, world.outlines, self._workers)
         if certified:
             if renderer.certificates is None:
-                asks = EFFORT[world.accelerator].asked > 0
-                renderer.certificates = Certificates(world, len(lights), self._workers, asks)
+                effort = EFFORT[world.accelerator]
+                renderer.certificates = Certificates(world, len(lights), self._workers, effort)
             self._certificates = renderer.certificates
             self._certificates.follow(lights, rest.now, self._workers)
 
@@ -277,8 +277,8 @@ class UnfinishedFrame:
 
         self._for_each_tile(work)
         budget = Budget(self._settings.certificates, max(until, clock.perf_counter() + 0.5 * seconds))
-        effort = certificates.effort(EFFORT[self._renderer.world.accelerator])
-        self._certifying = certificates.certify([sought, *certificates.left], budget, effort, self._cancel)
+        wanted = [sought, *certificates.left]
+        self._certifying = certificates.certify(wanted, budget, certificates.effort, self._cancel)
         self._wanted = certificates.wanted(len(self._tiles))
 
     def shade(self) -> None:
@@ -291,8 +291,7 @@ class UnfinishedFrame:
         """What a tile knows of certified cells, and where it says what it wants."""
         if certificates is None:
             return _NOT_CERTIFIED[self.memory.words.dtype.itemsize]
-        effort = EFFORT[self._renderer.world.accelerator]
-        return certificates.told(effort, Wanted(*(a[tile] for a in wanted)))
+        return certificates.told(Wanted(*(a[tile] for a in wanted)))
 
     def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray, first: bool = True) -> None:
         placed, look, memory = self._renderer.world.placed, self._renderer._look, self.memory

@@ -75,7 +75,8 @@ class Tracing:
             return None
         self.traced, frame = traced, traced.frame
         self._glance = False
-        self._resolution.observe(frame.statistics.seconds, frame.width * frame.height)
+        if not traced.request.patience:  # else it took its time for certificates, not for its pixels
+            self._resolution.observe(frame.statistics.seconds, frame.width * frame.height)
         if not self._c.moving and not self._c.session.playing:
             self._settle(traced.request, frame)
         return frame

@@ -29,9 +29,11 @@ from tracer.simd import (
     mask16,
     ones,
     pack,
+    pack_three,
     prefetch,
     select,
     store,
+    store_three,
 )
 
 # Rows of open questions: the point's number, where in names its next candidate is, how many are left to ask, which
@@ -83,8 +85,7 @@ def _keep(at, stride, mask, which, following, left, name, end):
     store(at + NEXT * stride, pack(following, mask))
     store(at + LEFT * stride, pack(left, mask))
     store(at + NAME * stride, pack(name, mask))
-    for axis in range(3):
-        store(at + (END + axis) * stride, pack(end[axis], mask))
+    store_three(at + END * stride, stride, pack_three(end, mask))
 
 
 @inlined

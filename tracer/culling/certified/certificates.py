@@ -76,9 +76,10 @@ EAGER = 8  # times less patient
 class Certificates:
     """The certified cells of what is static in a world: of what never moves and, once told, of objects that rest."""
 
-    def __init__(self, world: World, lights: int, threads: int, asks: bool) -> None:
-        """For so many lights, of which the first MAX_CULLED_LIGHTS are certified; whether rays ask candidates."""
-        self._world, self._threads, self._asks = world, threads, asks
+    def __init__(self, world: World, lights: int, threads: int, usual: Effort) -> None:
+        """For so many lights, of which the first MAX_CULLED_LIGHTS are certified; `usual` is the effort that rays
+        through this world are worth."""
+        self._world, self._threads, self._usual = world, threads, usual
         self._scratch: list[certify.Scratch] = []
         self._count = min(lights, MAX_CULLED_LIGHTS)
         self._room = make_tasks(BATCH, self._count)
@@ -86,7 +87,7 @@ class Certificates:
 
     def _start(self) -> None:
         """With nothing known."""
-        self._still = Still(self._world, self._count, self._threads, self._asks)
+        self._still = Still(self._world, self._count, self._threads, self._usual.asked > 0)
         self._resting = nothing_rests(len(self._world.primitives.triangle_starts) - 1)
         self._lights = np.full((self._count, 3), np.nan, np.float32)
         self.still = np.zeros(self._count, np.bool_)
@@ -201,8 +202,10 @@ class Certificates:
         copy_kept(self.cells, kept, empty)
         self.cells = empty
 
-    def effort(self, usual: Effort) -> Effort:
+    @property
+    def effort(self) -> Effort:
         """What certifying is worth now: more than usual where rays are dear and there is little to certify."""
+        usual = self._usual
         if self._rate >= RARE or not usual.dear:
             return usual
         return usual._replace(roots=-(-usual.roots // EAGER), parts=-(-usual.parts // EAGER))
@@ -211,10 +214,10 @@ class Certificates:
         """A frame has made so many certificates, with so many shadow rays due."""
         self._rate = made / due if due else np.inf
 
-    def told(self, effort: Effort, wanted: Wanted) -> Certified:
+    def told(self, wanted: Wanted) -> Certified:
         """What a tile is told, which puts what it wants there."""
-        asked = effort.asked if self._asks else 0  # else there are no sights
-        return Certified(self.cells, self.occluders.sights, self.still, self.highest, asked, effort.dear, wanted)
+        usual = self._usual
+        return Certified(self.cells, self.occluders.sights, self.still, self.highest, usual.asked, usual.dear, wanted)
 
     def wanted(self, tiles: int) -> Wanted:
         """Room for what tiles ask for: arrays with a row each."""

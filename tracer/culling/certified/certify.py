@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from tracer.culling.certified.beam import Beam, make_beam
 from tracer.culling.certified.cells import CANDIDATES, FULL, LIT, SETTLED, TOO_MANY
+from tracer.culling.certified.margins import LANES
 from tracer.culling.certified.meeting import FUNCTIONS, meet_beam, put_parts
-from tracer.culling.certified.occluders import BLOCK, BOXES, LANES, STACK, children_met, triangles_met
+from tracer.culling.certified.occluders import BLOCK, BOXES, STACK, children_met, triangles_met
 from tracer.geometry.bvh8.tree import WIDTH
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (

@@ -67,6 +67,7 @@ LAMP = 2e-5  # of a segment from the light: what lies in it may be nearer than r
 # which no hit is reported, but for REPORTED of the light's distance.  Quadrics have the box alone.
 BLUR, BOX, ROW = 9, 10, 16
 REPORTED = 4e-5  # more than 3 of the kd-tree's 1e-5, turned, by objects whose axes differ by a tenth in length
+LANES = 16  # rows that are looked at together
 SMALL, LARGE = np.float32(1e-30), np.float32(1e12)  # volumes and lengths outside of which float32 may lose more
 
 ZERO, ONE, TWO, THREE, FOUR, FIVE, NINE = (np.float32(k) for k in (0, 1, 2, 3, 4, 5, 9))

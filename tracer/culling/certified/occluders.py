@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.certified.beam import PLANES
-from tracer.culling.certified.margins import BOX, REPORTED, TWO, ZERO, Farthest, margins, rows_at, seen_from
+from tracer.culling.certified.margins import BOX, LANES, REPORTED, TWO, ZERO, Farthest, margins, rows_at, seen_from
 from tracer.culling.certified.sights import put_sights
 from tracer.geometry.bvh8.build import build_shape
 from tracer.geometry.bvh8.collapse import VACANT, Shape
@@ -38,7 +38,6 @@ from tracer.simd import (
 BOXES = 6 * WIDTH  # float32 of a node: lower x of its eight children, then lower y and so on
 BLOCK = 9 * WIDTH
 NONE = -1
-LANES = 16
 STACK = 64 * 8 * 8
 FAR = np.float32(3e37)
 DIAGONAL = np.float32(1.7321)  # of a cube, of its side
@@ -54,8 +53,7 @@ class Occluders(NamedTuple):
     (trees,) int32; boxes (lights, nodes, BOXES) float32; reaches (lights, n) float32, how far from each
     triangle a ray from the light can report a hit, and beside (lights, leaves, 8), those of a leaf side by side,
     negative for none; sights (lights, primitives, SIGHT) float32, what rays from the light ask (`sights`), or
-    (lights, 0, SIGHT).  `farthest`
-    tells which rays are too long to be sure of a hit.
+    (lights, 0, SIGHT).  `farthest` tells which rays are too long to be sure of a hit.
     """
 
     rows: NDArray[np.float32]

@@ -29,6 +29,7 @@ from tracer.culling.certified.margins import (
     FOUR,
     INSIDE,
     LAMP,
+    LANES,
     LARGE,
     REPORTED,
     ROW,
@@ -57,7 +58,7 @@ from tracer.simd import (
 )
 
 U, V, D, CORNER, OF_U, OF_V, BEHIND, FARTHEST = 0, 3, 6, 9, 12, 13, 14, 15
-SIGHT, LANES = 16, 16
+SIGHT = 16
 COLUMNS = 64 * SIGHT  # bytes of sixteen
 _ENLARGED = np.float32(2.5 * (ENLARGED + 7 * EPSILON))
 _NINE, _HALF_D, _BEHIND = np.float32(2.5 * 9.01 * EPSILON), np.float32(1.251 * EPSILON), np.float32(1.26 * EPSILON)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.margins import BLUR, BOX, LONGEST, ROW, Farthest
-from tracer.culling.certified.occluders import BOXES, LANES, ROUNDED, Occluders, blocks_of, joined, know_light, shape_of
+from tracer.culling.certified.margins import BLUR, BOX, LANES, LONGEST, ROW, Farthest
+from tracer.culling.certified.occluders import BOXES, ROUNDED, Occluders, blocks_of, joined, know_light, shape_of
 from tracer.culling.certified.sights import SIGHT
 from tracer.geometry.bvh8.collapse import Shape
 from tracer.geometry.bvh8.tree import PADDING, WIDTH
