@@ -130,8 +130,8 @@ def _certificates(lights: int, accelerator: str) -> Iterator[str]:
     certificates = renderer.certificates
     assert certificates is not None
     wanted = certificates.wanted(1)
-    wanted.key[0, 0], wanted.u[0, 0], wanted.v[0, 0], wanted.of[0, 0] = 0, 0.25, 0.25, 1
-    certificates.certify([wanted], Budget(), Effort(1, 1, 8, 8, True), None)
+    wanted.key[0, 0], wanted.u[0, 0], wanted.v[0, 0], wanted.of[0, 0] = -1, 0.25, 0.25, 1
+    certificates.certify([wanted], Budget(), Effort(1, 1, 8, 8, True, 1), None)
     certificates.keep_within(0.0, np.zeros(1, np.int32))
 
 

@@ -38,9 +38,10 @@ from tracer.statistics import gather
 
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
+SEEKING = 0.5  # of the time for certificates, at most, is spent on looking for what primary hits want
 BY_MODES = ("paper", "cells")  # methods that cull by modes
 # What certifying is worth, by what a shadow ray costs: some 250 ns, and 50.
-EFFORT = {"kdtree": Effort(16, 48, 6, 48, True), "bvh8": Effort(128, 512, 0, 0, False)}
+EFFORT = {"kdtree": Effort(4, 12, 6, 48, True, 4), "bvh8": Effort(8, 32, 0, 48, False, 16)}
 Cancel = Callable[[], bool] | None
 
 
@@ -174,7 +175,11 @@ class UnfinishedFrame:
         self._buffers = self._empty_buffers()
         self._units = np.empty_like(self._buffers.primitive) if _has_cells(settings) else self._buffers.primitive
         across, down = -(-settings.width // TILE), -(-settings.height // TILE)
-        self._tiles = [(x * TILE, y * TILE) for y in range(down) for x in range(across)]
+        self._tiles = [
+            (x * TILE, y * TILE, min((x + 1) * TILE, settings.width), min((y + 1) * TILE, settings.height))
+            for y in range(down)
+            for x in range(across)
+        ]
 
     @contextmanager
     def phase(self, name: str) -> Iterator[None]:
@@ -205,12 +210,12 @@ class UnfinishedFrame:
             cost=np.zeros(worked, np.int32),
         )
 
-    def _for_each_tile(self, work: Callable[[tuple[int, int, int, int], int], None]) -> None:
-        width, height = self._settings.width, self._settings.height
+    def _for_each_tile(self, work: Callable[[int, tuple[int, int, int, int], int], None], first: int = 0) -> None:
+        """Call work(number, tile, worker) for every tile, those from the `first` on before the others."""
 
         def tile_work(chunk: int, worker: int) -> None:
-            left, top = self._tiles[chunk]
-            work((left, top, min(left + TILE, width), min(top + TILE, height)), worker)
+            number = (first + chunk) % len(self._tiles)
+            work(number, self._tiles[number], worker)
 
         for_each_chunk(tile_work, len(self._tiles), self._workers, self._cancel)
 
@@ -245,7 +250,7 @@ class UnfinishedFrame:
     def _trace_primary(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
         placed, spaces = self._renderer.world.placed, self._spaces
         self._for_each_tile(
-            lambda tile, worker: trace_primary(placed, rays, tile, buffers, counts[worker], spaces[worker])
+            lambda _, tile, worker: trace_primary(placed, rays, tile, buffers, counts[worker], spaces[worker])
         )
 
     def test_occlusion(self) -> None:
@@ -267,16 +272,19 @@ class UnfinishedFrame:
         certificates = self._certificates
         if certificates is None:
             return
-        seconds = self._settings.certificate_seconds
-        until = clock.perf_counter() + seconds
+        start, seconds = clock.perf_counter(), self._settings.certificate_seconds
         sought, lights = certificates.wanted(len(self._tiles)), self._renderer._look.lights
+        looked_at: list[int] = []
 
-        def work(tile: tuple[int, int, int, int], worker: int) -> None:
-            certified = self._certified(certificates, sought, self._tiles.index(tile[:2]))
-            seek_tile(self._rays, tile, certified, lights, self._buffers, self._spaces[worker])
+        def work(number: int, tile: tuple[int, int, int, int], worker: int) -> None:
+            if clock.perf_counter() - start < SEEKING * seconds:
+                certified = self._certified(certificates, sought, number)
+                seek_tile(self._rays, tile, certified, lights, self._buffers)
+                looked_at.append(number)
 
-        self._for_each_tile(work)
-        budget = Budget(self._settings.certificates, max(until, clock.perf_counter() + 0.5 * seconds))
+        self._for_each_tile(work, certificates.next_tile)
+        certificates.next_tile += len(looked_at)  # where time was short, others are the first in the next frame
+        budget = Budget(self._settings.certificates, start + seconds)
         wanted = [sought, *certificates.left]
         self._certifying = certificates.certify(wanted, budget, certificates.effort, self._cancel)
         self._wanted = certificates.wanted(len(self._tiles))
@@ -299,7 +307,7 @@ class UnfinishedFrame:
         certificates = self._certificates
         words = memory.words if certificates is None else certificates.cells.words
 
-        def work(tile: tuple[int, int, int, int], worker: int) -> None:
+        def work(number: int, tile: tuple[int, int, int, int], worker: int) -> None:
             knowledge = Knowledge(
                 words,
                 memory.gained[worker],
@@ -308,7 +316,7 @@ class UnfinishedFrame:
                 learn=self._by_modes,
                 verify=verify,
                 certify=certificates is not None,
-                certified=self._certified(certificates, self._wanted, self._tiles.index(tile[:2])),
+                certified=self._certified(certificates, self._wanted, number),
                 cache=NO_CACHE if self.cache is None else self.cache.of_worker(worker, learns=first),
             )
             shade_tile(placed, look, rays, tile, depth, knowledge, buffers, counts[worker], self._spaces[worker])

@@ -40,7 +40,7 @@ SAILING = scene(
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure."""
-    monkeypatch.setattr(rendering, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 2, 8, True)))
+    monkeypatch.setattr(rendering, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 2, 8, True, 1)))
 
 
 @pytest.fixture(params=ACCELERATORS)

@@ -29,7 +29,7 @@ STATES = (FULL, LIT, CANDIDATES)
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure."""
-    monkeypatch.setattr(renderer, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 0, 8, True)))
+    monkeypatch.setattr(renderer, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 0, 8, True, 1)))
 
 
 def _chosen(twin: Twin, rng: np.random.Generator, each: int) -> np.ndarray:

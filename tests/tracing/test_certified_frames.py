@@ -23,7 +23,7 @@ SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure, and to ask candidates."""
-    monkeypatch.setattr(renderer, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 3, 48, True)))
+    monkeypatch.setattr(renderer, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 3, 48, True, 1)))
 
 
 def _renderers(
@@ -83,7 +83,7 @@ def test_pictures_stay_right_while_lights_are_dragged(accelerator: str):
 
 def test_settings_of_another_structure_change_nothing_of_a_world_that_is_there():
     """As when a picture that was traced with the kd-tree is opened again: no ray asks what was not made for asking."""
-    renderer.EFFORT["bvh8"] = Effort(2, 4, 3, 0, True)
+    renderer.EFFORT["bvh8"] = Effort(2, 4, 3, 0, True, 1)
     for seed in range(3):
         walk = nasty_walk(seed, lights=3)
         none, certified = _renderers(walk.scene, width=24, height=24, depth=2, accelerator="bvh8")

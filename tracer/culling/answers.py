@@ -22,7 +22,8 @@ class Answers(NamedTuple):
     and doubtful, of those with one of which only candidates are; asked (n,) int32, the points with candidates, one
     after the other, and after that the bits of those that what moves is asked about; questions (QUESTION_ROWS, n)
     float32, where the rays will lie. Of the cache: slots (n,) int32 of the points, and occluders (n,) int32 of the
-    rays, one after the other."""
+    rays, one after the other. asks tells whether candidates are asked: where packets of rays from primary hits are
+    traced for less, they are not."""
 
     due: NDArray[np.int32]
     lit: NDArray[np.int32]
@@ -39,6 +40,7 @@ class Answers(NamedTuple):
     questions: NDArray[np.float32]
     slots: NDArray[np.int32]
     occluders: NDArray[np.int32]
+    asks: bool
 
 
 # Rows of the memory that answers lie in, the first eight of which are the rays.
@@ -48,7 +50,7 @@ ANSWER_ROWS = 21
 
 
 @inlined
-def answers_in(memory, count):
+def answers_in(memory, count, asks):
     """Answers for `count` points, of which nothing has been looked up, in memory (ANSWER_ROWS, n) float32."""
     for row in (LOOKED_UP_ROW, UNTRIED_ROW, DOUBTFUL_ROW):
         memory[row, : (count + 15) // 16] = 0
@@ -68,4 +70,5 @@ def answers_in(memory, count):
         memory[:QUESTION_ROWS],
         memory[SLOT_ROW].view(np.int32),
         memory[OCCLUDER_ROW].view(np.int32),
+        asks,
     )

@@ -160,7 +160,7 @@ def _note_candidates(number, certified, answers, v, asked):
     some = bits_of(field == np.int32(3 << shift)) & live
     answers.untried[v] |= live & ~some
     answers.doubtful[v] |= some
-    if certified.asked > 0:
+    if certified.asked > 0 and answers.asks:
         which = lane_numbers_x16() + np.int32(16 * v)
         store(address_of(answers.asked) + 4 * asked, pack(which, mask16(some)))
         asked += ones(some)

@@ -40,7 +40,7 @@ def _block(number):
 
 
 @inlined
-def _blocks_of(tile):
+def blocks_of(tile):
     """How many blocks make the square, of a power of two, that a tile (left, top, right, bottom) fits in."""
     side = BLOCK
     while side < max(tile[2] - tile[0], tile[3] - tile[1]):
@@ -48,15 +48,21 @@ def _blocks_of(tile):
     return (side // BLOCK) ** 2
 
 
+@inlined
+def block_at(tile, number):
+    """Columns and rows of a block's pixels in the picture, and which of them are inside the tile."""
+    column, row = _block(number)
+    x = (lane_numbers_x16() & np.int32(BLOCK - 1)) + np.int32(tile[0] + BLOCK * column)
+    y = (lane_numbers_x16() >> np.int32(2)) + np.int32(tile[1] + BLOCK * row)
+    return x, y, (x < np.int32(tile[2])) & (y < np.int32(tile[3]))
+
+
 @subkernel
 def primary_wave(camera, tile, width, memory, place):
     """A tile's primary rays in a wave's memory, and in place (n,) int32 where each one's pixel is in the picture."""
     n, stride = 0, 4 * memory.shape[1]
-    across, down = lane_numbers_x16() & np.int32(BLOCK - 1), lane_numbers_x16() >> np.int32(2)
-    for number in range(_blocks_of(tile)):
-        column, row = _block(number)
-        x, y = across + np.int32(tile[0] + BLOCK * column), down + np.int32(tile[1] + BLOCK * row)
-        inside = (x < np.int32(tile[2])) & (y < np.int32(tile[3]))
+    for number in range(blocks_of(tile)):
+        x, y, inside = block_at(tile, number)
         if not any_lane(inside):
             continue
         direction = primary_direction(camera, to_f32(x), to_f32(y))

@@ -22,8 +22,9 @@ from tracer.shading.bounce import next_wave
 from tracer.shading.phong import add_light
 from tracer.shading.places import sorted_by_place
 from tracer.shading.points import POINT_ROWS, points_at
-from tracer.shading.primary import keep_hits, primary_wave, recall_hits
+from tracer.shading.primary import block_at, blocks_of, keep_hits, primary_wave, recall_hits
 from tracer.shading.wave import WAVE_ROWS, bring_home, room, trace, without_misses
+from tracer.simd import any_lane, i32x16, select
 
 TILE = 64  # pixels on a side: more would make a few packets more coherent, but leave too little to share among threads
 
@@ -106,13 +107,14 @@ def trace_primary(world, camera, tile, buffers, counts, space):
 
 
 @kernel
-def seek_tile(camera, tile, certified, lights, buffers, space):
+def seek_tile(camera, tile, certified, lights, buffers):
     """Note which certificates the primary hits of a tile, which the buffers hold, are about to want."""
-    certified, buffers, space = borrowed(certified), borrowed(buffers), borrowed(space)
-    place = _tile_in(space.tile).place
-    wave = primary_wave(camera, tile, buffers.primitive.shape[1], space.wave, place)
-    recall_hits(wave, place, buffers)
-    seek(certified, lights, wave)
+    certified, buffers = borrowed(certified), borrowed(buffers)
+    width, hits = np.int32(buffers.primitive.shape[1]), (buffers.primitive, buffers.u, buffers.v)
+    for number in range(certified.turn, blocks_of(tile), certified.every):
+        x, y, inside = block_at(tile, number)
+        if any_lane(inside):
+            seek(certified, lights, camera.origin, hits, select(inside, y * width + x, i32x16(0)), inside)
 
 
 @subkernel
@@ -134,7 +136,7 @@ def _light(world, look, wave, points, knowledge, answers, counts, tile, first, b
         if len(buffers.saved) > 0:
             _record_work(wave, answers, tile, buffers)
     if knowledge.certify and not first:  # what the first wave wanted was sought before
-        want(certified.cells, certified.wanted, points, wave.size, answers.untried, answers.doubtful)
+        want(certified, points, wave.size, answers.untried, answers.doubtful)
     bring_home(wave, points.light, tile.light)
     if knowledge.verify:
         bring_home(wave, points.reference, tile.reference)
@@ -208,7 +210,8 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts, spa
     wave = without_misses(wave, look.background, pixels.light, pixels.reference)
     for bounce in range(depth + 1):
         points = points_at(world, look, wave, space.points, camera.spread, knowledge)
-        answers = answers_in(room(space.answers, wave.size), wave.size)
+        asks = bounce > 0 or knowledge.certified.dear
+        answers = answers_in(room(space.answers, wave.size), wave.size, asks)
         _light(world, look, wave, points, knowledge, answers, counts, pixels, bounce == 0, buffers)
         if bounce == 0:
             _see_normals(wave, points, pixels, buffers)

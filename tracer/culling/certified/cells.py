@@ -59,18 +59,20 @@ class Cells(NamedTuple):
     rooted: NDArray[np.int32]
 
 
-def make_cells(primitives: int, lights: int, room: int = 1 << 12) -> Cells:
-    """None yet, of so many primitives, all without a row of their own."""
+def make_cells(primitives: int, lights: int, room: int = 1 << 22) -> Cells:
+    """None yet, of so many primitives, all without a row of their own.
+
+    Room that is not used takes no memory: it is of pages that nobody has touched."""
     receivers = aligned_rows(max(primitives, 1), RECEIVER)
     receivers[:] = 0
     cells = Cells(
         np.zeros(room, word_type(lights)),
-        np.full(room, FINAL, np.int32),
+        np.zeros(room, np.int32),
         np.zeros(room, np.int32),
         np.zeros(room, np.int32),
         np.zeros((room, 3), np.float32),
         np.zeros(room, np.int32),
-        np.full((room, lights), NOBODY, np.int32),
+        np.zeros((room, lights), np.int32),
         np.zeros(2 + 4 * room, np.int32),
         np.ones(1, np.int64),
         np.full(1, 2, np.int64),
@@ -78,6 +80,7 @@ def make_cells(primitives: int, lights: int, room: int = 1 << 12) -> Cells:
         np.zeros(2 * len(receivers), np.int32),
         np.zeros(len(receivers), np.int32),
     )
+    cells.child[0], cells.lists[0] = FINAL, NOBODY
     cells.names[OVERFLOW], cells.names[NOBODY] = TOO_MANY, 0
     return cells
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -33,7 +34,7 @@ from tracer.culling.certified.forget import all_marked, copy_kept, drop_certific
 from tracer.culling.certified.lookup import ROOM, Certified, Wanted
 from tracer.culling.certified.occluders import Occluders
 from tracer.culling.certified.still import Still
-from tracer.culling.certified.work import KEPT, Points, commit, counters, gather_roots, make_tasks, tasks_in, work_on
+from tracer.culling.certified.work import KEPT, Points, commit, counters, gather_tasks, make_tasks, tasks_in, work_on
 from tracer.culling.dependence import drop_dependent
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.modes import NON_SHADOW as LIT
@@ -46,6 +47,7 @@ STATES = ("none", "full", "lit", "candidates")
 BATCH = 4096  # tasks between two looks at the budget, at most
 FIRST, FASTER = 8, 8  # tasks of a frame's first batch, where time counts, and how many times as many the next may have
 LEAST = 5e-4  # seconds: less time is not worth a batch
+MANY = 1 << 14  # points that are gathered: only of so many it is told how long each takes
 SHARES, CHUNK = 4, (32, 256)  # of a batch that each thread takes, one at a time; least and most tasks of one
 
 
@@ -60,13 +62,15 @@ class Budget:
 class Effort(NamedTuple):
     """What certifying is worth where rays cost what they do: how many must have wanted a triangle's first cell,
     `roots`, and a part of one, `parts`; how many candidates are `few`, so that a cell need not be divided for them;
-    how many are `asked` instead of tracing, at most; and whether rays are so dear that every look-up pays."""
+    how many are `asked` instead of tracing, at most; whether rays are so `dear` that every look-up pays; and that one
+    in `every` so many vectors of points says what it wants."""
 
     roots: int
     parts: int
     few: int
     asked: int
     dear: bool
+    every: int
 
 
 RARE = 1e-3  # certificates made for each shadow ray that was due, in the last frame: below that one can be EAGER
@@ -94,8 +98,11 @@ class Certificates:
         self.cells: Cells = make_cells(len(self._world.object_of), self._count)
         self._seen = np.zeros(len(self.cells.waiting), np.int32)  # the frame that last saw each root
         self._frame = 0
+        self._pace = 0.0  # seconds that a point took to be gathered, the slowest of late
         self._rate = np.inf  # certificates that the last frame made, for each shadow ray due
         self.left: list[Wanted] = []  # what the last frame's rays wanted and has not been looked into
+        self.next_tile = 0  # of a picture, the first to be asked what it wants
+        self._slots = np.zeros(0, np.int32)  # in which points are gathered
         self._scale()
 
     def _scale(self) -> None:
@@ -166,13 +173,13 @@ class Certificates:
         """Drop the certificates that name what has started, and those that what has stopped may come between."""
         gone = np.isin(self._world.object_of, started.which)
         near = all_marked(len(gone), self.cells.words.dtype.type)
+        near[self.cells.rooted[: len(near)] == 0] = 0  # of what has no cells nothing need be known
         lights = np.nan_to_num(self._lights)
         known = [int(number) for number in np.flatnonzero(self.still)]
         self._still.know(known, self._lights, self.highest)
         boxes = np.zeros((self._count, len(stopped.which), 6))  # by light, of which the others have no certificates
-        for number in known:
-            for k, index in enumerate(stopped.which):
-                boxes[number, k] = self._still.reported_within(int(index), number)
+        for k, index in enumerate(stopped.which):
+            boxes[known, k] = self._still.reported_within(int(index), known)
         around = np.concatenate(
             [boxes[known, :, :3].min(0, initial=np.inf), boxes[known, :, 3:].max(0, initial=-np.inf)], 1
         )
@@ -195,12 +202,12 @@ class Certificates:
         order = np.argsort(-self._seen, kind="stable")
         kept = np.zeros(len(self._seen), np.bool_)
         kept[order[np.cumsum(sizes[order]) <= 0.75 * most]] = True
-        empty = make_cells(len(self._world.object_of), self._count, used)
+        empty = make_cells(len(self._world.object_of), self._count, len(self.cells.words))
         empty = empty._replace(
             names=np.zeros(len(self.cells.names), np.int32), receivers=self.cells.receivers, rooted=self.cells.rooted
         )
         copy_kept(self.cells, kept, empty)
-        self.cells = empty
+        self.cells, self.left = empty, []  # which speaks of numbers that cells no longer have
 
     @property
     def effort(self) -> Effort:
@@ -217,7 +224,8 @@ class Certificates:
     def told(self, wanted: Wanted) -> Certified:
         """What a tile is told, which puts what it wants there."""
         usual = self._usual
-        return Certified(self.cells, self.occluders.sights, self.still, self.highest, usual.asked, usual.dear, wanted)
+        sights, often = self.occluders.sights, (usual.every, self._frame % usual.every)
+        return Certified(self.cells, sights, self.still, self.highest, usual.asked, usual.dear, *often, wanted)
 
     def wanted(self, tiles: int) -> Wanted:
         """Room for what tiles ask for: arrays with a row each."""
@@ -233,13 +241,7 @@ class Certificates:
         counts = counters(self._threads)
         if not self._count:
             return counts.sum(0)
-        kept = [(wanted, tile, n) for wanted in lists for tile, n in enumerate(wanted.of[:, 0]) if n]
-        if not kept:
-            return counts.sum(0)
-        key, u, v = (np.concatenate([wanted[k][tile, :n] for wanted, tile, n in kept]) for k in range(3))
-        points = Points(np.empty_like(u), np.empty_like(v), np.empty((2, len(u)), np.float32))
-        self.cells = with_room(self.cells, min(len(key), 2 * len(self.cells.receivers)), 0)
-        todo = gather_roots(self.cells, key, u, v, effort.roots, points)
+        todo, points = self._gather(lists, budget, effort)
         batch = FIRST if budget.until < np.inf else BATCH
         while len(todo):
             todo = todo[np.argsort(todo[:, 1] - todo[:, 2], kind="stable")]
@@ -257,6 +259,27 @@ class Certificates:
                 batch = int(min(BATCH, FASTER * batch, 0.5 * (budget.until - clock.perf_counter()) / pace))
             todo = np.concatenate(following)
         return counts.sum(0)
+
+    def _gather(self, lists: list[Wanted], budget: Budget, effort: Effort) -> tuple[NDArray[np.int32], Points]:
+        """Tasks (n, 3), and the points that wanted them: where time is short those of some tiles, of others in the next
+        frame."""
+        start = clock.perf_counter()
+        kept = [(wanted, tile, n) for wanted in lists for tile, n in enumerate(wanted.of[:, 0].tolist()) if n]
+        total = sum(n for _, _, n in kept)
+        among = max(1, math.ceil(total * self._pace / (0.5 * max(LEAST, budget.until - start))))
+        kept = kept[self._frame % among :: among]
+        none = [np.empty(0, np.int32), np.empty(0, np.float32), np.empty(0, np.float32)]
+        key, u, v = (np.concatenate([none[k], *(wanted[k][tile, :n] for wanted, tile, n in kept)]) for k in range(3))
+        points = Points(np.empty_like(u), np.empty_like(v), np.empty((2, len(u)), np.float32))
+        self.cells = with_room(self.cells, min(len(key), 2 * len(self.cells.receivers)), 0)
+        slots = len(self.cells.words) + len(self.cells.waiting)
+        if len(self._slots) < slots:
+            self._slots = np.zeros(slots, np.int32)
+        known = self.cells, self.occluders, self._lights, self.still
+        todo = gather_tasks(*known, key, u, v, effort.roots, self._slots, points)
+        if len(key) > 0:
+            self._pace = max(0.5 * self._pace, (clock.perf_counter() - start) / max(MANY, len(key)))
+        return todo, points
 
     def _certify(
         self,

@@ -36,13 +36,14 @@ from tracer.simd import (
     as_f32,
     as_i32,
     bits_of,
+    gather_f32x16,
     gather_i32x16,
     i32x16,
+    lane_of,
     lanes_below,
     load_columns,
     load_f32x16,
     load_i32x16,
-    load_three,
     local_memory,
     lowest_bit,
     mask16,
@@ -53,14 +54,15 @@ from tracer.simd import (
 )
 
 ZERO, HALF, ONE, TWO = np.float32(0), np.float32(0.5), np.float32(1), np.float32(2)
-NOWHERE = -1  # instead of a root's key
+NOWHERE = -1  # instead of an owner
 ROOM = 4096  # points that a tile can ask for
 FACING = 64 * MAX_CULLED_LIGHTS  # bytes
 
 
 class Wanted(NamedTuple):
-    """Points whose rays found no certificate: key (ROOM,) int32, twice their triangle's number and 1 more on its back,
-    u and v (ROOM,) float32.  of (3,) int64: how many there are, of how many one is kept, and how many were seen."""
+    """Points whose rays found no certificate: key (ROOM,) int32, the cell or, where there is none yet, -1 less the
+    owner; u and v (ROOM,) float32.  of (3,) int64: how many there are, of how many one is kept, and how many were
+    seen."""
 
     key: NDArray[np.int32]
     u: NDArray[np.float32]
@@ -71,7 +73,8 @@ class Wanted(NamedTuple):
 class Certified(NamedTuple):
     """What a tile is told of certified cells, and asks: the cells; sights (lights, n, SIGHT) float32 of what they name;
     still (lights,) bool, which lights are certified; how high above a cell a ray may end; how many candidates are asked
-    at most; whether rays cost so much that every look-up pays; and what the tile wants."""
+    at most; whether rays are so dear that every look-up pays; that one in `every` so many vectors of points says what
+    it wants, the first being that of this `turn`; and what the tile wants."""
 
     cells: Cells
     sights: NDArray[np.float32]
@@ -79,6 +82,8 @@ class Certified(NamedTuple):
     highest: float
     asked: int
     dear: bool
+    every: int
+    turn: int
     wanted: Wanted
 
 
@@ -90,7 +95,7 @@ def nothing_wanted() -> Wanted:
 def nothing_told(lights: int) -> Certified:
     """What tiles are told where nothing is certified."""
     sights, still = np.empty((0, 0, SIGHT), np.float32), np.empty(0, np.bool_)
-    return Certified(make_cells(1, lights, 1), sights, still, 0.0, 0, False, nothing_wanted())
+    return Certified(make_cells(1, lights, 1), sights, still, 0.0, 0, False, 1, 0, nothing_wanted())
 
 
 @inlined
@@ -102,8 +107,8 @@ def _at(row, first, x, y, z):
 def find_cells(certified, points, count):
     """The cells of points, sixteen by sixteen, into points.unit, which tells their primitives.
 
-    points.lifted are where their rays end; points.spots get u, v and, as int32, the key of their root, NOWHERE for
-    none.  Unless rays are `dear`, triangles without a root are not looked at any closer."""
+    points.lifted are where their rays end; points.spots get u, v and, as int32, their owner, NOWHERE for none.
+    Unless rays are `dear`, triangles without a root are not looked at any closer."""
     cells, highest = certified.cells, certified.highest
     child, receivers, lifted, spots = address_of(cells.child), address_of(cells.receivers), points.lifted, points.spots
     stride, rooted_at = 4 * lifted.shape[1], address_of(cells.rooted)
@@ -129,11 +134,11 @@ def find_cells(certified, points, count):
         beyond = row[BEYOND_U] + row[BEYOND_V]
         inside = inside & (u >= -row[BEYOND_U]) & (v >= -row[BEYOND_V]) & (u + v <= ONE + beyond)
         back = height < ZERO
-        key = (primitive << np.int32(1)) + select(back, i32x16(1), i32x16(0))
+        owner = (primitive << np.int32(1)) + select(back, i32x16(1), i32x16(0))
         u, v = minimum(maximum(u, ZERO), ONE), minimum(maximum(v, ZERO), ONE)
         store(address_of(spots) + at, u)
         store(address_of(spots) + stride + at, v)
-        store(address_of(spots) + 2 * stride + at, as_f32(select(inside, key, i32x16(NOWHERE))))
+        store(address_of(spots) + 2 * stride + at, as_f32(select(inside, owner, i32x16(NOWHERE))))
         cell = select(back, as_i32(row[ROOTS + 1]), as_i32(row[ROOTS]))
         cell = select(inside & mask16(lanes_below(count, k)), cell, i32x16(0))
         store(numbers, _descend(child, cell, u, v))
@@ -161,11 +166,11 @@ def _descend(child, cell, u, v):
 
 
 @subkernel
-def want(cells, wanted, points, count, untried, doubtful):
+def want(certified, points, count, untried, doubtful):
     """Note the points of which something could be certified: bits, 16 to an int32, of those with a light of
     which nothing is known yet (`untried`), and of those with one of which a part of the cell may tell more."""
-    spots = points.spots
-    for k in range((count + 15) // 16):
+    cells, wanted, spots = certified.cells, certified.wanted, points.spots
+    for k in range(certified.turn, (count + 15) // 16, certified.every):
         bits = np.int64(untried[k] | doubtful[k])
         if bits == 0:
             continue
@@ -176,7 +181,12 @@ def want(cells, wanted, points, count, untried, doubtful):
         while bits != 0:
             i = 16 * k + lowest_bit(bits)
             bits &= bits - 1
-            _note(wanted, spots[2].view(np.int32)[i], spots[0, i], spots[1, i])
+            _note(wanted, _key(points.unit[i], spots[2].view(np.int32)[i]), spots[0, i], spots[1, i])
+
+
+@inlined
+def _key(cell, owner):
+    return cell if cell > 0 else -1 - owner
 
 
 @inlined
@@ -218,40 +228,39 @@ def _wanting(cells, still, cell, facing):
 
 
 @subkernel
-def seek(certified, lights, wave):
-    """Note what primary hits are about to want: those of a wave, found by their coordinates in the triangle.
+def seek(certified, lights, origin, hits, place, there):
+    """Note what sixteen primary hits are about to want, found by their coordinates in the triangle.
 
-    Unless rays are dear, a quarter of them will do."""
+    Rays come from origin (3,) and, where they are `there`, have hit what pixels at `place` of pictures say: primitive,
+    u and v (height, width)."""
     cells, receivers, child = certified.cells, address_of(certified.cells.receivers), address_of(certified.cells.child)
     facing, numbers = local_memory(FACING), local_memory(64)
-    for k in range(0, (wave.size + 15) // 16, 1 if certified.dear else 4):
-        primitive = load_i32x16(address_of(wave.hits.primitive) + 64 * k)
-        hit = (primitive > np.int32(NOWHERE)) & mask16(lanes_below(wave.size, k))
-        primitive = select(hit, primitive, i32x16(0))
-        store(numbers, primitive)
-        row = load_columns(receivers, numbers, RECEIVER)
-        ox, oy, oz = load_three(wave.rays.origin, k)
-        back = _at(row, NORMAL, ox - row[CORNER], oy - row[CORNER + 1], oz - row[CORNER + 2]) < ZERO
-        way = select(back, -ONE, ONE)
-        there = bits_of(hit & (_at(row, NORMAL, row[NORMAL], row[NORMAL + 1], row[NORMAL + 2]) > HALF))
-        if there == 0:
-            continue
-        for number in range(len(certified.still)):
-            x, y, z = lights[number, 0], lights[number, 1], lights[number, 2]
-            above = _at(row, NORMAL, x - row[CORNER], y - row[CORNER + 1], z - row[CORNER + 2])
-            store(facing + 64 * number, way * above)
-        u, v = load_f32x16(address_of(wave.hits.u) + 64 * k), load_f32x16(address_of(wave.hits.v) + 64 * k)
-        root = select(back, as_i32(row[ROOTS + 1]), as_i32(row[ROOTS]))
-        cell = _descend(child, select(mask16(there), root, i32x16(0)), u, v)
-        # A root that is not there yet is cell 0, of which nothing is known: wanted where any light faces it.
-        bits = there & _wanting(cells, certified.still, cell, facing)
-        bits |= there & bits_of(cell == np.int32(0)) & _any_facing(certified.still, facing)
-        while bits != 0:
-            lane = lowest_bit(bits)
-            bits &= bits - 1
-            i = 16 * k + lane
-            key = 2 * wave.hits.primitive[i] + ((bits_of(back) >> lane) & 1)
-            _note(certified.wanted, key, wave.hits.u[i], wave.hits.v[i])
+    primitive = gather_i32x16(address_of(hits[0]), place)
+    u, v = gather_f32x16(address_of(hits[1]), place), gather_f32x16(address_of(hits[2]), place)
+    hit = there & (primitive > np.int32(NOWHERE))
+    primitive = select(hit, primitive, i32x16(0))
+    store(numbers, primitive)
+    row = load_columns(receivers, numbers, RECEIVER)
+    back = _at(row, NORMAL, origin[0] - row[CORNER], origin[1] - row[CORNER + 1], origin[2] - row[CORNER + 2]) < ZERO
+    way = select(back, -ONE, ONE)
+    with_cells = hit & (_at(row, NORMAL, row[NORMAL], row[NORMAL + 1], row[NORMAL + 2]) > HALF)
+    if not any_lane(with_cells):
+        return
+    for number in range(len(certified.still)):
+        x, y, z = lights[number, 0], lights[number, 1], lights[number, 2]
+        above = _at(row, NORMAL, x - row[CORNER], y - row[CORNER + 1], z - row[CORNER + 2])
+        store(facing + 64 * number, way * above)
+    root = select(back, as_i32(row[ROOTS + 1]), as_i32(row[ROOTS]))
+    cell = _descend(child, select(with_cells, root, i32x16(0)), u, v)
+    # A root that is not there yet is cell 0, of which nothing is known: wanted where any light faces it.
+    bits = _wanting(cells, certified.still, cell, facing)
+    bits |= bits_of(cell == np.int32(0)) & _any_facing(certified.still, facing)
+    bits &= bits_of(with_cells)
+    while bits != 0:
+        lane = lowest_bit(bits)
+        bits &= bits - 1
+        owner = 2 * lane_of(primitive, lane) + ((bits_of(back) >> lane) & 1)
+        _note(certified.wanted, _key(lane_of(cell, lane), owner), lane_of(u, lane), lane_of(v, lane))
 
 
 @inlined

@@ -64,14 +64,16 @@ class Still:
         quadrics, first = self._primitives.quadrics_of(index), self.first_quadric
         return self._primitives.triangles_of(index), slice(first + quadrics.start, first + quadrics.stop)
 
-    def reported_within(self, index: int, light: int) -> NDArray[np.float64]:
-        """A box (6,) outside of which no ray from a light that is known reports a hit on an object that is static;
-        inverted for an object of nothing."""
+    def reported_within(self, index: int, lights: list[int]) -> NDArray[np.float64]:
+        """Boxes (lights, 6) outside of which no ray from these lights, which are known, reports a hit on an object that
+        is static; inverted for an object of nothing."""
         triangles, quadrics = self._rows_of(index)
         boxes = triangle_boxes(self.rows[triangles, :BLUR]).astype(np.float64)
-        boxes += self.occluders.reaches[light, triangles, None] * OUTWARDS
-        boxes = np.concatenate([boxes, self.rows[quadrics, BOX:]])
-        return np.concatenate([boxes[:, :3].min(0, initial=np.inf), boxes[:, 3:].max(0, initial=-np.inf)])
+        fixed, result = self.rows[quadrics, BOX:], np.empty((len(lights), 6))
+        for k, light in enumerate(lights):
+            every = np.concatenate([boxes + self.occluders.reaches[light, triangles, None] * OUTWARDS, fixed])
+            result[k, :3], result[k, 3:] = every[:, :3].min(0, initial=np.inf), every[:, 3:].max(0, initial=-np.inf)
+        return result
 
     @staticmethod
     def _farthest(light: NDArray[np.float32], bounds: NDArray[np.float64]) -> float:
