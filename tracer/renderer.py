@@ -33,11 +33,21 @@ from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
 from tracer.shading.look import make_look
-from tracer.shading.whitted import COUNTERS, TILE, Buffers, Workspace, seek_tile, shade_tile, trace_primary, workspace
+from tracer.shading.whitted import (
+    COUNTERS,
+    TILE,
+    Buffers,
+    Workspace,
+    seek_in_tiles,
+    shade_tile,
+    trace_primary,
+    workspace,
+)
 from tracer.statistics import gather
 
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
+SHARES = 8  # of all tiles that each thread takes, one at a time, to look for what is wanted
 SEEKING = 0.5  # of the time for certificates, at most, is spent on looking for what primary hits want
 BY_MODES = ("paper", "cells")  # methods that cull by modes
 # What certifying is worth, by what a shadow ray costs: some 250 ns, and 50.
@@ -210,14 +220,14 @@ class UnfinishedFrame:
             cost=np.zeros(worked, np.int32),
         )
 
-    def _for_each_tile(self, work: Callable[[int, tuple[int, int, int, int], int], None], first: int = 0) -> None:
-        """Call work(number, tile, worker) for every tile, those from the `first` on before the others."""
-
-        def tile_work(chunk: int, worker: int) -> None:
-            number = (first + chunk) % len(self._tiles)
-            work(number, self._tiles[number], worker)
-
-        for_each_chunk(tile_work, len(self._tiles), self._workers, self._cancel)
+    def _for_each_tile(self, work: Callable[[int, tuple[int, int, int, int], int], None]) -> None:
+        """Call work(number, tile, worker) for every tile."""
+        for_each_chunk(
+            lambda number, worker: work(number, self._tiles[number], worker),
+            len(self._tiles),
+            self._workers,
+            self._cancel,
+        )
 
     def place_objects_and_lights(self) -> None:
         """Where is everything that moves?  What is known of a light that moved is forgotten, and what depends on an
@@ -274,16 +284,18 @@ class UnfinishedFrame:
             return
         start, seconds = clock.perf_counter(), self._settings.certificate_seconds
         sought, lights = certificates.wanted(len(self._tiles)), self._renderer._look.lights
+        tiles, certified = np.array(self._tiles), certificates.told(sought)
+        order = (certificates.next_tile + np.arange(len(tiles))) % len(tiles)
+        shares = np.array_split(order, SHARES * self._workers)
         looked_at: list[int] = []
 
-        def work(number: int, tile: tuple[int, int, int, int], worker: int) -> None:
+        def work(chunk: int, worker: int) -> None:
             if clock.perf_counter() - start < SEEKING * seconds:
-                certified = self._certified(certificates, sought, number)
-                seek_tile(self._rays, tile, certified, lights, self._buffers)
-                looked_at.append(number)
+                seek_in_tiles(self._rays, tiles, shares[chunk], certified, lights, self._buffers)
+                looked_at.append(len(shares[chunk]))
 
-        self._for_each_tile(work, certificates.next_tile)
-        certificates.next_tile += len(looked_at)  # where time was short, others are the first in the next frame
+        for_each_chunk(work, len(shares), self._workers, self._cancel)
+        certificates.next_tile += sum(looked_at)  # where time was short, others are the first in the next frame
         budget = Budget(self._settings.certificates, start + seconds)
         wanted = [sought, *certificates.left]
         self._certifying = certificates.certify(wanted, budget, certificates.effort, self._cancel)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.answers import ANSWER_ROWS, answers_in
-from tracer.culling.certified.lookup import find_cells, seek, want
+from tracer.culling.certified.lookup import Wanted, find_cells, seek, want
 from tracer.culling.shadow import RAYS, SHADOW_COUNTERS, shadow_testing
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
@@ -107,14 +107,19 @@ def trace_primary(world, camera, tile, buffers, counts, space):
 
 
 @kernel
-def seek_tile(camera, tile, certified, lights, buffers):
-    """Note which certificates the primary hits of a tile, which the buffers hold, are about to want."""
-    certified, buffers = borrowed(certified), borrowed(buffers)
+def seek_in_tiles(camera, tiles, numbers, certified, lights, buffers):
+    """Note which certificates the primary hits of some tiles, whose numbers (k,) are given, are about to want: their
+    hits are in the buffers, and certified.wanted has a row for each of all tiles (n, 4)."""
+    certified, buffers, wanted = borrowed(certified), borrowed(buffers), certified.wanted
     width, hits = np.int32(buffers.primitive.shape[1]), (buffers.primitive, buffers.u, buffers.v)
-    for number in range(certified.turn, blocks_of(tile), certified.every):
-        x, y, inside = block_at(tile, number)
-        if any_lane(inside):
-            seek(certified, lights, camera.origin, hits, select(inside, y * width + x, i32x16(0)), inside)
+    for number in numbers:
+        tile = tiles[number]
+        here = Wanted(wanted.key[number], wanted.u[number], wanted.v[number], wanted.of[number])
+        for block in range(certified.turn, blocks_of(tile), certified.every):
+            x, y, inside = block_at(tile, block)
+            if any_lane(inside):
+                place = select(inside, y * width + x, i32x16(0))
+                seek(certified, here, lights, camera.origin, hits, place, inside)
 
 
 @subkernel

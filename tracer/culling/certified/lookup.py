@@ -228,8 +228,8 @@ def _wanting(cells, still, cell, facing):
 
 
 @subkernel
-def seek(certified, lights, origin, hits, place, there):
-    """Note what sixteen primary hits are about to want, found by their coordinates in the triangle.
+def seek(certified, wanted, lights, origin, hits, place, there):
+    """Note in wanted what sixteen primary hits are about to want, found by their coordinates in the triangle.
 
     Rays come from origin (3,) and, where they are `there`, have hit what pixels at `place` of pictures say: primitive,
     u and v (height, width)."""
@@ -260,7 +260,7 @@ def seek(certified, lights, origin, hits, place, there):
         lane = lowest_bit(bits)
         bits &= bits - 1
         owner = 2 * lane_of(primitive, lane) + ((bits_of(back) >> lane) & 1)
-        _note(certified.wanted, _key(lane_of(cell, lane), owner), lane_of(u, lane), lane_of(v, lane))
+        _note(wanted, _key(lane_of(cell, lane), owner), lane_of(u, lane), lane_of(v, lane))
 
 
 @inlined

@@ -1,0 +1,111 @@
+"""From what rays wanted to tasks: which cells are begun with, and what is looked at where time is short."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import count
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import tracer
+from tests.tracing.test_culling import BEHIND, floor, roof
+from tests.tracing.worlds import scene
+from tracer import renderer as rendering
+from tracer.culling.certified.cells import ALONG_U, CORNER, NORMAL, ROOTS
+from tracer.culling.certified.certificates import Certificates, Effort
+from tracer.culling.certified.work import Points, gather_tasks
+from tracer.geometry.world import ACCELERATORS
+
+# The last light is below the floor: no cell there waits for it.
+LIGHTS = [(0.0, 0.0, 11.0), (1.0, -1.0, 10.0), (0.0, 0.0, -4.0)]
+SQUARES = scene(floor() + roof(6.0, 1.0), lights=LIGHTS, camera=BEHIND)
+SETTINGS = tracer.Settings(96, 64, 2, "certified", threads=1)
+
+
+@pytest.fixture(autouse=True)
+def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rendering, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 2, 8, True, 1)))
+
+
+@pytest.fixture
+def certificates() -> Certificates:
+    """Of squares, with a quadtree on each that rays have asked for."""
+    renderer = tracer.Renderer(SQUARES, SETTINGS)
+    for _ in range(4):
+        renderer.render()
+    assert renderer.certificates is not None
+    return renderer.certificates
+
+
+def _first_untried(c: Certificates, cell: int) -> int:
+    """Naive twin: upwards from a cell, as long as the whole waits for a light that its part waits for."""
+
+    def waits(number: int) -> set[int]:
+        owner = int(c.cells.owner[number])
+        row = c.cells.receivers[owner >> 1]
+        above = (c._lights - row[CORNER : CORNER + 3]) @ row[NORMAL : NORMAL + 3] * (-1 if owner & 1 else 1)
+        states = [(int(c.cells.words[number]) >> (2 + 2 * light)) & 3 for light in range(len(LIGHTS))]
+        return {light for light in range(len(LIGHTS)) if above[light] > 0 and states[light] == 0}
+
+    parent, waiting = int(c.cells.parent[cell]), waits(cell)
+    while parent and waits(parent) & waiting:
+        cell, parent = parent, int(c.cells.parent[parent])
+    return cell
+
+
+def test_points_are_gathered_by_the_cell_to_begin_with(certificates: Certificates) -> None:
+    c, rng = certificates, np.random.default_rng(5)
+    cells, used = c.cells, int(c.cells.used[0])
+    assert used > 100 and (cells.parent[1:used] > 0).any()
+    for number in range(1, used):  # forget some of what is certified: whole branches, and cells within others
+        if rng.random() < 0.4:
+            cells.words[number] &= ~cells.words.dtype.type(3 << (2 + 2 * int(rng.integers(len(LIGHTS)))))
+    moved = int(cells.owner[used - 1]) >> 1  # as if it had begun to move, and stopped: what it had is nobody's
+    cells.rooted[moved] = 0
+    cells.receivers.view(np.int32)[moved, ROOTS : ROOTS + 2] = 0
+    bare = [o for o in range(len(cells.waiting)) if cells.receivers.view(np.int32)[o >> 1, ROOTS + (o & 1)] == 0]
+    wanted_by_some, wanted_by_few = 2 * moved, next(o for o in bare if o >> 1 != moved)
+    cells.waiting[wanted_by_some], cells.waiting[wanted_by_few] = 4, 0
+    key = rng.integers(1, used, 3000).astype(np.int32)
+    key[rng.choice(len(key), 40, replace=False)] = -1 - wanted_by_some
+    key[np.flatnonzero(key > 0)[:3]] = -1 - wanted_by_few
+    u, v = rng.random((2, len(key)), np.float32)
+    expected: dict[int, set[tuple[float, float]]] = {}
+    for k, x, y in zip(key.tolist(), u.tolist(), v.tolist(), strict=True):
+        if k > 0 and int(cells.owner[k]) >> 1 != moved:
+            expected.setdefault(_first_untried(c, k), set()).add((x, y))
+        elif k == -1 - wanted_by_some:
+            expected.setdefault(used, set()).add((x, y))  # the root that is made
+    points = Points(np.empty_like(u), np.empty_like(v), np.empty((2, len(u)), np.float32))
+    slots = np.zeros(len(cells.words) + len(cells.waiting), np.int32)
+    tasks = gather_tasks(cells, c.occluders, c._lights, c.still, key, u, v, 20, slots, points)
+    found = {int(cell): set(zip(points.u[a:b].tolist(), points.v[a:b].tolist(), strict=True)) for cell, a, b in tasks}
+    assert len(found) == len(tasks) and found == expected
+    assert any(_first_untried(c, k) != k for k in key[key > 0].tolist()), "some are part of a whole"
+    assert not slots.any()
+    assert int(cells.used[0]) == used + 1 and int(cells.owner[used]) == wanted_by_some and cells.rooted[moved]
+    assert cells.waiting[wanted_by_few] == 3 and np.any(cells.receivers[moved, ALONG_U : ALONG_U + 3])
+
+
+def test_what_a_frame_has_no_time_to_look_at_is_looked_at_in_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
+    ticks = count()
+    settings = replace(SETTINGS, width=640, height=320, certificate_seconds=1.0)
+    renderer, calls = tracer.Renderer(SQUARES, settings), []
+    seek = rendering.seek_in_tiles
+
+    def noted(rays, tiles, numbers, *rest):
+        calls.append(set(numbers.tolist()))
+        seek(rays, tiles, numbers, *rest)
+
+    monkeypatch.setattr(rendering, "seek_in_tiles", noted)
+    monkeypatch.setattr(rendering, "clock", SimpleNamespace(perf_counter=lambda: 0.2 * next(ticks)))
+    frames = []
+    for _ in range(8):
+        calls.clear()
+        renderer.render()
+        frames.append(set().union(*calls))
+    tiles = 10 * 5
+    assert all(0 < len(frame) < tiles / 2 for frame in frames)
+    assert set().union(*frames) == set(range(tiles)) and not frames[0] & frames[1]
