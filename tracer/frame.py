@@ -31,8 +31,8 @@ class Settings:
     and Frame.lit, `record_work` Frame.saved and Frame.cost.
 
     In a frame of method "certified" at most so many `certificates` are made, in at most so many
-    `certificate_seconds` (which leaves it to chance how many: inf for counters that repeat exactly), of which half is
-    theirs however long it takes to look for what is wanted.  They take about `certificate_memory` megabytes at most.
+    `certificate_seconds` (which leaves it to chance how many: inf for counters that repeat exactly), of which a quarter
+    at least is left for making them.  They take about `certificate_memory` megabytes at most.
     """
 
     width: int = 512

@@ -32,7 +32,7 @@ from tracer.method import base_of, takes
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
-from tracer.shading.look import make_look
+from tracer.shading.look import SHINE, TRANSMISSION, make_look
 from tracer.shading.whitted import (
     COUNTERS,
     TILE,
@@ -147,6 +147,12 @@ class Renderer:
         self._cache.make_room(workers)
         return self._cache
 
+    def _effort(self) -> Effort:
+        """What certifying is worth in this world: where rays are cheap and nothing reflects, nobody asks candidates."""
+        effort, materials = EFFORT[self.world.accelerator], self._look.materials
+        bounces = (materials[:, SHINE] > 0.0).any() or (materials[:, TRANSMISSION] > 0.0).any()
+        return effort if effort.dear or bounces else effort._replace(asked=0)
+
     def _first(self, settings: Settings) -> np.ndarray:
         """The first unit of each primitive (`tracer.culling.cells`)."""
         if _has_cells(settings) and True not in self._first_units:
@@ -245,8 +251,7 @@ class UnfinishedFrame:
         self.memory.follow_rest(rest.now, world.outlines, self._workers)
         if certified:
             if renderer.certificates is None:
-                effort = EFFORT[world.accelerator]
-                renderer.certificates = Certificates(world, len(lights), self._workers, effort)
+                renderer.certificates = Certificates(world, len(lights), self._workers, renderer._effort())
             self._certificates = renderer.certificates
             self._certificates.follow(lights, rest.now, self._workers)
 
@@ -284,20 +289,20 @@ class UnfinishedFrame:
             return
         start, seconds = clock.perf_counter(), self._settings.certificate_seconds
         sought, lights = certificates.wanted(len(self._tiles)), self._renderer._look.lights
-        tiles, certified = np.array(self._tiles), certificates.told(sought)
+        tiles, certified = np.array(self._tiles), certificates.told(nothing_wanted())
         order = (certificates.next_tile + np.arange(len(tiles))) % len(tiles)
         shares = np.array_split(order, SHARES * self._workers)
         looked_at: list[int] = []
 
         def work(chunk: int, worker: int) -> None:
             if clock.perf_counter() - start < SEEKING * seconds:
-                seek_in_tiles(self._rays, tiles, shares[chunk], certified, lights, self._buffers)
+                seek_in_tiles(self._rays, tiles, shares[chunk], certified, sought, lights, self._buffers)
                 looked_at.append(len(shares[chunk]))
 
         for_each_chunk(work, len(shares), self._workers, self._cancel)
         certificates.next_tile += sum(looked_at)  # where time was short, others are the first in the next frame
         budget = Budget(self._settings.certificates, start + seconds)
-        wanted = [sought, *certificates.left]
+        wanted, certificates.left = [sought, *certificates.left], []
         self._certifying = certificates.certify(wanted, budget, certificates.effort, self._cancel)
         self._wanted = certificates.wanted(len(self._tiles))
 

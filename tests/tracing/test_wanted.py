@@ -13,9 +13,11 @@ import tracer
 from tests.tracing.test_culling import BEHIND, floor, roof
 from tests.tracing.worlds import scene
 from tracer import renderer as rendering
-from tracer.culling.certified.cells import ALONG_U, CORNER, NORMAL, ROOTS
-from tracer.culling.certified.certificates import Certificates, Effort
-from tracer.culling.certified.work import Points, gather_tasks
+from tracer.culling.certified import certificates as certifying
+from tracer.culling.certified.cells import ALONG_U, CANDIDATES, CORNER, FULL, LIT, NORMAL, ROOTS, TOO_MANY
+from tracer.culling.certified.certificates import Budget, Certificates, Effort
+from tracer.culling.certified.work import KEPT, Points, commit, gather_tasks, make_tasks, tasks_in
+from tracer.culling.modes import FULLY_RENDERED
 from tracer.geometry.world import ACCELERATORS
 
 # The last light is below the floor: no cell there waits for it.
@@ -95,7 +97,7 @@ def test_what_a_frame_has_no_time_to_look_at_is_looked_at_in_the_next(monkeypatc
     renderer, calls = tracer.Renderer(SQUARES, settings), []
     seek = rendering.seek_in_tiles
 
-    def noted(rays, tiles, numbers, *rest):
+    def noted(rays, tiles, numbers, *rest) -> None:
         calls.append(set(numbers.tolist()))
         seek(rays, tiles, numbers, *rest)
 
@@ -109,3 +111,39 @@ def test_what_a_frame_has_no_time_to_look_at_is_looked_at_in_the_next(monkeypatc
     tiles = 10 * 5
     assert all(0 < len(frame) < tiles / 2 for frame in frames)
     assert set().union(*frames) == set(range(tiles)) and not frames[0] & frames[1]
+
+
+def test_lists_for_which_there_is_no_time_come_first_in_the_next_frame(
+    certificates: Certificates, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    c, tiles, points = certificates, 10, 100
+    wanted = c.wanted(tiles)
+    wanted.key[:, :points], wanted.v[:, :points] = 1, 0.0
+    wanted.u[:, :points] = np.arange(tiles)[:, None] / tiles
+    wanted.of[:, 0] = points
+    monkeypatch.setattr(certifying, "clock", SimpleNamespace(perf_counter=lambda: 0.0))
+    gathered = []
+    for _ in range(4):
+        c._pace = 1.0  # seconds for each point
+        tasks, some = c._gather([wanted], Budget(until=350 / certifying.SORTING), Effort(1, 1, 2, 8, True, 1))
+        assert tasks.tolist() == [[1, 0, 3 * points]]
+        gathered.append(sorted(set(np.rint(some.u * tiles).astype(int).tolist())))
+    assert gathered == [[0, 1, 2], [3, 4, 5], [6, 7, 8], [0, 1, 9]]
+    tasks, some = c._gather([wanted], Budget(), Effort(1, 1, 2, 8, True, 1))
+    assert len(some.u) == tiles * points
+
+
+def test_a_task_within_another_leaves_what_that_has_found(certificates: Certificates) -> None:
+    cells = certificates.cells
+    whole = next(n for n in range(1, int(cells.used[0])) if cells.child[n] >= 0)
+    part = int(cells.child[whole])
+    word = cells.words.dtype.type(FULLY_RENDERED)
+    cells.words[whole] = cells.words[part : part + 4] = word
+    tasks = tasks_in(make_tasks(2, len(LIGHTS)), np.array([[whole, 0, 1], [part, 1, 2]], np.int32))
+    tasks.state[:], tasks.amount[:], tasks.parts[:], tasks.doubt[:] = KEPT, 0, 0, False
+    tasks.state[0, 0], tasks.amount[0, 0], tasks.names[0, 0, 0] = FULL, 1, 3
+    tasks.state[1, 0], tasks.amount[1, 0] = CANDIDATES, TOO_MANY
+    tasks.state[1, 1], tasks.amount[1, 1] = LIT, 0
+    commit(cells, certificates.occluders, (certificates.highest, 10.0), tasks, np.empty((8, 3), np.int32))
+    assert certificates.at_pixels(np.array([part])) == word | FULL << 2 | LIT << 4
+    assert certificates.at_pixels(np.array([whole])) == word | FULL << 2

@@ -107,10 +107,10 @@ def trace_primary(world, camera, tile, buffers, counts, space):
 
 
 @kernel
-def seek_in_tiles(camera, tiles, numbers, certified, lights, buffers):
+def seek_in_tiles(camera, tiles, numbers, certified, wanted, lights, buffers):
     """Note which certificates the primary hits of some tiles, whose numbers (k,) are given, are about to want: their
-    hits are in the buffers, and certified.wanted has a row for each of all tiles (n, 4)."""
-    certified, buffers, wanted = borrowed(certified), borrowed(buffers), certified.wanted
+    hits are in the buffers, and wanted has a row for each of all tiles (n, 4)."""
+    certified, wanted, buffers = borrowed(certified), borrowed(wanted), borrowed(buffers)
     width, hits = np.int32(buffers.primitive.shape[1]), (buffers.primitive, buffers.u, buffers.v)
     for number in numbers:
         tile = tiles[number]

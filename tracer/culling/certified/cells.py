@@ -37,10 +37,10 @@ class Cells(NamedTuple):
 
     words (n,) uint32 or uint64; child (n,) int32, the first of four, LEAF, CONTENT or FINAL; parent (n,) int32;
     owner (n,) int32, twice the triangle's number, plus 1 for its back; place (n, 3) float32, u, v and size;
-    wanted (n,) int32, how many rays have; lists (n, lights) int32, where in names (m,) int32 the primitives are
+    wanted (n,) int32, how many points have; lists (n, lights) int32, where in names (m,) int32 the primitives are
     listed that a certificate names, how many first; named (1,) int64, how much of names is in use. receivers
     (primitives, RECEIVER) float32 lead rays to the roots; those of what has no cells are 0. waiting (2
-    primitives,) int32 is how many rays have wanted a root that is not there yet; rooted (primitives,) int32 is
+    primitives,) int32 is how many points have wanted a root that is not there yet; rooted (primitives,) int32 is
     1 where there is one.
     """
 
@@ -62,7 +62,7 @@ class Cells(NamedTuple):
 def make_cells(primitives: int, lights: int, room: int = 1 << 22) -> Cells:
     """None yet, of so many primitives, all without a row of their own.
 
-    Room that is not used takes no memory: it is of pages that nobody has touched."""
+    Room that is not used takes no memory, as its pages are those that nobody has written to."""
     receivers = aligned_rows(max(primitives, 1), RECEIVER)
     receivers[:] = 0
     cells = Cells(

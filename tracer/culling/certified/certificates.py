@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -47,7 +46,8 @@ STATES = ("none", "full", "lit", "candidates")
 BATCH = 4096  # tasks between two looks at the budget, at most
 FIRST, FASTER = 8, 8  # tasks of a frame's first batch, where time counts, and how many times as many the next may have
 LEAST = 5e-4  # seconds: less time is not worth a batch
-MANY = 1 << 14  # points that are gathered: only of so many it is told how long each takes
+SORTING = 0.5  # of the time that is left, at most, is spent on sorting points by their cells
+MANY = 1 << 14  # points, as which fewer are timed
 SHARES, CHUNK = 4, (32, 256)  # of a batch that each thread takes, one at a time; least and most tasks of one
 
 
@@ -60,7 +60,7 @@ class Budget:
 
 
 class Effort(NamedTuple):
-    """What certifying is worth where rays cost what they do: how many must have wanted a triangle's first cell,
+    """What certifying is worth where rays cost what they do: how many points must have wanted a triangle's first cell,
     `roots`, and a part of one, `parts`; how many candidates are `few`, so that a cell need not be divided for them;
     how many are `asked` instead of tracing, at most; whether rays are so `dear` that every look-up pays; and that one
     in `every` so many vectors of points says what it wants."""
@@ -98,7 +98,8 @@ class Certificates:
         self.cells: Cells = make_cells(len(self._world.object_of), self._count)
         self._seen = np.zeros(len(self.cells.waiting), np.int32)  # the frame that last saw each root
         self._frame = 0
-        self._pace = 0.0  # seconds that a point took to be gathered, the slowest of late
+        self._pace = 5e-8  # seconds that a point took to be gathered, the slowest of late
+        self._next_list = 0  # of what tiles want, the first to be gathered where time is short
         self._rate = np.inf  # certificates that the last frame made, for each shadow ray due
         self.left: list[Wanted] = []  # what the last frame's rays wanted and has not been looked into
         self.next_tile = 0  # of a picture, the first to be asked what it wants
@@ -138,10 +139,10 @@ class Certificates:
         self._follow_rest(resting)
         lights = lights[: self._count]
         moved = ~(lights == self._lights).all(axis=1)
+        words = self.cells.words[: self.cells.used[0]]
         for number in np.flatnonzero(moved):
-            words = self.cells.words
             words &= ~words.dtype.type(3 << (2 + 2 * int(number)))
-            self.cells.lists[:, number] = NOBODY
+            self.cells.lists[: len(words), number] = NOBODY
         new = np.isnan(self._lights).any(axis=1)
         still = ~moved | new
         settled = still & ~self.still
@@ -203,9 +204,9 @@ class Certificates:
         kept = np.zeros(len(self._seen), np.bool_)
         kept[order[np.cumsum(sizes[order]) <= 0.75 * most]] = True
         empty = make_cells(len(self._world.object_of), self._count, len(self.cells.words))
-        empty = empty._replace(
-            names=np.zeros(len(self.cells.names), np.int32), receivers=self.cells.receivers, rooted=self.cells.rooted
-        )
+        names = np.zeros(len(self.cells.names), np.int32)
+        names[:2] = empty.names[:2]
+        empty = empty._replace(names=names, receivers=self.cells.receivers, rooted=self.cells.rooted)
         copy_kept(self.cells, kept, empty)
         self.cells, self.left = empty, []  # which speaks of numbers that cells no longer have
 
@@ -261,13 +262,15 @@ class Certificates:
         return counts.sum(0)
 
     def _gather(self, lists: list[Wanted], budget: Budget, effort: Effort) -> tuple[NDArray[np.int32], Points]:
-        """Tasks (n, 3), and the points that wanted them: where time is short those of some tiles, of others in the next
-        frame."""
-        start = clock.perf_counter()
+        """Tasks (n, 3), and the points that wanted them: where time is short those of some tiles, and in the next frame
+        those of others."""
         kept = [(wanted, tile, n) for wanted in lists for tile, n in enumerate(wanted.of[:, 0].tolist()) if n]
-        total = sum(n for _, _, n in kept)
-        among = max(1, math.ceil(total * self._pace / (0.5 * max(LEAST, budget.until - start))))
-        kept = kept[self._frame % among :: among]
+        room = SORTING * max(LEAST, budget.until - clock.perf_counter()) / self._pace
+        if sum(n for _, _, n in kept) > room:
+            first = self._next_list % len(kept)
+            kept = kept[first:] + kept[:first]
+            kept = kept[: max(1, int(np.searchsorted(np.cumsum([n for _, _, n in kept]), room)))]
+            self._next_list = first + len(kept)
         none = [np.empty(0, np.int32), np.empty(0, np.float32), np.empty(0, np.float32)]
         key, u, v = (np.concatenate([none[k], *(wanted[k][tile, :n] for wanted, tile, n in kept)]) for k in range(3))
         points = Points(np.empty_like(u), np.empty_like(v), np.empty((2, len(u)), np.float32))
@@ -275,10 +278,9 @@ class Certificates:
         slots = len(self.cells.words) + len(self.cells.waiting)
         if len(self._slots) < slots:
             self._slots = np.zeros(slots, np.int32)
-        known = self.cells, self.occluders, self._lights, self.still
+        known, start = (self.cells, self.occluders, self._lights, self.still), clock.perf_counter()
         todo = gather_tasks(*known, key, u, v, effort.roots, self._slots, points)
-        if len(key) > 0:
-            self._pace = max(0.5 * self._pace, (clock.perf_counter() - start) / max(MANY, len(key)))
+        self._pace = max(0.5 * self._pace, (clock.perf_counter() - start) / max(MANY, len(key)))
         return todo, points
 
     def _certify(

@@ -253,20 +253,9 @@ def seek(certified, wanted, lights, origin, hits, place, there):
     root = select(back, as_i32(row[ROOTS + 1]), as_i32(row[ROOTS]))
     cell = _descend(child, select(with_cells, root, i32x16(0)), u, v)
     # A root that is not there yet is cell 0, of which nothing is known: wanted where any light faces it.
-    bits = _wanting(cells, certified.still, cell, facing)
-    bits |= bits_of(cell == np.int32(0)) & _any_facing(certified.still, facing)
-    bits &= bits_of(with_cells)
+    bits = _wanting(cells, certified.still, cell, facing) & bits_of(with_cells)
     while bits != 0:
         lane = lowest_bit(bits)
         bits &= bits - 1
         owner = 2 * lane_of(primitive, lane) + ((bits_of(back) >> lane) & 1)
         _note(wanted, _key(lane_of(cell, lane), owner), lane_of(u, lane), lane_of(v, lane))
-
-
-@inlined
-def _any_facing(still, facing):
-    bits = np.int64(0)
-    for number in range(len(still)):
-        if still[number]:
-            bits |= bits_of(load_f32x16(facing + 64 * number) > ZERO)
-    return bits

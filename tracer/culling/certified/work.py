@@ -124,7 +124,7 @@ def _first_untried(cells, o, lights, still, cell):
 
 @subkernel
 def _root_of(cells, owner, more, patience):
-    """The root of an owner, which is made once so many rays have wanted it; 0 for none."""
+    """The root of an owner, which is made once so many points have wanted it; 0 for none."""
     row, side = cells.receivers[owner >> 1], ROOTS + (owner & 1)
     if not _has_cells(row):  # it has begun to move since
         return np.int64(0)
@@ -139,8 +139,8 @@ def _root_of(cells, owner, more, patience):
 
 
 @inlined
-def _slot(key, cells):
-    return key if key >= 0 else cells - 1 - key
+def _slot(key, rooms):
+    return key if key >= 0 else rooms - 1 - key
 
 
 @inlined
@@ -159,7 +159,7 @@ def gather_tasks(cells, o, lights, still, key, u, v, patience, slots, points):
     """Sort points by the cells to begin with into points, whose arrays are as long: tasks' (cell, first, last), (n, 3)
     int32.  key (n,) int32 are the cells that they lie in, or -1 - owner where that has none yet.
 
-    Roots that so many rays have wanted, this time or before, are made; there must be room.  slots (cells with their
+    Roots that so many points have wanted, this time or before, are made; there must be room.  slots (cells with their
     room and owners,) int32 are 0, and are again afterwards."""
     cells, o, points = borrowed(cells), borrowed(o), borrowed(points)
     n, rooms, groups = len(key), len(cells.words), np.int64(0)
@@ -331,7 +331,7 @@ def work_on(cells, o, lights, still, reach, first, last, tasks, points, patience
     """Certify tasks first to last - 1 for lights (n, 3), those of them that stand `still` (n,) bool.
 
     reach is how high above rays may end and the scene's largest coordinate; a leaf is divided once so many
-    rays have wanted it, but not for lights of which rays can ask a `few` candidates."""
+    points have wanted it, but not for lights of which rays can ask a `few` candidates."""
     cells, o, tasks, points, s = borrowed(cells), borrowed(o), borrowed(tasks), borrowed(points), borrowed(s)
     for task in range(first, last):
         _work_on(cells, o, lights, still, reach, task, tasks, points, patience, few, s, counts)
@@ -377,7 +377,7 @@ def commit(cells, o, reach, tasks, following):
         cell = np.int64(tasks.cell[task])
         for light in range(tasks.state.shape[1]):
             state = tasks.state[task, light]
-            if state == KEPT:
+            if state == KEPT or state_of(cells.words[cell], light) != UNTRIED:  # or a task of the whole was first
                 continue
             set_state(cells, cell, light, state)
             _put_list(cells, cell, light, tasks.amount[task, light], tasks.names[task, light])
