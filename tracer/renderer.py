@@ -289,7 +289,8 @@ class UnfinishedFrame:
             return
         start, seconds = clock.perf_counter(), self._settings.certificate_seconds
         sought, lights = certificates.wanted(len(self._tiles)), self._renderer._look.lights
-        tiles, certified = np.array(self._tiles), certificates.told(nothing_wanted())
+        tiles = np.array(self._tiles)
+        certified = certificates.told(nothing_wanted(), len(tiles))
         order = (certificates.next_tile + np.arange(len(tiles))) % len(tiles)
         shares = np.array_split(order, SHARES * self._workers)
         looked_at: list[int] = []
@@ -316,7 +317,7 @@ class UnfinishedFrame:
         """What a tile knows of certified cells, and where it says what it wants."""
         if certificates is None:
             return _NOT_CERTIFIED[self.memory.words.dtype.itemsize]
-        return certificates.told(Wanted(*(a[tile] for a in wanted)))
+        return certificates.told(Wanted(*(a[tile] for a in wanted)), len(self._tiles))
 
     def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray, first: bool = True) -> None:
         placed, look, memory = self._renderer.world.placed, self._renderer._look, self.memory

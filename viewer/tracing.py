@@ -19,7 +19,7 @@ from viewer.views import View
 if TYPE_CHECKING:
     from viewer.controller import Controller
 
-LESSONS = 16  # frames at rest that certificates are made in, at most
+LESSONS = 40  # frames at rest that certificates are made in, at most
 PATIENCE = 0.4  # seconds that these may give them: the picture is there, and a motion ends them at once
 
 

@@ -48,7 +48,7 @@ class Desk:
         ("paper", [0] * 20, 2),
         ("certified", [0] * 20, 2),
         ("certified", [9, 9, 9, 0, 0, 0], 4),
-        ("certified+cache", [9] * 20, 1 + LESSONS),
+        ("certified+cache", [9] * 2 * LESSONS, 1 + LESSONS),
     ],
 )
 def test_at_rest_frames_follow_as_long_as_there_is_something_to_learn(method: str, made: list[int], frames: int):

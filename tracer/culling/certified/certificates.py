@@ -45,6 +45,7 @@ from tracer.parallel import for_each_chunk
 STATES = ("none", "full", "lit", "candidates")
 BATCH = 4096  # tasks between two looks at the budget, at most
 FIRST, FASTER = 8, 8  # tasks of a frame's first batch, where time counts, and how many times as many the next may have
+FEW_TILES = 4  # of a picture: of so many every point may say what it wants, of twice as many every other
 LEAST = 5e-4  # seconds: less time is not worth a batch
 SORTING = 0.5  # of the time that is left, at most, is spent on sorting points by their cells
 MANY = 1 << 14  # points, as which fewer are timed
@@ -222,10 +223,12 @@ class Certificates:
         """A frame has made so many certificates, with so many shadow rays due."""
         self._rate = made / due if due else np.inf
 
-    def told(self, wanted: Wanted) -> Certified:
-        """What a tile is told, which puts what it wants there."""
-        usual = self._usual
-        sights, often = self.occluders.sights, (usual.every, self._frame % usual.every)
+    def told(self, wanted: Wanted, tiles: int) -> Certified:
+        """What one of so many tiles is told, which puts what it wants there.  In small pictures more of the points say
+        what they want: each stands for many of a large one."""
+        usual, sights = self._usual, self.occluders.sights
+        every = min(usual.every, max(1, tiles // FEW_TILES))
+        often = every, self._frame % every
         return Certified(self.cells, sights, self.still, self.highest, usual.asked, usual.dear, *often, wanted)
 
     def wanted(self, tiles: int) -> Wanted:
