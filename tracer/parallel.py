@@ -54,7 +54,7 @@ def for_each_chunk(
                 raise
 
     pool = _pool(threads - 1, _priority()) if threads > 1 else None
-    others = [pool.submit(run, worker) for worker in range(1, threads)] if pool else []
+    others = [pool.submit(run, worker) for worker in range(1, min(threads, chunks))] if pool else []
     try:
         run(0)
     finally:

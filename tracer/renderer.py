@@ -47,7 +47,7 @@ from tracer.statistics import gather
 
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
-SHARES = 8  # of all tiles that each thread takes, one at a time, to look for what is wanted
+SHARES, SHARE = 8, 6  # of all tiles that each thread takes to look for what is wanted; tiles of one, at least
 SEEKING = 0.5  # of the time for certificates, at most, is spent on looking for what primary hits want
 BY_MODES = ("paper", "cells")  # methods that cull by modes
 # What certifying is worth, by what a shadow ray costs: some 250 ns, and 50.
@@ -292,7 +292,7 @@ class UnfinishedFrame:
         tiles = np.array(self._tiles)
         certified = certificates.told(nothing_wanted(), len(tiles))
         order = (certificates.next_tile + np.arange(len(tiles))) % len(tiles)
-        shares = np.array_split(order, SHARES * self._workers)
+        shares = np.array_split(order, max(1, min(SHARES * self._workers, len(tiles) // SHARE)))
         looked_at: list[int] = []
 
         def work(chunk: int, worker: int) -> None:

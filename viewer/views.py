@@ -166,7 +166,7 @@ SHADOW_MEANING = {
 }
 
 CERTIFICATE_MEANING = {
-    Certificate.NONE: "nothing is proven: its shadow rays are traced",
+    Certificate.NONE: "nothing is proven, or the light is behind it: due shadow rays are traced",
     Certificate.FULL: "all of it is in the shadow of static geometry: its shadow rays are culled",
     Certificate.LIT: "nothing static lies between it and the light: only moving objects are asked",
     Certificate.CANDIDATES: "only a few triangles can lie between: they are tested, and moving objects asked",

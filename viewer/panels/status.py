@@ -36,7 +36,7 @@ def show(ui: Ui) -> None:
 
 def _summary(ui: Ui) -> str:
     frame = ui.controller.frame
-    drawn = f"{hello_imgui.frame_rate():.0f} fps"
+    drawn = f"window at {hello_imgui.frame_rate():.0f} fps"
     if frame is None:
         return drawn
     wrong = f"{count(frame.statistics.shadow.wrong)} wrong   " if frame.settings.verify else ""
