@@ -16,7 +16,8 @@ from tracer import renderer as rendering
 from tracer.culling.certified import certificates as certifying
 from tracer.culling.certified.cells import ALONG_U, CANDIDATES, CORNER, FULL, LIT, NORMAL, ROOTS, TOO_MANY
 from tracer.culling.certified.certificates import Budget, Certificates, Effort
-from tracer.culling.certified.work import KEPT, Points, commit, gather_tasks, make_tasks, tasks_in
+from tracer.culling.certified.gather import Points, gather_tasks
+from tracer.culling.certified.work import KEPT, commit, make_tasks, tasks_in
 from tracer.culling.modes import FULLY_RENDERED
 from tracer.geometry.world import ACCELERATORS
 

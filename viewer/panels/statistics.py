@@ -46,7 +46,7 @@ def show(ui: Ui) -> None:
             value("Culled", _share(shadow.culled, shadow.due), "known to be in shadow: not traced at all")
             value("Dynamic only", _share(shadow.dynamic_only, shadow.due), "asked only the objects that move")
             if certifies or shadow.candidates_only:
-                tip = "with the kd-tree: asked a few primitives instead of the tree, and the objects that move"
+                tip = "asked a few primitives instead of the tree, and the objects that move"
                 value("Candidates", _share(shadow.candidates_only, shadow.due), tip)
             if takes(frame.settings.method, "cache") or shadow.cache_hits:
                 tip = "blocked by what the occluder cache had asked about first"

@@ -30,10 +30,11 @@ from tracer.culling.certified.cells import (
     with_room,
 )
 from tracer.culling.certified.forget import all_marked, copy_kept, drop_certificates
+from tracer.culling.certified.gather import Points, gather_tasks
 from tracer.culling.certified.lookup import ROOM, Certified, Wanted
 from tracer.culling.certified.occluders import Occluders
 from tracer.culling.certified.still import Still
-from tracer.culling.certified.work import KEPT, Points, commit, counters, gather_tasks, make_tasks, tasks_in, work_on
+from tracer.culling.certified.work import KEPT, commit, counters, make_tasks, tasks_in, work_on
 from tracer.culling.dependence import drop_dependent
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.modes import NON_SHADOW as LIT
@@ -205,9 +206,8 @@ class Certificates:
         kept = np.zeros(len(self._seen), np.bool_)
         kept[order[np.cumsum(sizes[order]) <= 0.75 * most]] = True
         empty = make_cells(len(self._world.object_of), self._count, len(self.cells.words))
-        names = np.zeros(len(self.cells.names), np.int32)
-        names[:2] = empty.names[:2]
-        empty = empty._replace(names=names, receivers=self.cells.receivers, rooted=self.cells.rooted)
+        empty = with_room(empty, 0, int(self.cells.named[0]))
+        empty = empty._replace(receivers=self.cells.receivers, rooted=self.cells.rooted)
         copy_kept(self.cells, kept, empty)
         self.cells, self.left = empty, []  # which speaks of numbers that cells no longer have
 
