@@ -265,7 +265,7 @@ def test_shaders_draw_the_same(certified_frame: Frame, view: View, marked: bool,
     context = moderngl.create_context(standalone=True, require=330)
     with context:
         display = Display()
-        display.upload(shown)
+        display.show(shown)
         display.draw(Look(view=view, light=1, shading=SHADING, marked=marked, wipe=0.4))
         on_gpu = display.read()[..., :3].astype(int)
         display.release()

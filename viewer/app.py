@@ -21,7 +21,6 @@ from imgui_bundle import glfw_utils, hello_imgui, imgui, immapp
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
-from tracer.renderer import Frame
 from viewer import commands, style
 from viewer.controller import Controller
 from viewer.display import Display, Look
@@ -99,8 +98,8 @@ class App:
         style.follow_density()
         style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
         self._open_dropped()
-        frame = self.controller.tick(self._room_for_picture())
-        self._draw(frame)
+        self.controller.tick(self._room_for_picture())
+        self._draw()
         self._capture_picture()
         self._stay_awake()
 
@@ -131,13 +130,12 @@ class App:
             return 0, 0
         return self.ui.picture_area
 
-    def _draw(self, frame: Frame | None) -> None:
+    def _draw(self) -> None:
         """Bring a new frame to the GPU, and draw the view if anything about it has changed."""
         display, c = self.ui.display, self.controller
         if display is None:
             return
-        if frame is not None:
-            display.upload(frame)
+        display.show(c.frame)
         display.draw(self._look(c.selected.primitive if c.selected is not None else -1))
 
     def _look(self, selected: int) -> Look:

@@ -108,10 +108,11 @@ class Display:
     def size(self) -> tuple[int, int]:
         return (self._frame.width, self._frame.height) if self._frame is not None else (0, 0)
 
-    def upload(self, frame: Frame) -> None:
-        """Show this frame from now on: a view brings to the GPU what it needs of it."""
-        self._frame = frame
-        self._serial += 1
+    def show(self, frame: Frame | None) -> None:
+        """Show this frame from now on, or none: a view brings to the GPU what it needs of it."""
+        if frame is not self._frame:
+            self._frame = frame
+            self._serial += 1
 
     @property
     def depth_range(self) -> tuple[float, float]:

@@ -441,6 +441,37 @@ def dropping(d: Driver) -> None:
     assert d.c.frame.primitive.max() >= 0
 
 
+def reopening(d: Driver) -> None:
+    """A picture saved in a view that needs more of a frame opens over another scene; so do the keys of such views."""
+    d.c.preferences.screenshot_template = "{view}.png"
+    d.settle()
+    first = Path(d.c.session.scene.path)
+    for key in ("H", "Shift+H", "8", "9"):
+        d.press(chord(key))
+        d.settle()
+        d.press(KEY.f12)
+        d.wait(lambda: not d.c.keeper.busy, "the picture to be written")
+    d.press(KEY._1)
+    take = d.c.render.take
+    for view in (View.SAVED, View.COST, View.DIFFERENCE, View.WIPE):
+        d.drop(embedded_scenes()["figure4"])
+        d.wait(lambda: d.c.session.scene.path.name == "figure4.aff", "the other scene")
+        d.press(KEY._1)
+        d.settle()
+        d.c.render.take = lambda: None  # the first frame of the scene is long in coming
+        d.drop(d.folder / "pictures" / f"{view}.png")
+        d.wait(lambda: d.c.session.scene.path == first, "the picture's scene")
+        assert d.c.session.view is view and d.c.frame is None
+        for key in ("8", "9", "H", "Shift+H", "0", "3", view.key):
+            d.press(chord(key))
+        d.press(KEY.f12)
+        d.c.render.take = take
+        d.settle()
+        assert d.c.tracing.drawn_view is view
+        expected = picture(d.c.frame, view, shading=d.c.preferences.shading)
+        assert np.abs(d.shown().astype(int) - expected).max() <= 2
+
+
 def cancelling(d: Driver) -> None:
     """A load that is cancelled leaves the open scene as it is."""
     d.settle()

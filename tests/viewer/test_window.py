@@ -14,8 +14,8 @@ ROOT = Path(__file__).resolve().parents[2]
 pytestmark = pytest.mark.gui
 
 SCENARIOS = ("views", "difference", "wiping", "culling", "certifying", "explaining", "flying", "orbiting", "playing",
-             "capturing", "dropping", "cancelling", "resizing", "closing_while_tracing", "closing_while_loading",
-             "closing_while_experimenting", "experimenting", "zooming", "panels")  # fmt: skip
+             "capturing", "dropping", "reopening", "cancelling", "resizing", "closing_while_tracing",
+             "closing_while_loading", "closing_while_experimenting", "experimenting", "zooming", "panels")  # fmt: skip
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
