@@ -15,6 +15,9 @@ uniform int selected;                 // primitive drawn with a bright border, -
 uniform usampler2D mark_buffer;       // of verified frames: NONE, RING around wrong pixels, WRONG
 uniform bool marked;                  // draw the rings
 uniform vec3 wrong_color;
+uniform bool shares;                  // heat maps: shares of a whole, not rays up to `top`
+uniform float top;
+uniform vec3 unknown;                 // where there is nothing to show of what is seen
 const int RING = 1, WRONG = 2;
 
 out vec4 result;
@@ -71,8 +74,15 @@ void finish_over(vec3 color) { result = vec4(on_selected_border() ? vec3(1.0) : 
 // The same with the borders between primitives, where they are asked for.
 void finish(vec3 color) { finish_over(outlines && on_border(primitive_at(pixel())) ? color * 0.35 : color); }
 
+vec3 mapped(float t) { return texture(color_map, vec2(clamp(t, 0.0, 1.0), 0.5)).rgb; }
+
 // A value from 0 to 1 on the colour map, and on the background where nothing is seen.
 void finish_mapped(float t) {
-    vec3 color = texture(color_map, vec2(clamp(t, 0.0, 1.0), 0.5)).rgb;
-    finish(primitive_at(pixel()) < 0 ? background : color);
+    finish(primitive_at(pixel()) < 0 ? background : mapped(t));
+}
+
+// Rays at a pixel: how many, or which share of the whole; of none there is no share.
+void finish_work(int rays, int whole) {
+    if (shares && whole == 0 && primitive_at(pixel()) >= 0) finish(unknown);
+    else finish_mapped(shares ? float(rays) / float(max(whole, 1)) : float(rays) / top);
 }

@@ -1,5 +1,8 @@
-// Rays traced for each pixel, from none to `top` and more.
+// Rays traced for each pixel, from none to `top` and more, or their share of those that tracing without culling takes.
 uniform isampler2D cost_buffer;
-uniform float top;
+uniform isampler2D saved_buffer;
 
-void main() { finish_mapped(float(texelFetch(cost_buffer, pixel(), 0).r) / top); }
+void main() {
+    int cost = texelFetch(cost_buffer, pixel(), 0).r;
+    finish_work(cost, cost + texelFetch(saved_buffer, pixel(), 0).r);
+}

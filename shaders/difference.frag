@@ -1,9 +1,11 @@
-// Pixels with a wrong shadow answer in one colour on black, and, where they are marked, rings around them.
+// Pixels with a wrong shadow answer in one colour over the dimmed picture, and, where they are marked, rings around them.
 uniform vec3 ring_color;
+uniform float beneath;  // brightness of the picture
 
 void main() {
     int mark = mark_at(pixel());
-    vec3 color = outlines && on_border(primitive_at(pixel())) ? vec3(0.15) : vec3(0.0);
+    vec3 color = beneath * clamp(texelFetch(color_buffer, pixel(), 0).rgb, 0.0, 1.0);
+    if (outlines && on_border(primitive_at(pixel()))) color *= 0.35;
     if (marked && mark == RING) color = ring_color;
     if (mark == WRONG) color = wrong_color;
     finish_over(color);

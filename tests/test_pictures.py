@@ -17,6 +17,7 @@ from viewer.pictures import SHADING, picture
 from viewer.resources import embedded_scenes
 from viewer.views import (
     BACKGROUND,
+    BENEATH,
     CELL_LINE,
     CERTIFICATE_COLORS,
     GREY,
@@ -187,9 +188,24 @@ def test_work_is_mapped_up_to_nearly_the_most(certified_frame: Frame, view: View
 
 
 @pytest.mark.parametrize("view", [View.SAVED, View.COST])
-def test_a_frame_that_recorded_no_work_is_refused(frame: Frame, view: View) -> None:
+def test_shares_of_work_are_mapped_from_none_to_all(certified_frame: Frame, view: View) -> None:
+    f = certified_frame
+    work, whole = (f.saved, f.due_rays) if view is View.SAVED else (f.cost, f.saved + f.cost)
+    drawn, hit = picture(f, view, shares=True), f.primitive >= 0
+    none, all_of_it = hit & (whole == 0), hit & (whole > 0) & (work == whole)
+    colors = np.round(color_map() * 255).astype(int)
+    assert (drawn[none] == to_bytes(GREY)).all() and all_of_it.any() and none.any() == (view is View.SAVED)
+    assert np.abs(drawn[all_of_it].astype(int) - colors[-1]).max() <= 1
+    part = hit & (whole > 0)
+    entry = np.clip(work[part] / whole[part] * 256.0 - 0.5, 0.0, 255.0).round().astype(int)
+    assert np.abs(drawn[part].astype(int) - colors[entry]).max() <= 2
+
+
+@pytest.mark.parametrize("shares", [False, True])
+@pytest.mark.parametrize("view", [View.SAVED, View.COST])
+def test_a_frame_that_recorded_no_work_is_refused(frame: Frame, view: View, shares: bool) -> None:
     with pytest.raises(ValueError, match="did not record the work"):
-        picture(frame, view)
+        picture(frame, view, shares=shares)
 
 
 def test_a_light_that_is_not_there(frame: Frame) -> None:
@@ -198,11 +214,13 @@ def test_a_light_that_is_not_there(frame: Frame) -> None:
             picture(frame, view, 2)
 
 
-def test_what_is_wrong_has_the_one_colour_and_all_else_is_black(wrong_frame: Frame) -> None:
-    drawn = picture(wrong_frame, View.DIFFERENCE, marked=False)
+@pytest.mark.parametrize("beneath", [0.0, BENEATH, 0.6])
+def test_what_is_wrong_has_the_one_colour_over_the_dimmed_picture(wrong_frame: Frame, beneath: float) -> None:
+    drawn = picture(wrong_frame, View.DIFFERENCE, marked=False, beneath=beneath)
     wrong = wrong_frame.wrong > 0
     assert (drawn[wrong] == to_bytes(WRONG)).all()
-    assert not drawn[~wrong].any()
+    expected = beneath * picture(wrong_frame)[~wrong].astype(float)
+    assert np.abs(drawn[~wrong] - expected).max() <= 1 and drawn[~wrong].any() == (beneath > 0.0)
 
 
 def test_a_lone_wrong_pixel_is_ringed(wrong_frame: Frame) -> None:
@@ -210,15 +228,16 @@ def test_a_lone_wrong_pixel_is_ringed(wrong_frame: Frame) -> None:
     ring = (drawn == to_bytes(tuple(RING_DIMMING * channel for channel in WRONG))).all(axis=-1)
     wrong = (drawn == to_bytes(WRONG)).all(axis=-1)
     np.testing.assert_array_equal(wrong, wrong_frame.wrong > 0)
-    assert not drawn[~(ring | wrong)].any()
+    unmarked = picture(wrong_frame, View.DIFFERENCE, marked=False)
+    np.testing.assert_array_equal(drawn[~ring], unmarked[~ring])
     for across in (ring[20, :30], ring[20, 31:50], ring[:20, 30], ring[21:40, 30]):
         assert across.sum() == 1, "one ring on every side"
     assert not ring[38:48, 58:77].any() and ring[36, 60:75].all(), "one ring around the block, none in it"
 
 
-def test_where_all_is_right_all_is_black(frame: Frame) -> None:
+def test_where_all_is_right_nothing_is_marked(frame: Frame) -> None:
     right = replace(frame, wrong=np.zeros_like(frame.primitive), reference=frame.color)
-    assert not picture(right, View.DIFFERENCE).any()
+    assert np.abs(picture(right, View.DIFFERENCE) - BENEATH * picture(frame)).max() <= 1
     pixels = picture(right, View.WIPE)
     column = frame.width // 2
     assert (pixels[:, column] == to_bytes(WIPE_LINE)).all()
@@ -245,7 +264,7 @@ def test_a_frame_that_was_not_verified_is_refused(frame: Frame, view: View) -> N
 
 def test_a_shadow_that_culling_misses_is_drawn(figure4: list[Frame]) -> None:
     """Figure 4: right, then a missing shadow in frame 20, right again once the triangle has been judged anew."""
-    drawn = [picture(frame, View.DIFFERENCE, marked=False).any(axis=-1) for frame in figure4]
+    drawn = [(picture(frame, View.DIFFERENCE, marked=False) == to_bytes(WRONG)).all(axis=-1) for frame in figure4]
     assert [bool(pixels.any()) for pixels in drawn] == [False, False, True, False]
     wrong = figure4[2]
     np.testing.assert_array_equal(drawn[2], (wrong.color != wrong.reference).any(axis=-1))
@@ -266,9 +285,9 @@ def test_shaders_draw_the_same(certified_frame: Frame, view: View, marked: bool,
     with context:
         display = Display()
         display.show(shown)
-        display.draw(Look(view=view, light=1, shading=SHADING, marked=marked, wipe=0.4))
+        display.draw(Look(view=view, light=1, shading=SHADING, marked=marked, wipe=0.4, shares=marked, beneath=0.4))
         on_gpu = display.read()[..., :3].astype(int)
         display.release()
     context.release()
-    here = picture(shown, view, 1, marked=marked, wipe=0.4).astype(int)
+    here = picture(shown, view, 1, marked=marked, wipe=0.4, shares=marked, beneath=0.4).astype(int)
     assert np.abs(on_gpu - here).max() <= 1

@@ -28,7 +28,8 @@ class Settings:
     first, through the pixel's centre.
     `accelerator` is "bvh8", fast, whose steps and tests are those of whole packets of rays where these are
     coherent, or "kdtree", the paper's, which counts them ray by ray.  `record_lights` fills Frame.due
-    and Frame.lit, `record_work` Frame.saved and Frame.cost.
+    and Frame.lit, `record_work` Frame.saved, Frame.cost
+    and Frame.due_rays.
 
     In a frame of method "certified" at most so many `certificates` are made, in at most so many
     `certificate_seconds` (which leaves it to chance how many: inf for counters that repeat exactly), of which a quarter
@@ -87,8 +88,9 @@ class Frame:
 
     cells (h, w) int32 are the units of virtual cells at each pixel, -1 for none, where the method has such;
     certificates (h, w) packed words like modes, of which the shadow bits are the certificates of the pixel's
-    cell, 0 where it has none.  saved and cost (h, w) int32 count, at all bounces, the shadow rays of each pixel
-    that asked no tree of static geometry, and all rays that were traced for it.
+    cell, 0 where it has none.  saved, cost and due_rays (h, w) int32 count, at all bounces, the shadow rays of
+    each pixel that asked no tree of static geometry, all rays that were traced for it, and the shadow rays that were
+    due: without culling, saved + cost rays would have been traced.
     """
 
     time: float
@@ -110,6 +112,7 @@ class Frame:
     certificates: NDArray[np.unsignedinteger] | None = None
     saved: NDArray[np.int32] | None = None
     cost: NDArray[np.int32] | None = None
+    due_rays: NDArray[np.int32] | None = None
     statistics: FrameStatistics = field(default_factory=FrameStatistics)
 
     @property

@@ -224,6 +224,7 @@ class UnfinishedFrame:
             cell=np.zeros(width * height if self._base == "certified" else 0, np.int32),
             saved=np.zeros(worked, np.int32),
             cost=np.zeros(worked, np.int32),
+            due_rays=np.zeros(worked, np.int32),
         )
 
     def _for_each_tile(self, work: Callable[[int, tuple[int, int, int, int], int], None]) -> None:
@@ -416,5 +417,6 @@ class UnfinishedFrame:
             certificates=None if self._words_seen is None else self._words_seen.reshape(shape),
             saved=buffers.saved.reshape(shape) if self._settings.record_work else None,
             cost=buffers.cost.reshape(shape) if self._settings.record_work else None,
+            due_rays=buffers.due_rays.reshape(shape) if self._settings.record_work else None,
             statistics=statistics,
         )

@@ -152,6 +152,8 @@ class App:
             magnified=c.tracing.magnified,
             wipe=c.session.wipe,
             line=not c.tracing.becoming_finer,
+            shares=p.work_shares,
+            beneath=p.beneath,
         )
 
     def _capture_picture(self) -> None:

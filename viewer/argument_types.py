@@ -5,6 +5,10 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from viewer.views import View
 
 MOST_FACTORS = 6  # that are compared in one zoom test
 
@@ -77,21 +81,34 @@ def factors(text: str) -> list[float]:
         raise argparse.ArgumentTypeError(str(error)) from None
 
 
-def view(text: str) -> tuple:
-    """A view, the light it speaks of, and the place of a wipe's line."""
+class ChosenView(NamedTuple):
+    """A view, the light it speaks of, the place of a wipe's line, and whether a map of work shows shares."""
+
+    view: View
+    light: int = 0
+    wipe: float = 0.5
+    shares: bool = False
+
+
+def view(text: str) -> ChosenView:
+    """A view with what it takes: occlusion, shadow:2, wipe:0.3, saved:share."""
     from viewer.views import View
 
     name, colon, detail = text.partition(":")
     name = _VIEW_NAMES.get(name, name)
     details = {View.WIPE: r"0|1|[01]?\.\d{1,9}"} | {v: r"\d{1,9}" for v in View if v.of_light}
-    known = ", ".join(v.value + (":LIGHT" if v.of_light else ":PART" if v is View.WIPE else "") for v in View)
+    details |= {v: "share" for v in View if v.needs_work}
+    shown = {View.WIPE: ":PART"} | {
+        v: ":LIGHT" if v.of_light else "[:share]" for v in View if v.of_light or v.needs_work
+    }
+    known = ", ".join(v.value + shown.get(v, "") for v in View)
     if name not in set(View) or (colon and not re.fullmatch(details.get(View(name), r"(?!)"), detail, re.ASCII)):
         raise argparse.ArgumentTypeError(f"{text!r} is no view; the views are {known}")
     view = View(name)
     wipe = float(detail) if view is View.WIPE and detail else 0.5
     if wipe > 1.0:
         raise argparse.ArgumentTypeError(f"{text!r}: the line of a wipe lies at 0 to 1 of the width")
-    return view, int(detail) if view.of_light and detail else 0, wipe
+    return ChosenView(view, int(detail) if view.of_light and detail else 0, wipe, view.needs_work and bool(detail))
 
 
 def method(text: str) -> str:

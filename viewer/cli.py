@@ -169,7 +169,7 @@ def _render(arguments: list[str]) -> int:
         default="color",
         metavar="V",
         help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference, "
-        "wipe:PART, certificate:LIGHT, saved or cost (default: color)",
+        "wipe:PART, certificate:LIGHT, saved or cost, as counts of rays or as shares like saved:share (default: color)",
     )
     add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
     add("--camera", metavar="JSON", help="another camera: position, direction, up, angle; or a file with that")

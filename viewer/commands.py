@@ -94,6 +94,7 @@ def _view(ui: Ui) -> list[Command]:
         Command("Previous light", "View", lambda: c.set_light(c.session.light - 1), "Shift+L", enabled=lit),
         Command("Outlines", "View", toggle("outlines"), "B", checked=lambda: p.outlines, separated=True),
         Command("Mark wrong pixels", "View", toggle("mark_wrong"), "M", checked=lambda: p.mark_wrong),
+        Command("Shares of rays", "View", toggle("work_shares"), "U", checked=lambda: p.work_shares),
         Command("Draw shadow rays", "View", toggle("draw_explanation"), "I", checked=lambda: p.draw_explanation),
         Command("Smooth upscaling", "View", toggle("smooth_upscaling"), checked=lambda: p.smooth_upscaling),
         Command("Default layout", "View", lambda: ui.reset_layout(), separated=True),

@@ -22,6 +22,7 @@ from tracer.culling.modes import OcclusionMode, has_shadow_mode
 from viewer.resources import shader_source
 from viewer.views import (
     BACKGROUND,
+    BENEATH,
     CELL_LINE,
     CERTIFICATE_COLORS,
     GREY,
@@ -47,6 +48,7 @@ _PICTURES = (View.COLOR, View.WIPE)
 _UNITS = (
     "color_buffer", "primitive_buffer", "unit_buffer", "mode_table", "count_table", "depth_buffer", "normal_buffer",
     "color_map", "reference_buffer", "mark_buffer", "certificate_buffer", "cell_buffer", "saved_buffer", "cost_buffer",
+    "due_rays_buffer",
 )  # fmt: skip
 # What lies on the GPU as a frame holds it: components, their kind, and the frame's attribute.
 _PIXELS = {
@@ -58,6 +60,7 @@ _PIXELS = {
     "cell_buffer": (1, "i4", "cell"),
     "saved_buffer": (1, "i4", "saved"),
     "cost_buffer": (1, "i4", "cost"),
+    "due_rays_buffer": (1, "i4", "due_rays"),
 }
 
 
@@ -66,8 +69,9 @@ class Look:
     """How to draw a frame: everything that changes the picture without tracing.
 
     `marked` draws rings around wrong pixels, sized for pixels that are shown `magnified` times,
-    `wipe` is the place of the line, 0 to 1 from the left,
-    and `line` whether it is drawn."""
+    `wipe` is the place of the line, 0 to 1 from the left, and `line` whether it is drawn.
+    `shares` makes shares of the counts in maps of work; `beneath` is the brightness of the picture
+    beneath the difference."""
 
     view: View = View.COLOR
     light: int = 0
@@ -79,6 +83,8 @@ class Look:
     magnified: int = 1
     wipe: float = 0.5
     line: bool = True
+    shares: bool = False
+    beneath: float = BENEATH
 
 
 class Display:
@@ -245,6 +251,8 @@ class Display:
             "light": look.light if has_shadow_mode(words, look.light) else -1,
             "range": self.depth_range if view is View.DEPTH else (0.0, 1.0),
             "top": work_top(frame, view) if view.needs_work else 1.0,
+            "shares": look.shares,
+            "beneath": look.beneath,
             "cell_line": CELL_LINE,
             "zoom_factor": frame.settings.zoom_factor,
             "unknown": GREY,

@@ -55,7 +55,7 @@ def info(path: Path, as_json: bool) -> None:
 
 def render(path: Path, options: Namespace) -> None:
     """Trace one frame and write it; raises SceneError, ValueError and OSError in one line, or Cancelled."""
-    view, light, _ = options.view
+    view, light = options.view.view, options.view.light
     settings = replace(tracing_settings(options), method=options.method)
     _check_outputs(options.output, options.buffers)
     if view is View.CERTIFICATE and base_of(settings.method) != "certified":
@@ -94,7 +94,7 @@ def buffers(frame: Frame) -> dict[str, np.ndarray]:
     """The arrays of `--buffers`, by name; the frame must have been rendered with `record_lights`.
 
     A verified frame has `reference` and `wrong` as well, one with certificates `certificate`, and one that recorded
-    its work `saved` and `cost`."""
+    its work `saved`, `cost` and `due_rays`."""
     assert frame.lit is not None and frame.due is not None
     arrays: dict[str, np.ndarray] = {
         "color": frame.color,
@@ -111,8 +111,8 @@ def buffers(frame: Frame) -> dict[str, np.ndarray]:
     if frame.certificates is not None:
         planes = [modes.shadow_mode(frame.certificates, light) for light in range(frame.lights)]
         arrays["certificate"] = np.stack(planes, axis=-1) if planes else np.empty((*frame.primitive.shape, 0), np.uint8)
-    if frame.saved is not None and frame.cost is not None:
-        arrays |= {"saved": frame.saved, "cost": frame.cost}
+    work = {"saved": frame.saved, "cost": frame.cost, "due_rays": frame.due_rays}
+    arrays |= {name: array for name, array in work.items() if array is not None}
     return arrays
 
 
@@ -198,8 +198,9 @@ def _render_before(renderer: Renderer, time: float, options: Namespace, work: Wo
 
 def _write_picture(path: Path, scene: Scene, frame: Frame, options: Namespace) -> None:
     """The frame in the view asked for; a PNG remembers, as the window's captures do, how it was made."""
-    view, light, wipe = options.view
-    image = Image.fromarray(picture(frame, view, light, marked=not options.no_marks, wipe=wipe))
+    view, light, wipe, shares = options.view
+    pixels = picture(frame, view, light, marked=not options.no_marks, wipe=wipe, shares=shares)
+    image = Image.fromarray(pixels)
     settings = replace(frame.settings, verify=options.verify)  # what was chosen; a view verifies by itself
     session = Session(scene, frame.time, options.camera, settings=settings, view=view, light=light, wipe=wipe)
     notes = PngImagePlugin.PngInfo()

@@ -22,6 +22,7 @@ from viewer.views import (
     View,
     units_of,
     verified,
+    whole_of,
     work_of,
     work_top,
 )
@@ -112,9 +113,12 @@ def _with_shares(
 
 @dataclass(frozen=True)
 class WorkLegend:
-    """What a heat map shows, summed over the frame and at its most expensive pixel; `top` has the last colour."""
+    """What a heat map shows, summed over the frame and at its most expensive pixel; `top` has the last colour.
+
+    `whole` is what the total is a part of (`views.whole_of`)."""
 
     total: int
+    whole: int
     per_pixel: float
     most: int
     top: float
@@ -125,7 +129,8 @@ def work_legend(frame: Frame, view: View) -> WorkLegend:
     top, work = work_top(frame, view), work_of(frame, view)
     assert work is not None
     total = int(work.sum(dtype=np.int64))
-    return WorkLegend(total, total / work.size, int(work.max(initial=0)), top)
+    whole = int(whole_of(frame, view).sum(dtype=np.int64))
+    return WorkLegend(total, whole, total / work.size, int(work.max(initial=0)), top)
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from tracer.frame import Frame
 from viewer.legends import certificates_of
 from viewer.views import (
     BACKGROUND,
+    BENEATH,
     CELL_LINE,
     CERTIFICATE_COLORS,
     GREY,
@@ -29,6 +30,7 @@ from viewer.views import (
     color_map,
     depth_range,
     units_of,
+    whole_of,
     wipe_column,
     work_of,
     work_top,
@@ -48,11 +50,14 @@ def picture(
     shading: float = SHADING,
     marked: bool = True,
     wipe: float = 0.5,
+    shares: bool = False,
+    beneath: float = BENEATH,
 ) -> NDArray[np.uint8]:
     """(height, width, 3) uint8, row 0 at the top: a frame in one of its views.
 
     `light` is the light that the views of shadows and certificates speak of, `marked` draws rings around wrong
-    pixels, and `wipe` is the place of the wipe's line, 0 to 1 from the left.  Raises ValueError where there is no
+    pixels, and `wipe` is the place of the wipe's line, 0 to 1 from the left.  Maps of work show counts of rays, or
+    `shares`; `beneath` is the brightness of the picture beneath the difference.  Raises ValueError where there is no
     such light, or where the view is one of verified frames, or of work that was recorded, and the frame is not.
     """
     if view.of_light and not 0 <= light < frame.lights:
@@ -60,11 +65,11 @@ def picture(
     if view is View.COLOR:
         colors = np.clip(frame.color, 0.0, 1.0)
     elif view is View.DIFFERENCE:
-        colors = _difference(frame, marked)
+        colors = _difference(frame, marked, beneath)
     elif view is View.WIPE:
         colors = _wipe(frame, marked, wipe)
     elif view.needs_work:
-        colors = _on_background(frame, _work(frame, view))
+        colors = _on_background(frame, _work(frame, view, shares))
     elif view is View.CERTIFICATE:
         colors = _on_background(frame, _certificate(frame, light, shading))
     elif view is View.DEPTH:
@@ -135,11 +140,15 @@ def _on_line(cells: NDArray[np.int32]) -> NDArray[np.bool_]:
     return line
 
 
-def _work(frame: Frame, view: View) -> NDArray:
-    """Rays at each pixel, from none to the view's top."""
-    top, work = work_top(frame, view), work_of(frame, view)
-    assert work is not None
-    return _mapped(work / top)
+def _work(frame: Frame, view: View, shares: bool) -> NDArray:
+    """Rays at each pixel, from none to the view's top, or which share they are; grey where they are a share of none."""
+    work = work_of(frame, view)
+    if not shares or work is None:
+        top = work_top(frame, view)
+        assert work is not None
+        return _mapped(work / top)
+    whole = whole_of(frame, view)
+    return np.where((whole > 0)[..., None], _mapped(work / np.maximum(whole, 1)), np.asarray(GREY, np.float32))
 
 
 def _primitive(frame: Frame) -> NDArray:
@@ -170,12 +179,13 @@ def _depth(frame: Frame) -> NDArray:
     return _mapped(1.0 - np.clip((depth - near) / (far - near), 0.0, 1.0))
 
 
-def _difference(frame: Frame, marked: bool) -> NDArray:
-    """Wrong pixels in their colour on black, and rings around them."""
-    ring = RING_DIMMING if marked else 0.0
-    brightness = np.zeros(len(Mark), np.float32)
-    brightness[[Mark.RING, Mark.WRONG]] = ring, 1.0
-    return brightness[wrong_marks(frame)][..., None] * np.asarray(WRONG, np.float32)
+def _difference(frame: Frame, marked: bool, beneath: float) -> NDArray:
+    """Wrong pixels in their colour over the dimmed picture, and rings around them."""
+    marks, colors = wrong_marks(frame), beneath * np.clip(frame.color, 0.0, 1.0)
+    if marked:
+        colors[marks == Mark.RING] = np.float32(RING_DIMMING) * np.asarray(WRONG, np.float32)
+    colors[marks == Mark.WRONG] = WRONG
+    return colors
 
 
 def _wipe(frame: Frame, marked: bool, wipe: float) -> NDArray:

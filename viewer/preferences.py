@@ -21,7 +21,7 @@ from tracer.frame import Settings
 from tracer.method import is_method
 from viewer.methods import DEFAULT
 from viewer.outputs import write_text
-from viewer.views import View
+from viewer.views import BENEATH, View
 
 SETTINGS_FILE = "settings.json"
 RECENT_SCENES = 10
@@ -44,6 +44,7 @@ _RANGES: dict[str, tuple[float, float]] = {
     "samples": (1, 64),
     "threads": (0, 1024),
     "shading": (0.0, 1.0),
+    "beneath": (0.0, 0.6),
 }
 
 
@@ -77,6 +78,8 @@ class Preferences:
     shading: float = 0.35
     outlines: bool = False
     mark_wrong: bool = True
+    beneath: float = BENEATH
+    work_shares: bool = False
     draw_explanation: bool = True
     screenshot_folder: str = ""
     screenshot_template: str = DEFAULT_TEMPLATE

@@ -100,13 +100,19 @@ _EXPLANATIONS = {
     View.DEPTH: "Distance from the camera along the ray.",
     View.NORMAL: "The shading normal: x, y, z as red, green, blue.",
     View.PIXEL_COUNT: "Pixels a primitive covers now, against the most it covered while fully rendered.",
-    View.DIFFERENCE: "Pixels for which a culled shadow ray was answered wrongly; black where every answer is right.",
+    View.DIFFERENCE: "Pixels for which a culled shadow ray was answered wrongly, over the picture, dimmed, where every "
+    "answer is right.",
     View.WIPE: "Left of the line the traced picture, right of it that with every shadow answer right. Drag the line.",
     View.CERTIFICATE: "What is proven of each virtual cell and the chosen light; lines are the borders of cells. Each "
     "frame proves more: T traces another, K goes on.",
-    View.SAVED: "Shadow rays of each pixel, at all bounces, that asked no tree of static geometry.",
-    View.COST: "Rays traced for each pixel, of all kinds and at all bounces.",
+    View.SAVED: "Shadow rays of each pixel, at all bounces, that asked no tree of static geometry: how many, or which "
+    "share of those that were due.",
+    View.COST: "Rays traced for each pixel, of all kinds and at all bounces: how many, or which share of those that "
+    "tracing without culling takes.",
 }
+
+
+_NO_WORK = "the frame did not record the work at its pixels"
 
 
 def _hex(code: str) -> Color:
@@ -175,8 +181,11 @@ CERTIFICATE_MEANING = {
 WRONG = _hex("FF00FF")
 """A pixel with a wrong shadow answer: a colour of no other view, as pure as no shaded one gets."""
 
-RING_DIMMING = 0.5
-"""Brightness of the rings around such pixels on black, against that of the pixels."""
+RING_DIMMING = 0.65
+"""Brightness of the rings around such pixels in the difference, against that of the pixels."""
+
+BENEATH = 0.3
+"""Brightness of the traced picture beneath the difference."""
 
 WIPE_LINE = _hex("F2F4F7")
 
@@ -228,13 +237,23 @@ def work_of(frame: Frame, view: View) -> NDArray[np.int32] | None:
     return frame.saved if view is View.SAVED else frame.cost
 
 
+def whole_of(frame: Frame, view: View) -> NDArray[np.int32]:
+    """(h, w) what the work at each pixel is a share of: the shadow rays that were due, or all rays that tracing without
+    culling takes.
+
+    Raises ValueError for a frame without that record."""
+    if frame.saved is None or frame.cost is None or frame.due_rays is None:
+        raise ValueError(_NO_WORK)
+    return frame.due_rays if view is View.SAVED else frame.saved + frame.cost
+
+
 def work_top(frame: Frame, view: View) -> float:
     """What has a heat map's last colour: the 99th percentile of pixels that hit something, 1 at least.
 
     Raises ValueError for a frame without that record."""
     work = work_of(frame, view)
     if work is None:
-        raise ValueError("the frame did not record the work at its pixels")
+        raise ValueError(_NO_WORK)
     step = max(1, work.size // 20000)
     sample = work.reshape(-1)[::step][frame.primitive.reshape(-1)[::step] >= 0]
     return max(1.0, float(np.percentile(sample, 99.0))) if len(sample) else 1.0

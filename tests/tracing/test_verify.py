@@ -10,6 +10,7 @@ import pytest
 import tracer
 from tracer.geometry.world import ACCELERATORS
 
+SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
 SETTINGS = tracer.Settings(width=128, height=128, depth=10, verify=True)
 
 
@@ -36,3 +37,17 @@ def test_the_reference_of_kitchen_is_the_picture_without_culling(bart: Path, acc
         wrong += frame.statistics.shadow.wrong
     assert wrong > 0, "nothing was wrong: this shows nothing"
     assert (frame.color != frame.reference).any()
+
+
+@pytest.mark.parametrize("method", ["none", "paper", "certified+cache"])
+def test_the_work_at_pixels_adds_up_to_that_of_the_frame(method: str):
+    scene = tracer.load_scene(SCENES / "default.aff")
+    renderer = tracer.Renderer(scene, tracer.Settings(width=96, height=64, depth=3, method=method, record_work=True))
+    for number in range(20, 24):
+        frame = renderer.render(scene.frame_time(number))
+    shadow = frame.statistics.shadow
+    assert frame.due_rays.sum() == shadow.due and (frame.saved <= frame.due_rays).all()
+    spared = shadow.culled + shadow.dynamic_only + shadow.candidates_only + shadow.cache_hits
+    assert frame.saved.sum() == spared and (spared > 0) == (method != "none")
+    rays = frame.statistics.primary.rays + frame.statistics.secondary.rays
+    assert frame.saved.sum() + frame.cost.sum() == rays + shadow.due

@@ -125,6 +125,7 @@ def make_frame(settings: Settings | None = None, time: float = 0.0, camera: Came
         wrong=wrong if settings.verify else None,
         saved=wrong if settings.record_work else None,
         cost=wrong + 1 if settings.record_work else None,
+        due_rays=2 * wrong if settings.record_work else None,
         statistics=statistics,
     )
 
@@ -146,7 +147,9 @@ def with_certificates(frame: Frame) -> Frame:
     certificates = np.where(none, words.dtype.type(0), words[np.maximum(cells, 0)])
     saved = np.where(none, 0, frame.lights + x % 5).astype(np.int32)
     cost = (1 + 2 * (frame.primitive >= 0) + y % 7).astype(np.int32)
-    return replace(frame, cells=cells, certificates=certificates, saved=saved, cost=cost)
+    due_rays = np.where((x + y) % 8 == 0, 0, saved + y % 3).astype(np.int32)
+    saved = np.minimum(saved, due_rays)
+    return replace(frame, cells=cells, certificates=certificates, saved=saved, cost=cost, due_rays=due_rays)
 
 
 def in_cells(frame: Frame) -> Frame:

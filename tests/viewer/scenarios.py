@@ -50,6 +50,14 @@ def views(d: Driver) -> None:
     assert d.c.session.light == 1
     d.press(int(KEY.l) | int(KEY.mod_shift))
     assert d.c.session.light == 0
+    d.press(KEY.h)
+    d.press(KEY.u)
+    for view in (View.SAVED, View.COST):
+        d.c.set_view(view)
+        d.frames(2)
+        expected = picture(d.c.frame, view, shares=True).astype(int)
+        assert np.abs(d.shown().astype(int) - expected).max() <= 2
+        assert np.abs(expected - picture(d.c.frame, view)).max() > 20
     d.settle()
     assert d.c.history.frames == traced + 2, "only the first of the views that verify traces, and of those that count"
     assert not d.c.session.settings.verify and not d.c.preferences.verify
@@ -71,12 +79,18 @@ def _figure4(d: Driver, frame: int) -> None:
 
 
 def difference(d: Driver) -> None:
-    """Black where all is right; where culling misses a shadow, one colour, counted, and ringed where that is wanted."""
+    """The dimmed picture where all is right; where culling misses a shadow, one colour, counted, and ringed where that
+    is wanted."""
+    of_wrong = np.round(np.multiply(255.0, WRONG))
+
+    def dimmed() -> np.ndarray:
+        return d.c.preferences.beneath * picture(d.c.frame).astype(float)
+
     d.settle()
     d.press(KEY._8)
     d.settle()
     assert d.c.frame.wrong is not None and not d.c.frame.wrong.any()
-    assert not d.shown().any(), "nothing is wrong, yet something shines"
+    assert np.abs(d.shown() - dimmed()).max() <= 1, "nothing is wrong, yet something shines"
     d.press(KEY._1)
     _figure4(d, 20)
     assert d.c.frame.wrong is None, "verified, though no view asks for it"
@@ -84,13 +98,16 @@ def difference(d: Driver) -> None:
     d.settle()
     wrong = d.c.frame.wrong > 0
     assert d.c.frame.statistics.shadow.wrong == d.c.frame.wrong.sum() > 0
-    of_wrong = np.round(np.multiply(255.0, WRONG))
     marked = d.shown()
     assert np.array_equal((marked == of_wrong).all(axis=-1), wrong)
-    assert np.count_nonzero(marked.any(axis=-1)) > np.count_nonzero(wrong), "no rings"
+    assert np.count_nonzero(np.abs(marked - dimmed()).max(axis=-1) > 1) > np.count_nonzero(wrong), "no rings"
     d.press(KEY.m)
     assert not d.c.preferences.mark_wrong
-    assert np.array_equal(d.shown().any(axis=-1), wrong), "black where every answer is right"
+    assert np.abs(d.shown() - dimmed())[~wrong].max() <= 1, "the picture, dimmed, where every answer is right"
+    d.c.preferences.beneath = 0.0
+    d.frames(2)
+    assert np.array_equal(d.shown().any(axis=-1), wrong), "black beneath, if so chosen"
+    d.c.preferences.beneath = 0.5
     d.press(KEY.m)
     y, x = np.argwhere(wrong)[0]
     d.c.select(((x + 0.5) / 128, (y + 0.5) / 128))
@@ -101,7 +118,7 @@ def difference(d: Driver) -> None:
     assert d.c.frame.settings.method == "none" and not d.c.frame.wrong.any()
     d.c.selected = None
     d.frames(3)
-    assert not d.shown().any()
+    assert np.abs(d.shown() - dimmed()).max() <= 1
     assert not d.c.session.settings.verify
 
 

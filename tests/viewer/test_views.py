@@ -56,6 +56,8 @@ def test_the_legend_of_work_sums_it_up(view):
     found = legends.work_legend(frame, view)
     work = frame.saved if view is views.View.SAVED else frame.cost
     assert (found.total, found.most) == (work.sum(), work.max())
+    assert found.whole == (frame.due_rays if view is views.View.SAVED else frame.saved + frame.cost).sum()
+    assert found.total < found.whole
     assert found.per_pixel == pytest.approx(work.mean())
     assert np.percentile(work[frame.primitive >= 0], 98) <= found.top <= work.max()
     for empty in (replace(frame, saved=work * 0, cost=work * 0), replace(frame, primitive=work * 0 - 1)):

@@ -80,7 +80,7 @@ class Driver:
 
         def with_more(*arguments, **options):
             frame = with_certificates(render(*arguments, **options))
-            return frame if frame.settings.record_work else replace(frame, saved=None, cost=None)
+            return frame if frame.settings.record_work else replace(frame, saved=None, cost=None, due_rays=None)
 
         renderer.render = with_more
 

@@ -37,8 +37,8 @@ class Buffers(NamedTuple):
     """One picture: color and normal (height * width, 3), depth, u and v (height, width) float32,
     primitive (height, width) int32; due and lit (height * width, lights) bool, or without rows;
     reference like color and wrong (height * width,) int32, or without rows where nothing is verified; cell
-    (height * width,) int32, or without rows where there are no certified cells; saved and cost
-    (height * width,) int32, or without rows."""
+    (height * width,) int32, or without rows where there are no certified cells; saved, cost and
+    due_rays (height * width,) int32, or without rows."""
 
     color: NDArray[np.float32]
     normal: NDArray[np.float32]
@@ -53,6 +53,7 @@ class Buffers(NamedTuple):
     cell: NDArray[np.int32]
     saved: NDArray[np.int32]
     cost: NDArray[np.int32]
+    due_rays: NDArray[np.int32]
 
 
 class Workspace(NamedTuple):
@@ -155,11 +156,12 @@ def _record_cells(wave, points, tile, cell):
 
 @subkernel
 def _record_work(wave, answers, tile, buffers):
-    """Count the shadow rays that asked static geometry, and those that need not."""
+    """Count the shadow rays that are due, those that asked static geometry, and those that need not."""
     for i in range(wave.size):
         place, due, live = tile.place[wave.pixel[i]], answers.due[i >> 4] >> (i & 15), answers.live[i >> 4] >> (i & 15)
         buffers.saved[place] += due & ~live & 1
         buffers.cost[place] += live & 1
+        buffers.due_rays[place] += due & 1
 
 
 @subkernel

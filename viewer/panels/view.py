@@ -44,6 +44,7 @@ _OF_MODES = (View.OCCLUSION, View.SHADOW, View.PIXEL_COUNT)
 def show(ui: Ui) -> None:
     """The panel."""
     c = ui.controller
+    p = c.preferences
     views = list(View)
     with properties("view", 5.0) as shown:
         if shown:
@@ -62,11 +63,18 @@ def show(ui: Ui) -> None:
                 row("Line", "where it is; or drag it in the picture")
                 changed, at = imgui.slider_float("##wipe", 100.0 * c.session.wipe, 0.0, 100.0, "%.0f %%")
                 c.session.wipe = min(max(at / 100.0, 0.0), 1.0) if changed else c.session.wipe
+            if c.session.view is View.DIFFERENCE:
+                row("Beneath", "how bright the picture is beneath the wrong pixels")
+                changed, percents = imgui.slider_float("##beneath", 100.0 * p.beneath, 0.0, 60.0, "%.0f %%")
+                p.beneath = min(max(percents / 100.0, 0.0), 0.6) if changed else p.beneath
             if c.session.view in _FLAT:
                 row("Shading", "how much of the picture's light and shade shows under the colours")
                 _, c.preferences.shading = imgui.slider_float("##shading", c.preferences.shading, 0.0, 1.0, "%.2f")
-    p = c.preferences
     checkbox("Outlines", p.outlines, lambda on: setattr(p, "outlines", on), "borders between primitives (B)")
+    if c.session.view.needs_work:
+        imgui.same_line(0.0, em(1.0))
+        tip = "which share of the rays that were due, not how many (U)"
+        checkbox("Shares", p.work_shares, lambda on: setattr(p, "work_shares", on), tip)
     if c.session.view.needs_verify:
         imgui.same_line(0.0, em(1.0))
         tip = "rings around pixels with wrong shadow answers, so that a lone one is found (M)"
@@ -122,14 +130,18 @@ def _work(ui: Ui, frame: Frame) -> None:
         paragraph(f"This run {lacks}." if lacks else "Nothing has been counted yet; a frame is being traced ...", QUIET)
         return
     found: WorkLegend = ui.cached(view.value, frame, 0, lambda: work_legend(frame, view))
-    _gradient("0", f"{found.top:.4g} and more", f"{found.top / 2.0:.3g}")
     saved = view is View.SAVED
+    if ui.controller.preferences.work_shares:
+        _gradient("0 %", "100 %", "of those due" if saved else "of those without culling")
+        swatch(GREY)
+        imgui.text_unformatted("no shadow ray is due" if saved else "no ray")
+    else:
+        _gradient("0", f"{found.top:.4g} and more", f"{found.top / 2.0:.3g}")
     with properties("work", 6.5) as shown:
         if shown:
-            due = frame.statistics.shadow.due
-            tip = "of the first sample of each pixel; its share of all shadow rays that were due" if saved else ""
-            part = f"  ({percent(found.total, due)} of due)" if saved else ""
-            value("Saved" if saved else "Traced", f"{count(found.total)}{part}", tip)
+            tip = "of the first sample of each pixel; "
+            tip += "its share of all shadow rays that were due" if saved else "its share of what no culling would trace"
+            value("Saved" if saved else "Traced", f"{count(found.total)}  ({percent(found.total, found.whole)})", tip)
             value("Per pixel", f"{found.per_pixel:.2f}", "on average, the background counted")
             value("At one pixel", f"{count(found.most)} at most", "99 % of what is seen lies within the scale")
 
