@@ -146,6 +146,24 @@ def test_buffers_have_the_promised_names_shapes_and_types(
     assert not (arrays["lit"] & ~arrays["due"]).any()
 
 
+def test_modes_are_the_same_beside_any_exact_method(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path
+) -> None:
+    pictures, arrays = {}, {}
+    for method in ("paper+rest", "none", "certified", "none+cache"):
+        for view in ("occlusion", "shadow:1", "pixel-count"):
+            png, npz = tmp_path / "view.png", tmp_path / "room.npz"
+            given = ("--view", view, "--method", method, "--frame", 4, "--warmup", 4, "-o", png, "--buffers", npz)
+            assert render(capfd, room, *given)[0] == 0
+            with Image.open(png) as image, np.load(npz) as found:
+                pictures[method, view] = np.asarray(image)
+                arrays[method] = {name: found[name] for name in ("occlusion_mode", "shadow_mode")}
+            assert np.array_equal(pictures[method, view], pictures["paper+rest", view]), (method, view)
+        for name, expected in arrays["paper+rest"].items():
+            assert np.array_equal(arrays[method][name], expected), (method, name)
+    assert {2, 3} <= set(np.unique(arrays["none"]["shadow_mode"])) and 2 in arrays["none"]["occlusion_mode"]
+
+
 def test_verified_buffers_say_what_is_wrong(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     """Figure 4 in frame 20, where culling misses a shadow."""
     output, unculled = tmp_path / "paper.npz", tmp_path / "none.npz"

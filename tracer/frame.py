@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tracer.culling import modes
 from tracer.geometry.world import ACCELERATORS
-from tracer.method import choice, is_method
+from tracer.method import choice, culls_by_modes, is_method
 from tracer.scene.model import Camera
 from tracer.statistics import FrameStatistics
 
@@ -26,6 +26,8 @@ class Settings:
     `verify` traces each culled answer too, counts the wrong ones, and fills Frame.reference and
     Frame.wrong.  `samples` rays a pixel are averaged; all modes and statistics are those of the
     first, through the pixel's centre.
+    `modes` keeps the paper's modes beside a method that does not cull by them: those that "paper+rest" would have,
+    whichever method it is; with them, objects that rest are static to any (`tracer.culling.rest`).
     `accelerator` is "bvh8", fast, whose steps and tests are those of whole packets of rays where these are
     coherent, or "kdtree", the paper's, which counts them ray by ray.  `record_lights` fills Frame.due
     and Frame.lit, `record_work` Frame.saved, Frame.cost
@@ -42,6 +44,7 @@ class Settings:
     method: str = "paper"
     symmetric: bool = False
     zoom_factor: float = 4.0
+    modes: bool = False
     verify: bool = False
     samples: int = 1
     threads: int = 0
@@ -51,6 +54,11 @@ class Settings:
     certificates: int = 100_000
     certificate_seconds: float = math.inf
     certificate_memory: float = 256.0
+
+    @property
+    def keeps_modes(self) -> bool:
+        """Whether frames learn modes: those of methods that cull by them always do."""
+        return self.modes or culls_by_modes(self.method)
 
     def validated(self) -> Settings:
         """Itself; raises ValueError, in one line, where a value is out of range."""
@@ -80,8 +88,9 @@ class Frame:
     color (h, w, 3) float32, linear and not clamped; depth (h, w) float32, distance along the unit
     ray, inf for a miss; primitive and cell (h, w) int32, -1 for a miss; normal (h, w, 3) float32,
     the shading normal towards the viewer.  modes (units,) uint32 or uint64 are the packed words as this
-    frame leaves them; pixel_count and highest_count (units,) int32.  due and lit (h, w, lights) bool
-    where they were asked for: whether each shadow ray of the primary hit is due, and its answer.
+    frame leaves them, which say nothing of it where `settings.keeps_modes` does not hold; pixel_count and highest_count
+    (units,) int32.  due and lit (h, w, lights) bool where they were asked for: whether each shadow ray of the primary
+    hit is due, and its answer.
     Where verified, reference like color is the picture with every shadow answer right, which is that
     of method "none" bit for bit, and wrong (h, w) int32 the number of wrong answers that count for
     each pixel, at all bounces and of all samples.

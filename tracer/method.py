@@ -4,6 +4,7 @@ from __future__ import annotations
 
 BASES = ("none", "paper", "cells", "certified")
 EXTRAS = ("cache", "rest")
+_BY_MODES = ("paper", "cells")
 
 
 def base_of(method: str) -> str:
@@ -14,6 +15,12 @@ def base_of(method: str) -> str:
 def takes(method: str, extra: str) -> bool:
     """Whether a method takes an extra along."""
     return extra in method.split("+")[1:]
+
+
+def culls_by_modes(method: str) -> bool:
+    """Whether a method culls by the modes of the paper: it keeps them in any case, and may be wrong.  All others are
+    exact: their pictures are the same, bit for bit."""
+    return base_of(method) in _BY_MODES
 
 
 def is_method(name: str) -> bool:

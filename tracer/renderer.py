@@ -28,7 +28,7 @@ from tracer.culling.shadow import Knowledge
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import Pinhole, pinhole
 from tracer.geometry.world import World
-from tracer.method import base_of, takes
+from tracer.method import base_of, culls_by_modes, takes
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
@@ -49,7 +49,6 @@ ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
 SHARES, SHARE = 8, 6  # of all tiles that each thread takes to look for what is wanted; tiles of one, at least
 SEEKING = 0.5  # of the time for certificates, at most, is spent on looking for what primary hits want
-BY_MODES = ("paper", "cells")  # methods that cull by modes
 # What certifying is worth, by what a shadow ray costs: some 250 ns, and 50.
 EFFORT = {"kdtree": Effort(4, 12, 6, 48, True, 4), "bvh8": Effort(8, 32, 0, 48, False, 16)}
 Cancel = Callable[[], bool] | None
@@ -175,7 +174,6 @@ class UnfinishedFrame:
         self._camera, self._time, self._cancel = camera, time, cancel
         self._workers = thread_count(settings.threads)
         self.memory, self._first = renderer._memory(settings, self._workers), renderer._first(settings)
-        self._by_modes = base_of(settings.method) in BY_MODES
         self.cache = renderer._occluder_cache(settings, self._workers)
         self._spaces = renderer.workspaces(self._workers)
         self._counts = np.zeros((self._workers, COUNTERS), np.int64)
@@ -242,7 +240,8 @@ class UnfinishedFrame:
         renderer = self._renderer
         world, rest, lights = renderer.world, renderer.rest, renderer._look.lights
         certified = self._base == "certified"
-        if certified or takes(self._settings.method, "rest"):
+        beside = self._settings.modes and not culls_by_modes(self._settings.method)
+        if certified or beside or takes(self._settings.method, "rest"):
             world.place(self._time, rest)
         else:
             rest.forget()
@@ -271,7 +270,7 @@ class UnfinishedFrame:
 
     def test_occlusion(self) -> None:
         """§2.3: what does a neighbouring pixel show to be hidden?"""
-        if not self._by_modes:
+        if not self._settings.keeps_modes:
             return
         height, memory = self._settings.height, self.memory
         units = self._buffers.primitive, self._first, self._units
@@ -329,10 +328,11 @@ class UnfinishedFrame:
         def work(number: int, tile: tuple[int, int, int, int], worker: int) -> None:
             knowledge = Knowledge(
                 words,
+                memory.words,
                 memory.gained[worker],
                 first=self._first,
                 cull=base != "none",
-                learn=self._by_modes,
+                learn=self._settings.keeps_modes,
                 verify=verify,
                 certify=certificates is not None,
                 certified=self._certified(certificates, self._wanted, number),
@@ -366,7 +366,7 @@ class UnfinishedFrame:
         if self.cache is not None:
             self.cache.keep_found()
         count_pixels(self._units, memory.pixel_count)
-        if self._by_modes:
+        if self._settings.keeps_modes:
             merge_words(memory.words, memory.gained)
             zoom = np.float64(self._settings.zoom_factor)
             set_occlusion_modes(memory.words, memory.hidden, memory.pixel_count, memory.highest_count, zoom)
@@ -387,7 +387,8 @@ class UnfinishedFrame:
     def finished(self) -> Frame:
         buffers, memory = self._buffers, self.memory
         shape = buffers.primitive.shape
-        statistics = gather(self._counts, int(self._occlusion_tests.sum()))
+        lights = len(self._renderer.scene.lights)
+        statistics = gather(self._counts, int(self._occlusion_tests.sum()), lights if self._settings.keeps_modes else 0)
         statistics.phases = self._phases
         statistics.certificates = int(self._certifying[CERTIFICATES])
         statistics.certificate_steps = int(self._certifying[STEPS])
@@ -395,7 +396,6 @@ class UnfinishedFrame:
         if self._certificates is not None:
             self._certificates.finish_frame(statistics.certificates, statistics.shadow.due)
         statistics.seconds = clock.perf_counter() - self._started
-        lights = len(self._renderer.scene.lights)
         recorded = self._settings.record_lights
         return Frame(
             time=self._time,

@@ -36,10 +36,22 @@ class ShadowCounts(RayCounts):
 
 
 @dataclass
+class SaidByModes:
+    """Of one light: shadow rays that are due, and of those the ones that the paper's method culls (`full_shadow`), and
+    that it asks moving objects alone about (`non_shadow`), whichever method the frame was traced with."""
+
+    due: int = 0
+    full_shadow: int = 0
+    non_shadow: int = 0
+
+
+@dataclass
 class FrameStatistics:
     """Counters and times of one frame; `phases` are seconds by the names of Figure 1's steps.
 
-    `certificates` is how many were made after it, with so many steps through a tree and tests of triangles."""
+    `by_modes` is what modes, as the last frame left them, say of the shadow rays of each light that has modes; nothing
+    where none are kept.  `certificates` is how many were made after it, with so many steps through a tree and tests of
+    triangles."""
 
     primary: RayCounts = field(default_factory=RayCounts)
     secondary: RayCounts = field(default_factory=RayCounts)
@@ -49,14 +61,21 @@ class FrameStatistics:
     certificate_steps: int = 0
     certificate_tests: int = 0
     seconds: float = 0.0
+    by_modes: list[SaidByModes] = field(default_factory=list)
     phases: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def by_modes_in_all(self) -> SaidByModes:
+        """The sum over the lights."""
+        one = self.by_modes
+        return SaidByModes(sum(s.due for s in one), sum(s.full_shadow for s in one), sum(s.non_shadow for s in one))
 
     def to_dict(self) -> dict:
         """Plain dictionaries and numbers, for JSON."""
         return asdict(self)
 
 
-def gather(counts: NDArray[np.int64], occlusion_tests: int) -> FrameStatistics:
+def gather(counts: NDArray[np.int64], occlusion_tests: int, lights_with_modes: int) -> FrameStatistics:
     """Sum the counters (workers, COUNTERS) of all workers."""
     total = [int(x) for x in counts.sum(0)]
 
@@ -74,4 +93,7 @@ def gather(counts: NDArray[np.int64], occlusion_tests: int) -> FrameStatistics:
         cache_hits=total[SHADOW + shadow.CACHE_HITS],
         wrong=total[SHADOW + shadow.WRONG],
     )
-    return FrameStatistics(rays_from(PRIMARY), rays_from(SECONDARY), shadow_rays, occlusion_tests)
+    by_light = range(SHADOW + shadow.BY_LIGHT, len(total), 3)[:lights_with_modes]
+    statistics = FrameStatistics(rays_from(PRIMARY), rays_from(SECONDARY), shadow_rays, occlusion_tests)
+    statistics.by_modes = [SaidByModes(*total[at : at + 3]) for at in by_light]
+    return statistics

@@ -56,7 +56,8 @@ def info(path: Path, as_json: bool) -> None:
 def render(path: Path, options: Namespace) -> None:
     """Trace one frame and write it; raises SceneError, ValueError and OSError in one line, or Cancelled."""
     view, light = options.view.view, options.view.light
-    settings = replace(tracing_settings(options), method=options.method)
+    modes = view.of_modes or options.buffers is not None
+    settings = replace(tracing_settings(options), method=options.method, modes=modes)
     _check_outputs(options.output, options.buffers)
     if view is View.CERTIFICATE and base_of(settings.method) != "certified":
         raise ValueError(f"--view certificate: the method {settings.method} makes none; give --method certified")

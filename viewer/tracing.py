@@ -86,7 +86,7 @@ class Tracing:
         are made within a budget: some more frames follow, until none are wanted."""
         seen = replace(request.settings, verify=False, record_work=False)
         view = replace(request, settings=seen, interactive=False, serial=0, patience=0.0)
-        learns = request.divisor == 1 and request.settings.method != "none" and request.settings.samples == 1
+        learns = request.divisor == 1 and request.settings.samples == 1
         if learns and view != self._settled:
             self._settled = view
             self._lessons = LESSONS if base_of(seen.method) == "certified" else 1
@@ -124,9 +124,10 @@ class Tracing:
 
     @property
     def settings(self) -> Settings:
-        """What the user has set, verified and with its work recorded where the view needs that."""
+        """What the user has set, with modes; verified and with its work recorded where the view needs that."""
         s = self._c.session
-        return replace(s.settings, verify=s.settings.verify or s.view.needs_verify, record_work=s.view.needs_work)
+        verify = s.settings.verify or s.view.needs_verify
+        return replace(s.settings, verify=verify, record_work=s.view.needs_work, modes=True)
 
     def _answered(self, wanted: RenderRequest) -> bool:
         """Whether a frame has been asked for, or is there.  One that holds more for a view serves the next view."""
@@ -207,7 +208,9 @@ class Tracing:
         if run is not None:
             lacks = wanted is not view and run.lacks(wanted)
             return f"showing {run.label_shown}   {title}{f' (this run {lacks})' if lacks else ''}"
-        return title if wanted is view else f"{wanted.label}: {'verifying' if wanted.needs_verify else 'counting'} ..."
+        if wanted is view or not (wanted.needs_verify or wanted.needs_work):  # what a method lacks is told elsewhere
+            return title
+        return f"{wanted.label}: {'verifying' if wanted.needs_verify else 'counting'} ..."
 
 
 def _as_asked(settings: Settings, asked: Settings) -> Settings:
@@ -218,5 +221,6 @@ def _as_asked(settings: Settings, asked: Settings) -> Settings:
         height=asked.height,
         verify=asked.verify,
         record_work=asked.record_work,
+        modes=asked.modes,
         certificate_seconds=asked.certificate_seconds,
     )

@@ -59,11 +59,20 @@ class View(StrEnum):
         """Whether it speaks of one light."""
         return self in (View.SHADOW, View.CERTIFICATE)
 
+    @property
+    def of_modes(self) -> bool:
+        """Whether it shows modes, of frames that keep them alone."""
+        return self in (View.OCCLUSION, View.SHADOW, View.PIXEL_COUNT)
+
     def can_draw(self, frame: Frame) -> bool:
-        """Whether the frame holds what it was to be asked for."""
-        return not (self.needs_verify and frame.wrong is None) and not (
-            self.needs_work and work_of(frame, self) is None
-        )
+        """Whether the frame holds what the view shows."""
+        if self.needs_verify:
+            return frame.wrong is not None
+        if self.needs_work:
+            return work_of(frame, self) is not None
+        if self is View.CERTIFICATE:
+            return frame.certificates is not None
+        return frame.settings.keeps_modes or not self.of_modes
 
     @property
     def explanation(self) -> str:

@@ -18,6 +18,7 @@ from tests.viewer.window import Driver
 from tracer.renderer import Renderer
 from viewer.commands import chord
 from viewer.explaining import Part
+from viewer.legends import occlusion_legend
 from viewer.pictures import picture
 from viewer.resources import embedded_scenes
 from viewer.views import WRONG, View, wipe_column
@@ -192,12 +193,33 @@ def culling(d: Driver) -> None:
 
 
 def certifying(d: Driver) -> None:
-    """A method is chosen with what it takes along; a view of certificates says where there are none; key C is off."""
-    d.c.change(method="paper")
+    """Modes are there at once whatever culls; where a view has nothing to show, a note says so and a button switches;
+    a method is chosen with what it takes along; key C is off."""
     d.settle()
+    for base in ("certified", "none"):
+        d.c.change(method=base)
+        d.settle()
+        traced = d.c.history.frames
+        for key, view in ((KEY._2, View.OCCLUSION), (KEY._3, View.SHADOW), (KEY._7, View.PIXEL_COUNT)):
+            d.press(key)
+            assert d.c.tracing.drawn_view is view and d.c.history.frames == traced
+            assert np.abs(d.shown().astype(int) - picture(d.c.frame, view, d.c.session.light)).max() <= 2
+        seen = [row.name for row in occlusion_legend(d.c.frame) if row.pixels]
+        assert "FULLY_RENDERED" in seen, seen
+        said = d.c.frame.statistics.by_modes_in_all
+        assert said.full_shadow + said.non_shadow > 0
+        d.press(KEY._8)
+        d.settle()
+        d.context.item_click("//Picture/**/Use paper##instead")
+        d.settle()
+        assert d.c.frame.settings.method == "paper"
     d.press(KEY._0)
     assert d.c.session.view is View.CERTIFICATE and d.c.frame.certificates is None
+    assert d.c.tracing.drawn_view is View.COLOR
     d.certify()
+    d.context.item_click("//Picture/**/Use certified##instead")
+    d.settle()
+    assert d.c.frame.settings.method == "certified" and d.c.tracing.drawn_view is View.CERTIFICATE
     d.context.menu_click("//##MainMenuBar/Culling/Method certified")
     d.context.item_click("//Culling/+cache")
     d.settle()

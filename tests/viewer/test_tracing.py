@@ -44,7 +44,7 @@ class Desk:
 @pytest.mark.parametrize(
     ("method", "made", "frames"),
     [
-        ("none", [0] * 20, 1),
+        ("none", [0] * 20, 2),
         ("paper", [0] * 20, 2),
         ("certified", [0] * 20, 2),
         ("certified", [9, 9, 9, 0, 0, 0], 4),

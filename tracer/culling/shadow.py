@@ -9,6 +9,8 @@ is known to be, as the last frame left it, decides the ray's fate:
   are; what static geometry answers is OR-ed into the shadow mode.  Where there is an occluder cache, it
   is asked before (`tracer.culling.cache`).
 
+Modes may also be kept beside a method that does not cull by them (`tracer.culling.learning`).
+
 Shadow rays start at the light.  They end a little above the surface (`lifted`), so that it does not
 shadow itself.
 
@@ -26,7 +28,8 @@ from numpy.typing import NDArray
 from tracer.culling.cache import Cache, occluders_in, remember, slots_of, surely_blocked
 from tracer.culling.certified.candidates import ask_candidates
 from tracer.culling.certified.lookup import Certified
-from tracer.culling.modes import DYNAMIC, FULL_SHADOW, FULLY_RENDERED, MAX_CULLED_LIGHTS, NON_SHADOW, add_shadow
+from tracer.culling.learning import consult_modes, learn, look_up, trusted, words_of
+from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.geometry.bvh8.packet import segments_miss_box
 from tracer.geometry.queries import DYNAMIC as MOVING
 from tracer.geometry.queries import STATIC, any_hits, any_hits_by
@@ -36,14 +39,11 @@ from tracer.simd import (
     address_of,
     bits_of,
     f32x16,
-    gather_i32x16,
     i32x16,
     lane_numbers_x16,
     lanes_below,
-    load_i32x16,
     load_spread_bytes16,
     load_three,
-    lowest_bit,
     mask16,
     ones,
     pack,
@@ -53,9 +53,10 @@ from tracer.simd import (
     store_three,
 )
 
-# Shadow counters; the first two are those that queries add to.
-STEPS, TESTS, RAYS, DUE, CULLED, DYNAMIC_ONLY, CANDIDATES_ONLY, CACHE_HITS, WRONG = range(9)
-SHADOW_COUNTERS = 9
+# Shadow counters; the first two are those that queries add to.  Then, by light, three of what modes say: rays that are
+# due, and of those the ones that the paper's method culls, and that it asks moving objects about.
+STEPS, TESTS, RAYS, DUE, CULLED, DYNAMIC_ONLY, CANDIDATES_ONLY, CACHE_HITS, WRONG, BY_LIGHT = range(10)
+SHADOW_COUNTERS = BY_LIGHT + 3 * MAX_CULLED_LIGHTS
 
 LIGHT_MARGIN = np.float32(1e-5)  # of the way from the light: what lies nearer to it is the lamp itself
 ROUNDED = np.float32(1e-5)  # of coordinates
@@ -63,12 +64,13 @@ ZERO, ONE = np.float32(0), np.float32(1)
 
 
 class Knowledge(NamedTuple):
-    """What culling goes by: words (units,) as the last frame left them, what this worker gains for the next, of the
-    same shape; the first unit of each primitive (p + 1,), or nothing where primitives are the units; whether to cull
-    by the words, to learn from rays, and to verify what was culled; whether units are certified cells; and the
-    occluder cache."""
+    """What culling goes by: words (units,); modes (units,) as the last frame left them, which are the same words but
+    where those are of certified cells, and what this worker gains for the next, of the same shape; the first unit of
+    each primitive (p + 1,), or nothing where primitives are the units; whether to cull by the words, to learn modes
+    from rays, and to verify what was culled; whether units are certified cells; and the occluder cache."""
 
     words: NDArray[np.unsignedinteger]
+    modes: NDArray[np.unsignedinteger]
     gained: NDArray[np.unsignedinteger]
     first: NDArray[np.int32]
     cull: bool
@@ -80,47 +82,11 @@ class Knowledge(NamedTuple):
 
 
 @inlined
-def _look_up(points, v, knowledge, answers):
-    """Put the words of the v-th vector of points side by side, once for all lights."""
-    if answers.looked_up[v]:
-        return
-    answers.looked_up[v] = 1
-    words, at = address_of(knowledge.words), 64 * v
-    unit = load_i32x16(address_of(points.unit) + at)
-    if knowledge.words.itemsize == 4:
-        store(address_of(answers.low) + at, gather_i32x16(words, unit))
-    else:
-        store(address_of(answers.low) + at, gather_i32x16(words, unit << np.int32(1)))
-        store(address_of(answers.high) + at, gather_i32x16(words + 4, unit << np.int32(1)))
-
-
-@inlined
 def _due(points, light, v):
     """Bits of the points whose surface faces the light."""
     px, py, pz = load_three(points.position, v)
     gx, gy, gz = load_three(points.geometric, v)
     return bits_of(gx * (light[0] - px) + gy * (light[1] - py) + gz * (light[2] - pz) > ZERO)
-
-
-@inlined
-def _words(answers, number, v):
-    """Words of the v-th vector of points, the halves of them that hold a light's modes, and by how many bits in."""
-    word = load_i32x16(address_of(answers.low) + 64 * v)
-    field = word if 2 + 2 * number < 32 else load_i32x16(address_of(answers.high) + 64 * v)
-    shift = (2 + 2 * number) % 32
-    return word, field, shift
-
-
-@inlined
-def _known(answers, number, v):
-    """Bits of the points that are known to be in full shadow, and of those known to be in none."""
-    word, field, shift = _words(answers, number, v)
-    trusted = (word & 3) == FULLY_RENDERED
-    field = field & np.int32(3 << shift)
-    return (
-        bits_of(trusted & (field == np.int32(FULL_SHADOW << shift))),
-        bits_of(trusted & (field == np.int32(NON_SHADOW << shift))),
-    )
 
 
 @subkernel
@@ -131,8 +97,8 @@ def _choose_fates(points, light, number, knowledge, count, answers, counts):
         due = _due(points, light, v) & lanes_below(count, v)
         full, non = np.int64(0), np.int64(0)
         if knowledge.cull and number < MAX_CULLED_LIGHTS and due != 0:
-            _look_up(points, v, knowledge, answers)
-            full, non = _known(answers, number, v)
+            look_up(knowledge.words, points.unit, v, answers.known)
+            full, non = trusted(answers.known, number, v)
         answers.due[v], answers.lit[v], answers.live[v] = due, due & non, due & ~(full | non)
         counts[DUE] += ones(due)
         counts[CULLED] += ones(due & full)
@@ -155,7 +121,7 @@ def _note_candidates(number, certified, answers, v, asked):
     if number >= len(certified.still) or not certified.still[number]:
         return asked
     live = np.int64(answers.live[v])
-    _, field, shift = _words(answers, number, v)
+    _, field, shift = words_of(answers.known, number, v)
     field = field & np.int32(3 << shift)
     some = bits_of(field == np.int32(3 << shift)) & live
     answers.untried[v] |= live & ~some
@@ -204,21 +170,6 @@ def _blocked(answers, asked, n):
     """Bits of those lanes, of the bits `asked`, whose rays, from the n-th on, anything blocks; and something static."""
     found = load_spread_bytes16(address_of(answers.blocked) + n, mask16(asked))
     return bits_of(found > 0), bits_of(found == STATIC)
-
-
-@subkernel
-def _learn(points, v, number, knowledge, answers, asked, blocked):
-    """OR what rays have met into the shadow modes of their primitives, where it is news."""
-    word, field, shift = _words(answers, number, v)
-    moves = bits_of((word & 3) == DYNAMIC)
-    seen_blocked = bits_of((field & np.int32(FULL_SHADOW << shift)) == 0)
-    seen_free = bits_of((field & np.int32(NON_SHADOW << shift)) == 0)
-    news = asked & ~moves & ((blocked & seen_blocked) | (~blocked & seen_free))
-    while news != 0:
-        lane = lowest_bit(news)
-        news &= news - 1
-        mode = FULL_SHADOW if (blocked >> lane) & 1 else NON_SHADOW
-        add_shadow(knowledge.gained, points.unit[16 * v + lane], number, mode)
 
 
 @inlined
@@ -280,7 +231,7 @@ def _ask_cache(world, points, light, number, knowledge, vectors, answers, counts
         counts[CACHE_HITS] += ones(hit)
         answers.live[v] = live & ~hit
         if knowledge.learn and number < MAX_CULLED_LIGHTS:
-            _learn(points, v, number, knowledge, answers, hit, hit)
+            learn(points, v, number, knowledge, answers, hit, hit)
 
 
 @subkernel
@@ -307,14 +258,14 @@ def _ask_about_others(world, points, light, number, knowledge, vectors, answers,
             remember(knowledge.cache, answers.slots, v, answers.occluders, n, asked, for_good)
         n += ones(asked)
         if knowledge.learn and number < MAX_CULLED_LIGHTS:
-            _learn(points, v, number, knowledge, answers, asked, for_good)
+            learn(points, v, number, knowledge, answers, asked, for_good)
         answers.lit[v] |= asked & ~blocked
 
 
 @subkernel
 def _verify(world, points, light, vectors, answers, counts):
     """Trace every due ray, its steps uncounted, and count the answers that differ."""
-    scratch = np.zeros(SHADOW_COUNTERS, np.int64)
+    scratch = np.zeros(RAYS, np.int64)  # steps and tests
     for v in range(vectors):
         answers.truth[v] = answers.due[v]
     _ask(world, points, light, vectors, answers.due, STATIC | MOVING, answers, scratch)
@@ -329,6 +280,8 @@ def shadow_testing(world, points, count, light, number, knowledge, answers, coun
     vectors = (count + 15) // 16
     before = counts[DYNAMIC_ONLY] + counts[CANDIDATES_ONLY]
     _choose_fates(points, light, number, knowledge, count, answers, counts)
+    if knowledge.learn and number < MAX_CULLED_LIGHTS:
+        consult_modes(points, number, knowledge, vectors, answers, counts[BY_LIGHT + 3 * number :])
     if world.has_dynamic and counts[DYNAMIC_ONLY] + counts[CANDIDATES_ONLY] > before:
         _ask_about_known(world, points, light, vectors, answers, counts)
     _ask_about_others(world, points, light, number, knowledge, vectors, answers, counts)

@@ -218,7 +218,7 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts, spa
     for bounce in range(depth + 1):
         points = points_at(world, look, wave, space.points, camera.spread, knowledge)
         asks = bounce > 0 or knowledge.certified.dear
-        answers = answers_in(room(space.answers, wave.size), wave.size, asks)
+        answers = answers_in(room(space.answers, wave.size), wave.size, asks, knowledge.certify)
         _light(world, look, wave, points, knowledge, answers, counts, pixels, bounce == 0, buffers)
         if bounce == 0:
             _see_normals(wave, points, pixels, buffers)

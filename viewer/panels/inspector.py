@@ -6,7 +6,6 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import OcclusionMode, ShadowMode
-from tracer.method import base_of
 from viewer.panels import explanation
 from viewer.panels.widgets import QUIET, count, em, heading, judged, paragraph, properties, swatch, tooltip, value
 from viewer.picking import Pick
@@ -38,7 +37,7 @@ def show(ui: Ui) -> None:
 
 def _details(ui: Ui, pick: Pick) -> None:
     frame = ui.controller.frame
-    by_modes = frame is None or base_of(frame.settings.method) != "certified"
+    by_modes = frame is None or frame.settings.keeps_modes
     with properties("primitive", 5.8) as shown:
         if shown:
             value("Primitive", f"{pick.primitive}  ({pick.kind})")

@@ -12,7 +12,7 @@ import math
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer import navigation
-from viewer.panels import explanation, timeline, wipe
+from viewer.panels import explanation, missing, timeline, wipe
 from viewer.panels.widgets import ERROR, QUIET, count, em, paragraph
 from viewer.picking import point_at
 from viewer.ui import Ui
@@ -64,6 +64,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     _pointer(ui, corner, size)
     wipe.show(ui, corner, end)
     _overlay(ui, corner, end)
+    missing.show(ui, corner, end)
 
 
 def _placeholder(ui: Ui, room: ImVec2) -> None:

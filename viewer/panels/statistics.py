@@ -54,7 +54,7 @@ def show(ui: Ui) -> None:
             value("Traced", _share(fully_traced(shadow), shadow.due), "nothing was known: asked everything")
             if frame.settings.verify:
                 value("Wrong", _share(shadow.wrong, shadow.due), "culled, but a trace answers otherwise")
-            if not certifies:
+            if frame.settings.keeps_modes:
                 tests = f"{count(s.occlusion_tests)}  ({s.occlusion_tests / pixels:.3f} / pixel)"
                 value("Occlusion tests", tests, "against the neighbouring pixels' primitives")
     if certifies:

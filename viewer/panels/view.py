@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 from numpy.typing import NDArray
 
-from tracer.method import base_of
+from tracer.method import culls_by_modes
 from tracer.renderer import Frame
+from tracer.statistics import SaidByModes
 from viewer.legends import (
     DifferenceLegend,
     LegendRow,
@@ -37,8 +40,9 @@ from viewer.ui import Ui
 from viewer.views import GREY, WRONG, View, color_map, has_modes_of_cells
 
 _GRADIENT_STEPS = 24
+FULL_TOLD = "they end on primitives that are fully rendered and in full shadow"
+NON_TOLD = "they end on primitives that are fully rendered and in non-shadow"
 _FLAT = (View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT, View.CERTIFICATE)
-_OF_MODES = (View.OCCLUSION, View.SHADOW, View.PIXEL_COUNT)
 
 
 def show(ui: Ui) -> None:
@@ -87,15 +91,12 @@ def _legend(ui: Ui, frame: Frame) -> None:
     """What the colours stand for, and how much of the frame each is."""
     view, light = ui.controller.session.view, ui.controller.session.light
     tip = view.explanation
-    if view in _OF_MODES and base_of(frame.settings.method) == "certified":
-        paragraph("This frame's method goes by certificates (0); modes are those of other methods.", WARNING)
+    if not view.can_draw(frame) and not (view.needs_verify or view.needs_work):
+        return  # the picture says why
     units = "cells" if has_modes_of_cells(frame) else "primitives"
     if view is View.OCCLUSION:
         _table(ui.cached("occlusion", frame, 0, lambda: occlusion_legend(frame)), units)
     elif view.of_light:
-        if view is View.CERTIFICATE and frame.certificates is None:
-            paragraph(f"The method {frame.settings.method} makes no certificates; certified does.", WARNING)
-            return
         legend = shadow_legend if view is View.SHADOW else certificate_legend
         rows = ui.cached(view.value, frame, light, lambda: legend(frame, light))
         if not rows:
@@ -119,7 +120,38 @@ def _legend(ui: Ui, frame: Frame) -> None:
             return
         _difference(ui, frame)
         tip += " While it is chosen each culled ray is traced as well, so that frames take longer."
+    if view.of_modes:
+        _would_cull(frame, light if view is View.SHADOW else None)
     paragraph(tip, QUIET)
+
+
+def _would_cull(frame: Frame, light: int | None) -> None:
+    """What the paper's method would cull of this frame's shadow rays: of all lights, and of one."""
+    said, columns = frame.statistics.by_modes, [("all lights", frame.statistics.by_modes_in_all)]
+    if light is not None and light < len(said) > 1:
+        columns.insert(0, (f"light {light}", said[light]))
+    if not said or not imgui.begin_table("would cull", 1 + len(columns), int(imgui.TableFlags_.sizing_stretch_prop)):
+        return
+    culls = culls_by_modes(frame.settings.method)
+    imgui.table_next_column()
+    imgui.text_colored(QUIET, "shadow rays, this method" if culls else "shadow rays, paper's method")
+    tooltip("of this frame, at all bounces; by the modes that the frame before has left")
+    for name, _ in columns:
+        imgui.table_next_column()
+        _right(name, QUIET)
+    fates: tuple[tuple[str, str, Callable[[SaidByModes], int]], ...] = (
+        ("culled" if culls else "would be culled", FULL_TOLD, lambda one: one.full_shadow),
+        ("ask moving objects only" if culls else "would ask moving objects only", NON_TOLD, lambda one: one.non_shadow),
+    )
+    for name, told, part in fates:
+        imgui.table_next_column()
+        imgui.text_unformatted(name)
+        tooltip(told)
+        for _, one in columns:
+            imgui.table_next_column()
+            _right(percent(part(one), one.due))
+            tooltip(f"{count(part(one))} of {count(one.due)} that are due")
+    imgui.end_table()
 
 
 def _work(ui: Ui, frame: Frame) -> None:

@@ -1,0 +1,130 @@
+"""Modes kept beside any exact method: those that the paper's method would have, bit for bit."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import tracer
+from tests.tracing.naive_frame import NaiveRenderer
+from tests.tracing.nasty_worlds import nasty_walk
+from tests.tracing.random_worlds import Walk, quickly, walks
+from tracer import renderer
+from tracer.culling.certified.certificates import Effort
+from tracer.culling.modes import FULLY_RENDERED, occlusion_mode
+from tracer.geometry.world import ACCELERATORS
+from tracer.scene.model import Camera
+
+BESIDE = ("none", "certified", "certified+cache", "none+cache+rest")
+PAPER = "paper+rest"
+
+
+@pytest.fixture(autouse=True)
+def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Small pictures are to have many certificates on either structure, and to ask candidates."""
+    monkeypatch.setattr(renderer, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 3, 48, True, 1)))
+
+
+def _differing(scene: tracer.Scene, frames: Iterable[tuple[float, Camera]], seen: Counter, **settings) -> list[str]:
+    """What is not, frame by frame, as the paper's method has it; and pictures that are not those of "none"."""
+    world = tracer.World(scene, scene.time_range[0], settings["accelerator"])
+
+    def renderer_of(method: str, threads: int = 1, modes: bool = True) -> tracer.Renderer:
+        chosen = tracer.Settings(method=method, threads=threads, modes=modes, **settings)
+        return tracer.Renderer(scene, chosen, world=world)
+
+    paper, none = renderer_of(PAPER), renderer_of("none", modes=False)
+    beside = {method: renderer_of(method, 1 + number % 3) for number, method in enumerate(BESIDE)}
+    result = []
+    for number, (time, camera) in enumerate(frames):
+        expected, picture = paper.render(time, camera), none.render(time, camera)
+        said, shadow = expected.statistics.by_modes, expected.statistics.shadow
+        assert sum(one.due for one in said) <= shadow.due
+        assert sum(one.full_shadow for one in said) == shadow.culled
+        assert sum(one.non_shadow for one in said) == shadow.dynamic_only
+        assert not picture.statistics.by_modes and picture.statistics.occlusion_tests == 0
+        seen.update(full=shadow.culled, non=shadow.dynamic_only)
+        for method, other in beside.items():
+            frame = other.render(time, camera)
+            for name in ("modes", "pixel_count", "highest_count", "occlusion_mode", "shadow_mode"):
+                if not np.array_equal(getattr(frame, name), getattr(expected, name)):
+                    result.append(f"{name} of frame {number} with {method}")
+            if frame.color.tobytes() != picture.color.tobytes():
+                result.append(f"picture of frame {number} with {method}")
+            assert frame.statistics.by_modes == said, (number, method)
+            assert frame.statistics.occlusion_tests == expected.statistics.occlusion_tests
+            other_shadow = frame.statistics.shadow
+            seen.update({f"{method}: {name}": getattr(other_shadow, name) for name in ("culled", "candidates_only")})
+            seen["cache hits"] += other_shadow.cache_hits
+    return result
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_modes_beside_any_exact_method_are_the_papers(accelerator: str):
+    """Moving cameras, lights and objects, which rest now and then."""
+    seen: Counter[str] = Counter()
+    settings = {"width": 26, "height": 20, "depth": 2, "accelerator": accelerator}
+
+    @quickly(12)
+    @given(walks(), st.booleans())
+    def check(walk: Walk, symmetric: bool) -> None:
+        assert not _differing(walk.scene, walk.frames, seen, symmetric=symmetric, **settings)
+
+    check()
+    for seed in range(8):
+        walk = nasty_walk(seed)
+        assert not _differing(walk.scene, walk.frames, seen, **settings), f"seed {seed}"
+    assert min(seen[f"certified: {name}"] for name in ("culled", "candidates_only")) > 1000
+    assert min(seen[name] for name in ("full", "non", "cache hits")) > 500
+    assert seen["none: culled"] == 0
+
+
+def test_beyond_31_lights_there_are_no_modes_and_none_are_missed():
+    walk, seen = nasty_walk(6, lights=33), Counter()
+    assert not _differing(walk.scene, walk.frames, seen, width=24, height=16, depth=1, accelerator="bvh8")
+    frame = tracer.Renderer(walk.scene, tracer.Settings(24, 16, 1, "none", modes=True)).render(0.0)
+    assert len(frame.statistics.by_modes) == 31
+
+
+def test_modes_beside_a_method_are_what_the_naive_twin_says():
+    """Of scenes in which nothing moves: the twin knows no rest."""
+    trusted = 0
+
+    @quickly(8)
+    @given(walks(), st.sampled_from(["none", "certified"]))
+    def check(walk: Walk, method: str) -> None:
+        nonlocal trusted
+        still = replace(walk.scene, objects=walk.scene.objects[:1])
+        settings = tracer.Settings(24, 18, 2, method, modes=True, accelerator="kdtree", threads=2)
+        beside, twin = tracer.Renderer(still, settings), NaiveRenderer(still, replace(settings, method="paper"))
+        for time, camera in walk.frames:
+            frame, expected = beside.render(time, camera), twin.render(time, camera)
+            assert frame.modes.tolist() == expected.words
+            assert frame.highest_count.tolist() == expected.highest_count
+            trusted += int((occlusion_mode(frame.modes) == FULLY_RENDERED).sum())
+
+    check()
+    assert trusted > 100
+
+
+def test_modes_go_on_where_the_method_changes_and_forget_nothing():
+    """As in the window, where any method may follow another; and where nobody asks for modes, they stay as they are."""
+    walk = nasty_walk(3, frames=8)
+    settings = tracer.Settings(30, 24, 2, PAPER, threads=1)
+    paper, changing = (tracer.Renderer(walk.scene, settings) for _ in range(2))
+    methods = ["none", PAPER, "certified", "none+cache", "certified+cache", PAPER, "certified", "none"]
+    for method, (time, camera) in zip(methods, walk.frames, strict=True):
+        changing.settings = replace(settings, method=method, modes=True)
+        expected, frame = paper.render(time, camera), changing.render(time, camera)
+        assert np.array_equal(frame.modes, expected.modes)
+        assert np.array_equal(frame.highest_count, expected.highest_count)
+    time, camera = walk.frames[-1]
+    changing.settings = replace(settings, method="none+rest")
+    assert np.array_equal(changing.render(time, camera).modes, frame.modes)
+    assert not changing.settings.keeps_modes and changing.render(time, camera).statistics.by_modes == []

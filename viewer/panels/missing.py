@@ -1,0 +1,37 @@
+"""Over the picture: why a view has nothing to show, and a button for the method that has."""
+
+from __future__ import annotations
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from viewer.methods import with_base
+from viewer.missing import missing
+from viewer.panels.widgets import em
+from viewer.ui import Ui
+
+_WIDTH, _LEAST = 26.0, 8.0  # in ems: of the note, and of a picture that has room for one
+_BACK = ImVec4(0.05, 0.06, 0.08, 0.86)
+
+
+def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
+    """A note in the middle of the picture, below its upper third."""
+    c = ui.controller
+    found = missing(c.session.view, c.frame) if c.frame is not None else None
+    room = end.x - corner.x - em(2.0)
+    if found is None or room < em(_LEAST):
+        return
+    width = min(em(_WIDTH), room)
+    imgui.set_cursor_screen_pos(ImVec2((corner.x + end.x - width) / 2.0, corner.y + (end.y - corner.y) / 3.0))
+    imgui.push_style_color(imgui.Col_.child_bg, _BACK)
+    imgui.push_style_var(imgui.StyleVar_.child_rounding, em(0.4))
+    imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(em(0.8), em(0.7)))
+    flags = imgui.ChildFlags_.auto_resize_y | imgui.ChildFlags_.always_use_window_padding
+    if imgui.begin_child("missing", ImVec2(width, 0.0), int(flags)):
+        imgui.push_text_wrap_pos(0.0)
+        imgui.text_unformatted(found.text)
+        imgui.pop_text_wrap_pos()
+        if found.base and c.runner.current is None and imgui.button(f"Use {found.base}##instead"):
+            c.change(method=with_base(c.session.settings.method, found.base))
+    imgui.end_child()
+    imgui.pop_style_var(2)
+    imgui.pop_style_color()
