@@ -10,8 +10,6 @@ work is done, and the panels, which never touch GL.
 
 from __future__ import annotations
 
-import os
-import shutil
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -24,42 +22,14 @@ import glfw  # after imgui_bundle, which brings the library that both must share
 from viewer import commands, style
 from viewer.controller import Controller
 from viewer.display import Display, Look
-from viewer.panels import (
-    camera,
-    culling,
-    dialogs,
-    experiment,
-    inspector,
-    picture,
-    plots,
-    rendering,
-    saving,
-    scene,
-    statistics,
-    status,
-    view,
-    zoom,
-)
+from viewer.layout import Layout, LayoutFile
+from viewer.panels import dialogs, picture, status, strip
 from viewer.preferences import config_folder, load_preferences
 from viewer.resources import default_scene
 from viewer.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
 WINDOW_SIZE = (1440, 900)
-PANELS: dict[str, tuple[str, Callable[[Ui], None]]] = {
-    "Picture": ("MainDockSpace", picture.show),
-    "Scene": ("Left", scene.show),
-    "Camera": ("Left", camera.show),
-    "Statistics": ("LeftBottom", statistics.show),
-    "View": ("Right", view.show),
-    "Rendering": ("Right", rendering.show),
-    "Saving": ("Right", saving.show),
-    "Culling": ("RightMiddle", culling.show),
-    "Inspector": ("RightBottom", inspector.show),
-    "Plots": ("Bottom", plots.show),
-    "Experiment": ("Bottom", experiment.show),
-    "Zoom test": ("Bottom", zoom.show),
-}
 
 
 class App:
@@ -71,11 +41,10 @@ class App:
         self.ui = Ui(self.controller)
         self.ui.commands = commands.build(self.ui)
         self.scene_path = scene_path
-        self.layout_file = _LayoutFile(config_folder())
+        self.layout_file = LayoutFile(config_folder())
         self.params = self._params()
+        self.layout = Layout(self.ui, self.params)
         self.ui.request_exit = self._exit
-        self.ui.reset_layout = self._reset_layout
-        self.ui.show_panel = self.params.docking_params.focus_dockable_window
         self._frame_began = time.perf_counter()
         self._capture_this_frame = False
         if problem:
@@ -97,6 +66,7 @@ class App:
         self._frame_began = time.perf_counter()
         style.follow_density()
         style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
+        self.ui.full_screen.follow()
         self._open_dropped()
         self.controller.tick(self._room_for_picture())
         self._draw()
@@ -106,6 +76,8 @@ class App:
     def widgets(self) -> None:
         """What is not a docked panel: keys, and what lies over the panels."""
         style.fill_windows(True)
+        self.layout.follow()
+        strip.show(self.ui)
         commands.handle_keys(self.ui)
         picture.fly(self.ui)
         dialogs.show(self.ui)
@@ -197,7 +169,6 @@ class App:
         )  # fmt: skip
         params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
         params.ini_filename = str(self.layout_file.working_copy)
-        params.docking_params = self._docking()
         params.fps_idling.fps_idle = 8.0
         params.fps_idling.fps_max = 60.0
         params.fps_idling.time_active_after_last_event = 0.25
@@ -213,47 +184,9 @@ class App:
         call.before_exit = self._release
         return params
 
-    def _docking(self) -> hello_imgui.DockingParams:
-        docking = hello_imgui.DockingParams()
-        docking.main_dock_space_node_flags = 0  # else it would have a background whatever the style
-        split, down = hello_imgui.DockingSplit, imgui.Dir.down
-        docking.docking_splits = [
-            split("MainDockSpace", "Left", imgui.Dir.left, 0.225),
-            split("MainDockSpace", "Right", imgui.Dir.right, 0.295),
-            split("MainDockSpace", "Bottom", down, 0.25),
-            split("Left", "LeftBottom", down, 0.52),
-            split("Right", "RightBottom", down, 0.38),
-            split("Right", "RightMiddle", down, 0.45),
-        ]
-        docking.dockable_windows = [self._window(label, space, show) for label, (space, show) in PANELS.items()]
-        return docking
-
-    def _window(self, label: str, space: str, show: Callable[[Ui], None]) -> hello_imgui.DockableWindow:
-        window = hello_imgui.DockableWindow(label, space)
-        flags = 0
-        if label == "Picture":
-            window.can_be_closed = False
-            scrolling = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
-            flags = int(scrolling | imgui.WindowFlags_.no_collapse)
-
-        def show_panel() -> None:
-            # What lies in the main window is on its background already.  Filling it once more for each panel is
-            # half of all the work where a processor draws.
-            shown = self.params.docking_params.dockable_window_of_name(label)  # the params hold a copy
-            shown.imgui_window_flags = flags | (int(imgui.WindowFlags_.no_background) if _in_main_window() else 0)
-            show(self.ui)
-
-        window.gui_function = show_panel
-        window.imgui_window_flags = flags
-        return window
-
     def _menus(self) -> None:
         commands.menus(self.ui.commands)
-        if imgui.begin_menu("Panels"):
-            for window in self.params.docking_params.dockable_windows:
-                if window.can_be_closed:
-                    _, window.is_visible = imgui.menu_item(window.label, "", window.is_visible, True)
-            imgui.end_menu()
+        self.layout.menu()
 
     def _ready(self) -> None:
         """The window and its GL context exist."""
@@ -268,6 +201,7 @@ class App:
         hello_imgui.request_refresh()
 
     def _release(self) -> None:
+        self.ui.full_screen.end()
         self.controller.wake = lambda: None  # threads may still be at work when the window is gone
         if self.ui.display is not None:
             self.ui.display.release()
@@ -275,35 +209,6 @@ class App:
 
     def _exit(self) -> None:
         self.params.app_shall_exit = True
-
-    def _reset_layout(self) -> None:
-        self.params.docking_params.layout_reset = True
-
-
-def _in_main_window() -> bool:
-    """Whether the panel that is being drawn is docked there, and floats neither alone nor with others."""
-    return bool(imgui.internal.get_current_window().root_window_dock_tree.name.startswith("MainDockSpace"))
-
-
-class _LayoutFile:
-    """Where the panels are: ImGui writes a copy of its own, which takes the file's name when the window is closed."""
-
-    def __init__(self, folder: Path) -> None:
-        self.path = folder / "layout.ini"
-        self.working_copy = folder / f".layout.{os.getpid()}.ini"
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            if self.path.exists():
-                shutil.copyfile(self.path, self.working_copy)
-        except OSError:
-            pass  # then the layout is not remembered; saving the settings says why
-
-    def keep(self) -> None:
-        try:
-            if self.working_copy.exists():
-                os.replace(self.working_copy, self.path)
-        except OSError:
-            pass
 
 
 def _configure_imgui() -> None:

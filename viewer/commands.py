@@ -87,6 +87,9 @@ def _view(ui: Ui) -> list[Command]:
     def toggle(name: str) -> Callable[[], None]:
         return lambda: setattr(p, name, not getattr(p, name))
 
+    def hide() -> None:
+        ui.fold.hidden = not ui.fold.hidden
+
     lit = lambda: c.session.scene is not None and len(c.session.scene.lights) > 1  # noqa: E731
     return [
         *[show(view) for view in View],
@@ -97,7 +100,9 @@ def _view(ui: Ui) -> list[Command]:
         Command("Shares of rays", "View", toggle("work_shares"), "U", checked=lambda: p.work_shares),
         Command("Draw shadow rays", "View", toggle("draw_explanation"), "I", checked=lambda: p.draw_explanation),
         Command("Smooth upscaling", "View", toggle("smooth_upscaling"), checked=lambda: p.smooth_upscaling),
-        Command("Default layout", "View", lambda: ui.reset_layout(), separated=True),
+        Command("Hide panels", "View", hide, "Tab", checked=lambda: ui.fold.hidden, separated=True),
+        Command("Full screen", "View", ui.full_screen.toggle, "F11", checked=lambda: ui.full_screen.wanted),
+        Command("Default layout", "View", lambda: ui.reset_layout()),
     ]
 
 

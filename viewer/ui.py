@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from viewer.capture import FIELDS
 from viewer.controller import Controller
+from viewer.full_screen import FullScreen
 from viewer.preferences import default_screenshot_folder
 
 if TYPE_CHECKING:
@@ -38,6 +39,20 @@ class FileBrowser:
 
 
 @dataclass
+class Fold:
+    """What became of the panels: hidden all, or folded into a strip in a small window, with one of them open."""
+
+    hidden: bool = False
+    folded: bool = False
+    drawer: str = ""
+
+    @property
+    def away(self) -> bool:
+        """Whether no panel is docked beside the picture."""
+        return self.hidden or self.folded
+
+
+@dataclass
 class Ui:
     """See the module.  `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says
     that the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector."""
@@ -46,6 +61,8 @@ class Ui:
     display: Display | None = None
     commands: list[Command] = field(default_factory=list)
     browser: FileBrowser = field(default_factory=FileBrowser)
+    fold: Fold = field(default_factory=Fold)
+    full_screen: FullScreen = field(default_factory=FullScreen)
     capture_wanted: CaptureKind | None = None
     shortcuts_open: bool = False
     about_open: bool = False

@@ -15,7 +15,8 @@ pytestmark = pytest.mark.gui
 
 SCENARIOS = ("views", "difference", "wiping", "culling", "certifying", "explaining", "flying", "orbiting", "playing",
              "capturing", "dropping", "reopening", "cancelling", "resizing", "closing_while_tracing",
-             "closing_while_loading", "closing_while_experimenting", "experimenting", "zooming", "panels")  # fmt: skip
+             "closing_while_loading", "closing_while_experimenting", "experimenting", "zooming", "panels", "hiding",
+             "folding")  # fmt: skip
 
 
 @pytest.mark.parametrize("name", SCENARIOS)

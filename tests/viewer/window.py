@@ -121,7 +121,7 @@ class Driver:
 
 
 def main(name: str, scene: str, folder: str) -> int:
-    from tests.viewer import scenarios
+    from tests.viewer import layouts, scenarios
 
     viewer_app.WINDOW_SIZE = (960, 640)
     app = App(Path(scene))
@@ -133,7 +133,8 @@ def main(name: str, scene: str, folder: str) -> int:
         engine = imgui.test_engine.get_io(hello_imgui.get_imgui_test_engine())
         engine.config_watchdog_warning = engine.config_watchdog_kill_test = 2.0 * PATIENCE
         try:
-            getattr(scenarios, name)(Driver(app, context, Path(folder)))
+            scenario = getattr(layouts, name, None) or getattr(scenarios, name)
+            scenario(Driver(app, context, Path(folder)))
         except BaseException as error:
             failed.append(error)
             traceback.print_exc()
