@@ -10,6 +10,7 @@ work is done, and the panels, which never touch GL.
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -22,8 +23,11 @@ import glfw  # after imgui_bundle, which brings the library that both must share
 from viewer import commands, style
 from viewer.controller import Controller
 from viewer.display import Display, Look
+from viewer.failures import failure
+from viewer.guard import Guard
+from viewer.guard import configure as configure_recovery
 from viewer.layout import Layout, LayoutFile
-from viewer.panels import dialogs, picture, status, strip
+from viewer.panels import dialogs, faults, picture, status, strip
 from viewer.preferences import config_folder, load_preferences
 from viewer.resources import default_scene
 from viewer.ui import CaptureKind, Ui
@@ -39,6 +43,7 @@ class App:
         preferences, problem = load_preferences()
         self.controller = Controller(preferences)
         self.ui = Ui(self.controller)
+        self.ui.guard = Guard(self.controller, lambda name, fault: faults.instead(self.ui, name, fault))
         self.ui.commands = commands.build(self.ui)
         self.scene_path = scene_path
         self.layout_file = LayoutFile(config_folder())
@@ -52,12 +57,20 @@ class App:
 
     def run(self, runner: Callable[[hello_imgui.RunnerParams, immapp.AddOnsParams], None] = immapp.run) -> int:
         """Open the window and stay until it is closed; returns the exit code."""
+        hook, threading.excepthook = threading.excepthook, self._thread_failed
         try:
             runner(self.params, immapp.AddOnsParams(with_implot=True))
         finally:
+            threading.excepthook = hook
             self.controller.close()
             self.layout_file.keep()
         return 0
+
+    def _thread_failed(self, of: threading.ExceptHookArgs) -> None:
+        """A thread ended by an exception that nobody caught."""
+        if of.exc_value is not None:
+            name = of.thread.name if of.thread is not None else "a thread"
+            self.controller.report(failure(of.exc_value, f"{name} failed", known=()))
 
     # --- one frame -------------------------------------------------------------------------------
 
@@ -66,25 +79,28 @@ class App:
         self._frame_began = time.perf_counter()
         style.follow_density()
         style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
-        self.ui.full_screen.follow()
-        self._open_dropped()
-        self.controller.tick(self._room_for_picture())
-        self._draw()
-        self._capture_picture()
+        step = self.ui.guard.step
+        step("Full screen", self.ui.full_screen.follow)
+        step("Opening what was dropped", self._open_dropped)
+        step("Following the scene", lambda: self.controller.tick(self._room_for_picture()))
+        step("Drawing the picture", self._draw)
+        step("Saving the picture", self._capture_picture)
         self._stay_awake()
 
     def widgets(self) -> None:
         """What is not a docked panel: keys, and what lies over the panels."""
         style.fill_windows(True)
-        self.layout.follow()
-        strip.show(self.ui)
-        commands.handle_keys(self.ui)
-        picture.fly(self.ui)
+        step, overlay = self.ui.guard.step, self.ui.guard.overlay
+        step("The layout", self.layout.follow)
+        overlay("The strip of folded panels", lambda: strip.show(self.ui), lambda: setattr(self.ui.fold, "drawer", ""))
+        step("Reading the keys", lambda: commands.handle_keys(self.ui))
+        step("Flying", lambda: picture.fly(self.ui))
         dialogs.show(self.ui)
+        overlay("The notice", lambda: faults.notice(self.ui), self.controller.faults.dismiss)
 
     def after_widgets(self) -> None:
         """The window is drawn but not yet shown."""
-        self._capture_window()
+        self.ui.guard.step("Saving the window", self._capture_window)
         self.controller.drawn_seconds = time.perf_counter() - self._frame_began
 
     # --- the steps -------------------------------------------------------------------------------
@@ -134,8 +150,9 @@ class App:
         ready = shown and not c.tracing.becoming_finer  # else the picture is saved when it has come
         if self.ui.capture_wanted is CaptureKind.PICTURE and self.ui.display is not None and ready:
             self.ui.capture_wanted = None
-            self.ui.display.draw(self._look(selected=-1))  # the mark is for the user, not for the picture
-            self.controller.keeper.capture(self.ui.display.read() if self.controller.frame is not None else None)
+            look = self._look(selected=-1)  # the mark is for the user, not for the picture
+            self.ui.display.draw(look)
+            self.controller.keeper.capture(self.ui.display.read() if self.ui.display.drawn(look) else None)
         if self.ui.capture_wanted is CaptureKind.WINDOW:
             self.ui.capture_wanted = None
             self._capture_this_frame = True  # when it is drawn, from here on, with all that was asked for before
@@ -176,8 +193,8 @@ class App:
         call.setup_imgui_config = _configure_imgui
         call.load_additional_fonts = style.load_fonts
         call.post_init = self._ready
-        call.show_menus = lambda: self._menus()
-        call.show_status = lambda: status.show(self.ui)
+        call.show_menus = lambda: self.ui.guard.panel("The menus", self._menus)
+        call.show_status = lambda: self.ui.guard.panel("The status bar", lambda: status.show(self.ui))
         call.pre_new_frame = self.before_widgets
         call.show_gui = self.widgets
         call.before_swap = self.after_widgets
@@ -185,7 +202,7 @@ class App:
         return params
 
     def _menus(self) -> None:
-        commands.menus(self.ui.commands)
+        commands.menus(self.ui)
         self.layout.menu()
 
     def _ready(self) -> None:
@@ -217,6 +234,7 @@ def _configure_imgui() -> None:
     # Arrows, space and escape are commands here; they must not move a focus from button to button.
     io.config_flags &= ~int(imgui.ConfigFlags_.nav_enable_keyboard)
     io.config_windows_move_from_title_bar_only = True
+    configure_recovery()
 
 
 def run(scene_path: Path | None = None) -> int:

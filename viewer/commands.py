@@ -255,16 +255,16 @@ def handle_keys(ui: Ui) -> None:
         return
     for command in ui.commands:
         if command.key and _pressed(command, held or before) and command.enabled():
-            command.run()
+            ui.guard.step(f"The command {command.name}", command.run)
 
 
-def menus(commands: list[Command]) -> None:
+def menus(ui: Ui) -> None:
     """All menus of the menu bar."""
     for name in MENUS:
         if imgui.begin_menu(name):
-            for command in commands:
+            for command in ui.commands:
                 if command.menu == name:
-                    _menu_item(command)
+                    _menu_item(ui, command)
             imgui.end_menu()
 
 
@@ -293,13 +293,13 @@ def _pressed(command: Command, modifiers: int) -> bool:
     return imgui.is_key_pressed(imgui.Key(number & ~int(imgui.Key.mod_mask_)), repeat=command.repeats)
 
 
-def _menu_item(command: Command) -> None:
+def _menu_item(ui: Ui, command: Command) -> None:
     if command.separated:
         imgui.separator()
     checked = command.checked() if command.checked is not None else False
     clicked, _ = imgui.menu_item(command.name, key_label(command.key), checked, command.enabled())
     if clicked:
-        command.run()
+        ui.guard.step(f"The command {command.name}", command.run)
 
 
 _MODIFIERS_NONE = 0

@@ -20,8 +20,12 @@ from tracer.renderer import Frame, Renderer
 from tracer.scene.model import Camera, Scene
 from viewer import navigation
 from viewer.explaining import Explaining
+from viewer.failures import Failure
+from viewer.faults import Faults
 from viewer.history import History
 from viewer.keeper import Keeper
+from viewer.lines import in_one_line
+from viewer.log import Level, Log
 from viewer.motion import Motion
 from viewer.opener import Opener
 from viewer.picking import Pick, pick, refreshed, typical_depth
@@ -53,6 +57,8 @@ class Controller:
         self.wake = wake
         self.render = RenderThread(lambda: self.wake())
         self.history = History()
+        self.log = Log()
+        self.faults = Faults(self.log)
         self.info: dict[str, Any] = {}
         self.selected: Pick | None = None
         self.hovered: tuple[float, float] | None = None
@@ -111,9 +117,9 @@ class Controller:
         return working or self.lively
 
     def _take_frame(self) -> Frame | None:
-        error = self.render.take_error()
-        if error:
-            self.say(error, error=True)
+        failed = self.render.take_failure()
+        if failed is not None:
+            self.report(failed)
             self.session.playing = False
         of_run = self.runner.follow()
         if of_run is not None:
@@ -131,10 +137,19 @@ class Controller:
 
     # --- messages and selection ------------------------------------------------------------------
 
-    def say(self, text: str, error: bool = False) -> None:
-        """Show one line in the status bar: a notice for some seconds, an error until the next."""
-        self.message = Message(" ".join(text.split()), error, time.monotonic())
+    def say(self, text: str, error: bool = False, details: str = "") -> None:
+        """Show one line in the status bar, a notice for some seconds, an error until the next; the log keeps both."""
+        self.message = Message(in_one_line(text), error, time.monotonic())
+        self.log.add(Level.ERROR if error else Level.NOTICE, self.message.text, details)
         self.wake()
+
+    def report(self, failed: Failure) -> None:
+        """Tell of a failure: in the status bar where it was to be expected, else as a fault of the program."""
+        if failed.expected:
+            self.say(failed.text, error=True, details=failed.details)
+        else:
+            self.faults.tell(failed)
+            self.wake()
 
     @property
     def current_message(self) -> Message | None:

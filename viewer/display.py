@@ -64,6 +64,10 @@ _PIXELS = {
 }
 
 
+class DisplayError(RuntimeError):
+    """The GPU does not do what is asked of it; the message is one line."""
+
+
 @dataclass(frozen=True)
 class Look:
     """How to draw a frame: everything that changes the picture without tracing.
@@ -96,6 +100,7 @@ class Display:
         self._brought: dict[str, int] = {}  # which frame's buffers are on the GPU
         self._frame: Frame | None = None
         self._drawn: tuple[int, Look] | None = None
+        self._failed: tuple[int, Look] | None = None
         self._serial = 0
         self._marked = (0, 1)
         self._textures: dict[str, Any] = {}
@@ -133,7 +138,6 @@ class Display:
         assert frame is not None
         if self._brought.get(name) == self._serial:
             return
-        self._brought[name] = self._serial
         if name in _PIXELS:
             components, dtype, attribute = _PIXELS[name]
             self._write(name, self.size, components, dtype, getattr(frame, attribute))
@@ -147,15 +151,39 @@ class Display:
         elif name == "count_table":
             counts = np.stack([frame.pixel_count, frame.highest_count], axis=1).astype(np.int32, copy=False)
             self._write_table(name, "i4", counts)
+        self._brought[name] = self._serial
 
     def draw(self, look: Look) -> None:
         """Draw the view of the frame into the target, unless it is there already.
 
-        Raises ValueError for a view of verified frames, or of work that was recorded, where the frame is none."""
-        if self._frame is None or self._drawn == (self._serial, look):
+        What failed is not tried again, and the target keeps what it showed, until another frame or look is asked for.
+        Raises ValueError for a view of verified frames, or of work that was recorded, where the frame is none, and
+        DisplayError for what is too much for the GPU."""
+        wanted = (self._serial, look)
+        if self._frame is None or wanted in (self._drawn, self._failed):
             return
+        self._failed = wanted
         window = self.context.detect_framebuffer()
-        self._ensure_target()
+        try:
+            self._draw(look)
+        finally:
+            window.use()
+        self._drawn, self._failed = wanted, None
+
+    def _draw(self, look: Look) -> None:
+        _ = self.context.error  # of somebody before us
+        target = self._fitting_target()
+        try:
+            self._draw_into(target, look)
+        except Exception:
+            if target is not self._target:
+                _release_framebuffer(target)
+            raise
+        if target is not self._target:
+            self._release_target()
+            self._target = target
+
+    def _draw_into(self, target: Any, look: Look) -> None:
         if look.view.needs_verify:
             self._mark_wrong(look.magnified)
         program, triangle = self._pass(look.view)
@@ -164,13 +192,18 @@ class Display:
             if name in program:
                 self._bring(name)
                 self._textures[name].use(unit)
-        self._target.use()
+        target.use()
         self.context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         triangle.render(moderngl.TRIANGLES, vertices=3)
         filtering = moderngl.LINEAR if look.smooth and look.view in _PICTURES else moderngl.NEAREST
-        self._target.color_attachments[0].filter = (filtering, filtering)
-        window.use()
-        self._drawn = (self._serial, look)
+        target.color_attachments[0].filter = (filtering, filtering)
+        problem = self.context.error
+        if problem != "GL_NO_ERROR":
+            raise DisplayError(f"the GPU could not draw this: {problem}")
+
+    def drawn(self, look: Look) -> bool:
+        """Whether the target shows the frame in this look."""
+        return self._drawn == (self._serial, look)
 
     def read(self) -> NDArray[np.uint8]:
         """The drawn view, (height, width, 3) uint8, row 0 at the top."""
@@ -205,7 +238,9 @@ class Display:
     def _write(self, name: str, size: tuple[int, int], components: int, dtype: str, data: NDArray) -> None:
         texture = self._textures.get(name)
         if texture is None or texture.size != size:
+            self._check_size(size)
             if texture is not None:
+                del self._textures[name]
                 texture.release()
             texture = self.context.texture(size, components, dtype=dtype, alignment=1)
             texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
@@ -268,19 +303,29 @@ class Display:
             if name in program:
                 program[name] = value
 
-    def _ensure_target(self) -> None:
+    def _fitting_target(self) -> Any:
+        """The target where it has the frame's size, else a new one."""
         if self._target is not None and self._target.size == self.size:
-            return
-        self._release_target()
+            return self._target
+        self._check_size(self.size)
         texture = self.context.texture(self.size, 4)
         texture.repeat_x = texture.repeat_y = False
-        self._target = self.context.framebuffer([texture])
+        return self.context.framebuffer([texture])
 
     def _release_target(self) -> None:
         if self._target is not None:
-            self._target.color_attachments[0].release()
-            self._target.release()
+            _release_framebuffer(self._target)
             self._target = None
+
+    def _check_size(self, size: tuple[int, int]) -> None:
+        most = self.context.info["GL_MAX_TEXTURE_SIZE"]
+        if max(size) > most:
+            raise DisplayError(f"{size[0]} x {size[1]} is too large for this GPU, which takes {most} pixels a side")
+
+
+def _release_framebuffer(framebuffer: Any) -> None:
+    framebuffer.color_attachments[0].release()
+    framebuffer.release()
 
 
 def _halves(words: NDArray) -> NDArray[np.uint32]:

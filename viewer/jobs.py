@@ -15,8 +15,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Generic, TypeVar
 
-from tracer.scene.model import Cancelled, Progress, SceneError
-from viewer.lines import in_one_line
+from tracer.scene.model import Cancelled, Progress
+from viewer.failures import KNOWN, Failure, failure
 
 Result = TypeVar("Result")
 
@@ -26,8 +26,8 @@ JOB, TRACER = 2, 5  # niceness: what a window waits for, and what takes all core
 class Job(Generic[Result]):
     """Runs `work(progress)` on a thread of its own.
 
-    `label` and `fraction` tell how far it is; after `done`, `result` is set, or `error` holds one
-    line, or `cancelled` is true.  The end wakes the window; progress is seen often enough as it dozes.
+    `label` and `fraction` tell how far it is; after `done`, `result` is set, or `failure` says what
+    went wrong, or `cancelled` is true.  The end wakes the window; progress is seen often enough as it dozes.
     """
 
     def __init__(self, title: str, work: Callable[[Progress], Result], wake: Callable[[], None] = lambda: None) -> None:
@@ -35,7 +35,7 @@ class Job(Generic[Result]):
         self.label = ""
         self.fraction = 0.0
         self.result: Result | None = None
-        self.error: str | None = None
+        self.failure: Failure | None = None
         self.cancelled = False
         self.started = time.monotonic()
         self._work = work
@@ -77,7 +77,7 @@ class Job(Generic[Result]):
         except Cancelled:
             self.cancelled = True
         except Exception as error:
-            self.error = one_line(error)
+            self.failure = failure(error, "" if isinstance(error, KNOWN) else f"{self.title} failed")
         finally:
             self._finished.set()
             self._wake()
@@ -88,13 +88,3 @@ def step_back(niceness: int) -> None:
     if sys.platform.startswith("linux"):
         with suppress(OSError):
             os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), niceness)
-
-
-def one_line(error: BaseException) -> str:
-    """An exception as one line for the status bar; the kind is named unless the message speaks for itself."""
-    text = in_one_line(error)
-    if isinstance(error, MemoryError):
-        return "out of memory" + (f": {text}" if text else "")
-    if isinstance(error, SceneError | ValueError | OSError) and text:
-        return text
-    return f"{type(error).__name__}: {text}" if text else type(error).__name__

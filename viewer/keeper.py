@@ -33,7 +33,10 @@ class Keeper:
         """Tell of the pictures that have been written, or could not be."""
         for job in [job for job in self.saving if job.done]:
             self.saving.remove(job)
-            self._c.say(job.error or f"saved {job.result}", error=job.error is not None)
+            if job.failure is not None:
+                self._c.report(job.failure)
+            else:
+                self._c.say(f"saved {job.result}")
 
     @property
     def bookmarks(self) -> list[dict]:

@@ -166,7 +166,7 @@ class Layout:
         shown, stays = imgui.begin(panel.label, None if alone else True, flags)
         try:
             if shown:
-                panel.show(self._ui)
+                self._ui.guard.panel(f"The panel {panel.label}", lambda: panel.show(self._ui))
         finally:
             imgui.end()
         if stays is False:

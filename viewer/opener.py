@@ -6,6 +6,7 @@ is cancelled.  A second request to open takes the place of the first.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -43,8 +44,8 @@ class Opener:
         """Take up what the jobs have finished."""
         if self.warm_up_job is not None and self.warm_up_job.done:
             job, self.warm_up_job = self.warm_up_job, None
-            if job.error:
-                self._c.say(f"kernels not compiled: {job.error}", error=True)
+            if job.failure is not None:
+                self._c.report(replace(job.failure, text=f"kernels not compiled: {job.failure.text}"))
         if self.load_job is not None and self.load_job.done:
             load, self.load_job = self.load_job, None
             self._loaded(load)
@@ -115,9 +116,9 @@ class Opener:
         if job.cancelled:
             stays = ": the scene that was open stays" if self._c.session.scene is not None else ""
             self._c.say(f"loading cancelled{stays}")
-        elif job.error is not None or job.result is None:
-            self._c.say(job.error or "nothing was loaded", error=True)
-        else:
+        elif job.failure is not None:
+            self._c.report(job.failure)
+        elif job.result is not None:
             opened = job.result
             self._c.show(opened.scene, opened.renderer, opened.info)
             if self._restore_after_load is not None:

@@ -22,7 +22,10 @@ from typing import Protocol
 
 from tracer.renderer import Frame, Settings
 from tracer.scene.model import Camera, Cancelled
-from viewer.jobs import TRACER, one_line, step_back
+from viewer.failures import Failure, failure
+from viewer.jobs import TRACER, step_back
+
+_KNOWN = (MemoryError, OSError)  # what may go wrong here without a mistake of the program's
 
 
 class Traces(Protocol):
@@ -97,7 +100,7 @@ class RenderThread:
         self._reset = False
         self._closing = False
         self._finished: Traced | None = None
-        self._error: str | None = None
+        self._failure: Failure | None = None
         self._thread = threading.Thread(target=self._run, name="shadowcull render", daemon=True)
         self._thread.start()
 
@@ -105,7 +108,7 @@ class RenderThread:
         """Trace this renderer's scene from now on; whatever was asked of the old one is dropped, and a task ended."""
         with self._changed:
             self._renderer = renderer
-            self._waiting = self._finished = self._error = self._question = self._placed_at = None
+            self._waiting = self._finished = self._failure = self._question = self._placed_at = None
             self._cancel = True
             self._changed.notify_all()
 
@@ -150,11 +153,11 @@ class RenderThread:
             traced, self._finished = self._finished, None
             return traced
 
-    def take_error(self) -> str | None:
-        """One line about a frame that failed, once."""
+    def take_failure(self) -> Failure | None:
+        """Why a frame, or an answer, did not come, once."""
         with self._changed:
-            error, self._error = self._error, None
-            return error
+            failed, self._failure = self._failure, None
+            return failed
 
     @property
     def busy(self) -> bool:
@@ -180,7 +183,12 @@ class RenderThread:
     def _run(self) -> None:
         step_back(TRACER)
         while (turn := self._next()) is not None:
-            turn()
+            try:
+                turn()
+            except Exception as problem:  # a task that raises though it must not
+                with self._changed:
+                    self._failure = failure(problem, "work beside the window failed", _KNOWN)
+                self._wake()
 
     def _next(self) -> Callable[[], None] | None:
         """What to do now, once there is something: a task before all, then a question, then a frame."""
@@ -206,21 +214,23 @@ class RenderThread:
             return None
 
     def _perform(self, renderer: Traces, task: Task) -> None:
-        task.work(renderer, lambda: self._cancel)
-        with self._changed:
-            self._performing = False
-        self._wake()
+        try:
+            task.work(renderer, lambda: self._cancel)
+        finally:
+            with self._changed:
+                self._performing = False
+            self._wake()
 
     def _answer(self, renderer: Traces, question: Question) -> None:
         try:
             question.answer(renderer)
         except Exception as problem:
             with self._changed:
-                self._error = f"no answer: {one_line(problem)}"
+                self._failure = failure(problem, "no answer", _KNOWN)
         self._wake()
 
     def _trace(self, renderer: Traces, request: RenderRequest, reset: bool) -> None:
-        frame, error = None, None
+        frame, failed = None, None
         try:
             if reset:
                 renderer.reset_modes()
@@ -230,14 +240,14 @@ class RenderThread:
         except Cancelled:
             pass
         except Exception as problem:
-            error = f"frame not traced: {one_line(problem)}"
-        self._deliver(renderer, request, frame, error)
+            failed = failure(problem, "frame not traced", _KNOWN)
+        self._deliver(renderer, request, frame, failed)
 
-    def _deliver(self, renderer: Traces, request: RenderRequest, frame: Frame | None, error: str | None) -> None:
+    def _deliver(self, renderer: Traces, request: RenderRequest, frame: Frame | None, failed: Failure | None) -> None:
         with self._changed:
             self._running = None
             if renderer is self._renderer:  # else it is a picture of a scene that was left meanwhile
                 if frame is not None:
                     self._finished = Traced(request, frame)
-                self._error = error or self._error
+                self._failure = failed or self._failure
         self._wake()

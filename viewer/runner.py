@@ -116,8 +116,8 @@ class Runner:
         return Traced(RenderRequest(frame.time, frame.camera, frame.settings), frame)
 
     def _tell(self, run: Run) -> None:
-        if run.error is not None:
-            self._c.say(f"the {run.name} failed: {run.error}", error=True)
+        if run.failure is not None:
+            self._c.report(run.failure)
         elif run.whole:
             frames = run.done_of[1]
             self._c.say(f"{run.name} done: {frames} frame{'s' * (frames != 1)} in {duration(run.seconds)}")

@@ -23,7 +23,7 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled, Scene
 from viewer import exports
 from viewer.console import TimeLeft
-from viewer.jobs import one_line
+from viewer.failures import Failure, failure
 from viewer.methods import in_order
 from viewer.render_thread import Traces
 from viewer.views import View
@@ -43,7 +43,7 @@ class Run(ABC, Generic[Results]):
 
     `results` is a copy that nothing changes any more, None before the first whole frame; `frames` is
     how many there are to trace, `traced` how many have been; `label` says which was the last of them,
-    `label_shown` which is shown; `error` is one line.  The scene is let go at the end; `scene_path` stays.
+    `label_shown` which is shown; `failure` is why it ended early.  The scene is let go at the end; `scene_path` stays.
     """
 
     name = "run"
@@ -56,7 +56,7 @@ class Run(ABC, Generic[Results]):
         self.traced = 0
         self.label = self.label_shown = "starting"
         self.results: Results | None = None
-        self.error: str | None = None
+        self.failure: Failure | None = None
         self.seconds = 0.0
         self.stopping = False
         self._left = TimeLeft()
@@ -73,7 +73,7 @@ class Run(ABC, Generic[Results]):
     @property
     def whole(self) -> bool:
         """Whether it went on to its end."""
-        return self.done and self.error is None and self.traced == self.frames
+        return self.done and self.failure is None and self.traced == self.frames
 
     @property
     def verifies(self) -> bool:
@@ -131,7 +131,7 @@ class Run(ABC, Generic[Results]):
         except Cancelled:
             pass
         except Exception as error:
-            self.error = one_line(error)
+            self.failure = failure(error, f"the {self.name} failed")
         finally:
             self.seconds = time.monotonic() - began
             self._scene = None

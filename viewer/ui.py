@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from viewer.capture import FIELDS
 from viewer.controller import Controller
 from viewer.full_screen import FullScreen
+from viewer.guard import Guard
 from viewer.preferences import default_screenshot_folder
 
 if TYPE_CHECKING:
@@ -82,6 +83,8 @@ class Ui:
     request_exit: Callable[[], None] = lambda: None
     reset_layout: Callable[[], None] = lambda: None
     show_panel: Callable[[str], Any] = lambda label: None
+    guard: Guard = field(init=False)
+    log_errors_only: bool = False
     zoom_all_steps: bool = False
     pointed_light: int | None = None
     _cache: dict[str, tuple[object, int, Any]] = field(default_factory=dict)

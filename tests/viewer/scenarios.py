@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import threading
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -16,9 +17,11 @@ from PIL import Image
 
 from tests.viewer.window import Driver
 from tracer.renderer import Renderer
+from viewer import commands, opening
 from viewer.commands import chord
 from viewer.explaining import Part
 from viewer.legends import occlusion_legend
+from viewer.panels import dialogs, plots, statistics, status
 from viewer.pictures import picture
 from viewer.resources import embedded_scenes
 from viewer.views import WRONG, View, wipe_column
@@ -509,6 +512,117 @@ def reopening(d: Driver) -> None:
         assert d.c.tracing.drawn_view is view
         expected = picture(d.c.frame, view, shading=d.c.preferences.shading)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
+
+
+def failing(d: Driver) -> None:
+    """Whatever fails, in drawing, a panel, a menu, a command or a thread, is a notice; the window lives on."""
+    d.settle()
+    faults, log, guard, display = d.c.faults, d.c.log, d.ui.guard, d.ui.display
+    again = f"{icons.ICON_FA_ROTATE_RIGHT}  Try again"
+
+    def fail(*_: object) -> None:
+        raise ZeroDivisionError("made to fail")
+
+    def told(about: str, times: int = 1) -> None:
+        """There is a notice, of one failure only, with all that is known; it is copied, and goes."""
+        d.wait(lambda: faults.notice is not None, f"a notice about {about}", 20.0)
+        d.frames(8)  # a flood would be counted by now
+        notice = faults.notice
+        assert about in notice.text and "made to fail" in notice.text and "Traceback" in notice.details, notice
+        assert notice.count == times and len([e for e in log.entries() if e.text == notice.text]) == 1
+        d.context.item_click(f"//##fault/{icons.ICON_FA_COPY}  Copy details")
+        d.frames(2)
+        assert imgui.get_clipboard_text() == notice.told
+        d.context.item_click("//##fault/Dismiss")
+        d.frames(3)
+        assert faults.notice is None and d.c.frame is not None
+
+    # Drawing: the picture stays what it was, is not tried again until it should be another, and is not saved as one.
+    before, frame = d.shown(), d.c.frame
+    draw_into, display._draw_into = display._draw_into, fail
+    d.press(KEY._5)
+    told("Drawing the picture")
+    assert np.array_equal(d.shown(), before)
+    d.press(KEY.f12)
+    d.frames(3)
+    assert not (d.folder / "pictures").exists() and "no picture to save" in d.c.message.text
+    faults.dismiss()
+    display._draw_into = draw_into
+    d.press(KEY._6)
+    expected = picture(frame, View.NORMAL, shading=d.c.preferences.shading)
+    assert np.abs(d.shown().astype(int) - expected).max() <= 2
+    most, display.context.info["GL_MAX_TEXTURE_SIZE"] = display.context.info["GL_MAX_TEXTURE_SIZE"], 16
+    d.c.preferences.fixed_resolution, d.c.preferences.fixed_width, d.c.preferences.fixed_height = True, 120, 90
+    d.settle()
+    assert "120 x 90 is too large for this GPU" in faults.notice.text
+    display.context.info["GL_MAX_TEXTURE_SIZE"] = most
+    d.c.preferences.fixed_resolution = False
+    d.settle()
+    assert display.size == (d.c.frame.width, d.c.frame.height)
+    faults.dismiss()
+
+    # Panels, with tables, children and plots open: one says what is wrong with it, and is shown again when told to.
+    for label, module, name in (("Statistics", statistics, "_cells"), ("Plots", plots, "_stack")):
+        d.ui.show_panel(label)
+        d.frames(3)
+        good = getattr(module, name)
+        setattr(module, name, fail)
+        told(f"The panel {label}")
+        assert f"The panel {label}" in guard.broken
+        d.context.item_click(f"//{label}/{again}")
+        told(f"The panel {label}", 2)
+        setattr(module, name, good)
+        d.context.item_click(f"//{label}/{again}")
+        d.frames(3)
+        assert not guard.broken
+
+    # Bars, dialogs and commands.
+    for module, name, part in ((commands, "menus", "The menus"), (status, "_summary", "The status bar")):
+        good = getattr(module, name)
+        setattr(module, name, fail)
+        told(part)
+        setattr(module, name, good)
+        assert part in guard.broken
+        guard.again(part)
+        d.frames(3)
+        assert not guard.broken
+    good, dialogs._entries = dialogs._entries, fail
+    d.press(int(KEY.o) | int(KEY.mod_ctrl))
+    told("The dialog that opens a file")
+    assert not d.ui.browser.open
+    dialogs._entries = good
+    d.ui.commands = [replace(c, run=fail) if c.name == "Depth" else c for c in d.ui.commands]
+    d.press(KEY._5)
+    told("The command Depth")
+    d.context.menu_click("//##MainMenuBar/View/Depth")
+    told("The command Depth", 2)
+
+    # Threads.
+    threading.Thread(target=fail, name="some thread").start()
+    told("some thread")
+    renderer = d.c.render._renderer
+    render, renderer.render = renderer.render, fail
+    d.press(KEY.t)
+    told("frame not traced")
+    renderer.render = render
+    d.press(KEY.t)
+    d.settle()
+    read, opening.load_visible_scene = opening.load_visible_scene, fail
+    d.drop(embedded_scenes()["figure4"])
+    told("Loading figure4.aff failed")
+    opening.load_visible_scene = read
+
+    # All of it is in the log, with what the status bar has said.
+    d.ui.show_panel("Log")
+    d.frames(3)
+    texts = [e.text for e in log.entries()]
+    assert sum("made to fail" in t for t in texts) >= 10 and any("opened in" in t for t in texts)
+    d.context.item_click(f"//Log/{icons.ICON_FA_COPY}  Copy all")
+    d.frames(2)
+    assert all(t in imgui.get_clipboard_text() for t in texts)
+    d.context.item_click("//Log/Clear")
+    d.frames(2)
+    assert not log.entries()
 
 
 def cancelling(d: Driver) -> None:

@@ -106,9 +106,10 @@ def test_errors_are_one_line_and_the_thread_lives_on(thread):
     thread.use(renderer)
     thread.submit(request(0.0))
     idle(thread)
-    error = thread.take_error()
-    assert error is not None and "first line second line" in error and "\n" not in error
-    assert thread.take_error() is None
+    failed = thread.take_failure()
+    assert failed is not None and "first line second line" in failed.text and "\n" not in failed.text
+    assert not failed.expected and "Traceback" in failed.details
+    assert thread.take_failure() is None
     renderer.failing = None
     thread.submit(request(1.0))
     assert taken(thread).frame.time == 1.0
@@ -298,8 +299,8 @@ def test_a_question_about_another_scene_is_dropped_and_one_that_fails_is_told_of
     thread.ask(failing)
     assert failing.answered.wait(5.0)
     end = time.monotonic() + 5.0
-    while (error := thread.take_error()) is None:
+    while (failed := thread.take_failure()) is None:
         assert time.monotonic() < end
-    assert error == "no answer: no such light"
+    assert failed.text == "no answer: no such light"
     thread.submit(request(3.0))
     assert taken(thread).frame.time == 3.0, "it goes on"

@@ -341,7 +341,8 @@ def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytes
     while controller.runner.current is not None or controller.frame is None:
         assert time.monotonic() < end
         controller.tick(SIZE)
-    assert controller.message.error and controller.message.text.startswith("the experiment failed: AttributeError")
+    assert controller.faults.notice.text == "the experiment failed: AttributeError: no world"
+    assert "no world" in controller.faults.notice.details
     assert controller.close()
 
 

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 pytestmark = pytest.mark.gui
 
 SCENARIOS = ("views", "difference", "wiping", "culling", "certifying", "explaining", "flying", "orbiting", "playing",
-             "capturing", "dropping", "reopening", "cancelling", "resizing", "closing_while_tracing",
+             "capturing", "dropping", "reopening", "failing", "cancelling", "resizing", "closing_while_tracing",
              "closing_while_loading", "closing_while_experimenting", "experimenting", "zooming", "panels", "hiding",
              "folding")  # fmt: skip
 
@@ -27,6 +27,7 @@ def test_window(name: str, tiny_scene_file: Path, own_settings: Path):
     environment = os.environ | {"SHADOWCULL_CONFIG_DIR": str(own_settings), "LIBGL_ALWAYS_SOFTWARE": "1"}
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, f"{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
+    assert "[imgui-error]" not in done.stdout + done.stderr, "ImGui was used wrongly"
     settings = json.loads((own_settings / "settings.json").read_text())
     assert str(tiny_scene_file) in settings["recent"]
     kept = {p.name for p in own_settings.iterdir()}

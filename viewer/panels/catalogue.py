@@ -12,6 +12,7 @@ from viewer.panels import (
     culling,
     experiment,
     inspector,
+    log,
     picture,
     plots,
     rendering,
@@ -52,5 +53,6 @@ PANELS = {
         Panel("Plots", "Bottom", icons.ICON_FA_CHART_LINE, plots.show, wide=True),
         Panel("Experiment", "Bottom", icons.ICON_FA_FLASK, experiment.show, wide=True),
         Panel("Zoom test", "Bottom", icons.ICON_FA_MAGNIFYING_GLASS_PLUS, zoom.show, wide=True),
+        Panel("Log", "Bottom", icons.ICON_FA_LIST, log.show, wide=True),
     )
 }

@@ -20,10 +20,10 @@ def show(ui: Ui) -> None:
     """All of them; each shows itself only when it is wanted."""
     if imgui.is_key_pressed(imgui.Key.escape):
         ui.shortcuts_open = ui.about_open = False
-    _progress(ui)
-    _browser(ui)
-    _shortcuts(ui)
-    _about(ui)
+    ui.guard.overlay("The progress of loading", lambda: _progress(ui))
+    ui.guard.overlay("The dialog that opens a file", lambda: _browser(ui), lambda: setattr(ui.browser, "open", False))
+    ui.guard.overlay("The list of keys", lambda: _shortcuts(ui), lambda: setattr(ui, "shortcuts_open", False))
+    ui.guard.overlay("The words about the program", lambda: _about(ui), lambda: setattr(ui, "about_open", False))
 
 
 def _centred(width: float) -> None:

@@ -81,6 +81,6 @@ def _drawer(ui: Ui, panel: Panel, at: ImVec2, size: ImVec2) -> None:
     tooltip("close (Escape)")
     imgui.separator()
     if imgui.begin_child(f"{panel.label}##in drawer"):
-        panel.show(ui)
+        ui.guard.panel(f"The panel {panel.label}", lambda: panel.show(ui))
     imgui.end_child()
     imgui.end()
