@@ -7,8 +7,9 @@ that pictures, modes and counters are the same for any number of threads and on 
 
 from __future__ import annotations
 
+import math
 import time as clock
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -32,7 +33,10 @@ from tracer.method import base_of, culls_by_modes, takes
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
+from tracer.shading.filling import NO_PLANES, TURNS, Planes, fill_in, lanes_of, make_planes, nearest_shaded
 from tracer.shading.look import SHINE, TRANSMISSION, make_look
+from tracer.shading.primary import ALL_LANES, BLOCK
+from tracer.shading.surfaces import see_surfaces
 from tracer.shading.whitted import (
     COUNTERS,
     TILE,
@@ -45,6 +49,8 @@ from tracer.shading.whitted import (
 )
 from tracer.statistics import gather
 
+FEW = 4  # pixels of a block, at most, that are shaded in larger tiles
+FILLED = 8  # rows of blocks that a thread fills in at a time
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
 SHARES, SHARE = 8, 6  # of all tiles that each thread takes to look for what is wanted; tiles of one, at least
@@ -79,6 +85,8 @@ class Renderer:
         self._workspaces: list[Workspace] = []
         self.certificates: Certificates | None = None
         self._cache: OccluderCache | None = None
+        self._turn = 0
+        self._planes: tuple[tuple[int, int], Planes] | None = None
 
     def reset_modes(self) -> None:
         """Forget all modes, at every resolution, all certificates and all occluders."""
@@ -106,20 +114,67 @@ class Renderer:
             with frame.phase("mode setting"):
                 frame.set_modes()
         except BaseException:
-            frame.memory.discard_frame()
-            if frame.cache is not None:
-                frame.cache.discard_found()
+            frame.discard()
             raise
         return frame.finished()
 
-    def begin(self, time: float, camera: Camera | None = None, cancel: Cancel = None) -> UnfinishedFrame:
+    def refine(
+        self,
+        time: float = 0.0,
+        camera: Camera | None = None,
+        cancel: Cancel = None,
+        parts: Sequence[int] = (1, 4, 8, 16),
+        samples: int = 1,
+        focus: tuple[float, float] | None = None,
+    ) -> Iterator[Frame]:
+        """Frames of one picture that becomes finer: so many sixteenths of its pixels are shaded in each, the others
+        filled in from these (`tracer.shading.filling`), the same surfaces at all of them.
+
+        The frame that is whole is that of `render`, bit for bit, and only with it anything is learnt: whoever closes
+        the generator before has seen a picture and taught nothing.  After it come frames of 2 to `samples` samples a
+        pixel; the last is that of `render` with so many.  `parts` increase up to 16.  Pixels near `focus`, parts of
+        the width and height, come first where not all come at once.  Raises Cancelled as `render` does.
+        """
+        if list(parts) != sorted(set(parts)) or not parts or parts[0] < 1 or parts[-1] != TURNS:
+            raise ValueError(f"parts increase from 1 at least to {TURNS}")
+        settings = replace(self.settings, samples=1)
+        frame = self.begin(time, camera, cancel, settings, in_parts=parts[0] < TURNS)
+        frame.begin_at(focus)
+        try:
+            yield from frame.refined(parts, self._next_turn(parts[0]))
+        except BaseException:
+            frame.discard()
+            raise
+        yield frame.finished()
+        yield from frame.sampled(samples)
+
+    def _next_turn(self, count: int) -> int:
+        """Whose turn it is first: consecutive pictures, of which so many sixteenths are shaded, begin at others."""
+        self._turn = (self._turn // count + 1) * count % TURNS
+        return self._turn
+
+    def begin(
+        self,
+        time: float,
+        camera: Camera | None = None,
+        cancel: Cancel = None,
+        settings: Settings | None = None,
+        in_parts: bool = False,
+    ) -> UnfinishedFrame:
         """A frame whose phases are still to come."""
-        return UnfinishedFrame(self, self.settings.validated(), camera or self.scene.camera_at(time), time, cancel)
+        settings = (settings or self.settings).validated()
+        return UnfinishedFrame(self, settings, camera or self.scene.camera_at(time), time, cancel, in_parts)
 
     def workspaces(self, workers: int) -> list[Workspace]:
         """One for each worker at least."""
         self._workspaces += [workspace() for _ in range(len(self._workspaces), workers)]
         return self._workspaces
+
+    def planes(self, width: int, height: int) -> Planes:
+        """Room for what pixels know of each other, the same for every frame of a size that is shaded in parts."""
+        if self._planes is None or self._planes[0] != (width, height):
+            self._planes = (width, height), make_planes(width, height)
+        return self._planes[1]
 
     def _memory(self, settings: Settings, workers: int) -> Memory:
         """The modes at this resolution, of primitives or of cells; made, or given room for more workers, where need
@@ -169,7 +224,9 @@ _NOT_CERTIFIED = {np.dtype(word_type(lights)).itemsize: nothing_told(lights) for
 class UnfinishedFrame:
     """A frame under way: the phases of `Renderer.render` over its buffers."""
 
-    def __init__(self, renderer: Renderer, settings: Settings, camera: Camera, time: float, cancel: Cancel) -> None:
+    def __init__(
+        self, renderer: Renderer, settings: Settings, camera: Camera, time: float, cancel: Cancel, in_parts: bool = False
+    ) -> None:
         self._renderer, self._settings = renderer, settings
         self._camera, self._time, self._cancel = camera, time, cancel
         self._workers = thread_count(settings.threads)
@@ -186,23 +243,77 @@ class UnfinishedFrame:
         self._base = base_of(settings.method)
         self._certifying = np.zeros(CERTIFYING, np.int64)
         self._rays = pinhole(camera, settings.width, settings.height)
-        self._buffers = self._empty_buffers()
+        self._in_parts, self._lanes = in_parts, 0
+        self._buffers = self._empty_buffers(in_parts)
+        self._words: np.ndarray | None = None  # those to shade further samples by
         self._units = np.empty_like(self._buffers.primitive) if _has_cells(settings) else self._buffers.primitive
-        across, down = -(-settings.width // TILE), -(-settings.height // TILE)
-        self._tiles = [
-            (x * TILE, y * TILE, min((x + 1) * TILE, settings.width), min((y + 1) * TILE, settings.height))
-            for y in range(down)
-            for x in range(across)
+        self._tiles = self._tiles_of(TILE)
+        self._focus: tuple[float, float] | None = None
+
+    def _tiles_of(self, side: int) -> list[tuple[int, int, int, int]]:
+        """Left, top, right and bottom of the squares that make the picture."""
+        width, height = self._settings.width, self._settings.height
+        return [
+            (x, y, min(x + side, width), min(y + side, height))
+            for y in range(0, height, side)
+            for x in range(0, width, side)
         ]
+
+    def begin_at(self, focus: tuple[float, float] | None) -> None:
+        """Let tiles near this point of the picture come first; it is given in parts of width and height."""
+        if focus is not None:
+            self._focus = focus[0] * self._settings.width, focus[1] * self._settings.height
+
+    def _order_of(self, tiles: list[tuple[int, int, int, int]]) -> list[int]:
+        """Numbers of tiles, those near the focus first, where there is one."""
+        if self._focus is None:
+            return list(range(len(tiles)))
+        x, y = self._focus
+        return sorted(range(len(tiles)), key=lambda n: math.hypot(tiles[n][0] + TILE / 2 - x, tiles[n][1] + TILE / 2 - y))
 
     @contextmanager
     def phase(self, name: str) -> Iterator[None]:
-        """Time one phase."""
+        """Time one phase, which may come in several parts."""
         start = clock.perf_counter()
         yield
-        self._phases[name] = clock.perf_counter() - start
+        self._phases[name] = self._phases.get(name, 0.0) + clock.perf_counter() - start
 
-    def _empty_buffers(self) -> Buffers:
+    def refined(self, parts: Sequence[int], first: int) -> Iterator[Frame]:
+        """All phases: frames of which so many sixteenths are shaded, `first` the turn that comes first, until none is
+        left out."""
+        with self.phase("place"):
+            self.place_objects_and_lights()
+        with self.phase("primary"):
+            self.trace_primary_rays()
+        with self.phase("certification"):
+            self.certify_cells()
+        if self._in_parts:
+            with self.phase("surfaces"):
+                self.see_surfaces()
+        done = 0
+        for count in parts:
+            with self.phase("shading"):
+                if count == TURNS:  # nobody will be filled in
+                    self._buffers = self._buffers._replace(planes=NO_PLANES)
+                self.shade(lanes_of(first + done, count - done))
+            done = count
+            if count < TURNS:
+                yield self.so_far()
+        with self.phase("occlusion testing"):
+            self.test_occlusion()
+        self._words = self.memory.words.copy()
+        with self.phase("mode setting"):
+            self.set_modes()
+
+    def discard(self) -> None:
+        """Learn nothing from this frame; but what its rays wanted to be certified is wanted still."""
+        self.memory.discard_frame()
+        if self.cache is not None:
+            self.cache.discard_found()
+        if self._certificates is not None and self._lanes:
+            self._certificates.left = [self._wanted]
+
+    def _empty_buffers(self, in_parts: bool = False) -> Buffers:
         width, height = self._settings.width, self._settings.height
         lights = len(self._renderer.scene.lights)
         rows = width * height if self._settings.record_lights else 0
@@ -223,16 +334,20 @@ class UnfinishedFrame:
             saved=np.zeros(worked, np.int32),
             cost=np.zeros(worked, np.int32),
             due_rays=np.zeros(worked, np.int32),
+            planes=self._renderer.planes(width, height) if in_parts else NO_PLANES,
         )
 
-    def _for_each_tile(self, work: Callable[[int, tuple[int, int, int, int], int], None]) -> None:
+    def _for_each_tile(
+        self, work: Callable[[int, tuple[int, int, int, int], int], None], side: int = TILE
+    ) -> None:
         """Call work(number, tile, worker) for every tile."""
-        for_each_chunk(
-            lambda number, worker: work(number, self._tiles[number], worker),
-            len(self._tiles),
-            self._workers,
-            self._cancel,
-        )
+        tiles = self._tiles if side == TILE else self._tiles_of(side)
+        order = self._order_of(tiles)
+
+        def in_order(chunk: int, worker: int) -> None:
+            work(order[chunk], tiles[order[chunk]], worker)
+
+        for_each_chunk(in_order, len(tiles), self._workers, self._cancel)
 
     def place_objects_and_lights(self) -> None:
         """Where is everything that moves?  What is known of a light that moved is forgotten, and what depends on an
@@ -307,58 +422,91 @@ class UnfinishedFrame:
         self._certifying = certificates.certify(wanted, budget, certificates.effort, self._cancel)
         self._wanted = certificates.wanted(len(self._tiles))
 
-    def shade(self) -> None:
-        """§2.4, §2.5: Whitted shading, with shadow testing and shadow-mode setting."""
-        self._shade(self._rays, self._buffers, self._counts)
-        if self._settings.samples > 1:
-            self._average_samples()
-
-    def _certified(self, certificates: Certificates | None, wanted: Wanted, tile: int) -> Certified:
-        """What a tile knows of certified cells, and where it says what it wants."""
-        if certificates is None:
-            return _NOT_CERTIFIED[self.memory.words.dtype.itemsize]
-        return certificates.told(Wanted(*(a[tile] for a in wanted)), len(self._tiles))
-
-    def _shade(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray, first: bool = True) -> None:
-        placed, look, memory = self._renderer.world.placed, self._renderer._look, self.memory
-        depth, verify, base = self._settings.depth, self._settings.verify, self._base
-        certificates = self._certificates
-        words = memory.words if certificates is None else certificates.cells.words
+    def see_surfaces(self) -> None:
+        """What do all primary hits look like before any shadow ray is traced?"""
+        placed, look, rays, buffers = self._renderer.world.placed, self._renderer._look, self._rays, self._buffers
+        nothing = nothing_wanted()
 
         def work(number: int, tile: tuple[int, int, int, int], worker: int) -> None:
-            knowledge = Knowledge(
-                words,
-                memory.words,
-                memory.gained[worker],
-                first=self._first,
-                cull=base != "none",
-                learn=self._settings.keeps_modes,
-                verify=verify,
-                certify=certificates is not None,
-                certified=self._certified(certificates, self._wanted, number),
-                cache=NO_CACHE if self.cache is None else self.cache.of_worker(worker, learns=first),
-            )
-            shade_tile(placed, look, rays, tile, depth, knowledge, buffers, counts[worker], self._spaces[worker])
+            knowledge = self._knowledge(worker, nothing, learns=False)
+            see_surfaces(placed, look, rays, tile, knowledge, buffers, self._spaces[worker])
 
         self._for_each_tile(work)
 
-    def _average_samples(self) -> None:
-        """Mix in further samples a pixel, placed by the R2 sequence; they use modes but count nothing."""
-        samples = self._settings.samples
+    def shade(self, lanes: int = ALL_LANES) -> None:
+        """§2.4, §2.5: Whitted shading, with shadow testing and shadow-mode setting; of these pixels of each block."""
+        self._shade(self._rays, self._buffers, self._counts, lanes)
+        self._lanes |= lanes
+        for sample in range(1, self._settings.samples):
+            self.add_sample(sample)
+
+    def _certified(self, certificates: Certificates | None, wanted: Wanted) -> Certified:
+        """What a tile knows of certified cells, and where it says what it wants."""
+        if certificates is None:
+            return _NOT_CERTIFIED[self.memory.words.dtype.itemsize]
+        return certificates.told(wanted, len(self._tiles))
+
+    def _knowledge(self, worker: int, wanted: Wanted, learns: bool) -> Knowledge:
+        """What culling goes by, and where it says what it wants; the cache `learns` in a pixel's first sample alone."""
+        memory, certificates = self.memory, self._certificates
+        words = self._words if self._words is not None else memory.words
+        return Knowledge(
+            words if certificates is None else certificates.cells.words,
+            words,
+            memory.gained[worker],
+            first=self._first,
+            cull=self._base != "none",
+            learn=self._settings.keeps_modes,
+            verify=self._settings.verify,
+            certify=certificates is not None,
+            certified=self._certified(certificates, wanted),
+            cache=NO_CACHE if self.cache is None else self.cache.of_worker(worker, learns=learns),
+        )
+
+    def _shade(
+        self, rays: Pinhole, buffers: Buffers, counts: np.ndarray, lanes: int = ALL_LANES, first: bool = True
+    ) -> None:
+        placed, look, depth = self._renderer.world.placed, self._renderer._look, self._settings.depth
+        spaces, wanted = self._spaces, self._wanted
+        told = [Wanted(*(a[tile] for a in wanted)) if len(wanted.key) else wanted for tile in range(len(self._tiles))]
+
+        def work(number: int, tile: tuple[int, int, int, int], worker: int) -> None:
+            knowledge = self._knowledge(worker, told[number], learns=first)
+            shade_tile(placed, look, rays, tile, lanes, depth, knowledge, buffers, counts[worker], spaces[worker])
+
+        # Of larger tiles where few of their pixels are shaded, lest packets of rays remain half empty.
+        self._for_each_tile(work, TILE if lanes.bit_count() > FEW else 2 * TILE)
+
+    def add_sample(self, number: int) -> None:
+        """Mix in a further sample of each pixel, placed by the R2 sequence; it uses modes but counts nothing."""
         golden = 1.32471795724474602596  # its powers step through the plane evenly (Roberts 2018)
         gained = self.memory.gained.copy()
-        for k in range(1, samples):
-            shift = ((0.5 + k / golden) % 1.0, (0.5 + k / golden**2) % 1.0)
-            rays = pinhole(self._camera, self._settings.width, self._settings.height, shift)
-            buffers, counts = self._empty_buffers(), np.zeros_like(self._counts)
-            self._trace_primary(rays, buffers, counts)
-            self._shade(rays, buffers, counts, first=False)
-            for sum_, sample in ((self._buffers.color, buffers.color), (self._buffers.reference, buffers.reference)):
-                sum_ += sample
-            self._buffers.wrong[:] += buffers.wrong
-        self._buffers.color[:] /= np.float32(samples)
-        self._buffers.reference[:] /= np.float32(samples)
+        shift = ((0.5 + number / golden) % 1.0, (0.5 + number / golden**2) % 1.0)
+        rays = pinhole(self._camera, self._settings.width, self._settings.height, shift)
+        buffers, counts = self._empty_buffers(), np.zeros_like(self._counts)
+        self._trace_primary(rays, buffers, counts)
+        self._shade(rays, buffers, counts, first=False)
         self.memory.gained[:] = gained
+        if number == 1:
+            self._sum, self._reference_sum = self._buffers.color, self._buffers.reference
+        self._sum, self._reference_sum = self._sum + buffers.color, self._reference_sum + buffers.reference
+        taken = np.float32(number + 1)
+        self._buffers = self._buffers._replace(
+            color=self._sum / taken, reference=self._reference_sum / taken, wrong=self._buffers.wrong + buffers.wrong
+        )
+
+    def sampled(self, samples: int) -> Iterator[Frame]:
+        """The finished frame with 2, 3, ... samples a pixel."""
+        whole = self.finished()
+        for number in range(1, samples):
+            self.add_sample(number)
+            yield replace(
+                whole,
+                settings=replace(self._settings, samples=number + 1),
+                color=self._buffers.color.reshape(whole.color.shape),
+                reference=None if whole.reference is None else self._buffers.reference.reshape(whole.color.shape),
+                wrong=None if whole.wrong is None else self._buffers.wrong.reshape(whole.wrong.shape),
+            )
 
     def set_modes(self) -> None:
         """§2.5, §2.6: keep what was learnt, and say what has been seen whole."""
@@ -384,17 +532,46 @@ class UnfinishedFrame:
             return np.where(cell > 0, cell, np.int32(-1))
         return self._units if _has_cells(self._settings) else None
 
+    def so_far(self) -> Frame:
+        """A frame of which some pixels have not been shaded: these are filled in from the others."""
+        buffers = self._buffers
+        color, rows = buffers.color.copy(), -(-self._settings.height // BLOCK)
+
+        def work(chunk: int, worker: int) -> None:
+            some = chunk * FILLED, min(rows, (chunk + 1) * FILLED)
+            fill_in(buffers.planes, self._lanes, some, float(self._rays.spread), self._settings.width, color)
+
+        with self.phase("filling"):
+            for_each_chunk(work, -(-rows // FILLED), self._workers, self._cancel)
+        if self._certificates is not None:
+            self._words_seen = self._certificates.at_pixels(buffers.cell)
+        frame, shape = self._frame(), buffers.primitive.shape
+        from_nearest = nearest_shaded(self._lanes, *shape) if len(buffers.reference) + len(buffers.saved) else None
+        more: dict[str, np.ndarray] = {}
+        if from_nearest is not None and frame.reference is not None and frame.wrong is not None:
+            lost = (buffers.reference - buffers.color)[from_nearest].reshape(*shape, 3)
+            more = {"reference": color.reshape(*shape, 3) + lost, "wrong": frame.wrong.copy()}
+        if from_nearest is not None and frame.saved is not None and frame.cost is not None:
+            more |= {name: getattr(buffers, name)[from_nearest].reshape(shape) for name in ("saved", "cost", "due_rays")}
+        return replace(frame, color=color.reshape(*shape, 3), **more)
+
     def finished(self) -> Frame:
+        """The frame, all phases of which are done."""
+        frame = self._frame()
+        if self._certificates is not None:
+            self._certificates.finish_frame(frame.statistics.certificates, frame.statistics.shadow.due)
+        return frame
+
+    def _frame(self) -> Frame:
         buffers, memory = self._buffers, self.memory
         shape = buffers.primitive.shape
         lights = len(self._renderer.scene.lights)
         statistics = gather(self._counts, int(self._occlusion_tests.sum()), lights if self._settings.keeps_modes else 0)
+        statistics.part = self._lanes.bit_count() / TURNS
         statistics.phases = self._phases
         statistics.certificates = int(self._certifying[CERTIFICATES])
         statistics.certificate_steps = int(self._certifying[STEPS])
         statistics.certificate_tests = int(self._certifying[TESTS])
-        if self._certificates is not None:
-            self._certificates.finish_frame(statistics.certificates, statistics.shadow.due)
         statistics.seconds = clock.perf_counter() - self._started
         recorded = self._settings.record_lights
         return Frame(

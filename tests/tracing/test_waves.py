@@ -10,7 +10,7 @@ from tracer.kernels import kernel
 from tracer.scene.model import Camera
 from tracer.shading.octants import sorted_by_octant
 from tracer.shading.places import CELLS, FEWEST, sorted_by_place
-from tracer.shading.primary import primary_wave
+from tracer.shading.primary import ALL_LANES, primary_wave
 from tracer.shading.wave import DIRECTION, HIT_T, MOVED, MOVING, ORIGIN, PIXEL, WAVE_ROWS, wave_in
 
 
@@ -27,7 +27,7 @@ def _by_octant(memory, n, target):
 
 @kernel
 def _primary(camera, tile, width, memory, place):
-    return primary_wave(camera, tile, width, memory, place).size
+    return primary_wave(camera, tile, width, ALL_LANES, memory, place).size
 
 
 def _wave(rng: np.random.Generator, n: int, rest: float) -> np.ndarray:

@@ -82,7 +82,7 @@ class Knowledge(NamedTuple):
 
 
 @inlined
-def _due(points, light, v):
+def faces(points, light, v):
     """Bits of the points whose surface faces the light."""
     px, py, pz = load_three(points.position, v)
     gx, gy, gz = load_three(points.geometric, v)
@@ -94,7 +94,7 @@ def _choose_fates(points, light, number, knowledge, count, answers, counts):
     """What is due, and what of it is known: answers.lit is what is known to be lit, live what is to be asked."""
     vectors, asked = (count + 15) // 16, np.int64(0)
     for v in range(vectors):
-        due = _due(points, light, v) & lanes_below(count, v)
+        due = faces(points, light, v) & lanes_below(count, v)
         full, non = np.int64(0), np.int64(0)
         if knowledge.cull and number < MAX_CULLED_LIGHTS and due != 0:
             look_up(knowledge.words, points.unit, v, answers.known)

@@ -18,6 +18,7 @@ from tracer.simd import (
     bits_of,
     f32x16,
     lane_numbers_x16,
+    mask16,
     ones,
     pack,
     pack_three,
@@ -27,6 +28,7 @@ from tracer.simd import (
 )
 
 BLOCK = 4  # pixels
+ALL_LANES = 0xFFFF  # of a block: every pixel
 
 
 @inlined
@@ -58,11 +60,13 @@ def block_at(tile, number):
 
 
 @subkernel
-def primary_wave(camera, tile, width, memory, place):
-    """A tile's primary rays in a wave's memory, and in place (n,) int32 where each one's pixel is in the picture."""
+def primary_wave(camera, tile, width, lanes, memory, place):
+    """Primary rays of those lanes of a tile's blocks whose bits are set, in a wave's memory, and in place (n,) int32
+    where each one's pixel is in the picture."""
     n, stride = 0, 4 * memory.shape[1]
     for number in range(blocks_of(tile)):
         x, y, inside = block_at(tile, number)
+        inside = inside & mask16(lanes)
         if not any_lane(inside):
             continue
         direction = primary_direction(camera, to_f32(x), to_f32(y))

@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 from tracer.culling.answers import ANSWER_ROWS, answers_in
 from tracer.culling.certified.lookup import Wanted, find_cells, seek, want
 from tracer.culling.shadow import RAYS, SHADOW_COUNTERS, shadow_testing
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import borrowed, pointer
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.shading.bounce import next_wave
+from tracer.shading.filling import ARRIVED, SENT, TURNS, UNSHADOWED, Planes, where
 from tracer.shading.phong import add_light
 from tracer.shading.places import sorted_by_place
 from tracer.shading.points import POINT_ROWS, points_at
-from tracer.shading.primary import block_at, blocks_of, keep_hits, primary_wave, recall_hits
+from tracer.shading.primary import ALL_LANES, block_at, blocks_of, keep_hits, primary_wave, recall_hits
 from tracer.shading.wave import WAVE_ROWS, bring_home, room, trace, without_misses
 from tracer.simd import any_lane, i32x16, select
 
@@ -38,7 +39,7 @@ class Buffers(NamedTuple):
     primitive (height, width) int32; due and lit (height * width, lights) bool, or without rows;
     reference like color and wrong (height * width,) int32, or without rows where nothing is verified; cell
     (height * width,) int32, or without rows where there are no certified cells; saved, cost and
-    due_rays (height * width,) int32, or without rows."""
+    due_rays (height * width,) int32, or without rows; and planes for a picture that is shaded in parts."""
 
     color: NDArray[np.float32]
     normal: NDArray[np.float32]
@@ -54,54 +55,65 @@ class Buffers(NamedTuple):
     saved: NDArray[np.int32]
     cost: NDArray[np.int32]
     due_rays: NDArray[np.int32]
+    planes: Planes
 
 
 class Workspace(NamedTuple):
-    """Memory that one worker shades in, tile after tile: rows of float32 (`workspace`)."""
+    """Memory that one worker shades in, tile after tile (`workspace`)."""
 
     wave: NDArray[np.float32]
     next: NDArray[np.float32]
     points: NDArray[np.float32]
     answers: NDArray[np.float32]
-    tile: NDArray[np.float32]
+    tile: NDArray[np.float64]
 
 
 class Tile(NamedTuple):
     """A tile's pixels in the order of its primary rays: place (n,) int32 in the picture, and the light (3, n)
-    float32 that has come home to them; reference like light."""
+    float64 that has come home to them; reference like light, local that of the first wave alone.
+
+    Sums are float64, in which those of a pixel's few float32 come out the same in any order: a pixel's rays change
+    places with the company they keep, and that is other pixels where a picture is shaded in parts."""
 
     place: NDArray[np.int32]
-    light: NDArray[np.float32]
-    reference: NDArray[np.float32]
+    light: NDArray[np.float64]
+    reference: NDArray[np.float64]
+    local: NDArray[np.float64]
 
 
-TILE_ROWS = 7
+TILE_ROWS = 10
+TINY = np.float32(1e-6)  # of light: less of it cannot be divided into parts
 
 
 def workspace() -> Workspace:
     """For waves of four times as many rays as a tile has pixels; larger ones find memory as they go."""
 
-    def rows(count: int, n: int) -> NDArray[np.float32]:
+    def rows(count: int, n: int, kind: type = np.float32) -> NDArray:
         # A line of the cache more than whole pages, lest all rows meet in the same lines.
-        return np.empty((count, -(-n // 1024) * 1024 + 16), np.float32)
+        return np.empty((count, -(-n // 1024) * 1024 + 16), kind)
 
     n = 4 * TILE * TILE
     return Workspace(
-        rows(WAVE_ROWS, n), rows(WAVE_ROWS, n), rows(POINT_ROWS, n), rows(ANSWER_ROWS, n), rows(TILE_ROWS, TILE * TILE)
+        rows(WAVE_ROWS, n),
+        rows(WAVE_ROWS, n),
+        rows(POINT_ROWS, n),
+        rows(ANSWER_ROWS, n),
+        rows(TILE_ROWS, TILE * TILE, np.float64),
     )
 
 
 @inlined
-def _tile_in(memory):
-    return Tile(memory[0].view(np.int32), memory[1:4], memory[4:7])
+def tile_in(memory):
+    """A tile's pixels, in a workspace's memory for them."""
+    return Tile(memory[0].view(np.int32), memory[1:4], memory[4:7], memory[7:10])
 
 
 @kernel
 def trace_primary(world, camera, tile, buffers, counts, space):
     """Primary rays of a tile (left, top, right, bottom): depth, primitive and barycentric weights into the buffers."""
     world, buffers, space = borrowed(world), borrowed(buffers), borrowed(space)
-    place = _tile_in(space.tile).place
-    wave = primary_wave(camera, tile, buffers.primitive.shape[1], space.wave, place)
+    place = tile_in(space.tile).place
+    wave = primary_wave(camera, tile, buffers.primitive.shape[1], ALL_LANES, space.wave, place)
     trace(world, wave, counts[PRIMARY:])
     counts[PRIMARY + RAYS] += wave.size
     keep_hits(wave, place, buffers)
@@ -130,7 +142,7 @@ def _light(world, look, wave, points, knowledge, answers, counts, tile, first, b
         certified = knowledge.certified
         find_cells(certified, points, wave.size)
         if first:
-            _record_cells(wave, points, tile, buffers.cell)
+            record_cells(wave, points, tile, buffers.cell)
     for number in range(len(look.lights)):
         shadow_testing(world, points, wave.size, look.lights[number], number, knowledge, answers, counts[SHADOW:])
         add_light(points, look, number, answers.lit, wave, points.light)
@@ -149,7 +161,8 @@ def _light(world, look, wave, points, knowledge, answers, counts, tile, first, b
 
 
 @subkernel
-def _record_cells(wave, points, tile, cell):
+def record_cells(wave, points, tile, cell):
+    """Write the certified cells of primary hits into the picture."""
     for i in range(wave.size):
         cell[tile.place[wave.pixel[i]]] = points.unit[i]
 
@@ -188,7 +201,7 @@ def _count_rays(wave, tile, buffers):
 
 
 @inlined
-def _write(pixels, place, count, rows):
+def write(pixels, place, count, rows):
     """The first `count` columns of rows (3, n) become pixels (any, 3)."""
     for i in range(count):
         for c in range(3):
@@ -196,20 +209,35 @@ def _write(pixels, place, count, rows):
 
 
 @subkernel
-def _see_normals(wave, points, tile, buffers):
+def see_normals(wave, points, tile, buffers):
+    """Write the shading normals of primary hits into the picture."""
     for i in range(wave.size):
         for axis in range(3):
             buffers.normal[tile.place[wave.pixel[i]], axis] = points.normal[axis, i]
 
 
+@subkernel
+def _take_apart(tile, count, buffers):
+    """What part of the unshadowed light of the pixels' surfaces has arrived, and what these mirrors and glass sent."""
+    planes, width = buffers.planes, buffers.primitive.shape[1]
+    values, plane = pointer(planes.values), TURNS * planes.columns
+    for i in range(count):
+        at = where(planes, tile.place[i] % width, tile.place[i] // width)
+        for c in range(3):
+            unshadowed, local = values[at + plane * (UNSHADOWED + c)], np.float32(tile.local[c, i])
+            values[at + plane * (ARRIVED + c)] = local / unshadowed if unshadowed > TINY else np.float32(1)
+            values[at + plane * (SENT + c)] = np.float32(tile.light[c, i] - tile.local[c, i])
+
+
 @kernel
-def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts, space):
-    """Shade a tile whose primary hits the buffers hold, with at most `depth` bounces."""
+def shade_tile(world, look, camera, tile, lanes, depth, knowledge, buffers, counts, space):
+    """Shade a tile whose primary hits the buffers hold, with at most `depth` bounces: the pixels of each of its blocks
+    whose bits are set in `lanes`."""
     world, look, knowledge = borrowed(world), borrowed(look), borrowed(knowledge)
     buffers, space = borrowed(buffers), borrowed(space)
-    pixels, spare = _tile_in(space.tile), space.next
-    wave = primary_wave(camera, tile, buffers.primitive.shape[1], space.wave, pixels.place)
-    count = wave.size
+    pixels, spare = tile_in(space.tile), space.next
+    wave = primary_wave(camera, tile, buffers.primitive.shape[1], lanes, space.wave, pixels.place)
+    count, in_parts = wave.size, len(buffers.planes.values) > 0
     recall_hits(wave, pixels.place, buffers)
     pixels.light[:, :count] = 0
     pixels.reference[:, :count] = 0
@@ -221,7 +249,9 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts, spa
         answers = answers_in(room(space.answers, wave.size), wave.size, asks, knowledge.certify)
         _light(world, look, wave, points, knowledge, answers, counts, pixels, bounce == 0, buffers)
         if bounce == 0:
-            _see_normals(wave, points, pixels, buffers)
+            see_normals(wave, points, pixels, buffers)
+            if in_parts:
+                pixels.local[:, :count] = pixels.light[:, :count]
         if bounce == depth:
             break
         wave, spare = next_wave(points, wave, spare)
@@ -235,6 +265,8 @@ def shade_tile(world, look, camera, tile, depth, knowledge, buffers, counts, spa
             break
         if len(look.lights) > 1:
             wave, spare = sorted_by_place(wave, spare)
-    _write(buffers.color, pixels.place, count, pixels.light)
+    write(buffers.color, pixels.place, count, pixels.light)
+    if in_parts:
+        _take_apart(pixels, count, buffers)
     if knowledge.verify:
-        _write(buffers.reference, pixels.place, count, pixels.reference)
+        write(buffers.reference, pixels.place, count, pixels.reference)
