@@ -57,9 +57,11 @@ _SHARES = {
     "the builder": 0.14,
     "primary rays": 0.03,
     "occlusion testing": 0.03,
-    "shading and shadow testing": 0.23,
+    "surfaces": 0.06,
+    "shading and shadow testing": 0.21,
+    "filling": 0.02,
     "mode setting": 0.01,
-    "certificates": 0.29,
+    "certificates": 0.23,
 }
 _POLL = 0.1  # seconds from one look at a process to the next
 
@@ -107,12 +109,14 @@ def _trees(lights: int, accelerator: str) -> Iterator[str]:
 
 def _frame(lights: int, accelerator: str) -> Iterator[str]:
     yield "the builder"
-    frame = _renderer(lights, accelerator).begin(0.0)
+    frame = _renderer(lights, accelerator).begin(0.0, in_parts=True)
     frame.place_objects_and_lights()
     for name, phase in (
         ("primary rays", frame.trace_primary_rays),
         ("occlusion testing", frame.test_occlusion),
+        ("surfaces", frame.see_surfaces),
         ("shading and shadow testing", frame.shade),
+        ("filling", frame.so_far),
         ("mode setting", frame.set_modes),
     ):
         yield name

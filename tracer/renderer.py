@@ -225,7 +225,13 @@ class UnfinishedFrame:
     """A frame under way: the phases of `Renderer.render` over its buffers."""
 
     def __init__(
-        self, renderer: Renderer, settings: Settings, camera: Camera, time: float, cancel: Cancel, in_parts: bool = False
+        self,
+        renderer: Renderer,
+        settings: Settings,
+        camera: Camera,
+        time: float,
+        cancel: Cancel,
+        in_parts: bool = False,
     ) -> None:
         self._renderer, self._settings = renderer, settings
         self._camera, self._time, self._cancel = camera, time, cancel
@@ -268,8 +274,8 @@ class UnfinishedFrame:
         """Numbers of tiles, those near the focus first, where there is one."""
         if self._focus is None:
             return list(range(len(tiles)))
-        x, y = self._focus
-        return sorted(range(len(tiles)), key=lambda n: math.hypot(tiles[n][0] + TILE / 2 - x, tiles[n][1] + TILE / 2 - y))
+        x, y = self._focus[0] - TILE / 2, self._focus[1] - TILE / 2
+        return sorted(range(len(tiles)), key=lambda n: math.hypot(tiles[n][0] - x, tiles[n][1] - y))
 
     @contextmanager
     def phase(self, name: str) -> Iterator[None]:
@@ -337,9 +343,7 @@ class UnfinishedFrame:
             planes=self._renderer.planes(width, height) if in_parts else NO_PLANES,
         )
 
-    def _for_each_tile(
-        self, work: Callable[[int, tuple[int, int, int, int], int], None], side: int = TILE
-    ) -> None:
+    def _for_each_tile(self, work: Callable[[int, tuple[int, int, int, int], int], None], side: int = TILE) -> None:
         """Call work(number, tile, worker) for every tile."""
         tiles = self._tiles if side == TILE else self._tiles_of(side)
         order = self._order_of(tiles)
@@ -537,23 +541,31 @@ class UnfinishedFrame:
         buffers = self._buffers
         color, rows = buffers.color.copy(), -(-self._settings.height // BLOCK)
 
-        def work(chunk: int, worker: int) -> None:
+        def fill(chunk: int, worker: int) -> None:
             some = chunk * FILLED, min(rows, (chunk + 1) * FILLED)
             fill_in(buffers.planes, self._lanes, some, float(self._rays.spread), self._settings.width, color)
 
         with self.phase("filling"):
-            for_each_chunk(work, -(-rows // FILLED), self._workers, self._cancel)
+            for_each_chunk(fill, -(-rows // FILLED), self._workers, self._cancel)
         if self._certificates is not None:
             self._words_seen = self._certificates.at_pixels(buffers.cell)
         frame, shape = self._frame(), buffers.primitive.shape
-        from_nearest = nearest_shaded(self._lanes, *shape) if len(buffers.reference) + len(buffers.saved) else None
-        more: dict[str, np.ndarray] = {}
-        if from_nearest is not None and frame.reference is not None and frame.wrong is not None:
-            lost = (buffers.reference - buffers.color)[from_nearest].reshape(*shape, 3)
-            more = {"reference": color.reshape(*shape, 3) + lost, "wrong": frame.wrong.copy()}
-        if from_nearest is not None and frame.saved is not None and frame.cost is not None:
-            more |= {name: getattr(buffers, name)[from_nearest].reshape(shape) for name in ("saved", "cost", "due_rays")}
-        return replace(frame, color=color.reshape(*shape, 3), **more)
+        frame.color = color.reshape(*shape, 3)
+        if len(buffers.reference) + len(buffers.saved) > 0:
+            self._stretch_records(frame)
+        return frame
+
+    def _stretch_records(self, frame: Frame) -> None:
+        """Let pixels that have not been shaded show what is recorded of the nearest that have; wrong ones do not."""
+        buffers, shape = self._buffers, frame.primitive.shape
+        near = nearest_shaded(self._lanes, *shape)
+        if frame.reference is not None and frame.wrong is not None:
+            frame.reference = frame.color + (buffers.reference - buffers.color)[near].reshape(*shape, 3)
+            frame.wrong = frame.wrong.copy()
+        if frame.saved is not None:
+            frame.saved, frame.cost, frame.due_rays = (
+                work[near].reshape(shape) for work in (buffers.saved, buffers.cost, buffers.due_rays)
+            )
 
     def finished(self) -> Frame:
         """The frame, all phases of which are done."""

@@ -34,7 +34,6 @@ from tracer.simd import (
     local_memory,
     maximum,
     select,
-    store,
     store_three,
 )
 

@@ -1,0 +1,141 @@
+"""Pictures that are shaded in parts: what is shown before they are whole, and that they become what `render` makes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+import tracer
+from tests.tracing.random_worlds import Walk, quickly, walks
+from tests.tracing.worlds import quad, quadrics, scene
+from tracer.geometry.world import ACCELERATORS
+from tracer.scene.model import SPHERE, Camera, Material
+from tracer.shading.filling import BAYER, NEIGHBOURS, TURNS, lanes_of, nearest_shaded, neighbours_of
+
+SETTINGS = tracer.Settings(width=75, height=50, threads=2, verify=True, record_lights=True, record_work=True)
+PIXELS = ("color", "depth", "primitive", "normal", "due", "lit", "reference", "wrong", "saved", "cost")
+ABOVE = Camera((0.0, 0.0, 30.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0), 40.0)
+
+
+def assert_whole(frame: tracer.Frame, expected: tracer.Frame, where: str) -> None:
+    for name in PIXELS:
+        assert getattr(frame, name).tobytes() == getattr(expected, name).tobytes(), f"{name} {where}"
+    assert frame.statistics.part == 1.0
+    for name in ("modes", "pixel_count", "highest_count"):
+        assert np.array_equal(getattr(frame, name), getattr(expected, name)), f"{name} {where}"
+    shadow, other = frame.statistics.shadow, expected.statistics.shadow
+    for name in ("due", "culled", "dynamic_only", "wrong"):
+        assert getattr(shadow, name) == getattr(other, name), f"{name} {where}"
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+@given(walk=walks())
+@quickly(examples=12)
+def test_what_becomes_whole_is_what_is_rendered_at_once(accelerator: str, walk: Walk):
+    """Bit for bit, all that a frame holds and learns, frame after frame, whichever parts come first."""
+    for number, method in enumerate(("paper", "cells", "certified")):
+        settings = replace(SETTINGS, method=method, modes=True, accelerator=accelerator)
+        at_once, in_parts = tracer.Renderer(walk.scene, settings), tracer.Renderer(walk.scene, settings)
+        for k, (time, camera) in enumerate(walk.frames[:3]):
+            expected = at_once.render(time, camera)
+            parts = ((4, 16), (1, 4, 8, 16), (16,), (2, 16))[(number + k) % 4]
+            frames = list(in_parts.refine(time, camera, parts=parts, focus=(0.7, 0.2)))
+            assert [frame.statistics.part for frame in frames] == [part / TURNS for part in parts]
+            assert_whole(frames[-1], expected, f"of {method}, frame {k}, in {parts}")
+            for frame in frames[:-1]:
+                for name in ("depth", "primitive", "normal"):
+                    assert np.array_equal(getattr(frame, name), getattr(expected, name)), "surfaces are there at once"
+
+
+@given(walk=walks())
+@quickly(examples=8)
+def test_what_is_shaded_is_shown_as_it_is(walk: Walk):
+    """Pixels of a part that have been shaded have their final colours; more of them in each part."""
+    time, camera = walk.frames[0]
+    *parts, whole = tracer.Renderer(walk.scene, replace(SETTINGS, method="none")).refine(time, camera)
+    for frame in parts:
+        same = (frame.color == whole.color).all(axis=-1)
+        assert same.mean() >= frame.statistics.part - 0.02  # a picture's edge cuts blocks in two
+        assert np.isfinite(frame.color).all()
+        missed = frame.primitive < 0
+        assert (frame.color[missed] == whole.color[missed]).all()
+
+
+def test_what_is_left_before_it_is_whole_teaches_nothing():
+    rng = np.random.default_rng(3)
+    corners = quad((-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)) + list(rng.uniform(1, 5, (20, 3, 3)) - (3, 3, 0))
+    world = scene(corners, lights=[(3, 4, 20), (-5, 2, 12)], camera=ABOVE)
+    settings = replace(SETTINGS, method="paper")
+    straight, left = tracer.Renderer(world, settings), tracer.Renderer(world, settings)
+    for shift in (0.0, 0.5, 1.0):
+        refining = left.refine(0.0, replace(ABOVE, position=(shift, 5.0, 25.0)), parts=(1, 8, 16))
+        assert next(refining).statistics.part == 1 / TURNS
+        assert next(refining).statistics.part == 8 / TURNS
+        refining.close()
+        assert_whole(list(left.refine(parts=(4, 16)))[-1], straight.render(), f"after one that was left at {shift}")
+
+
+def test_consecutive_pictures_shade_other_pixels_first():
+    world = scene(quad((-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)), lights=[(3, 4, 20)], camera=ABOVE)
+    renderer = tracer.Renderer(world, replace(SETTINGS, method="none"))
+    shaded = np.zeros((50, 75), int)
+    for _ in range(TURNS // 4):
+        refining = renderer.refine(parts=(4, 16))
+        shaded += next(refining).due[..., 0]
+        refining.close()
+    seen = renderer.render().due[..., 0]
+    assert (shaded[seen] == 1).all(), "each pixel once in four pictures"
+
+
+def test_samples_follow_and_are_those_of_a_picture_with_so_many():
+    ball = quadrics([(SPHERE, np.hstack([np.eye(3), [[0], [0], [2]]]), (1, 1))])
+    world = scene(quad((-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)), ball, lights=[(3, 4, 20)], camera=ABOVE)
+    for method in ("none", "paper"):
+        settings = replace(SETTINGS, method=method)
+        refined, rendered = tracer.Renderer(world, settings), tracer.Renderer(world, settings)
+        for _ in range(2):
+            frames = list(refined.refine(parts=(4, 16), samples=5))
+            rendered.settings = replace(settings, samples=5)
+            expected = rendered.render()
+            assert [frame.settings.samples for frame in frames] == [1, 1, 2, 3, 4, 5]
+            assert_whole(frames[-1], expected, f"of {method} with 5 samples")
+            assert frames[1].color.tobytes() != frames[2].color.tobytes()
+
+
+def test_light_is_filled_in_from_the_same_surface_alone():
+    """Two squares side by side, one lit and one turned away from the light: their border stays sharp, and the textures
+    of neither matter, as all of either is known from one of its pixels."""
+    lit, dark = quad((-9, -9, 0), (0, -9, 0), (0, 9, 0), (-9, 9, 0)), quad((0, -9, 0), (9, -9, 0), (9, 9, 0), (0, 9, 0))
+    roof = quad((0, -9, 1), (9, -9, 1), (9, 9, 1), (0, 9, 1))  # over the second, seen from below by the light alone
+    materials = (Material("white", diffuse=(1.0, 1.0, 1.0)), Material("red", diffuse=(1.0, 0.1, 0.1)))
+    world = scene(lit + dark + roof, lights=[(-4, 0, 30)], camera=ABOVE, materials=materials)
+    world.objects[0].triangles.material[4:] = 1
+    renderer = tracer.Renderer(world, replace(SETTINGS, method="none", width=128, height=128))
+    first, whole = renderer.refine(parts=(1, 16))
+    assert np.abs(first.color - whole.color)[whole.primitive >= 0].max() < 1e-4
+
+
+def test_turns_lie_evenly_and_neighbours_are_the_nearest():
+    assert sorted(BAYER.reshape(-1)) == list(range(TURNS))
+    for count in (1, 2, 4, 8):
+        for first in range(0, TURNS, count):
+            shaded = np.tile([lanes_of(first, count) >> lane & 1 for lane in range(TURNS)], 16).reshape(4, 4, 4, 4)
+            ys, xs = np.nonzero(shaded.transpose(0, 2, 1, 3).reshape(16, 16))
+            apart = min(max(abs(a - c), abs(b - d)) for a, b in zip(ys, xs) for c, d in zip(ys, xs) if (a, b) != (c, d))
+            assert apart == {1: 4, 2: 2, 4: 2, 8: 1}[count]
+    near = neighbours_of(lanes_of(3, 2))
+    assert near.dx.shape == (NEIGHBOURS, TURNS) and (near.weight > 0).all()
+    distances = np.hypot(near.dx, near.dy)
+    assert (np.diff(distances, axis=0) >= 0).all() and (np.diff(near.weight, axis=0) <= 0).all()
+    found = nearest_shaded(lanes_of(0, 1), 9, 10)
+    assert found[0] == 0 and found[5 * 10 + 5] == 4 * 10 + 4
+
+
+@pytest.mark.parametrize("parts", [(), (0, 16), (4, 4, 16), (4, 8), (16, 4)])
+def test_parts_must_increase_to_the_whole(parts: tuple[int, ...]):
+    renderer = tracer.Renderer(scene(quad((-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)), camera=ABOVE), SETTINGS)
+    with pytest.raises(ValueError, match="parts increase"):
+        next(renderer.refine(parts=parts))
