@@ -405,3 +405,20 @@ def test_output_that_nobody_reads(room: Path) -> None:
     command = f"{sys.executable} -m viewer info {room} | true"
     done = subprocess.run(["bash", "-c", command], cwd=ROOT, capture_output=True, text=True)
     assert done.stderr == ""
+
+
+def test_a_legend_is_drawn_where_it_is_wanted(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
+    drawn = {}
+    for name, options in (("plain", []), ("legend", ["--legend"])):
+        output = tmp_path / f"{name}.png"
+        where = ("-o", output, "--size", "320x240", "--view", "occlusion")
+        code, _, error = run(capfd, "render", room, *where, *options)
+        assert code == 0 and "legend" not in error
+        with Image.open(output) as image:
+            drawn[name] = np.asarray(image)
+    rows, columns = np.nonzero((drawn["plain"] != drawn["legend"]).any(axis=-1))
+    assert len(rows) and rows.min() > 60 and columns.max() < 260, "it lies in the lower left corner"
+    for size, view, why in (("40x30", "occlusion", "too small"), ("320x240", "color", "needs none")):
+        options = ("--size", size, "--view", view, "--legend")
+        code, _, error = run(capfd, "render", room, "-o", tmp_path / "none.png", *options)
+        assert code == 0 and why in error

@@ -27,7 +27,7 @@ from viewer.failures import failure
 from viewer.guard import Guard
 from viewer.guard import configure as configure_recovery
 from viewer.layout import Layout, LayoutFile
-from viewer.panels import dialogs, faults, picture, status, strip
+from viewer.panels import dialogs, faults, legend, picture, status, strip
 from viewer.preferences import config_folder, load_preferences
 from viewer.resources import default_scene
 from viewer.ui import CaptureKind, Ui
@@ -152,7 +152,8 @@ class App:
             self.ui.capture_wanted = None
             look = self._look(selected=-1)  # the mark is for the user, not for the picture
             self.ui.display.draw(look)
-            self.controller.keeper.capture(self.ui.display.read() if self.ui.display.drawn(look) else None)
+            described = legend.of_picture(self.ui) if c.preferences.legend_in_pictures else None
+            c.keeper.capture(self.ui.display.read() if self.ui.display.drawn(look) else None, described)
         if self.ui.capture_wanted is CaptureKind.WINDOW:
             self.ui.capture_wanted = None
             self._capture_this_frame = True  # when it is drawn, from here on, with all that was asked for before

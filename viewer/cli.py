@@ -171,6 +171,7 @@ def _render(arguments: list[str]) -> int:
         help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference, "
         "wipe:PART, certificate:LIGHT, saved or cost, as counts of rays or as shares like saved:share (default: color)",
     )
+    add("--legend", action="store_true", help="draw the view's legend into the picture")
     add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
     add("--camera", metavar="JSON", help="another camera: position, direction, up, angle; or a file with that")
     add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="trace the N frames before it first")

@@ -29,6 +29,7 @@ HELD_KEYS = (
     ("Middle drag", "pan"),
     ("Wheel", "flying speed (fly); nearer and farther (orbit)"),
     ("Drag the wipe's line", "compare the picture with the right one"),
+    ("Drag the legend", "put it elsewhere in the picture; it snaps to edges and corners"),
     ("Click", "inspect a pixel"),
 )
 
@@ -95,7 +96,8 @@ def _view(ui: Ui) -> list[Command]:
         *[show(view) for view in View],
         Command("Next light", "View", lambda: c.set_light(c.session.light + 1), "L", enabled=lit, separated=True),
         Command("Previous light", "View", lambda: c.set_light(c.session.light - 1), "Shift+L", enabled=lit),
-        Command("Outlines", "View", toggle("outlines"), "B", checked=lambda: p.outlines, separated=True),
+        Command("Legend", "View", toggle("legend"), "N", checked=lambda: p.legend, separated=True),
+        Command("Outlines", "View", toggle("outlines"), "B", checked=lambda: p.outlines),
         Command("Mark wrong pixels", "View", toggle("mark_wrong"), "M", checked=lambda: p.mark_wrong),
         Command("Shares of rays", "View", toggle("work_shares"), "U", checked=lambda: p.work_shares),
         Command("Draw shadow rays", "View", toggle("draw_explanation"), "I", checked=lambda: p.draw_explanation),

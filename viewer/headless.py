@@ -27,6 +27,8 @@ from tracer.scene.load import load_scene, load_visible_scene, scene_info
 from tracer.scene.model import Camera, Scene
 from viewer import capture
 from viewer.console import Work, print_table, statistics_table, working
+from viewer.legend import Chosen, legend_of
+from viewer.legend_picture import with_legend
 from viewer.lines import say
 from viewer.outputs import check_writable, write_whole
 from viewer.pictures import lights_in_words, picture
@@ -42,6 +44,7 @@ PICTURES = {
     ".bmp": "BMP",
     ".ppm": "PPM",
 }
+LEGEND_PLACE = 0.0, 1.0  # the lower left corner
 MOST_PIXELS = 1 << 26  # 8192 × 8192; a frame's buffers then take some 4 GB
 
 
@@ -201,6 +204,13 @@ def _write_picture(path: Path, scene: Scene, frame: Frame, options: Namespace) -
     """The frame in the view asked for; a PNG remembers, as the window's captures do, how it was made."""
     view, light, wipe, shares = options.view
     pixels = picture(frame, view, light, marked=not options.no_marks, wipe=wipe, shares=shares)
+    if options.legend:
+        name = scene.lights[light].name if view.of_light else ""
+        legend = legend_of(frame, view, Chosen(light, name, not options.no_marks, shares))
+        described = with_legend(pixels, legend, LEGEND_PLACE) if legend is not None else None
+        if described is None:
+            say(f"no legend: {'the picture is too small for it' if legend else 'the traced picture needs none'}")
+        pixels = pixels if described is None else described
     image = Image.fromarray(pixels)
     settings = replace(frame.settings, verify=options.verify)  # what was chosen; a view verifies by itself
     session = Session(scene, frame.time, options.camera, settings=settings, view=view, light=light, wipe=wipe)

@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.scene.model import Progress
 from viewer import capture
 from viewer.jobs import Job
+from viewer.legend import Legend
+from viewer.legend_picture import with_legend
 from viewer.preferences import default_screenshot_folder
 from viewer.session import Snapshot, settings_to_json
 
@@ -71,8 +74,8 @@ class Keeper:
         if not snapshot.follow:
             self._c.glide(snapshot.camera, start)
 
-    def capture(self, pixels: NDArray[np.uint8] | None) -> None:
-        """Save a picture, (h, w, 3) uint8, of the newest frame, named by the user's template."""
+    def capture(self, pixels: NDArray[np.uint8] | None, legend: Legend | None = None) -> None:
+        """Save a picture, (h, w, 3) uint8, of the newest frame, with its legend, named by the user's template."""
         session, preferences, frame = self._c.session, self._c.preferences, self._c.frame
         if frame is None or pixels is None or session.scene is None:
             self._c.say("there is no picture to save yet", error=True)
@@ -104,4 +107,10 @@ class Keeper:
         except capture.CaptureError as error:
             self._c.say(str(error), error=True)
             return
-        self.saving.append(Job("Saving", lambda _: capture.save(pixels, folder, name, text), lambda: self._c.wake()))
+        place = preferences.legend_x, preferences.legend_y
+
+        def save(_: Progress) -> Path:
+            described = with_legend(pixels, legend, place) if legend is not None else None
+            return capture.save(pixels if described is None else described, folder, name, text)
+
+        self.saving.append(Job("Saving", save, lambda: self._c.wake()))

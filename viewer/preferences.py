@@ -45,13 +45,16 @@ _RANGES: dict[str, tuple[float, float]] = {
     "threads": (0, 1024),
     "shading": (0.0, 1.0),
     "beneath": (0.0, 0.6),
+    "legend_x": (0.0, 1.0),
+    "legend_y": (0.0, 1.0),
 }
 
 
 @dataclass
 class Preferences:
     """Everything that outlives the window.  `speed` is relative to the scene's own pace, 1 by default; `method` is
-    the one to cull by while `culling` is on, `certificate_ms` what certifying may take of a frame."""
+    the one to cull by while `culling` is on, `certificate_ms` what certifying may take of a frame; `legend_x` and
+    `legend_y` say where in the room that the picture leaves to its legend this lies, 0 to 1 from left and top."""
 
     target_fps: float = 15.0
     dynamic_resolution: bool = True
@@ -80,6 +83,10 @@ class Preferences:
     mark_wrong: bool = True
     beneath: float = BENEATH
     work_shares: bool = False
+    legend: bool = True
+    legend_x: float = 0.0
+    legend_y: float = 1.0
+    legend_in_pictures: bool = False
     draw_explanation: bool = True
     screenshot_folder: str = ""
     screenshot_template: str = DEFAULT_TEMPLATE

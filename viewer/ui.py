@@ -56,7 +56,8 @@ class Fold:
 @dataclass
 class Ui:
     """See the module.  `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says
-    that the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector."""
+    that the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector; `legend_shown`
+    whether the picture shows its legend, `legend_held` where the pointer holds that."""
 
     controller: Controller
     display: Display | None = None
@@ -87,13 +88,15 @@ class Ui:
     log_errors_only: bool = False
     zoom_all_steps: bool = False
     pointed_light: int | None = None
-    _cache: dict[str, tuple[object, int, Any]] = field(default_factory=dict)
+    legend_shown: bool = False
+    legend_held: tuple[float, float] = (0.0, 0.0)
+    _cache: dict[str, tuple[object, object, Any]] = field(default_factory=dict)
 
-    def cached(self, name: str, of: object, light: int, compute: Callable[[], Any]) -> Any:
-        """What was computed of this object (a frame, results) for this light, computed now if it is new."""
+    def cached(self, name: str, of: object, chosen: object, compute: Callable[[], Any]) -> Any:
+        """What was computed of this object (a frame, results) for what is chosen, computed now if it is new."""
         known = self._cache.get(name)
-        if known is None or known[0] is not of or known[1] != light:
-            known = self._cache[name] = (of, light, compute())
+        if known is None or known[0] is not of or known[1] != chosen:
+            known = self._cache[name] = (of, chosen, compute())
         return known[2]
 
     def light_name(self, light: int) -> str:

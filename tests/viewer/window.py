@@ -121,7 +121,7 @@ class Driver:
 
 
 def main(name: str, scene: str, folder: str) -> int:
-    from tests.viewer import layouts, scenarios
+    from tests.viewer import layouts, scenarios, seeing
 
     viewer_app.WINDOW_SIZE = (960, 640)
     app = App(Path(scene))
@@ -133,7 +133,7 @@ def main(name: str, scene: str, folder: str) -> int:
         engine = imgui.test_engine.get_io(hello_imgui.get_imgui_test_engine())
         engine.config_watchdog_warning = engine.config_watchdog_kill_test = 2.0 * PATIENCE
         try:
-            scenario = getattr(layouts, name, None) or getattr(scenarios, name)
+            scenario = next(getattr(module, name) for module in (layouts, seeing, scenarios) if hasattr(module, name))
             scenario(Driver(app, context, Path(folder)))
         except BaseException as error:
             failed.append(error)

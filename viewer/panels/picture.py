@@ -12,7 +12,7 @@ import math
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer import navigation
-from viewer.panels import explanation, missing, timeline, wipe
+from viewer.panels import explanation, legend, missing, timeline, wipe
 from viewer.panels.widgets import ERROR, QUIET, count, em, paragraph
 from viewer.picking import point_at
 from viewer.ui import Ui
@@ -57,6 +57,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     at = imgui.get_cursor_pos()
     imgui.set_cursor_pos(ImVec2(at.x + (room.x - size.x) / 2.0, at.y + (room.y - size.y) / 2.0))
     corner = imgui.get_cursor_screen_pos()
+    imgui.set_next_item_allow_overlap()  # what lies over the picture takes the pointer there
     imgui.invisible_button("picture", size, _ALL_BUTTONS)
     end = ImVec2(corner.x + size.x, corner.y + size.y)
     imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), corner, end)
@@ -64,6 +65,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     _pointer(ui, corner, size)
     wipe.show(ui, corner, end)
     _overlay(ui, corner, end)
+    legend.show(ui, corner, end)
     missing.show(ui, corner, end)
 
 
@@ -168,7 +170,7 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     if request.divisor > 1:
         text += f"   1/{request.divisor}"
     shadow, counter = frame.statistics.shadow, ""
-    if c.tracing.drawn_view.needs_verify:
+    if c.tracing.drawn_view.needs_verify and not ui.legend_shown:
         counter = f"   {count(shadow.wrong)} wrong of {count(shadow.due)} answers"
     size = imgui.calc_text_size(text + counter)
     if end.x - corner.x < size.x + em(2.0):

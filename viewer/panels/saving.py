@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.panels.widgets import QUIET, paragraph, properties, row, tooltip, wide_button
+from viewer.panels.widgets import QUIET, checkbox, paragraph, properties, row, tooltip, wide_button
 from viewer.ui import CaptureKind, Ui
 
 
@@ -26,4 +26,6 @@ def show(ui: Ui) -> None:
             row("Name", "template of the file's name")
             _, p.screenshot_template = imgui.input_text("##template", p.screenshot_template)
             tooltip(ui.template_help)
+    tip = "where the view has one; the picture with panels shows what the window shows"
+    checkbox("With legend", p.legend_in_pictures, lambda on: setattr(p, "legend_in_pictures", on), tip)
     paragraph("A saved picture carries scene, camera, settings and statistics: open or drop it to come back.", QUIET)

@@ -9,6 +9,9 @@ from contextlib import contextmanager
 from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from viewer.numbers import count as count
+from viewer.numbers import percent as percent
+
 WARNING = ImVec4(0.96, 0.74, 0.31, 1.0)
 ERROR = ImVec4(1.0, 0.47, 0.42, 1.0)
 QUIET = ImVec4(0.62, 0.65, 0.70, 1.0)
@@ -79,7 +82,13 @@ def clipped(text: str, color: ImVec4 | None = None) -> None:
 
 def tooltip(text: str) -> None:
     """Explain the last item when the pointer rests on it."""
-    if imgui.is_item_hovered(int(imgui.HoveredFlags_.for_tooltip)) and imgui.begin_tooltip():
+    if imgui.is_item_hovered(int(imgui.HoveredFlags_.for_tooltip)):
+        tooltip_at(text)
+
+
+def tooltip_at(text: str) -> None:
+    """Explain what is under the pointer."""
+    if imgui.begin_tooltip():
         imgui.push_text_wrap_pos(em(24.0))
         imgui.text_unformatted(text)
         imgui.pop_text_wrap_pos()
@@ -168,11 +177,6 @@ def paragraph(text: str, color: ImVec4 | None = None) -> None:
     imgui.pop_text_wrap_pos()
 
 
-def count(number: float) -> str:
-    """A number that may be large, with thin groups: 12 345 678."""
-    return f"{int(number):,}".replace(",", " ")
-
-
 def judged(highest: int) -> str:
     """A primitive's highest pixel count in words: what its modes go by."""
     return f"judged by {count(highest)}" if highest else "not judged yet"
@@ -189,11 +193,3 @@ def short(number: float) -> str:
 def in_window_style(text: str) -> str:
     """Numbers of a text written as they are here: 10 570 (0.499 %) for 10,570 (0.499%)."""
     return re.sub(r"(?<=\d)%", " %", re.sub(r"(?<=\d),(?=\d{3})", " ", text))
-
-
-def percent(part: float, whole: float) -> str:
-    """A share with one decimal; one too small for that with two digits, so that it does not look like none."""
-    if not whole:
-        return "-"
-    share = 100.0 * part / whole
-    return f"{share:.2g} %" if 0.0 < share < 0.05 else f"{share:.1f} %"

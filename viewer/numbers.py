@@ -1,0 +1,16 @@
+"""Numbers as the window, its pictures and its legends write them."""
+
+from __future__ import annotations
+
+
+def count(number: float) -> str:
+    """A number that may be large, with thin groups: 12 345 678."""
+    return f"{int(number):,}".replace(",", " ")
+
+
+def percent(part: float, whole: float) -> str:
+    """A share with one decimal; one too small for that with two digits, so that it does not look like none."""
+    if not whole:
+        return "-"
+    share = 100.0 * part / whole
+    return f"{share:.2g} %" if 0.0 < share < 0.05 else f"{share:.1f} %"
