@@ -30,7 +30,7 @@ def look_up(words, units, v, found):
 
 
 @inlined
-def _with_modes(points, knowledge):
+def with_modes(points, knowledge):
     """What carries modes at each point: where its unit is a certified cell, its primitive."""
     return points.primitive if knowledge.certify else points.unit
 
@@ -57,11 +57,11 @@ def trusted(found, number, v):
 
 
 @subkernel
-def learn(points, v, number, knowledge, answers, asked, blocked):
+def learn(gained, units, found, v, number, asked, blocked):
     """OR what rays have met into the shadow modes of their units, where it is news, and unless the paper's method would
     not have asked."""
-    word, field, shift = words_of(answers.modes, number, v)
-    full, non = trusted(answers.modes, number, v)
+    word, field, shift = words_of(found, number, v)
+    full, non = trusted(found, number, v)
     untold = bits_of((word & 3) == DYNAMIC) | full | non
     seen_blocked = bits_of((field & np.int32(FULL_SHADOW << shift)) == 0)
     seen_free = bits_of((field & np.int32(NON_SHADOW << shift)) == 0)
@@ -70,21 +70,23 @@ def learn(points, v, number, knowledge, answers, asked, blocked):
         lane = lowest_bit(news)
         news &= news - 1
         mode = FULL_SHADOW if (blocked >> lane) & 1 else NON_SHADOW
-        add_shadow(knowledge.gained, _with_modes(points, knowledge)[16 * v + lane], number, mode)
+        add_shadow(gained, units[16 * v + lane], number, mode)
 
 
 @subkernel
 def consult_modes(points, number, knowledge, vectors, answers, said):
     """Look modes up, count in said (3,) what they say of due rays, and tell them what certificates have answered."""
+    modes, gained, units, found = knowledge.modes, knowledge.gained, with_modes(points, knowledge), answers.modes
+    dues, live, lit, certify = answers.due, answers.live, answers.lit, knowledge.certify
     for v in range(vectors):
-        due = np.int64(answers.due[v])
+        due = np.int64(dues[v])
         if due == 0:
             continue
-        look_up(knowledge.modes, _with_modes(points, knowledge), v, answers.modes)
-        full, non = trusted(answers.modes, number, v)
+        look_up(modes, units, v, found)
+        full, non = trusted(found, number, v)
         said[0] += ones(due)
         said[1] += ones(due & full)
         said[2] += ones(due & non)
-        told = due & ~np.int64(answers.live[v])
-        if knowledge.certify and told != 0:
-            learn(points, v, number, knowledge, answers, told, told & ~np.int64(answers.lit[v]))
+        told = due & ~np.int64(live[v])
+        if certify and told != 0:
+            learn(gained, units, found, v, number, told, told & ~np.int64(lit[v]))

@@ -15,7 +15,9 @@ Shadow rays start at the light.  They end a little above the surface (`lifted`),
 shadow itself.
 
 Points come in vectors of sixteen.  Rays are packed, so that batches shrink with what is not due and
-what is culled; what is found is kept as bits, one for each point.
+what is culled; what is found is kept as bits, one for each point.  What loops over vectors need is taken
+out of tuples before: numba counts references to all arrays of a tuple that is handed on, which may cost
+more than a look-up does, even where the counts are nobody's.
 """
 
 from __future__ import annotations
@@ -28,7 +30,7 @@ from numpy.typing import NDArray
 from tracer.culling.cache import Cache, occluders_in, remember, slots_of, surely_blocked
 from tracer.culling.certified.candidates import ask_candidates
 from tracer.culling.certified.lookup import Certified
-from tracer.culling.learning import consult_modes, learn, look_up, trusted, words_of
+from tracer.culling.learning import consult_modes, learn, look_up, trusted, with_modes, words_of
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.geometry.bvh8.packet import segments_miss_box
 from tracer.geometry.queries import DYNAMIC as MOVING
@@ -93,44 +95,49 @@ def faces(points, light, v):
 def _choose_fates(points, light, number, knowledge, count, answers, counts):
     """What is due, and what of it is known: answers.lit is what is known to be lit, live what is to be asked."""
     vectors, asked = (count + 15) // 16, np.int64(0)
+    certified = _is_certified(number, knowledge)
+    asks = certified and answers.asks and knowledge.certified.asked > 0
+    culls = knowledge.cull and number < MAX_CULLED_LIGHTS
+    words, units, found = knowledge.words, points.unit, answers.known
     for v in range(vectors):
         due = faces(points, light, v) & lanes_below(count, v)
         full, non = np.int64(0), np.int64(0)
-        if knowledge.cull and number < MAX_CULLED_LIGHTS and due != 0:
-            look_up(knowledge.words, points.unit, v, answers.known)
-            full, non = trusted(answers.known, number, v)
-        answers.due[v], answers.lit[v], answers.live[v] = due, due & non, due & ~(full | non)
+        if culls and due != 0:
+            look_up(words, units, v, found)
+            full, non = trusted(found, number, v)
+        live = due & ~(full | non)
+        answers.due[v], answers.lit[v], answers.live[v] = due, due & non, live
         counts[DUE] += ones(due)
         counts[CULLED] += ones(due & full)
         counts[DYNAMIC_ONLY] += ones(due & non)
-        if knowledge.certify and answers.live[v] != 0:
-            asked = _note_candidates(number, knowledge.certified, answers, v, asked)
+        if certified and live != 0:
+            some = _with_candidates(found, number, v, live)
+            answers.untried[v] |= live & ~some
+            answers.doubtful[v] |= some
+            if asks:
+                which = lane_numbers_x16() + np.int32(16 * v)
+                store(address_of(answers.asked) + 4 * asked, pack(which, mask16(some)))
+                asked += ones(some)
     if asked > 0:
-        certified, live, lit = knowledge.certified, answers.live, answers.lit
-        known, tests = ask_candidates(
-            certified, points, light, number, answers.asked, asked, answers.questions, live, lit
-        )
+        told, live, lit = knowledge.certified, answers.live, answers.lit
+        known, tests = ask_candidates(told, points, light, number, answers.asked, asked, answers.questions, live, lit)
         counts[CANDIDATES_ONLY] += known
         counts[TESTS] += tests
 
 
 @inlined
-def _note_candidates(number, certified, answers, v, asked):
-    """Note which certificates are wanting at the live points of a vector, and those that have candidates in
-    answers.asked, where there are so many of others; how many there are."""
-    if number >= len(certified.still) or not certified.still[number]:
-        return asked
-    live = np.int64(answers.live[v])
-    _, field, shift = words_of(answers.known, number, v)
+def _is_certified(number, knowledge):
+    """Whether a light has certificates."""
+    still = knowledge.certified.still
+    return knowledge.certify and number < len(still) and bool(still[number])
+
+
+@inlined
+def _with_candidates(found, number, v, live):
+    """Bits of the live points of a vector whose cells have candidates."""
+    _, field, shift = words_of(found, number, v)
     field = field & np.int32(3 << shift)
-    some = bits_of(field == np.int32(3 << shift)) & live
-    answers.untried[v] |= live & ~some
-    answers.doubtful[v] |= some
-    if certified.asked > 0 and answers.asks:
-        which = lane_numbers_x16() + np.int32(16 * v)
-        store(address_of(answers.asked) + 4 * asked, pack(which, mask16(some)))
-        asked += ones(some)
-    return asked
+    return bits_of(field == np.int32(3 << shift)) & live
 
 
 @subkernel
@@ -231,7 +238,7 @@ def _ask_cache(world, points, light, number, knowledge, vectors, answers, counts
         counts[CACHE_HITS] += ones(hit)
         answers.live[v] = live & ~hit
         if knowledge.learn and number < MAX_CULLED_LIGHTS:
-            learn(points, v, number, knowledge, answers, hit, hit)
+            learn(knowledge.gained, with_modes(points, knowledge), answers.modes, v, number, hit, hit)
 
 
 @subkernel
@@ -248,7 +255,8 @@ def _ask_about_others(world, points, light, number, knowledge, vectors, answers,
         any_hits_by(world, answers.rays, STATIC | MOVING, answers.blocked, answers.occluders, 0, count, counts)
     else:
         any_hits(world, answers.rays, STATIC | MOVING, answers.blocked, 0, count, counts)
-    n = 0
+    n, learns = 0, knowledge.learn and number < MAX_CULLED_LIGHTS
+    gained, units, found = knowledge.gained, with_modes(points, knowledge), answers.modes
     for v in range(vectors):
         asked = np.int64(answers.live[v])
         if asked == 0:
@@ -257,8 +265,8 @@ def _ask_about_others(world, points, light, number, knowledge, vectors, answers,
         if len(knowledge.cache.found) > 0:
             remember(knowledge.cache, answers.slots, v, answers.occluders, n, asked, for_good)
         n += ones(asked)
-        if knowledge.learn and number < MAX_CULLED_LIGHTS:
-            learn(points, v, number, knowledge, answers, asked, for_good)
+        if learns:
+            learn(gained, units, found, v, number, asked, for_good)
         answers.lit[v] |= asked & ~blocked
 
 
