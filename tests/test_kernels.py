@@ -177,8 +177,12 @@ def test_what_is_compiled_beside_is_what_a_frame_needs(lights: int, accelerator:
     compilation.warm_up(lights=lights, accelerator=accelerator)
     before = sorted(path.name for path in cache_folder().rglob("*.nbc"))
     told: list[tuple[str, float]] = []
-    done = compilation._compile_beside(lambda *what: told.append(what), lights, accelerator)
-    assert done == set(compilation._SHARES)
+    done: set[str] = set()
+    drawable: list[set[str]] = []
+    report = lambda *what: told.append(what)  # noqa: E731
+    compilation._compile_beside(report, lights, accelerator, done, lambda: drawable.append(set(done)))
+    assert done == set(compilation._SHARES) == {step for steps in compilation._PARTS.values() for step in steps}
+    assert len(drawable) == 1 and drawable[0] >= done - {"certificates"}
     assert sorted(path.name for path in cache_folder().rglob("*.nbc")) == before
     fractions = [fraction for _, fraction in told]
     assert fractions == sorted(fractions) and fractions[-1] > 0.7
@@ -191,17 +195,20 @@ def test_cancelling_ends_the_processes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(compilation, "_worker", lambda *a: made.append(make(*a)) or made[-1])
 
     def report(what: str, fraction: float) -> None:
-        if len(made) == 3:
+        if len(made) == 2:
             raise Cancelled
 
+    monkeypatch.setattr(os, "cpu_count", lambda: 2)
     with pytest.raises(Cancelled):
-        compilation._compile_beside(report, 1, "bvh8")
-    assert [process.returncode for process in made] == [-signal.SIGKILL] * 3
+        compilation._compile_beside(report, 1, "bvh8", set())
+    assert [process.returncode for process in made] == [-signal.SIGKILL] * 2
 
 
 def test_processes_that_cannot_be_had_cost_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "executable", "/bin/false")
-    assert compilation._compile_beside(lambda *what: None, 1, "bvh8") == set()
+    done: set[str] = set()
+    compilation._compile_beside(lambda *what: None, 1, "bvh8", done)
+    assert not done
 
 
 def test_processes_end_with_the_one_that_wants_them(tmp_path: Path) -> None:
@@ -217,7 +224,7 @@ def test_processes_end_with_the_one_that_wants_them(tmp_path: Path) -> None:
         [sys.executable, "-c", code], cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True
     )
     assert parent.stdout is not None
-    workers = [Path("/proc") / parent.stdout.readline().strip() for _ in range(3)]
+    workers = [Path("/proc") / parent.stdout.readline().strip() for _ in range(2)]
     assert all(worker.exists() for worker in workers)
     parent.kill()
     parent.wait()

@@ -3,7 +3,8 @@
 A tiny scene is rendered phase by phase, and each phase named while its kernels are made ready.  Where
 none have been compiled before, processes of their own compile them first, a part each, into the
 cache: numba compiles one kernel at a time in a process, and holds the GIL for most of it.  One that
-fails costs time only, as what the cache lacks is compiled when it is needed.
+fails costs time only, as what the cache lacks is compiled when it is needed.  What a first picture
+needs comes first, certificates last.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import select
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from itertools import chain
 from pathlib import Path
@@ -25,6 +26,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.certified.certificates import Budget, Effort
 from tracer.culling.modes import word_type
+from tracer.estimate import Estimate
 from tracer.frame import Settings
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
@@ -49,6 +51,7 @@ from tracer.simd import f32_at, i32_at, load_i64
 
 _lock = threading.Lock()
 _ready: set[str] = set()
+_draws: set[str] = set()  # of which all but certificates is ready
 
 # What is made ready, with about how much of the whole time it takes when compiled.
 _SHARES = {
@@ -73,22 +76,52 @@ def warm_up(progress: Progress | None = None, lights: int = 1, accelerator: str 
     """
     report = progress or (lambda what, fraction: None)
     with _lock:
-        name = f"{accelerator}-{word_type(lights).__name__}"
+        name = _variant(lights, accelerator)
         if name in _ready:
             return
         done: set[str] = set()
-        mark = cache_folder() / f"{name}-{sys.implementation.cache_tag}-{get_host_cpu_name()}.ready"
-        if not mark.exists():
+        kept = compiled_before(lights, accelerator)
+
+        def load(steps: Iterator[str]) -> None:
+            for step in steps:
+                doing = "loading" if kept or step in done else "compiling"
+                report(f"{doing} {step}", sum(_SHARES[s] for s in done))
+                done.add(step)
+
+        def load_picture() -> None:
+            load(chain(_queries(accelerator), _frame(lights, accelerator)))
+            _draws.add(name)
+
+        if not kept:
             with suppress(OSError):
-                done = _compile_beside(report, lights, accelerator)
-        for step in (*_queries(accelerator), *_frame(lights, accelerator), *_certificates(lights, accelerator)):
-            report(f"{'loading' if step in done else 'compiling'} {step}", sum(_SHARES[s] for s in done))
-            done.add(step)
-        report("compiled", 1.0)
+                _compile_beside(report, lights, accelerator, done, load_picture)
+        if name not in _draws:
+            load_picture()
+        load(_certificates(lights, accelerator))
+        report("ready", 1.0)
         _ready.add(name)
         with suppress(OSError):
             if any(cache_folder().rglob("*.nbc")):  # else nothing could be kept
-                mark.touch()
+                _mark(name).touch()
+
+
+def can_draw(lights: int = 1, accelerator: str = "bvh8") -> bool:
+    """Whether pictures can be traced by any method but those that make certificates, which may not be ready yet."""
+    return _variant(lights, accelerator) in _draws
+
+
+def compiled_before(lights: int = 1, accelerator: str = "bvh8") -> bool:
+    """Whether all kernels were compiled once already, on this machine and with these sources: they are loaded only."""
+    return _mark(_variant(lights, accelerator)).exists()
+
+
+def _variant(lights: int, accelerator: str) -> str:
+    return f"{accelerator}-{word_type(lights).__name__}"
+
+
+def _mark(variant: str) -> Path:
+    """The file that says that all kernels of a variant are in the cache."""
+    return cache_folder() / f"{variant}-{sys.implementation.cache_tag}-{get_host_cpu_name()}.ready"
 
 
 # --- steps: each generator names what comes next, and does it when asked for the one after ---------
@@ -169,44 +202,74 @@ def _tiny_scene(lights: int) -> Scene:
 
 # --- parts, in processes of their own ---------------------------------------------------------------
 
-_PARTS = ("queries", "trees", "frame")  # about as long each; none compiles what another does
+# None compiles what another does, once the parts that it needs are done.
+_PARTS = {
+    "frame": ("primary rays", "occlusion testing", "shading and shadow testing", "mode setting"),
+    "trees": ("the builder",),
+    "queries": ("nearest hits", "shadow rays"),
+    "certificates": ("certificates",),
+}
+_NEEDS = {"certificates": ("trees",)}
+_FOR_A_PICTURE = ("frame", "trees", "queries")
 
 
-def _compile_beside(report: Progress, lights: int, accelerator: str) -> set[str]:
-    """Compile all parts at once into the cache; the steps that were done.  What `report` raises ends the processes."""
+def _compile_beside(
+    report: Progress, lights: int, accelerator: str, done: set[str], drawable: Callable[[], None] = lambda: None
+) -> None:
+    """Compile all parts into the cache, as many at once as there are cores; adds the steps to `done`.
+
+    Calls `drawable` when all that a picture needs is there; what `report` raises ends the processes."""
     read, write = os.pipe()
-    workers: list[subprocess.Popen] = []
+    slots = max(2, os.cpu_count() or 1)
+    estimate = Estimate(_PARTS, _SHARES, slots)
+    workers: dict[str, subprocess.Popen] = {}
     under_way: dict[str, str] = {}
-    done: set[str] = set()
+    waiting, ended, told, drawn = list(_PARTS), set[str](), b"", False
     try:
-        for part in _PARTS:
-            workers.append(_worker(write, part, str(lights), accelerator))
-        os.close(write)
-        write = -1
-        told = b""
         while True:
-            names = ", ".join(under_way.values()) or "the kernels"
-            report(f"compiling {names}", sum(_SHARES[step] for step in done))
+            for part in [part for part in waiting if ended.issuperset(_NEEDS.get(part, ()))]:
+                if len(workers) - len(ended) < slots:
+                    waiting.remove(part)
+                    workers[part] = _worker(write, part, str(lights), accelerator)
+            if not drawn and ended.issuperset(_FOR_A_PICTURE):
+                drawn = True
+                drawable()
+            report(_told(under_way, estimate, drawn), estimate.fraction)
+            if len(ended) == len(_PARTS):
+                return
             if not select.select([read], [], [], _POLL)[0]:
+                if all(worker.poll() is not None for worker in workers.values()):
+                    return  # and none has said why; what is lacking is compiled when it is needed
                 continue
-            more = os.read(read, 1 << 12)
-            if not more:  # all have ended
-                return done
-            *lines, told = (told + more).split(b"\n")
+            *lines, told = (told + os.read(read, 1 << 12)).split(b"\n")
             for part, step in (line.decode().split(":") for line in lines):
                 if part in under_way:
+                    estimate.end(under_way[part])
                     done.add(under_way.pop(part))
                 if step:
                     under_way[part] = step
+                    estimate.begin(step)
+                else:
+                    ended.add(part)
     finally:
-        for worker in workers:
+        for worker in workers.values():
             worker.kill()
             worker.wait()
             assert worker.stdin is not None
             worker.stdin.close()
-        for end in (read, write):
-            if end >= 0:
-                os.close(end)
+        os.close(read)
+        os.close(write)
+
+
+def _told(under_way: dict[str, str], estimate: Estimate, drawn: bool) -> str:
+    """What is being compiled, and for how long still."""
+    left, picture = estimate.seconds_left(), estimate.seconds_left(_FOR_A_PICTURE)
+    names = ", ".join(under_way.values())
+    if left is None or picture is None:
+        return names or "starting"
+    if drawn:
+        return f"{names or 'finishing'}; about {max(round(left), 1)} s left"
+    return f"{names}; first picture in about {max(round(picture), 1)} s, all in {max(round(left), 1)} s"
 
 
 def _worker(told: int, *arguments: str) -> subprocess.Popen:
@@ -270,10 +333,10 @@ def _steps(part: str, lights: int, accelerator: str) -> Iterator[str]:
     structures: dict[str, Any] = STRUCTURES
     if part == "queries":
         return _queries(accelerator)
-    if part == "trees":
+    if part in ("trees", "certificates"):
         queries = dict.fromkeys(("closest", "any_hit"), _Unasked)
         structures[accelerator] = type("Unasked", (structures[accelerator],), queries)
-        return chain(_trees(lights, accelerator), _certificates(lights, accelerator))
+        return (_trees if part == "trees" else _certificates)(lights, accelerator)
     structures[accelerator] = _Nowhere
     return (step for step in _frame(lights, accelerator) if step != "the builder")
 

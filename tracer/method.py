@@ -23,6 +23,11 @@ def culls_by_modes(method: str) -> bool:
     return base_of(method) in _BY_MODES
 
 
+def certifies(method: str) -> bool:
+    """Whether a method makes certificates, or may make some."""
+    return base_of(method) not in ("none", *_BY_MODES)
+
+
 def is_method(name: str) -> bool:
     """Whether there is such a method: a base, then any extras, each once."""
     base, *extras = name.split("+")

@@ -27,7 +27,7 @@ from viewer.failures import failure
 from viewer.guard import Guard
 from viewer.guard import configure as configure_recovery
 from viewer.layout import Layout, LayoutFile
-from viewer.panels import dialogs, faults, legend, picture, status, strip
+from viewer.panels import dialogs, faults, legend, loading, picture, status, strip, tour
 from viewer.preferences import config_folder, load_preferences
 from viewer.resources import default_scene
 from viewer.ui import CaptureKind, Ui
@@ -50,6 +50,9 @@ class App:
         self.params = self._params()
         self.layout = Layout(self.ui, self.params)
         self.ui.request_exit = self._exit
+        if preferences.tour:
+            preferences.tour = False  # on the first start only; the menu Help has it again
+            self.ui.tour.start()
         self._frame_began = time.perf_counter()
         self._capture_this_frame = False
         if problem:
@@ -95,7 +98,9 @@ class App:
         overlay("The strip of folded panels", lambda: strip.show(self.ui), lambda: setattr(self.ui.fold, "drawer", ""))
         step("Reading the keys", lambda: commands.handle_keys(self.ui))
         step("Flying", lambda: picture.fly(self.ui))
+        overlay("The progress of loading", lambda: loading.show(self.ui))
         dialogs.show(self.ui)
+        overlay("The tour", lambda: tour.show(self.ui), self.ui.tour.end)
         overlay("The notice", lambda: faults.notice(self.ui), self.controller.faults.dismiss)
 
     def after_widgets(self) -> None:

@@ -224,7 +224,11 @@ def _help(ui: Ui) -> list[Command]:
     def about() -> None:
         ui.about_open = not ui.about_open
 
+    def tour() -> None:
+        (ui.tour.start if ui.tour.step is None else ui.tour.end)()
+
     return [
+        Command("Tour", "Help", tour, checked=lambda: ui.tour.step is not None),
         Command("Keyboard and mouse", "Help", shortcuts, "F1", checked=lambda: ui.shortcuts_open),
         Command("About Shadowcull", "Help", about, checked=lambda: ui.about_open),
     ]

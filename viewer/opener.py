@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tracer.compilation import warm_up
+from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.scene.model import Scene
 from viewer import capture, opening
 from viewer.jobs import Job
@@ -27,6 +27,7 @@ class Opener:
         self._c = controller
         self.warm_up_job: Job[None] | None = None
         self.load_job: Job[opening.Opened] | None = None
+        self._compiles = False
         self._abandoned: list[Job] = []
         self._restore_after_load: Snapshot | None = None
 
@@ -34,9 +35,22 @@ class Opener:
     def busy(self) -> bool:
         return self.load_job is not None or self.warm_up_job is not None
 
+    @property
+    def first_start(self) -> bool:
+        """Whether the tracer is being compiled, as it is once; later starts only load it."""
+        return self.warm_up_job is not None and self._compiles
+
+    @property
+    def certifies(self) -> bool:
+        """Whether methods that make certificates can be traced with; pictures come sooner, by a method that makes
+        none, and look the same."""
+        return self.warm_up_job is None
+
     def start(self, path: Path | None) -> None:
         """Compile or load the kernels in the background, and open a first scene meanwhile."""
-        self.warm_up_job = Job("Preparing kernels", warm_up, lambda: self._c.wake())
+        self._compiles = not compiled_before()
+        title = "Compiling the tracer (first start only)" if self._compiles else "Loading the tracer"
+        self.warm_up_job = Job(title, warm_up, lambda: self._c.wake())
         if path is not None:
             self.open(path)
 
@@ -110,7 +124,7 @@ class Opener:
 
     def _kernels_ready(self) -> bool:
         job = self.warm_up_job
-        return job is None or job.done
+        return job is None or job.done or can_draw()
 
     def _loaded(self, job: Job[opening.Opened]) -> None:
         if job.cancelled:

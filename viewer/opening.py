@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tracer.compilation import warm_up
+from tracer.compilation import can_draw, warm_up
 from tracer.renderer import Renderer, Settings
 from tracer.scene.load import load_visible_scene, scene_info
 from tracer.scene.model import Progress, Scene
@@ -48,15 +48,16 @@ def refusal(path: Path) -> str | None:
 
 
 def open_scene(path: Path, settings: Settings, ready: Callable[[], bool], progress: Progress) -> Opened:
-    """Read a scene and build its trees; waits for the kernels to be `ready` in between.
+    """Read a scene and build its trees; waits for the tracer to be `ready` in between.
 
     Raises SceneError or Cancelled; runs on a thread of its own."""
     started = time.perf_counter()
     scene = load_visible_scene(path, progress)
     while not ready():
-        progress(f"{path.name}: waiting for the kernels", 1.0)
+        progress(f"{path.name} is read; waiting for the tracer", 1.0)
         time.sleep(0.02)
-    warm_up(progress, len(scene.lights), settings.accelerator)  # many lights need wider words, and kernels for them
+    if not can_draw(len(scene.lights), settings.accelerator):  # many lights need wider words, and kernels for them
+        warm_up(progress, len(scene.lights), settings.accelerator)
     renderer = Renderer(scene, settings, progress)
     return Opened(scene, renderer, scene_info(scene), time.perf_counter() - started)
 

@@ -54,7 +54,8 @@ _RANGES: dict[str, tuple[float, float]] = {
 class Preferences:
     """Everything that outlives the window.  `speed` is relative to the scene's own pace, 1 by default; `method` is
     the one to cull by while `culling` is on, `certificate_ms` what certifying may take of a frame; `legend_x` and
-    `legend_y` say where in the room that the picture leaves to its legend this lies, 0 to 1 from left and top."""
+    `legend_y` say where in the room that the picture leaves to its legend this lies, 0 to 1 from left and top;
+    `tour` says that the tour has not been shown yet."""
 
     target_fps: float = 15.0
     dynamic_resolution: bool = True
@@ -90,6 +91,7 @@ class Preferences:
     draw_explanation: bool = True
     screenshot_folder: str = ""
     screenshot_template: str = DEFAULT_TEMPLATE
+    tour: bool = True
     recent: list[str] = field(default_factory=list)
     bookmarks: dict[str, list[dict]] = field(default_factory=dict)
 
@@ -167,7 +169,7 @@ def save_preferences(preferences: Preferences, folder: Path | None = None) -> st
 
 
 def _from_json(data: Mapping[str, Any]) -> Preferences:
-    preferences = Preferences()
+    preferences = Preferences(tour=False)  # who has a file without a word of it has used the program before
     for item in fields(Preferences):
         if item.name in data:
             default = getattr(preferences, item.name)

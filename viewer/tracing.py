@@ -11,7 +11,8 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from tracer.frame import Frame, Settings
-from tracer.method import base_of
+from tracer.method import base_of, certifies
+from viewer.methods import with_base
 from viewer.render_thread import RenderRequest, Traced
 from viewer.resolution import ResolutionControl, divided
 from viewer.views import View
@@ -124,10 +125,13 @@ class Tracing:
 
     @property
     def settings(self) -> Settings:
-        """What the user has set, with modes; verified and with its work recorded where the view needs that."""
-        s = self._c.session
+        """What the user has set, with modes; verified and with its work recorded where the view needs that.  While what
+        makes certificates is still being compiled it is traced without: the picture is the same."""
+        s, method = self._c.session, self._c.session.settings.method
         verify = s.settings.verify or s.view.needs_verify
-        return replace(s.settings, verify=verify, record_work=s.view.needs_work, modes=True)
+        if certifies(method) and not self._c.opener.certifies:
+            method = with_base(method, "none")
+        return replace(s.settings, method=method, verify=verify, record_work=s.view.needs_work, modes=True)
 
     def _answered(self, wanted: RenderRequest) -> bool:
         """Whether a frame has been asked for, or is there.  One that holds more for a view serves the next view."""
@@ -152,7 +156,7 @@ class Tracing:
         session, asked = self._c.session, self._asked
         if asked is None or session.playing or self._c.moving:
             return False
-        settings = _as_asked(session.settings, asked.settings)
+        settings = _as_asked(self.settings, asked.settings)
         return (session.time, session.camera, settings) != (asked.time, asked.camera, asked.settings)
 
     # --- what the newest frame is ----------------------------------------------------------------

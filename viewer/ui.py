@@ -16,6 +16,7 @@ from viewer.controller import Controller
 from viewer.full_screen import FullScreen
 from viewer.guard import Guard
 from viewer.preferences import default_screenshot_folder
+from viewer.tour import Tour
 
 if TYPE_CHECKING:
     from viewer.commands import Command
@@ -90,7 +91,11 @@ class Ui:
     pointed_light: int | None = None
     legend_shown: bool = False
     legend_held: tuple[float, float] = (0.0, 0.0)
+    tour_placed: bool = False
     _cache: dict[str, tuple[object, object, Any]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.tour = Tour(self.controller, lambda label: self.show_panel(label))
 
     def cached(self, name: str, of: object, chosen: object, compute: Callable[[], Any]) -> Any:
         """What was computed of this object (a frame, results) for what is chosen, computed now if it is new."""

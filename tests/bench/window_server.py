@@ -73,7 +73,7 @@ class Watch:
 
     def _advance(self, now: float) -> None:
         c, state = self.c, self.state
-        if "full picture" not in self.seen:
+        if "full picture" not in self.seen or c.opener.busy:
             warming, loading = c.opener.warm_up_job is not None, c.opener.load_job is not None
             state = "compiling" if warming else "opening" if loading else "first picture" if c.session.scene else state
         elif state == "tracing" and now - self.since > self.seconds:
@@ -108,6 +108,7 @@ class Watch:
 def main() -> int:
     scene, size, seconds, spawned = sys.argv[1:]
     app = App(Path(scene))
+    app.ui.tour.end()
     width, height = (int(side) for side in size.split("x"))
     geometry = app.params.app_window_params
     geometry.window_geometry.size, geometry.restore_previous_geometry = (width, height), False

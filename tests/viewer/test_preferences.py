@@ -42,7 +42,7 @@ def test_odd_values_keep_their_defaults_and_the_rest_is_read(tmp_path: Path):
     (tmp_path / prefs.SETTINGS_FILE).write_text(json.dumps(odd))
     read, problem = load_preferences(tmp_path)
     assert problem is None
-    assert read == Preferences(depth=3, recent=["/b"], speed=2.0)
+    assert read == Preferences(depth=3, recent=["/b"], speed=2.0, tour=False), "who has settings has used the program"
 
 
 @pytest.mark.parametrize("content", [b"{", b"[1]", b"\x00\xff", b""])

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.gui
 SCENARIOS = ("views", "difference", "wiping", "culling", "certifying", "explaining", "flying", "orbiting", "playing",
              "capturing", "dropping", "reopening", "failing", "cancelling", "resizing", "closing_while_tracing",
              "closing_while_loading", "closing_while_experimenting", "experimenting", "zooming", "panels", "hiding",
-             "folding", "legends")  # fmt: skip
+             "folding", "legends", "touring")  # fmt: skip
 
 
 @pytest.mark.parametrize("name", SCENARIOS)

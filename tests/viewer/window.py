@@ -125,6 +125,8 @@ def main(name: str, scene: str, folder: str) -> int:
 
     viewer_app.WINDOW_SIZE = (960, 640)
     app = App(Path(scene))
+    if name != "touring":
+        app.ui.tour.end()  # it comes by itself on the first start
     app.controller.preferences.screenshot_folder = str(Path(folder) / "pictures")
     app.controller.preferences.dynamic_resolution = True
     failed: list[BaseException] = []

@@ -1,4 +1,4 @@
-"""What comes up over the window: opening a file, progress, shortcuts, about."""
+"""What comes up over the window: opening a file, shortcuts, about."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer import opening
 from viewer.commands import HELD_KEYS, MENUS, key_label
-from viewer.jobs import Job
-from viewer.panels.widgets import ERROR, QUIET, clipped, em, paragraph, tooltip
+from viewer.panels.widgets import ERROR, QUIET, centred, clipped, em, paragraph, tooltip
 from viewer.ui import Ui
 
 _OPEN = "Open a scene or a captured picture"
@@ -20,42 +19,9 @@ def show(ui: Ui) -> None:
     """All of them; each shows itself only when it is wanted."""
     if imgui.is_key_pressed(imgui.Key.escape):
         ui.shortcuts_open = ui.about_open = False
-    ui.guard.overlay("The progress of loading", lambda: _progress(ui))
     ui.guard.overlay("The dialog that opens a file", lambda: _browser(ui), lambda: setattr(ui.browser, "open", False))
     ui.guard.overlay("The list of keys", lambda: _shortcuts(ui), lambda: setattr(ui, "shortcuts_open", False))
     ui.guard.overlay("The words about the program", lambda: _about(ui), lambda: setattr(ui, "about_open", False))
-
-
-def _centred(width: float) -> None:
-    viewport = imgui.get_main_viewport()
-    imgui.set_next_window_pos(viewport.get_work_center(), int(imgui.Cond_.appearing), ImVec2(0.5, 0.5))
-    imgui.set_next_window_size(ImVec2(min(width, 0.95 * viewport.work_size.x), 0.0))
-
-
-def _progress(ui: Ui) -> None:
-    """Loading and preparing the kernels: a small window at the middle, the rest stays usable."""
-    c = ui.controller
-    jobs = [job for job in (c.opener.warm_up_job, c.opener.load_job) if job is not None]
-    if not jobs:
-        return
-    _centred(em(26.0))
-    flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_docking
-    flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_focus_on_appearing
-    imgui.begin("##progress", None, int(flags))
-    for job in jobs:
-        _job(job)
-    if c.opener.load_job is not None:
-        if c.opener.load_job.stopping:
-            imgui.text_colored(QUIET, "cancelling ...")
-        elif imgui.button(f"{icons.ICON_FA_XMARK}  Cancel##load"):
-            c.opener.cancel()
-    imgui.end()
-
-
-def _job(job: Job) -> None:
-    imgui.text_unformatted(job.title)
-    imgui.progress_bar(job.fraction, ImVec2(-1.0, em(0.9)), "")
-    clipped(job.label or "starting", QUIET)
 
 
 def _browser(ui: Ui) -> None:
@@ -64,7 +30,7 @@ def _browser(ui: Ui) -> None:
     if b.open and not imgui.is_popup_open(_OPEN):
         imgui.open_popup(_OPEN)
         b.typed = b.problem = ""
-    _centred(em(38.0))
+    centred(em(38.0))
     shown, stays = imgui.begin_popup_modal(_OPEN, b.open, int(imgui.WindowFlags_.no_resize))
     b.open = bool(stays)
     if not shown:
@@ -160,7 +126,7 @@ def _choose(ui: Ui, path: Path) -> None:
 def _shortcuts(ui: Ui) -> None:
     if not ui.shortcuts_open:
         return
-    _centred(em(46.0))
+    centred(em(46.0))
     flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_resize
     shown, open_ = imgui.begin("Keyboard and mouse", True, int(flags))
     ui.shortcuts_open = bool(open_)
@@ -194,7 +160,7 @@ def _keys(title: str, lines: list[tuple[str, str]], wide: bool = False) -> None:
 def _about(ui: Ui) -> None:
     if not ui.about_open:
         return
-    _centred(em(30.0))
+    centred(em(30.0))
     flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_resize
     shown, open_ = imgui.begin("About Shadowcull", True, int(flags))
     ui.about_open = bool(open_)
