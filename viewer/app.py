@@ -49,7 +49,7 @@ class App:
         self.layout_file = LayoutFile(config_folder())
         self.params = self._params()
         self.layout = Layout(self.ui, self.params)
-        self.ui.request_exit = self._exit
+        self.ui.request_exit = lambda: self.controller.asking.before_quitting(lambda: self._exit())
         if preferences.tour:
             preferences.tour = False  # on the first start only; the menu Help has it again
             self.ui.tour.start()
@@ -216,8 +216,15 @@ class App:
         self.ui.display = Display()
         self.ui.renderer_name = self.ui.display.context.info["GL_RENDERER"]
         self.controller.wake = hello_imgui.request_refresh
-        glfw.set_drop_callback(glfw_utils.glfw_window_hello_imgui(), self._dropped)  # type: ignore[arg-type]  # it gets a list
+        window = glfw_utils.glfw_window_hello_imgui()
+        glfw.set_window_close_callback(window, self._close_wanted)
+        glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
         self.controller.opener.start(self.scene_path)
+
+    def _close_wanted(self, window: Any) -> None:
+        """The window's close button, or the desktop: the same as the command."""
+        glfw.set_window_should_close(window, False)
+        self.ui.guard.step("Quitting", self.ui.request_exit)
 
     def _dropped(self, _window: Any, paths: list[str]) -> None:
         self.ui.dropped = [Path(p) for p in paths]

@@ -15,6 +15,7 @@ from imgui_bundle import imgui
 from tracer.method import BASES, EXTRAS, base_of, takes
 from viewer import navigation
 from viewer.methods import EXTRAS_TOLD, toggled, with_base
+from viewer.panels import escape
 from viewer.picking import extent_at, point_at
 from viewer.ui import CaptureKind, Ui
 from viewer.views import View
@@ -257,7 +258,11 @@ def handle_keys(ui: Ui) -> None:
     # letter goes down and Ctrl up. So a modifier counts for one frame longer than it is held.
     held, before = int(imgui.get_io().key_mods), ui.modifiers
     ui.modifiers = held
-    if imgui.get_io().want_text_input or imgui.is_popup_open("", _ANY_POPUP):
+    if imgui.get_io().want_text_input:
+        return
+    if imgui.is_key_pressed(imgui.Key.escape, repeat=False) and escape.close_newest(ui):
+        return
+    if imgui.is_popup_open("", escape.ANY_POPUP):
         return
     for command in ui.commands:
         if command.key and _pressed(command, held or before) and command.enabled():
@@ -309,4 +314,3 @@ def _menu_item(ui: Ui, command: Command) -> None:
 
 
 _MODIFIERS_NONE = 0
-_ANY_POPUP = int(imgui.PopupFlags_.any_popup_id) | int(imgui.PopupFlags_.any_popup_level)

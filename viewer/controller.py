@@ -19,6 +19,7 @@ import numpy as np
 from tracer.renderer import Frame, Renderer
 from tracer.scene.model import Camera, Scene
 from viewer import navigation
+from viewer.asking import Asking
 from viewer.explaining import Explaining
 from viewer.failures import Failure
 from viewer.faults import Faults
@@ -69,6 +70,7 @@ class Controller:
         self.tracing = Tracing(self)
         self.motion = Motion(self)
         self.explaining = Explaining(self)
+        self.asking = Asking(self)
         self.drawn_seconds = 0.0
         self.size = (0, 0)
         self._seen = math.inf
@@ -84,6 +86,7 @@ class Controller:
             self.tracing.glance()
         self.opener.follow()
         self.keeper.follow()
+        self.asking.follow()
         frame = self._take_frame()
         self.motion.follow()
         self.tracing.ask()

@@ -64,6 +64,8 @@ class Keeper:
 
     def go_to_bookmark(self, index: int) -> None:
         """Glide to a bookmark and take over its time and view; settings stay as they are."""
+        if self._c.runner.refuses():
+            return
         try:
             snapshot = Snapshot.from_json(self.bookmarks[index]["state"])
         except (ValueError, KeyError, TypeError, IndexError) as error:

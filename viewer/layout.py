@@ -38,7 +38,9 @@ class Layout:
         self._tabs: list[str] = []  # the panels that were to be seen before they were folded or hidden
         self._back_for = 0  # frames since they came back
         docking = params.docking_params
-        docking.main_dock_space_node_flags = 0  # else it would have a background whatever the style
+        # Without the cross beside the tabs, which closes all of them; and not what Hello ImGui has by default, which
+        # would give it a background whatever the style.
+        docking.main_dock_space_node_flags = int(imgui.internal.DockNodeFlagsPrivate_.no_close_button)
         docking.docking_splits = _splits()
         docking.dockable_windows = [self._window(panel) for panel in PANELS.values()]
         ui.show_panel, ui.reset_layout = self.show, self.reset
@@ -56,8 +58,10 @@ class Layout:
             self._to_front.add(label)
 
     def reset(self) -> None:
-        """Dock all panels where they were at first."""
+        """Open all panels, docked where they were at first."""
         self._ui.fold.hidden = False
+        for window in self._params.docking_params.dockable_windows:
+            window.is_visible = True
         self._params.docking_params.layout_reset = True
 
     def menu(self) -> None:

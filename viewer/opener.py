@@ -71,15 +71,16 @@ class Opener:
         if refused:
             self._c.say(refused, error=True)
         elif opening.is_capture(path):
-            self._restore_capture(path)
+            self._c.asking.before_opening(path.name, lambda: self._restore_capture(path))
         else:
-            self._load(path, None)
+            self._c.asking.before_opening(path.name, lambda: self._load(path, None))
 
     def reload(self) -> None:
         """Read the scene's file again and keep the place."""
         session = self._c.session
         if session.scene is not None:
-            self._load(Path(session.scene.path), session.snapshot())
+            path, here = Path(session.scene.path), session.snapshot()
+            self._c.asking.before_opening(f"{path.name} again", lambda: self._load(path, here))
 
     def cancel(self) -> None:
         """Give up the load that is under way; the scene that is open stays."""

@@ -625,6 +625,102 @@ def failing(d: Driver) -> None:
     assert not log.entries()
 
 
+def asking(d: Driver) -> None:
+    """While an experiment runs, opening and quitting ask first; the answer that stops it keeps what is done."""
+    d.settle()
+    runner, scene = d.c.runner, d.c.session.scene
+    first, other = Path(scene.path), embedded_scenes()["figure4"]
+    runner.experiment_plan.frames, runner.experiment_plan.size = 3000, (64, 48)
+
+    def under_way() -> None:
+        if runner.current is None:
+            runner.start_experiment()
+        d.wait(lambda: runner.experiment.done_of[0] > 1, "frames of the experiment")
+
+    def answer(name: str) -> None:
+        d.frames(3)
+        assert d.c.asking.question is not None and runner.current is not None, "nobody has asked"
+        d.context.item_click(f"//{d.c.asking.question.title}###question/{name}")
+        d.frames(3)
+        assert d.c.asking.question is None
+
+    under_way()
+    for ask in (lambda: d.drop(other), lambda: d.press(KEY.f5), lambda: d.press(int(KEY.q) | int(KEY.mod_ctrl)),
+                lambda: d.c.opener.open(other)):  # fmt: skip
+        ask()
+        answer("Keep running")
+        assert runner.current is not None and not runner.current.stopping and d.c.opener.load_job is None
+    d.drop(other)
+    d.frames(3)
+    d.press(KEY.escape)
+    assert d.c.asking.question is None and not runner.current.stopping, "Escape has stopped it beside the question"
+    d.drop(d.folder / "gone.aff")
+    assert d.c.asking.question is None and "no such file" in d.c.message.text
+    run = runner.experiment
+    d.drop(other)
+    answer("Stop and open")
+    d.wait(lambda: d.c.session.scene.path == other and runner.current is None, "the other scene")
+    d.settle()
+    assert run is runner.experiment and run.results is not None and not run.whole
+    d.ui.show_panel("Experiment")
+    d.frames(3)
+    _saved(d, "Experiment")
+    d.drop(first)
+    d.wait(lambda: d.c.session.scene.path == first, "the first scene again")
+    d.settle()
+
+    # Escape closes what lies over the panels, one by one, and stops the run only when nothing does.
+    under_way()
+    d.context.menu_click("//##MainMenuBar/Help/About Shadowcull")
+    d.press(KEY.f1)
+    assert d.ui.about_open and d.ui.shortcuts_open
+    popups = lambda: len(imgui.get_current_context().open_popup_stack)  # noqa: E731
+    for there in ("//##MainMenuBar/##MenuBar/File", f"//Scene/{icons.ICON_FA_CLOCK_ROTATE_LEFT}  Recent"):
+        d.context.item_click(there)
+        d.frames(2)
+        assert popups() == 1
+        d.press(KEY.escape)
+        assert popups() == 0 and d.ui.about_open and d.ui.shortcuts_open
+    d.press(KEY.escape)
+    assert not d.ui.about_open and d.ui.shortcuts_open
+    d.press(KEY.escape)
+    assert not d.ui.shortcuts_open and not runner.current.stopping
+    d.press(KEY.escape)
+    d.wait(lambda: runner.current is None, "the experiment to stop", 20.0)
+    d.settle()
+
+    under_way()
+    before = set((d.folder / "pictures").glob("*"))
+    d.app._close_wanted(glfw_utils.glfw_window_hello_imgui())
+    closed_with: list[set[Path]] = []
+    leave = d.app._exit
+    d.app._exit = lambda: closed_with.append(set((d.folder / "pictures").glob("*")) - before)  # type: ignore
+    answer("Save and quit")
+    d.wait(lambda: bool(closed_with), "the files to be written, and the end", 30.0)
+    assert {path.suffix for path in closed_with[0]} == {".json", ".csv", ".png"}
+    leave()
+
+
+def closing_panels(d: Driver) -> None:
+    """The cross closes one panel of several behind each other's tabs, and the default layout brings all back."""
+    d.settle()
+    docking = d.app.params.docking_params
+    closed = lambda: [w.label for w in docking.dockable_windows if not w.is_visible]  # noqa: E731
+    d.ui.show_panel("Camera")
+    d.frames(3)
+    d.context.window_close("//Camera")
+    d.frames(3)
+    assert closed() == ["Camera"]
+    for label in ("Scene", "View", "Plots", "Log"):
+        docking.dockable_window_of_name(label).is_visible = False
+    d.frames(3)
+    d.context.menu_click("//##MainMenuBar/View/Default layout")
+    d.frames(6)
+    assert not closed()
+    docked = imgui.internal.find_window_by_name("Scene").dock_node
+    assert docked is not None and imgui.internal.find_window_by_name("Camera").dock_id == docked.id_
+
+
 def cancelling(d: Driver) -> None:
     """A load that is cancelled leaves the open scene as it is."""
     d.settle()

@@ -13,10 +13,11 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 pytestmark = pytest.mark.gui
 
-SCENARIOS = ("views", "difference", "wiping", "culling", "certifying", "explaining", "flying", "orbiting", "playing",
-             "capturing", "dropping", "reopening", "failing", "cancelling", "resizing", "closing_while_tracing",
-             "closing_while_loading", "closing_while_experimenting", "experimenting", "zooming", "panels", "hiding",
-             "folding", "legends", "touring")  # fmt: skip
+SCENARIOS = ("views", "difference", "wiping", "culling", "certifying", "explaining", "flying", "orbiting",
+             "playing", "capturing", "dropping", "reopening", "failing", "asking", "closing_panels",
+             "cancelling", "resizing", "closing_while_tracing", "closing_while_loading",
+             "closing_while_experimenting", "experimenting", "zooming", "panels", "hiding", "folding",
+             "legends", "touring")  # fmt: skip
 
 
 @pytest.mark.parametrize("name", SCENARIOS)

@@ -9,6 +9,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer import opening
 from viewer.commands import HELD_KEYS, MENUS, key_label
+from viewer.panels import questions
 from viewer.panels.widgets import ERROR, QUIET, centred, clipped, em, paragraph, tooltip
 from viewer.ui import Ui
 
@@ -17,9 +18,8 @@ _OPEN = "Open a scene or a captured picture"
 
 def show(ui: Ui) -> None:
     """All of them; each shows itself only when it is wanted."""
-    if imgui.is_key_pressed(imgui.Key.escape):
-        ui.shortcuts_open = ui.about_open = False
     ui.guard.overlay("The dialog that opens a file", lambda: _browser(ui), lambda: setattr(ui.browser, "open", False))
+    ui.guard.overlay("The question", lambda: questions.show(ui), ui.controller.asking.drop)
     ui.guard.overlay("The list of keys", lambda: _shortcuts(ui), lambda: setattr(ui, "shortcuts_open", False))
     ui.guard.overlay("The words about the program", lambda: _about(ui), lambda: setattr(ui, "about_open", False))
 

@@ -35,9 +35,6 @@ def show(ui: Ui) -> None:
     panel = PANELS.get(fold.drawer)
     if panel is None:
         return
-    if imgui.is_key_pressed(imgui.Key.escape) and not imgui.get_io().want_text_input:
-        fold.drawer = ""
-        return
     room = area.work_size.x - em(WIDTH)
     width = min(em(_WIDE if panel.wide else _DRAWER), _SHARE * room)
     _drawer(ui, panel, ImVec2(right - em(WIDTH) - width, top), ImVec2(width, height))
