@@ -97,6 +97,11 @@ def save(pixels: NDArray[np.uint8], folder: Path, name: str, text: str) -> Path:
 
 def read(path: Path) -> Snapshot:
     """The state that a capture carries; raises CaptureError."""
+    return read_with_size(path)[0]
+
+
+def read_with_size(path: Path) -> tuple[Snapshot, tuple[int, int] | None]:
+    """The same, and the frame's width and height if they are known; raises CaptureError."""
     try:
         with Image.open(path) as image:
             image.load()  # text chunks may follow the pixels
@@ -108,9 +113,16 @@ def read(path: Path) -> Snapshot:
     if text is None:
         raise CaptureError(f"{path}: a picture, but not one captured by Shadowcull")
     try:
-        return Snapshot.from_json(json.loads(text).get("state"))
+        data = json.loads(text)
+        return Snapshot.from_json(data.get("state")), _size(data.get("size"))
     except (ValueError, AttributeError, RecursionError) as error:
         raise CaptureError(f"{path}: cannot be restored: {error}") from None
+
+
+def _size(value: Any) -> tuple[int, int] | None:
+    if isinstance(value, list) and len(value) == 2 and all(type(side) is int and 0 < side < 1 << 16 for side in value):
+        return value[0], value[1]
+    return None
 
 
 def _plain(value: Any) -> Any:

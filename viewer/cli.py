@@ -28,6 +28,7 @@ from viewer.version import program_version
 
 FAILED, MISUSED, INTERRUPTED = 1, 2, 130
 ERROR = "error: "
+_CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
 PICTURE = Path("out") / "first-light.png"
 
 
@@ -150,7 +151,7 @@ def _render(arguments: list[str]) -> int:
         epilog=examples.RENDER,
     )
     add = parser.add_argument
-    add("scene", nargs="?", metavar="SCENE", help=_scene_help())
+    add("scene", nargs="?", metavar="SCENE", help=f"{_scene_help()}, or a saved picture, whose state it is then")
     add("-o", "--output", type=Path, metavar="FILE", help="the picture; a .png also remembers how it was made")
     _add_moment(parser)
     add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
@@ -173,7 +174,7 @@ def _render(arguments: list[str]) -> int:
     )
     add("--legend", action="store_true", help="draw the view's legend into the picture")
     add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
-    add("--camera", metavar="JSON", help="another camera: position, direction, up, angle; or a file with that")
+    add("--camera", metavar="JSON", help=f"another camera: {_CAMERA}")
     add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="trace the N frames before it first")
     add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
     _add_tracing_options(parser, "bvh8")
@@ -181,10 +182,17 @@ def _render(arguments: list[str]) -> int:
     add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
     options = parser.parse_args(arguments)
 
-    from viewer import headless
+    from viewer import headless, recalled
 
-    options.camera = headless.camera_option(options.camera) if options.camera is not None else None
-    headless.render(scene_path(options.scene), options)
+    path = scene_path(options.scene)
+    if recalled.is_capture(path):
+        picture = path
+        path, kept = recalled.defaults(picture)
+        parser.set_defaults(**kept)
+        options = parser.parse_args(arguments)
+        recalled.settle(options, kept, picture)
+    options.camera = recalled.camera(options.camera)
+    headless.render(path, options)
     return 0
 
 
@@ -231,7 +239,7 @@ def _zoom(arguments: list[str]) -> int:
     which.add_argument("--primitive", type=count(0, 2**31 - 1), metavar="N", help="towards this primitive")
     which.add_argument("--pixel", type=pixel, metavar="X,Y", help="towards what this pixel of the first frame shows")
     _add_moment(parser)
-    add("--camera", metavar="JSON", help="where to start from: position, direction, up, angle; or a file with that")
+    add("--camera", metavar="JSON", help=f"where to start from: {_CAMERA}")
     add("--steps", type=count(1, 10_000), default=30, metavar="N", help="how many (default: 30)")
     add(
         "--ratio",
@@ -249,9 +257,9 @@ def _zoom(arguments: list[str]) -> int:
     parser.set_defaults(zoom_factor=4.0, verify=True)  # each test has its own, and verifies
     options = parser.parse_args(arguments)
 
-    from viewer import headless, zoom
+    from viewer import recalled, zoom
 
-    options.camera = headless.camera_option(options.camera) if options.camera is not None else None
+    options.camera = recalled.camera(options.camera)
     return 0 if zoom.run(scene_path(options.scene), options) else INTERRUPTED
 
 

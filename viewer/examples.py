@@ -25,10 +25,15 @@ examples:
   shadowcull render kitchen.aff -o wrong.png --frame 50 --warmup 20 --view difference
   shadowcull render kitchen.aff -o cells.png --frame 50 --warmup 20 --method certified --view certificate:0
   shadowcull render Robot.aff --frame 10 --warmup 10 --buffers robot.npz
+  shadowcull render saved.png --samples 16 --size 1920x1080
+  shadowcull render kitchen.aff -o same.png --camera saved.png
   shadowcull render bunny.ply -o bunny.png --camera '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
 
 The modes of primitives are learnt from frame to frame, so that culling acts only after some frames:
 --warmup N traces the N frames before the one that is wanted first.
+
+A picture that was saved by the window or by render carries its scene, camera, time, settings and view: in the
+place of SCENE it is rendered anew, and options change what they name. Without -o it goes to NAME-rendered.png.
 
 The .npz holds color (H,W,3 float32), depth (H,W float32, distance along the unit ray, inf for a miss),
 primitive and cell (H,W int32, -1 for a miss), occlusion_mode (H,W uint8, 255 for a miss), shadow_mode
