@@ -36,15 +36,17 @@ class Explanation:
     """One light at one point.  A ray is due where the light is on the viewer's side of the surface; `lit` is its true
     answer, false where none is due, and `blocked_at` where the first thing on its way from the light stops it.
 
-    `certificate` names what is proven of the point's cell.  `occluders` are primitives: what blocks the ray, then
-    those that the certificate rests on.  `point` is where shadow rays end, a little above the surface.
+    `blocker` is the primitive that does so, which may be the one that the point lies on.  `certificate` names what is
+    proven of the point's cell, and `named` the primitives that this rests on, each once; the blocker may be among them.
+    `point` is where shadow rays end, a little above the surface.
     """
 
     light: int
     due: bool
     lit: bool
     certificate: str
-    occluders: tuple[int, ...]
+    blocker: int | None
+    named: tuple[int, ...]
     light_position: Point
     point: Point
     blocked_at: Point | None
@@ -67,18 +69,19 @@ def explain(renderer: Renderer, frame: Frame, x: int, y: int) -> tuple[Explanati
     certificates = getattr(renderer, "certificates", None)
     explanations = []
     for light in range(len(lights)):
-        certificate, named = NO_CERTIFICATE, ()
+        certificate = NO_CERTIFICATE
+        named: tuple[int, ...] = ()
         if due[light] and certificates is not None:
             certificate, named = certificates.describe(primitive, point, light)
         blocked = met[light] >= 0
-        occluders = (int(met[light]), *named) if blocked else named
         explanations.append(
             Explanation(
                 light=light,
                 due=bool(due[light]),
                 lit=bool(due[light] and not blocked),
                 certificate=certificate,
-                occluders=tuple(dict.fromkeys(int(number) for number in occluders)),
+                blocker=int(met[light]) if blocked else None,
+                named=tuple(dict.fromkeys(int(number) for number in named)),
                 light_position=_triple(lights[light]),
                 point=_triple(point),
                 blocked_at=_triple(lights[light] + reach[light] * ways[light]) if blocked else None,

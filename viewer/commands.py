@@ -31,7 +31,7 @@ HELD_KEYS = (
     ("Wheel", "flying speed (fly); nearer and farther (orbit)"),
     ("Drag the wipe's line", "compare the picture with the right one"),
     ("Drag the legend", "put it elsewhere in the picture; it snaps to edges and corners"),
-    ("Click", "inspect a pixel"),
+    ("Click", "inspect a pixel, and draw its shadow rays; click the background to let go"),
 )
 
 
@@ -206,15 +206,17 @@ def _run(ui: Ui) -> list[Command]:
     def stop() -> None:
         if c.opener.load_job is not None:
             c.opener.cancel()
-        else:
+        elif runner.current is not None:
             runner.stop()
+        else:
+            c.selected = None
 
     idle = lambda: c.session.scene is not None and runner.current is None  # noqa: E731
-    busy = lambda: c.opener.load_job is not None or runner.current is not None  # noqa: E731
+    busy = lambda: c.opener.load_job is not None or runner.current is not None or c.selected is not None  # noqa: E731
     return [
         Command("Experiment", "Run", start("Experiment", runner.start_experiment), enabled=idle),
         Command("Zoom test", "Run", start("Zoom test", runner.start_zoom_test), enabled=idle),
-        Command("Stop", "Run", stop, "Escape", enabled=busy, separated=True),
+        Command("Stop, or clear the selection", "Run", stop, "Escape", enabled=busy, separated=True),
     ]
 
 

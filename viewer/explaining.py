@@ -1,4 +1,4 @@
-"""Why is it in shadow there?  Asked about what is kept in the inspector, or what the pointer is on.
+"""Why is it in shadow there?  Asked about what was clicked, or, until something is, what the pointer is on.
 
 The question goes to the render thread, which alone may touch the world, and is answered between two frames; the
 window never waits.  What has come speaks of one moment of the scene, in world space, and so it stays right when
@@ -70,7 +70,7 @@ class PixelQuestion:
     def answer(self, renderer: Traces) -> None:
         real = cast(Renderer, renderer)
         lights = explain(real, self.frame, self.x, self.y)
-        numbers = {number for one in lights for number in one.occluders[:MOST_OCCLUDERS]}
+        numbers = {number for one in lights for number in drawn_primitives(one)}
         outlines = {number: outline(real.world, number) for number in numbers}
         self.found = Answer(self.frame, self.x, self.y, lights, outlines)
 
@@ -141,12 +141,23 @@ def _pixel_of(kept: Pick, frame: Frame) -> tuple[int, int] | None:
     return (x, y) if frame.primitive[y, x] == kept.primitive else None
 
 
+def drawn_primitives(one: Explanation) -> list[int]:
+    """What blocks a light, then what its certificate rests on, each once and no more than are drawn."""
+    blocker = [] if one.blocker is None else [one.blocker]
+    return [*blocker, *others_named(one)][:MOST_OCCLUDERS]
+
+
+def others_named(one: Explanation) -> list[int]:
+    """What a light's certificate rests on, but for what blocks the light."""
+    return [number for number in one.named if number != one.blocker]
+
+
 def drawn_lines(answer: Answer, frame: Frame) -> list[DrawnLine]:
     """Outlines of what is named, then, for each light that is due, its way to the point: as far as it gets, and on."""
     lines = []
     for one in answer.lights:
-        for number in one.occluders[:MOST_OCCLUDERS]:
-            part = Part.BLOCKER if one.blocked_at is not None and number == one.occluders[0] else Part.OCCLUDER
+        for number in drawn_primitives(one):
+            part = Part.BLOCKER if number == one.blocker else Part.OCCLUDER
             lines += [DrawnLine(part, one.light, strokes(frame, line)) for line in answer.outlines[number]]
     for one in answer.lights:
         if one.due:

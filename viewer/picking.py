@@ -63,7 +63,7 @@ def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
         unit=unit,
         in_cells=has_modes_of_cells(frame),
         kind=kind_of(scene, primitive),
-        object_name=scene.objects[index].name,
+        object_name=scene.name_of(primitive),
         dynamic=index > 0,
         material=scene.material_of(primitive),
         occlusion=OcclusionMode(int(frame.modes[unit]) & 3),

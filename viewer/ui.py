@@ -15,6 +15,7 @@ from viewer.capture import FIELDS
 from viewer.controller import Controller
 from viewer.full_screen import FullScreen
 from viewer.guard import Guard
+from viewer.legend import light_in_words
 from viewer.preferences import default_screenshot_folder
 from viewer.tour import Tour
 
@@ -105,8 +106,11 @@ class Ui:
         return known[2]
 
     def light_name(self, light: int) -> str:
+        """A light as every panel calls it: by the number that views and keys go by, and its name if it has one."""
         scene = self.controller.session.scene
-        return scene.lights[light].name if scene is not None and light < len(scene.lights) else f"light {light}"
+        return light_in_words(
+            light, scene.lights[light].name if scene is not None and light < len(scene.lights) else ""
+        )
 
     @property
     def default_folder(self) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tracer.scene.assembly import resolve
+from tracer.scene.load import load_scene
 
 TRIANGLE = "p 3 0 0 0 1 0 0 0 1 0 "
 
@@ -147,3 +149,17 @@ def test_resolving_keeps_the_product(chain):
     assert not rest or isinstance(rest[-1], str)
     kinds = [isinstance(e, str) for e in rest]
     assert not any(not p and not q for p, q in itertools.pairwise(kinds))
+
+
+def test_what_stands_still_is_called_by_its_transform_or_its_file(tmp_path: Path):
+    (tmp_path / "lamp.aff").write_text("f 1 1 1 1 0 1 0 1\np 3 0 0 0 1 0 0 0 1 0\ns 0 0 0 1\n")
+    path = tmp_path / "room.aff"
+    path.write_text(
+        "v from 0 0 5 at 0 0 0 up 0 1 0 angle 40 hither 1 resolution 8 8\na 0 1 10\n"
+        "f 1 1 1 1 0 1 0 1\np 4 0 0 0 1 0 0 1 1 0 0 1 0\ni 0 lamp.aff\nx chair { p 3 0 0 1 1 0 1 0 1 1 }\n"
+        "x flyer { p 3 0 0 0 1 0 0 0 1 0 }\n"
+        "k flyer { transl 4 -1 0 0 0 0 0 0  0 0 0 0 0 0 0  1 1 0 0 0 0 0  2 1 0 0 0 0 0 }\n"
+    )
+    scene = load_scene(path)
+    names = [scene.name_of(primitive) for primitive in range(scene.primitive_count)]
+    assert names == ["room", "room", "lamp", "chair", "flyer", "lamp"]

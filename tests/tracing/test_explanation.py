@@ -52,22 +52,25 @@ def test_answers_are_those_of_the_frame(seen) -> None:
     wrong = [e for e, due, lit in told if (e.due, e.lit) != (due, lit)]
     assert len(wrong) <= len(told) / 1000, "but for a few, where rounding decides"
     assert all((e.blocked_at is None) == (e.lit or not e.due) for e, _, _ in told)
-    assert all(e.certificate == NO_CERTIFICATE and len(e.occluders) == (e.blocked_at is not None) for e, _, _ in told)
+    assert all(
+        e.certificate == NO_CERTIFICATE and e.named == () and (e.blocker is None) == (e.blocked_at is None)
+        for e, _, _ in told
+    )
 
 
 def test_what_blocks_is_the_first_thing_from_the_light(seen) -> None:
     renderer, _, explained = seen
     blocked = [e for found in explained.values() for e in found if e.blocked_at is not None]
-    kinds = {_kind(renderer, e.occluders[0]) for e in blocked}
+    kinds = {_kind(renderer, e.blocker) for e in blocked}
     assert kinds == {"static", "moving", "quadric"}
     for e in blocked:
         start, way = np.array(e.light_position), np.subtract(e.point, e.light_position)
         t = np.linalg.norm(np.subtract(e.blocked_at, start)) / np.linalg.norm(way)
         nearest, which = _first_triangle(renderer, start, way)
-        if _kind(renderer, e.occluders[0]) == "quadric":
+        if _kind(renderer, e.blocker) == "quadric":
             assert t < nearest + 1e-4
         else:
-            assert t == pytest.approx(nearest, abs=1e-4) and which == e.occluders[0]
+            assert t == pytest.approx(nearest, abs=1e-4) and which == e.blocker
 
 
 def test_points_lie_where_the_pixel_looks_just_above_the_surface(seen) -> None:
@@ -93,16 +96,16 @@ def test_certificates_are_asked_about_lights_that_are_due(seen) -> None:
 
     renderer.certificates = Certificates()
     try:
-        at = next(at for at, found in explained.items() if any(e.blocked_at and e.occluders[0] > 1 for e in found))
+        at = next(at for at, found in explained.items() if any(e.blocked_at and e.blocker > 1 for e in found))
         found = explain(renderer, frame, at[1], at[0])
     finally:
         del renderer.certificates
     assert asked == [(frame.primitive[at], e.point, e.light) for e in found if e.due]
     for e, before in zip(found, explained[at], strict=True):
         if e.due:
-            assert e.certificate == "CANDIDATES" and e.occluders == tuple(dict.fromkeys((*before.occluders, 1, 0)))
+            assert (e.certificate, e.named, e.blocker) == ("CANDIDATES", (1, 0), before.blocker)
         else:
-            assert e.certificate == NO_CERTIFICATE and not e.occluders
+            assert e.certificate == NO_CERTIFICATE and e.named == ()
 
 
 def test_outlines_lie_on_what_they_outline(seen) -> None:

@@ -254,6 +254,11 @@ def explaining(d: Driver) -> None:
     d.wait(lambda: explaining.answer is not None, "an answer about the pointer's pixel", 20.0)
     blocked = [one for one in explaining.answer.lights if one.blocked_at is not None]
     assert blocked and all(one.due and not one.lit for one in blocked)
+    d.frames(3)
+    hovering = _lines_drawn(d)
+    d.press(KEY.i)
+    assert _lines_drawn(d) == hovering, "shadow rays are drawn for a pixel that was not clicked"
+    d.press(KEY.i)
     lines = explaining.lines(d.c.frame)
     assert {line.part for line in lines} >= {Part.BLOCKER, Part.REACHING, Part.STOPPED}
     d.context.mouse_move_to_pos((left + lit[0] * (right - left), top + lit[1] * (bottom - top)))
@@ -275,12 +280,27 @@ def explaining(d: Driver) -> None:
     d.context.mouse_move(f"//Inspector/**/{d.c.session.scene.lights[0].name}##light")
     d.frames(3)
     assert d.ui.pointed_light == 0
-    shows = d.c.preferences.draw_explanation
-    d.press(KEY.i)
-    assert d.c.preferences.draw_explanation is not shows
-    d.c.selected = None
+    d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
     d.frames(3)
-    assert explaining.answer is None
+    drawn = _lines_drawn(d)
+    d.press(KEY.i)
+    assert not d.c.preferences.draw_explanation and _lines_drawn(d) < drawn - 50
+    d.press(KEY.i)
+    assert _lines_drawn(d) == drawn
+    d.press(KEY.escape)
+    assert d.c.selected is None and _lines_drawn(d) < drawn - 50, "Escape clears"
+    d.context.mouse_click(0)
+    d.frames(3)
+    assert d.c.selected is not None
+    d.context.mouse_move_to_pos((left + 0.5 * (right - left), top + 0.02 * (bottom - top)))
+    d.context.mouse_click(0)
+    d.frames(3)
+    assert d.c.selected is None and explaining.answer is None, "a click on nothing clears"
+
+
+def _lines_drawn(d: Driver) -> int:
+    """How much is drawn over the picture, in corners of triangles."""
+    return imgui.internal.find_window_by_name("Picture").draw_list.vtx_buffer.size()
 
 
 def _places(d: Driver, lit: bool) -> tuple[float, float]:

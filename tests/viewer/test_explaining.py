@@ -139,10 +139,10 @@ def test_every_named_occluder_is_drawn_up_to_a_number_and_what_blocks_stands_out
     desk.c.select(desk.shadow)
     answer = desk.answered()
     stopped = next(one for one in answer.lights if one.blocked_at is not None)
-    assert stopped.certificate == "CANDIDATES" and stopped.occluders[1:] == (0, 1)
+    assert stopped.certificate == "CANDIDATES" and stopped.named == (0, 1)
     lines = [line for line in drawn_lines(answer, desk.c.frame) if line.light == stopped.light]
     parts = [line.part for line in lines]
     assert parts == [*[Part.BLOCKER] * 3, Part.OCCLUDER, Part.OCCLUDER, Part.REACHING, Part.STOPPED]
-    many = replace(answer, lights=(replace(stopped, occluders=(2, *([0] * 30))),))
+    many = replace(answer, lights=(replace(stopped, blocker=2, named=tuple([2] + [0] * 30)),))
     drawn = [line.part for line in drawn_lines(many, desk.c.frame)]
     assert drawn.count(Part.OCCLUDER) == MOST_OCCLUDERS - 1

@@ -24,6 +24,10 @@ class WordPlace:
     index: int
     stride: int = 0
 
+    @property
+    def part(self) -> str:
+        return self.source.path.stem
+
     def __call__(self, item: int = 0) -> str:
         """`file:line` of an item."""
         return self.source.place(self.index + item * self.stride)

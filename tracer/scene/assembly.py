@@ -10,7 +10,7 @@ is object 0, the static world.
 from __future__ import annotations
 
 from collections.abc import Container, Hashable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,9 +87,13 @@ class Geometry:
         deforming: list[SceneObject] = []
         with np.errstate(all="ignore"):  # numbers that overflow are found, and named, afterwards
             for group in self._groups(moving):
-                triangles, quadrics = _triangles(group.meshes, remarks), _quadrics(group.quadrics, remarks)
-                if not group.chain or len(triangles) or len(quadrics):
-                    rigid.append(SceneObject(group.name, triangles, quadrics, group.chain))
+                triangles, meshes = _triangles(group.meshes, remarks)
+                quadrics, others = _quadrics(group.quadrics, remarks)
+                made = SceneObject(group.name, triangles, quadrics, group.chain)
+                if not group.chain:
+                    rigid.append(_with_parts(made, [*meshes, *others]))
+                elif len(triangles) or len(quadrics):
+                    rigid.append(made)
                 name = f"{group.name} (deforming)" if group.chain else "deforming"
                 for pieces in group.morphs.values():
                     triangles, deformation = _deforming(pieces, remarks)
@@ -162,10 +166,27 @@ def _finite(corners: Float64, origin: _Origin, remarks: Remarks) -> NDArray[np.b
     return good
 
 
-def _triangles(pieces: list[tuple[Piece[Mesh], Float64]], remarks: Remarks) -> Triangles:
+Counted = tuple[Piece, int]
+"""A piece, and how many primitives of an object in a row are of it."""
+
+
+def _with_parts(static: SceneObject, counted: list[Counted]) -> SceneObject:
+    """What stands still, with the names of its parts: of the innermost transform, else of the mesh or the file."""
+    named = [
+        (next((e for e in reversed(piece.chain) if isinstance(e, str)), piece.shape.place.part), count)
+        for piece, count in counted
+    ]
+    numbers = {name: number for number, name in enumerate(dict.fromkeys(name for name, _ in named))}
+    part_of = np.repeat(
+        np.array([numbers[name] for name, _ in named], np.int32), np.array([count for _, count in named], np.int64)
+    )
+    return replace(static, parts=tuple(numbers), part_of=part_of)
+
+
+def _triangles(pieces: list[tuple[Piece[Mesh], Float64]], remarks: Remarks) -> tuple[Triangles, list[Counted]]:
     """All triangles of an object.  Those without area stay, although no ray meets them: BART counts them."""
     if not pieces:
-        return empty_triangles()
+        return empty_triangles(), []
     placed = [_placed(piece.shape.corners, piece.shape.normals, baked) for piece, baked in pieces]
     lengths = [len(corners) for corners, _ in placed]
     corners = np.concatenate([c for c, _ in placed])
@@ -175,6 +196,8 @@ def _triangles(pieces: list[tuple[Piece[Mesh], Float64]], remarks: Remarks) -> T
     texture = np.repeat(np.array([piece.texture for piece, _ in pieces], np.int32), lengths)
     origin = _Origin([piece.shape.place for piece, _ in pieces], lengths)
     good = _finite(corners, origin, remarks)
+    kept = np.diff(np.concatenate([[0], np.cumsum(good)])[np.cumsum([0, *lengths])])
+    counted: list[Counted] = [(piece, int(count)) for (piece, _), count in zip(pieces, kept)]
     single = corners.astype(np.float32)
     flat = good & ~np.cross(single[:, 1] - single[:, 0], single[:, 2] - single[:, 0]).any(axis=1)
     if flat.any():
@@ -182,7 +205,7 @@ def _triangles(pieces: list[tuple[Piece[Mesh], Float64]], remarks: Remarks) -> T
     if not good.all():
         single, corners, normals, uvs = single[good], corners[good], normals[good], uvs[good]
         material, texture = material[good], texture[good]
-    return Triangles(single, unit_normals(normals, corners), uvs, material, texture)
+    return Triangles(single, unit_normals(normals, corners), uvs, material, texture), counted
 
 
 def _uvs(mesh: Mesh, matrix: Float64) -> NDArray[np.float32]:
@@ -192,7 +215,7 @@ def _uvs(mesh: Mesh, matrix: Float64) -> NDArray[np.float32]:
     return np.nan_to_num(uvs.astype(np.float32), nan=0.0, posinf=0.0, neginf=0.0)
 
 
-def _quadrics(pieces: list[tuple[Piece[Quadric], Float64]], remarks: Remarks) -> Quadrics:
+def _quadrics(pieces: list[tuple[Piece[Quadric], Float64]], remarks: Remarks) -> tuple[Quadrics, list[Counted]]:
     good: list[tuple[Piece[Quadric], Float64]] = []
     for piece, baked in pieces:
         placed, radii = baked @ piece.shape.placed, piece.shape.radii
@@ -204,14 +227,15 @@ def _quadrics(pieces: list[tuple[Piece[Quadric], Float64]], remarks: Remarks) ->
         else:
             good.append((piece, placed))
     if not good:
-        return empty_quadrics()
-    return Quadrics(
+        return empty_quadrics(), []
+    quadrics = Quadrics(
         np.array([piece.shape.kind for piece, _ in good], np.int32),
         np.stack([placed[:3] for _, placed in good]),
         np.array([piece.shape.radii for piece, _ in good], np.float32),
         np.array([piece.shape.inside for piece, _ in good], np.bool_),
         np.array([piece.material for piece, _ in good], np.int32),
     )
+    return quadrics, [(piece, 1) for piece, _ in good]
 
 
 def _deforming(pieces: list[tuple[Piece[Morph], Float64]], remarks: Remarks) -> tuple[Triangles, Deformation]:

@@ -38,6 +38,10 @@ class _MeshPlace:
     def source(self) -> Hashable:
         return self.path
 
+    @property
+    def part(self) -> str:
+        return self.mesh
+
     def __call__(self, item: int = 0) -> str:
         return f"{self.path}: {self.mesh!a}, triangle {item}"
 

@@ -181,7 +181,8 @@ class SceneObject:
 
     chain, outermost first, holds (4, 4) float64 matrices and names of tracks
     (`Scene.animation.tracks`); empty for world space.  Where `deformation` is set, `triangles`
-    holds its first key.
+    holds its first key.  What stands still has `parts`, names of what it is put together from, and
+    part_of (primitives,) int32, which of them each triangle, and then each quadric, belongs to.
     """
 
     name: str
@@ -189,6 +190,8 @@ class SceneObject:
     quadrics: Quadrics
     chain: tuple[Float64 | str, ...] = ()
     deformation: Deformation | None = None
+    parts: tuple[str, ...] = ()
+    part_of: Int32 | None = None
 
 
 def empty_triangles() -> Triangles:
@@ -252,6 +255,18 @@ class Scene:
         """Index into `objects` of the object that holds a primitive."""
         offsets = self.triangle_offsets if primitive < self.triangle_count else self.quadric_offsets
         return int(np.searchsorted(offsets, primitive, side="right")) - 1
+
+    def name_of(self, primitive: int) -> str:
+        """The name of the object that holds a primitive; of what stands still, that of its part."""
+        o = self.object_of(primitive)
+        held = self.objects[o]
+        if held.part_of is None:
+            return held.name
+        if primitive < self.triangle_count:
+            index = primitive - self.triangle_offsets[o]
+        else:
+            index = len(held.triangles) + primitive - self.quadric_offsets[o]
+        return held.parts[int(held.part_of[index])]
 
     def material_of(self, primitive: int) -> Material:
         o = self.object_of(primitive)

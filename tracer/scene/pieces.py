@@ -19,6 +19,10 @@ class Place(Protocol):
     def source(self) -> Hashable:
         """What messages are counted by, such as the file."""
 
+    @property
+    def part(self) -> str:
+        """What people call the thing it belongs to: its mesh, or the file it is in."""
+
     def __call__(self, item: int = 0) -> str:
         """The words for it; of a mesh, `item` is a triangle's number."""
 

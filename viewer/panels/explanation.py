@@ -1,15 +1,16 @@
-"""Why it is in shadow: the rows of the inspector, and the lights' ways and what blocks them over the picture."""
+"""Why it is in shadow: rows of the inspector and, for what was clicked, lines in the picture to lights and blockers."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.explanation import Explanation
 from tracer.frame import Frame
-from viewer.explaining import MOST_OCCLUDERS, Answer, Part
-from viewer.panels.widgets import QUIET, checkbox, clipped, em, heading, paragraph, swatch, tooltip
+from viewer.explaining import MOST_OCCLUDERS, Answer, Part, others_named
+from viewer.panels.widgets import QUIET, checkbox, em, heading, paragraph, swatch, tooltip
 from viewer.picking import kind_of
 from viewer.projection import place
 from viewer.ui import Ui
@@ -19,7 +20,7 @@ _LIT, _STOPPED = SHADOW_COLORS[ShadowMode.NON_SHADOW], (0.34, 0.71, 0.91)
 _BLOCKER = SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW]
 _COLORS = {Part.REACHING: _LIT, Part.STOPPED: _STOPPED, Part.BLOCKER: _BLOCKER, Part.OCCLUDER: (0.90, 0.62, 0.0)}
 _WIDTHS = {Part.REACHING: 0.13, Part.STOPPED: 0.13, Part.BLOCKER: 0.16, Part.OCCLUDER: 0.1}  # in ems
-_RESTS_ON = {Certificate.FULL.name: "covered by", Certificate.CANDIDATES.name: "can only be blocked by"}
+_RESTS_ON = {Certificate.FULL.name: "hidden by", Certificate.CANDIDATES.name: "can only be blocked by"}
 _UNSEEN = 0.6  # of the width of what is seen
 _SHADE = ImVec4(0.05, 0.06, 0.08, 0.6)
 _FADED = 0.18  # opacity of other lights than the one that is pointed at
@@ -31,70 +32,101 @@ def rows(ui: Ui) -> None:
     heading("Shadow rays")
     p = c.preferences
     tip = (
-        "over the picture, the lights' ways to this point (I): yellow as far as they get, blue where they are in "
-        "shadow; red what blocks them, orange what a certificate rests on, in dashes what is hidden"
+        "over the picture, the lights' ways to the point that was clicked (I): yellow as far as they get, blue where "
+        "they are in shadow; red what blocks them, orange what a certificate rests on, in dashes what is hidden"
     )
-    checkbox("Draw in the picture", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), tip)
+    checkbox("Draw for a click", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), tip)
     answer = c.explaining.answer
     if answer is None:
-        imgui.same_line(0.0, em(1.0))
-        imgui.align_text_to_frame_padding()
-        imgui.text_colored(QUIET, "traced while the picture rests")
+        paragraph("traced while the picture rests", QUIET)
         return
     if not answer.lights:
         paragraph("The scene has no lights.", QUIET)
-    for one in answer.lights:
-        imgui.push_id(one.light)
-        _row(ui, one)
-        imgui.pop_id()
+    receiver = int(answer.frame.primitive[answer.y, answer.x])
+    with light_rows("rays") as shown:
+        for one in answer.lights if shown else ():
+            imgui.push_id(one.light)
+            _row(ui, one, receiver)
+            imgui.pop_id()
 
 
-def _row(ui: Ui, one: Explanation) -> None:
+@contextmanager
+def light_rows(name: str) -> Iterator[bool]:
+    """A table of two columns that wrap, a light on the left and what is told of it; yields whether it is visible."""
+    shown = imgui.begin_table(name, 2, int(imgui.TableFlags_.sizing_stretch_prop))
+    if shown:
+        imgui.table_setup_column("light", int(imgui.TableColumnFlags_.width_stretch), 1.0)
+        imgui.table_setup_column("told", int(imgui.TableColumnFlags_.width_stretch), 1.5)
+    try:
+        yield shown
+    finally:
+        if shown:
+            imgui.end_table()
+
+
+def _row(ui: Ui, one: Explanation, receiver: int) -> None:
     """A light; resting on it picks it out over the picture."""
     told, color = _answer(one)
+    imgui.table_next_column()
     swatch(color)
     imgui.selectable(f"{ui.light_name(one.light)}##light", False)
     if imgui.is_item_hovered():
         ui.pointed_light = one.light
-    imgui.same_line(em(8.0))
-    imgui.text_unformatted(told)
-    if one.due:
-        _certificate(one.certificate)
-    blocked, others = (one.occluders[:1], one.occluders[1:]) if one.blocked_at is not None else ((), one.occluders)
-    for told, numbers in (("blocked by", blocked), (_RESTS_ON.get(one.certificate.upper(), "certified by"), others)):
-        if numbers:
-            names = [_named(ui, number) for number in numbers[:MOST_OCCLUDERS]]
-            more = f" and {len(numbers) - MOST_OCCLUDERS} more" if len(numbers) > MOST_OCCLUDERS else ""
-            imgui.indent(em(1.2))
-            clipped(f"{told} {', '.join(names)}{more}", QUIET)
-            imgui.unindent(em(1.2))
+    imgui.table_next_column()
+    paragraph(told)
+    _certificate(one.certificate)
+    for sentence in sentences(ui, one, receiver):
+        paragraph(sentence, QUIET)
 
 
 def _answer(one: Explanation) -> tuple[str, tuple[float, float, float]]:
     if not one.due:
-        return "faces away", (0.25, 0.27, 0.31)
+        return "in its own shadow: this side faces away", (0.25, 0.27, 0.31)
     return ("lit", _LIT) if one.lit else ("in shadow", SHADOW_COLORS[ShadowMode.FULL_SHADOW])
 
 
 def _certificate(name: str) -> None:
-    """The certificate and its colour, at the row's end."""
+    """The certificate and its colour."""
     if name.upper() not in Certificate.__members__ or name.upper() == Certificate.NONE.name:
         return
     certificate = Certificate[name.upper()]
-    imgui.same_line(em(12.2))
     swatch(CERTIFICATE_COLORS[certificate])
-    imgui.text_unformatted(certificate.name.lower())
-    tooltip(f"proven: {CERTIFICATE_MEANING[certificate]}")
+    imgui.text_unformatted(f"proven: {certificate.name.lower()}")
+    tooltip(CERTIFICATE_MEANING[certificate])
+
+
+def sentences(ui: Ui, one: Explanation, receiver: int) -> list[str]:
+    """What blocks a light on its way to a primitive, and what its certificate rests on besides; each is named once."""
+    told, certificate = [], one.certificate.upper()
+    among = {Certificate.CANDIDATES.name: ", one of its candidates", Certificate.FULL.name: ", which hides all of it"}
+    if one.blocker is not None:
+        by = _own(ui, receiver) if one.blocker == receiver else _named(ui, one.blocker)
+        told.append(f"blocked by {by}{among.get(certificate, '') if one.blocker in one.named else ''}")
+    others = others_named(one)
+    if others:
+        names = [_named(ui, number) if number != receiver else "its own surface" for number in others[:MOST_OCCLUDERS]]
+        more = f" and {len(others) - MOST_OCCLUDERS} more" if len(others) > MOST_OCCLUDERS else ""
+        rests_on = _RESTS_ON.get(certificate, "certified by")
+        also = "also " if one.blocker in one.named else ""
+        told.append(f"{also}{rests_on} {', '.join(names)}{more}")
+    return told
+
+
+def _own(ui: Ui, receiver: int) -> str:
+    """A primitive that is in its own light."""
+    scene = ui.controller.session.scene
+    kind = kind_of(scene, receiver) if scene is not None and receiver < scene.primitive_count else "primitive"
+    return f"its own surface: this {kind} shadows itself" + (", as the light grazes it" if kind == "triangle" else "")
 
 
 def _named(ui: Ui, primitive: int) -> str:
-    """A primitive as people find it again: its kind and number, its object where that moves, and its material."""
+    """A primitive as people find it again: its kind and number, its object and its material."""
     scene = ui.controller.session.scene
     if scene is None or primitive >= scene.primitive_count:
         return f"primitive {primitive}"
-    owner = scene.object_of(primitive)
-    whose = f"{scene.objects[owner].name}, " if owner else ""
-    return f"{kind_of(scene, primitive)} {primitive} ({whose}{scene.material_of(primitive).name})"
+    return (
+        f"{kind_of(scene, primitive)} {primitive} of {scene.name_of(primitive)} ({scene.material_of(primitive).name})"
+    )
 
 
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
@@ -102,7 +134,7 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     c = ui.controller
     pointed, ui.pointed_light = ui.pointed_light, None  # the inspector says so in each frame
     answer, frame = c.explaining.answer, c.frame
-    if answer is None or frame is None or not c.preferences.draw_explanation:
+    if answer is None or frame is None or c.selected is None or not c.preferences.draw_explanation:
         return
     width, height = end.x - corner.x, end.y - corner.y
 

@@ -7,7 +7,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from viewer.panels import explanation
-from viewer.panels.widgets import QUIET, count, em, heading, judged, paragraph, properties, swatch, tooltip, value
+from viewer.panels.widgets import QUIET, count, heading, judged, paragraph, properties, swatch, told, tooltip
 from viewer.picking import Pick
 from viewer.ui import Ui
 from viewer.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
@@ -17,76 +17,76 @@ def show(ui: Ui) -> None:
     """The panel: what was clicked, else what the pointer is on."""
     c = ui.controller
     if c.selected is not None:
-        imgui.text_colored(QUIET, "selected")
+        imgui.text_colored(QUIET, f"pixel {c.selected.x}, {c.selected.y}, clicked")
         imgui.same_line()
         if imgui.small_button(f"{icons.ICON_FA_XMARK}##release"):
             c.selected = None
             return
-        tooltip("let it go, and follow the pointer again")
+        tooltip("let it go, and follow the pointer again (Escape)")
         _details(ui, c.selected)
         return
     found = c.pick(c.hovered)
     if found is None:
-        paragraph("Point at the picture to inspect a pixel; click to keep it here.", QUIET)
+        paragraph("Point at the picture to inspect a pixel; click to keep it here and draw its shadow rays.", QUIET)
     elif found.primitive < 0:
         paragraph(f"Pixel {found.x}, {found.y}: nothing but background.", QUIET)
     else:
-        imgui.text_colored(QUIET, "under the pointer")
+        imgui.text_colored(QUIET, f"pixel {found.x}, {found.y}, under the pointer")
         _details(ui, found)
 
 
 def _details(ui: Ui, pick: Pick) -> None:
     frame = ui.controller.frame
     by_modes = frame is None or frame.settings.keeps_modes
-    with properties("primitive", 5.8) as shown:
-        if shown:
-            value("Primitive", f"{pick.primitive}  ({pick.kind})")
-            value("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""))
-            if pick.in_cells:
-                value("Cell", f"{pick.unit}", "the part of it that carries modes and counts")
-            if pick.material is not None:
-                value("Material", pick.material.name, _describe(pick))
-            tip = "that it covers now; its modes are judged by its highest count while fully rendered"
-            value("Pixels", f"{count(pick.pixels)} now{f', {judged(pick.highest)}' if by_modes else ''}", tip)
-            if pick.wrong is not None:
-                answers = f"{count(pick.wrong)} shadow {'answer' if pick.wrong == 1 else 'answers'}"
-                value("Wrong here", answers, "of this pixel, of any light at any bounce: what is mirrored counts too")
-    explanation.rows(ui)
     if by_modes:
         heading("Modes of its cell" if pick.in_cells else "Modes")
         _modes(ui, pick)
         paragraph(_verdict(pick), QUIET)
-    heading("Pixel")
-    with properties("pixel", 5.8) as shown:
+    explanation.rows(ui)
+    heading("Surface")
+    with properties("primitive", 5.8) as shown:
         if shown:
-            value("At", f"{pick.x}, {pick.y}")
-            value("Depth", f"{pick.depth:.5g}")
+            told("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""))
+            told("Primitive", f"{pick.primitive}  ({pick.kind})")
+            if pick.in_cells:
+                told("Cell", f"{pick.unit}", "the part of it that carries modes and counts")
+            if pick.material is not None:
+                told("Material", pick.material.name, _describe(pick))
+            tip = "that it covers now; its modes are judged by its highest count while fully rendered"
+            told("Pixels", f"{count(pick.pixels)} now{f', {judged(pick.highest)}' if by_modes else ''}", tip)
+            if pick.wrong is not None:
+                answers = f"{count(pick.wrong)} shadow {'answer' if pick.wrong == 1 else 'answers'}"
+                told("Wrong here", answers, "of this pixel, of any light at any bounce: what is mirrored counts too")
+            told("Depth", f"{pick.depth:.5g}")
             if pick.point is not None:
-                value("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
+                told("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
             if pick.normal is not None:
-                value("Normal", "{:.2f}, {:.2f}, {:.2f}".format(*pick.normal))
+                told("Normal", "{:.2f}, {:.2f}, {:.2f}".format(*pick.normal))
 
 
 def _modes(ui: Ui, pick: Pick) -> None:
     """The occlusion mode, and the shadow mode per light."""
-    if pick.occlusion is not None:
-        _mode("occlusion", pick.occlusion.name, OCCLUSION_COLORS[pick.occlusion], OCCLUSION_MEANING[pick.occlusion])
-    if pick.occlusion is OcclusionMode.DYNAMIC:
-        return
-    for light, mode in enumerate(pick.shadows):
-        if mode is not None:
-            meaning = f"{ui.light_name(light)}: {SHADOW_MEANING[mode]}"
-            _mode(f"light {light}", mode.name, SHADOW_COLORS[mode], meaning)
+    with explanation.light_rows("modes") as shown:
+        if not shown:
+            return
+        if pick.occlusion is not None:
+            mode = pick.occlusion
+            _mode("occlusion", mode.name, OCCLUSION_COLORS[mode], OCCLUSION_MEANING[mode])
+        moves = pick.occlusion is OcclusionMode.DYNAMIC
+        for light, shadow in enumerate(() if moves else pick.shadows):
+            if shadow is not None:
+                _mode(ui.light_name(light), shadow.name, SHADOW_COLORS[shadow], SHADOW_MEANING[shadow])
     uncovered = sum(mode is None for mode in pick.shadows)
     if uncovered:
-        imgui.text_colored(QUIET, f"{uncovered} more lights: not culled")
+        paragraph(f"{uncovered} more lights: not culled", QUIET)
 
 
 def _mode(name: str, mode: str, color: tuple[float, float, float], meaning: str) -> None:
+    imgui.table_next_column()
     swatch(color)
-    imgui.text_colored(QUIET, name)
-    imgui.same_line(em(6.4))
-    imgui.text_unformatted(mode.replace("_", " ").lower())
+    paragraph(name, QUIET)
+    imgui.table_next_column()
+    paragraph(mode.replace("_", " ").lower())
     tooltip(meaning)
 
 
@@ -99,13 +99,13 @@ def _describe(pick: Pick) -> str:
 
 
 def _verdict(pick: Pick) -> str:
-    """In words: which shadow rays of this primitive the next frame will spare."""
+    """In words: which shadow rays of this primitive its modes spare, in a method that goes by them."""
     if pick.occlusion is OcclusionMode.DYNAMIC:
-        return "It moves: none of its shadow rays are culled."
+        return "It moves: modes spare none of its shadow rays."
     if pick.occlusion is not OcclusionMode.FULLY_RENDERED:
-        return "Not seen as a whole yet: all of its shadow rays are traced."
+        return "Not seen as a whole yet: modes spare none of its shadow rays."
     full = sum(mode is ShadowMode.FULL_SHADOW for mode in pick.shadows)
     free = sum(mode is ShadowMode.NON_SHADOW for mode in pick.shadows)
     if not full and not free:
-        return "Seen as a whole, but no light is all seen or all hidden: nothing to cull."
-    return f"Lights in full shadow, culled: {full}. Lights in non-shadow, asked for moving objects alone: {free}."
+        return "Seen as a whole, but no light is all seen or all hidden: modes spare nothing."
+    return f"Modes spare its rays to {full} of the lights, and let those to {free} ask moving objects alone."

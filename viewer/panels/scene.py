@@ -100,7 +100,7 @@ def _lights(ui: Ui) -> None:
             flags = int(imgui.ColorEditFlags_.no_tooltip)
             imgui.color_button(f"##light{index}", (red, green, blue, 1.0), flags, (side, side))
             imgui.same_line()
-            name = f"{index}  {light.name}" + ("  (moves)" if light.track else "")
+            name = ui.light_name(index) + ("  (moves)" if light.track else "")
             if index >= MAX_CULLED_LIGHTS:
                 name += "  (not culled)"
             clicked, _ = imgui.selectable(f"{name}##{index}", c.session.light == index)

@@ -26,7 +26,7 @@ def show(ui: Ui) -> None:
                 c.set_view(views[index])
             if c.session.view.of_light and c.session.scene is not None and c.session.scene.lights:
                 row("Light", "L and Shift+L")
-                names = [f"{i}  {light.name}" for i, light in enumerate(c.session.scene.lights)]
+                names = [ui.light_name(i) for i in range(len(c.session.scene.lights))]
                 changed, light = imgui.combo("##light", c.session.light, names)
                 if changed:
                     c.set_light(light)

@@ -67,6 +67,17 @@ def value(name: str, text: str, tip: str = "") -> None:
     clipped(text)
 
 
+def told(name: str, text: str, tip: str = "") -> None:
+    """The same with text that wraps."""
+    imgui.table_next_row()
+    imgui.table_next_column()
+    imgui.text_colored(QUIET, name)
+    if tip:
+        tooltip(tip)
+    imgui.table_next_column()
+    paragraph(text)
+
+
 def clipped(text: str, color: ImVec4 | None = None) -> None:
     """One line of text that ends in an ellipsis where there is no room, with all of it as a tooltip."""
     room = imgui.get_content_region_avail().x
