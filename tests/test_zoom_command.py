@@ -40,7 +40,7 @@ def complaint(capfd: pytest.CaptureFixture[str], *arguments: object) -> str:
 
 
 def test_figure_4_in_tables_and_files(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    """With factor 4 the shadow comes when the primitive is examined anew; with 64 it is missing to the end."""
+    """With factor 4 the shadow comes when the primitive is judged anew; with 64 it is missing to the end."""
     files = {kind: tmp_path / f"zoom.{kind}" for kind in ("json", "csv", "png")}
     outputs = ["--json", files["json"], "--csv", files["csv"], "--plot", files["png"]]
     assert main([*FIGURE_4, "--factors", "4,64", "--steps", "20", *map(str, outputs)]) == 0
@@ -90,10 +90,10 @@ def test_a_pixel_chooses_the_primitive_and_a_camera_the_start(
         (["--primitive", "1", "--camera", '{"position": [0, 0, 20], "direction": [0, 0, 1]}'], "is not to be seen"),
         (["--primitive", "-1"], "-1 is not in"),
         (["--pixel", "0,0"], "shows no primitive"),
-        (["--pixel", "middle"], "is no pixel"),
+        (["--pixel", "middle"], "is not a pixel"),
         (["--primitive", "0", "--pixel", "1,1"], "not allowed with"),
-        (["--primitive", "0", "--factors", "4,zero"], "no zoom factors"),
-        (["--primitive", "0", "--factors", "0.5"], "no zoom factors"),
+        (["--primitive", "0", "--factors", "4,zero"], "not zoom factors"),
+        (["--primitive", "0", "--factors", "0.5"], "not zoom factors"),
         (["--primitive", "0", "--ratio", "1.5"], "argument --ratio: 1.5 is not in 0.001 to 0.9999"),
         (["--primitive", "0", "--frame", "99"], "frame numbers are 0 to 59"),
         (["--primitive", "0", "--zoom-factor", "4"], "unrecognized arguments"),
@@ -170,7 +170,7 @@ def test_factors_are_read_as_people_type_them(text: str, factors: list[float]) -
 
 @pytest.mark.parametrize("text", ["", "four", "4,,x", "nan", "inf", "0", "-4"])
 def test_what_are_no_factors(text: str) -> None:
-    with pytest.raises(ValueError, match="no zoom factors"):
+    with pytest.raises(ValueError, match="not zoom factors"):
         parse_factors(text)
 
 

@@ -24,7 +24,7 @@ _VIEW_NAMES = {
 def size(text: str) -> tuple[int, int]:
     match = re.fullmatch(r"(\d{1,6})[xX×](\d{1,6})", text.strip())
     if not match or not int(match[1]) or not int(match[2]):
-        raise argparse.ArgumentTypeError(f"{text!r} is no size; give one like 640x480")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size; give one like 640x480")
     return int(match[1]), int(match[2])
 
 
@@ -33,7 +33,7 @@ def count(least: int, most: int) -> Callable[[str], int]:
         try:
             value = int(text)
         except ValueError:
-            raise argparse.ArgumentTypeError(f"{text!r} is no whole number") from None
+            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number") from None
         if not least <= value <= most:
             raise argparse.ArgumentTypeError(f"{value} is not in {least} to {most}")
         return value
@@ -46,7 +46,7 @@ def number(least: float, most: float) -> Callable[[str], float]:
         try:
             value = float(text)
         except ValueError:
-            raise argparse.ArgumentTypeError(f"{text!r} is no number") from None
+            raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
         if not least <= value <= most:
             raise argparse.ArgumentTypeError(f"{text} is not in {least:,.12g} to {most:,.12g}")
         return value
@@ -57,7 +57,7 @@ def number(least: float, most: float) -> Callable[[str], float]:
 def pixel(text: str) -> tuple[int, int]:
     match = re.fullmatch(r"(\d{1,6}) *, *(\d{1,6})", text.strip(), re.ASCII)
     if not match:
-        raise argparse.ArgumentTypeError(f"{text!r} is no pixel; give one like 320,200, counted from the upper left")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a pixel; give one like 320,200, counted from the upper left")
     return int(match[1]), int(match[2])
 
 
@@ -68,7 +68,7 @@ def parse_factors(text: str) -> list[float]:
     except ValueError:
         factors = []
     if not factors or not all(1.0 <= factor <= 1e6 for factor in factors):
-        raise ValueError(f"{text!r} are no zoom factors; give numbers from 1 up, like 4,16")
+        raise ValueError(f"{text!r} are not zoom factors; give numbers from 1 up, like 4,16")
     if len(factors) > MOST_FACTORS:
         raise ValueError(f"these are {len(factors)} zoom factors; give {MOST_FACTORS} at most")
     return factors
@@ -103,7 +103,7 @@ def view(text: str) -> ChosenView:
     }
     known = ", ".join(v.value + shown.get(v, "") for v in View)
     if name not in set(View) or (colon and not re.fullmatch(details.get(View(name), r"(?!)"), detail, re.ASCII)):
-        raise argparse.ArgumentTypeError(f"{text!r} is no view; the views are {known}")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a view; the views are {known}")
     view = View(name)
     wipe = float(detail) if view is View.WIPE and detail else 0.5
     if wipe > 1.0:

@@ -85,7 +85,7 @@ def _failed(error: Exception) -> int:
     elif isinstance(error, SceneError | ValueError | OSError) and str(error):
         say(error, ERROR)
     else:
-        say(f"{type(error).__name__}: {error} (a fault of the program; SHADOWCULL_DEBUG=1 shows where)", ERROR)
+        say(f"{type(error).__name__}: {error} (a bug in the program; SHADOWCULL_DEBUG=1 shows where)", ERROR)
     if os.environ.get("SHADOWCULL_DEBUG"):
         raise error
     return FAILED
@@ -133,7 +133,7 @@ def _check_is_scene(parser: _Parser, name: str, commands: list[str]) -> None:
         return
     close = difflib.get_close_matches(name, [*commands, *resources.embedded_scenes()], n=1)
     hint = f"did you mean '{close[0]}'?" if close else f"the commands are {', '.join(commands)}"
-    parser.error(f"{name!r} is no command, no file and no scene that comes with the program: {hint}")
+    parser.error(f"{name!r} is not a command, a file or a scene that comes with the program: {hint}")
 
 
 def _picture_instead(scene: str | None) -> int:
@@ -273,7 +273,7 @@ def _add_moment(parser: _Parser) -> None:
 def _add_tracing_options(parser: _Parser, accelerator: str) -> None:
     """What all commands that trace have in common, with the structure that is theirs by default."""
     add = parser.add_argument
-    told = f"the structure that rays go through (default: {accelerator})"
+    told = f"the tree that rays are traced through (default: {accelerator})"
     add("--accelerator", choices=("kdtree", "bvh8"), default=accelerator, help=told)
     add("--threads", type=count(0, 1024), default=0, metavar="N", help="0, the default: one per core")
     add("--depth", type=count(0, 100), default=10, metavar="D", help="the most bounces (default: 10)")
@@ -281,7 +281,7 @@ def _add_tracing_options(parser: _Parser, accelerator: str) -> None:
 
 
 def _add_zoom_factor(parser: _Parser) -> None:
-    told = "growth after which modes are learnt anew (4)"
+    told = "a primitive that covers this many times more pixels is judged anew (4)"
     parser.add_argument("--zoom-factor", type=number(1.0, 1e9), default=4.0, metavar="F", help=told)
 
 

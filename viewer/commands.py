@@ -28,7 +28,7 @@ HELD_KEYS = (
     ("Shift", "fly faster"),
     ("Left or right drag", "look around (fly); orbit around what was clicked, or pan (orbit)"),
     ("Middle drag", "pan"),
-    ("Wheel", "flying speed (fly); nearer and farther (orbit)"),
+    ("Wheel", "set the speed (fly); go nearer or farther (orbit)"),
     ("Drag the wipe's line", "compare the picture with the right one"),
     ("Drag the legend", "put it elsewhere in the picture; it snaps to edges and corners"),
     ("Click", "inspect a pixel, and draw its shadow rays; click the background to let go"),

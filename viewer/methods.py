@@ -17,8 +17,8 @@ BASES_TOLD = {
 }
 
 EXTRAS_TOLD = {
-    "cache": ("Occluder cache", "ask first what blocked the light before"),
-    "rest": ("Rest is static", "what could move but does not now counts as static until it does"),
+    "cache": ("Occluder cache", "test first what blocked the light there before"),
+    "rest": ("Objects at rest are static", "what could move but does not move now counts as static until it does"),
 }
 
 

@@ -59,7 +59,7 @@ class Opener:
         if self.warm_up_job is not None and self.warm_up_job.done:
             job, self.warm_up_job = self.warm_up_job, None
             if job.failure is not None:
-                self._c.report(replace(job.failure, text=f"kernels not compiled: {job.failure.text}"))
+                self._c.report(replace(job.failure, text=f"the tracer could not be compiled: {job.failure.text}"))
         if self.load_job is not None and self.load_job.done:
             load, self.load_job = self.load_job, None
             self._loaded(load)
@@ -104,7 +104,7 @@ class Opener:
         found = opening.find_scene(snapshot.scene, path)
         scene = self._c.session.scene
         if found is None:
-            self._c.say(f"{path.name}: its scene is gone: {snapshot.scene}", error=True)
+            self._c.say(f"{path.name}: its scene was not found: {snapshot.scene}", error=True)
         elif scene is not None and self.load_job is None and _same_file(found, scene):
             self._c.restore(snapshot)
             self._c.say(f"restored {path.name}")

@@ -103,7 +103,7 @@ def never_whole(results: zoom.Results) -> bool:
 
 
 WRONG_PIXELS = "wrong pixels of this primitive"
-SUMMARY = ("factor", "examined anew", "wrong pixels", "most", "at the end", "culled", "dynamic only")
+SUMMARY = ("factor", "judged anew", "wrong pixels", "most", "at the end", "culled", "dynamic only")
 
 
 def summary(approach: Approach) -> tuple[str, ...]:

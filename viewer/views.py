@@ -112,10 +112,10 @@ _EXPLANATIONS = {
     View.DIFFERENCE: "Pixels for which a culled shadow ray was answered wrongly, over the picture, dimmed, where every "
     "answer is right.",
     View.WIPE: "Left of the line the traced picture, right of it that with every shadow answer right. Drag the line.",
-    View.CERTIFICATE: "What is proven of each virtual cell and the chosen light; lines are the borders of cells. Each "
-    "frame proves more: T traces another, K goes on.",
-    View.SAVED: "Shadow rays of each pixel, at all bounces, that asked no tree of static geometry: how many, or which "
-    "share of those that were due.",
+    View.CERTIFICATE: "What is proven for each virtual cell and the chosen light; lines are the borders of cells. Each "
+    "frame proves more: T traces one more, K keeps tracing.",
+    View.SAVED: "Shadow rays of each pixel, at all bounces, that need not be traced through static geometry: how "
+    "many, or which share of those needed.",
     View.COST: "Rays traced for each pixel, of all kinds and at all bounces: how many, or which share of those that "
     "tracing without culling takes.",
 }
@@ -167,7 +167,7 @@ CELL_LINE = 0.55
 """Brightness of the lines between cells, against that of the cells."""
 
 OCCLUSION_MEANING = {
-    OcclusionMode.INIT: "not seen yet, or to be looked at again",
+    OcclusionMode.INIT: "not seen yet, or to be judged again",
     OcclusionMode.PARTIALLY_OCCLUDED: "something hides a part of it in this frame",
     OcclusionMode.FULLY_RENDERED: "seen as a whole: its shadow modes are trusted",
     OcclusionMode.DYNAMIC: "it moves: never culled",
@@ -176,15 +176,15 @@ OCCLUSION_MEANING = {
 SHADOW_MEANING = {
     ShadowMode.INIT: "no shadow ray yet",
     ShadowMode.FULL_SHADOW: "every shadow ray was blocked: culled once fully rendered",
-    ShadowMode.NON_SHADOW: "no shadow ray was blocked: only moving objects are asked once fully rendered",
+    ShadowMode.NON_SHADOW: "no shadow ray was blocked: tested against moving objects only, once fully rendered",
     ShadowMode.PARTIAL_SHADOW: "some were blocked: always traced",
 }
 
 CERTIFICATE_MEANING = {
-    Certificate.NONE: "nothing is proven, or the light is behind it: due shadow rays are traced",
+    Certificate.NONE: "nothing is proven, or the light is behind it: its shadow rays are traced",
     Certificate.FULL: "all of it is in the shadow of static geometry: its shadow rays are culled",
-    Certificate.LIT: "nothing static lies between it and the light: only moving objects are asked",
-    Certificate.CANDIDATES: "only a few triangles can lie between: they are tested, and moving objects asked",
+    Certificate.LIT: "nothing static lies between it and the light: tested against moving objects only",
+    Certificate.CANDIDATES: "only a few triangles can lie between: these and moving objects are tested",
 }
 
 WRONG = _hex("FF00FF")

@@ -359,7 +359,7 @@ def test_a_plan_that_is_no_good_is_one_line(desk: Desk) -> None:
     desk.runner.zoom_plan.size = (32, 24)
     desk.runner.zoom_plan.factors = "four"
     desk.runner.start_zoom_test()
-    assert desk.c.message.error and "'four' are no zoom factors" in desk.said
+    assert desk.c.message.error and "'four' are not zoom factors" in desk.said
     desk.runner.zoom_plan = replace(desk.runner.zoom_plan, factors="4", ratio=0.5, steps=500)
     desk.runner.start_zoom_test()
     desk.rest()

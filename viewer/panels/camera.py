@@ -9,7 +9,18 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer import navigation
 from viewer.commands import focus
-from viewer.panels.widgets import QUIET, checkbox, em, heading, paragraph, properties, row, tooltip, wide_button
+from viewer.panels.widgets import (
+    QUIET,
+    checkbox,
+    em,
+    heading,
+    paragraph,
+    properties,
+    row,
+    same_line_for,
+    tooltip,
+    wide_button,
+)
 from viewer.ui import Ui
 
 
@@ -38,7 +49,7 @@ def _place(ui: Ui) -> None:
             changed, direction = imgui.drag_float3("##direction", view, 0.01, -1.0, 1.0, "%.3f")
             if changed and sum(x * x for x in direction) > 1e-6:
                 c.move(replace(camera, direction=(direction[0], direction[1], direction[2])))
-            row("Angle", "vertical field of view")
+            row("Angle", "of the vertical field of view")
             changed, angle = imgui.slider_float("##angle", camera.angle, 5.0, 120.0, "%.1f degrees")
             if changed:
                 c.move(navigation.zoom(camera, angle))
@@ -72,12 +83,12 @@ def _path(ui: Ui) -> None:
     p = c.preferences
     heading("Path and time")
     if not c.session.animated:
-        paragraph("This scene stands still.", QUIET)
+        paragraph("Nothing moves in this scene.", QUIET)
         return
     checkbox("Follow the scene's path", c.session.follow, c.follow_path, "until the camera is moved by hand (P)")
     checkbox("Loop", p.loop, lambda on: setattr(p, "loop", on))
-    imgui.same_line()
-    tip = "play frame by frame, each traced in full, however long it takes; else play in real time"
+    same_line_for("Every frame")
+    tip = "play every frame of the animation, each traced in full, however long it takes; otherwise play in real time"
     checkbox("Every frame", p.every_frame, lambda on: setattr(p, "every_frame", on), tip)
     if not p.every_frame:
         with properties("rate", 5.0) as shown:
@@ -98,7 +109,7 @@ def _bookmarks(ui: Ui) -> None:
     if imgui.button(button, (-1.0, 0.0)) or entered:
         c.keeper.add_bookmark(ui.new_bookmark)
         ui.new_bookmark = ""
-    tooltip("remember this place (Ctrl+B)")
+    tooltip("keep this view: camera, time and settings (Ctrl+B)")
     gone = None
     for index, bookmark in enumerate(c.keeper.bookmarks):
         imgui.push_id(index)
@@ -109,7 +120,7 @@ def _bookmarks(ui: Ui) -> None:
         imgui.same_line()
         if imgui.small_button(icons.ICON_FA_XMARK):
             gone = index
-        tooltip("forget it")
+        tooltip("delete it")
         imgui.pop_id()
     if gone is not None:
         c.keeper.forget_bookmark(gone)

@@ -30,16 +30,19 @@ def show(ui: Ui) -> None:
     c = ui.controller
     s, p = c.session.settings, c.preferences
     _method(ui)
-    tip = "test both pixels of a pair against each other's primitive, not just one of them (Y)"
+    tip = "of two neighbouring pixels, test each against the other's primitive, not just one of them (Y)"
     imgui.begin_disabled(not _by_modes(s.method))
     checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.change(symmetric=on), tip)
     imgui.end_disabled()
-    tip = "trace every culled shadow ray as well, and count those that would have answered otherwise (V)"
+    tip = "trace every culled shadow ray as well, and count wrong answers (V)"
     checkbox("Verify", s.verify, lambda on: c.change(verify=on), tip)
     _wrong(ui)
     with properties("culling", 6.5) as shown:
         if shown and _by_modes(s.method):
-            row("Zoom factor", "a primitive that covers so many times more pixels than ever is looked at again")
+            row(
+                "Zoom factor",
+                "a primitive that covers this many times more pixels than when it was judged is judged anew",
+            )
             flags = int(imgui.SliderFlags_.logarithmic)
             changed, factor = imgui.slider_float("##zoom", s.zoom_factor, 1.0, 64.0, "%.1f", flags)
             if changed:
@@ -51,17 +54,25 @@ def show(ui: Ui) -> None:
             changed, budget = imgui.slider_float("##budget", budget, 1.0, LONGEST_BUDGET, "%.0f ms", flags)
             if changed:
                 c.change(certificate_seconds=budget / 1e3)
-    if wide_button(f"{icons.ICON_FA_ERASER}  Reset modes", "forget all that was learnt (Backspace)", 2):
+    if wide_button(f"{icons.ICON_FA_ERASER}  Reset modes", "forget all modes and certificates (Backspace)", 2):
         c.reset_modes()
     imgui.same_line()
-    if wide_button(f"{icons.ICON_FA_ROTATE_RIGHT}  Trace again", "the same frame with what was learnt (T)"):
+    if wide_button(
+        f"{icons.ICON_FA_ROTATE_RIGHT}  Trace again",
+        "trace the same frame once more, with what the last one taught (T)",
+    ):
         c.trace_again()
 
     def keep(on: bool) -> None:
         p.keep_tracing = on
         c.trace_again()
 
-    checkbox("Keep tracing at rest", p.keep_tracing, keep, "frame after frame, to watch the modes settle (K)")
+    checkbox(
+        "Keep tracing at rest",
+        p.keep_tracing,
+        keep,
+        "trace frame after frame, to watch modes and certificates settle (K)",
+    )
 
 
 def _method(ui: Ui) -> None:
@@ -71,7 +82,7 @@ def _method(ui: Ui) -> None:
     base = base_of(method)
     with properties("method", 4.0) as shown:
         if shown:
-            row("Method", f"{BASES_TOLD[base]} (C: none, and back)")
+            row("Method", f"{BASES_TOLD[base]} (C turns culling off and on)")
             if imgui.begin_combo("##method", base):
                 for other in BASES:
                     if imgui.selectable(other, other == base)[0]:

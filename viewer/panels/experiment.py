@@ -63,7 +63,7 @@ def _controls(ui: Ui, run: Experiment | None) -> None:
         _shown_method(run)
     else:
         _plan(ui)
-    tip = "trace the path by each method, and compare"
+    tip = "trace the whole path with each method, and compare them"
     start_or_progress(ui, run, runner.start_experiment, tip)
     export_buttons(ui, run)
 
@@ -141,7 +141,7 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
     """Savings of each method but the reference, and its wrong answers, over the frames of the path."""
     if run is None or results is None:
         if imgui.begin_child("nothing", size):
-            paragraph("What culling saves of the work of shadow rays, frame by frame, and the paper's Table 1.", QUIET)
+            paragraph("How much work for shadow rays culling saves, frame by frame, and the paper's Table 1.", QUIET)
         imgui.end_child()
         return
     wrong = run.settings.verify and any(any(figures["wrong"]) for figures in results.methods.values())

@@ -18,15 +18,15 @@ _BLUE, _GREEN, _ORANGE, _SKY, _PINK, _YELLOW = (
     ImVec4(0.94, 0.89, 0.26, 1.0),
 )
 
-_FATES = "Shadow rays by fate"
+_FATES = "What became of shadow rays"
 _LOGARITHMIC = "Milliseconds"
 _PLOTS = (
-    (_FATES, (("culled", "culled", _BLUE), ("dynamic", "dynamic_only", _YELLOW),
+    (_FATES, (("culled", "culled", _BLUE), ("moving objects", "dynamic_only", _YELLOW),
               ("candidates", "candidates_only", _ORANGE), ("cache", "cache_hits", _PINK),
               ("traced", "traced", ImVec4(0.55, 0.58, 0.64, 1.0)))),
-    ("Steps and tests", (("steps", "steps", _BLUE), ("for shadows", "shadow_steps", _SKY),
+    ("Steps and tests", (("steps", "steps", _BLUE), ("steps for shadows", "shadow_steps", _SKY),
                          ("tests", "tests", _ORANGE))),
-    (_LOGARITHMIC, (("traced", "traced_ms", _BLUE), ("drawn", "drawn_ms", _ORANGE))),
+    (_LOGARITHMIC, (("tracing", "traced_ms", _BLUE), ("drawing", "drawn_ms", _ORANGE))),
 )  # fmt: skip
 _SHARES = (0.44, 0.31, 0.25)  # of the panel's width: the first legend is the longest
 FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
@@ -54,7 +54,7 @@ def show(ui: Ui) -> None:
         "per pixel",
         ui.per_pixel,
         lambda on: setattr(ui, "per_pixel", on),
-        "counts divided by the frame's pixels, so that coarse frames compare with fine ones",
+        "divide by the number of pixels, so that frames of different sizes can be compared",
     )
     imgui.same_line()
     if imgui.small_button("clear"):

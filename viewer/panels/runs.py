@@ -65,7 +65,7 @@ def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: s
         return
     left = run.seconds_left
     imgui.progress_bar(run.fraction, ImVec2(-1.0, 0.0), "" if left is None else f"{duration(left)} left")
-    clipped(f"traced: {run.label}", QUIET)
+    clipped(f"now {run.label}", QUIET)
     if run.stopping:
         imgui.text_colored(QUIET, "stopping ...")
     elif wide_button(f"{icons.ICON_FA_STOP}  Stop", "keeps what is done (Escape)", explain=tooltip_above):

@@ -65,10 +65,14 @@ def _facts(ui: Ui) -> None:
         if shown:
             value("File", scene.path.name, str(scene.path))
             value("Triangles", count(info.get("triangles", 0)))
-            value("  dynamic", count(info.get("dynamic_triangles", 0)), "triangles of objects that move: never culled")
+            value(
+                "  moving",
+                count(info.get("dynamic_triangles", 0)),
+                "triangles of objects that move; their shadow rays are never culled",
+            )
             if info.get("spheres") or info.get("cones"):
                 value("Spheres, cones", f"{count(info.get('spheres', 0))}, {count(info.get('cones', 0))}")
-            value("Objects", f"{len(scene.objects) - 1} that move" if len(scene.objects) > 1 else "nothing moves")
+            value("Objects", f"{len(scene.objects) - 1} that move" if len(scene.objects) > 1 else "none moves")
             value("Materials", f"{len(scene.materials)}, {len(scene.textures)} textures")
             if c.session.animated:
                 start, end = scene.time_range

@@ -2,26 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from imgui_bundle import imgui
 
-from tracer.method import base_of, takes
+from tracer.frame import Frame
+from tracer.method import certifies as makes_certificates
+from tracer.method import takes
 from viewer.history import fully_traced
 from viewer.panels.widgets import (
     QUIET,
+    amount,
     clipped,
     count,
     em,
     heading,
     paragraph,
     percent,
-    properties,
+    right,
     short,
     tooltip,
-    value,
 )
 from viewer.ui import Ui
 
-_PHASE_ORDER = ("place", "primary", "occlusion testing", "certification", "shading", "mode setting")
+_WIDE = 15.0  # ems of a panel that has room for counts and shares beside each other
+_WORK = ("rays", "steps", "tests")
+_PHASES = {
+    "place": ("moving objects", "put where they are at this time, and their trees made anew"),
+    "primary": ("primary rays", "from the camera to the first surface"),
+    "occlusion testing": ("occlusion tests", "which primitives hide each other at neighbouring pixels"),
+    "certification": ("certificates", "proofs of what blocks a light, or that nothing does"),
+    "shading": ("shading", "shadow rays, light, textures, reflections and refractions"),
+    "mode setting": ("modes", "what the frame has taught of each primitive"),
+}  # what the phases of a frame are called here, in their order
 
 
 def show(ui: Ui) -> None:
@@ -37,47 +51,80 @@ def show(ui: Ui) -> None:
     coarse = f" (1/{divisor} of the window)" if divisor > 1 else ""
     clipped(f"for {frame.width} x {frame.height} pixels{coarse}, method {frame.settings.method}")
     if c.tracing.outdated:
-        paragraph("with the settings before; tracing ...", QUIET)
-    shadow, certifies = s.shadow, base_of(frame.settings.method) == "certified"
-    heading("Shadow rays")
-    with properties("shadow") as shown:
-        if shown:
-            value("Due", f"{count(shadow.due)}  ({shadow.due / pixels:.2f} / pixel)", "light on the viewer's side")
-            value("Culled", _share(shadow.culled, shadow.due), "known to be in shadow: not traced at all")
-            value("Dynamic only", _share(shadow.dynamic_only, shadow.due), "asked only the objects that move")
-            if certifies or shadow.candidates_only:
-                tip = "asked a few primitives instead of the tree, and the objects that move"
-                value("Candidates", _share(shadow.candidates_only, shadow.due), tip)
-            if takes(frame.settings.method, "cache") or shadow.cache_hits:
-                tip = "blocked by what the occluder cache had asked about first"
-                value("Cache hits", _share(shadow.cache_hits, shadow.due), tip)
-            value("Traced", _share(fully_traced(shadow), shadow.due), "nothing was known: asked everything")
-            if frame.settings.verify:
-                value("Wrong", _share(shadow.wrong, shadow.due), "culled, but a trace answers otherwise")
-            if frame.settings.keeps_modes:
-                tests = f"{count(s.occlusion_tests)}  ({s.occlusion_tests / pixels:.3f} / pixel)"
-                value("Occlusion tests", tests, "against the neighbouring pixels' primitives")
-    if certifies:
-        heading("Certificates")
-        with properties("certificates") as shown:
-            if shown:
-                seconds = s.phases.get("certification", 0.0)
-                tip = "of cells that rays wanted, those that were wanted most first"
-                value("Made", f"{count(s.certificates)}  in {1e3 * seconds:.1f} ms", tip)
+        paragraph("These are of the settings before; a new frame is being traced.", QUIET)
+    certifies = makes_certificates(frame.settings.method)
+    _shadow_rays(frame, pixels, certifies)
     heading("Work")
     _work(ui)
     heading("Time")
-    with properties("time") as shown:
+    with _amounts("time") as shown:
         if shown:
-            value("Traced in", f"{1e3 * s.seconds:.1f} ms")
-            for name in [*_PHASE_ORDER, *(n for n in s.phases if n not in _PHASE_ORDER)]:
+            amount("Traced in", _milliseconds(s.seconds), "from the request to the picture")
+            for name in [*_PHASES, *(n for n in s.phases if n not in _PHASES)]:
                 if name in s.phases and (certifies or name != "certification"):
-                    value(f"  {name}", f"{1e3 * s.phases[name]:.1f} ms")
-            value("Drawn in", f"{1e3 * c.drawn_seconds:.1f} ms", "what the window itself takes for one of its frames")
+                    label, tip = _PHASES.get(name, (name, ""))
+                    amount(f"  {label}", _milliseconds(s.phases[name]), tip)
+            amount("Window drawn in", _milliseconds(c.drawn_seconds), "what the window needs for one of its own frames")
 
 
-def _share(part: int, whole: int) -> str:
-    return f"{count(part)}  ({percent(part, whole)})"
+def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
+    """What became of them, and what deciding that took."""
+    s, shadow = frame.statistics, frame.statistics.shadow
+    wide = imgui.get_content_region_avail().x > em(_WIDE)
+
+    def fate(name: str, part: int, tip: str) -> None:
+        share = percent(part, shadow.due)
+        if wide:
+            amount(name, count(part), tip)
+            imgui.table_next_column()
+            right(share)
+        else:
+            amount(name, share, f"{tip} ({count(part)})")
+
+    heading("Shadow rays")
+    with _amounts("shadow", em(3.6) if wide else 0.0) as shown:
+        if not shown:
+            return
+        tip = "towards every light on the side of the surface that is seen"
+        amount("Needed", count(shadow.due) if wide else short(shadow.due), f"{tip} ({count(shadow.due)})")
+        fate("Culled", shadow.culled, "known to be in shadow: not traced at all")
+        fate("Moving objects", shadow.dynamic_only, "nothing static is in the way: traced to moving objects only")
+        if certifies or shadow.candidates_only:
+            fate("Candidates", shadow.candidates_only, "tested against a few primitives instead of the tree")
+        if takes(frame.settings.method, "cache") or shadow.cache_hits:
+            fate("Cache hits", shadow.cache_hits, "blocked by what blocked a ray there before")
+        fate("Traced", fully_traced(shadow), "nothing was known: traced through the whole scene")
+        if frame.settings.verify:
+            fate("Wrong", shadow.wrong, "culled, but tracing gives another answer")
+    with _amounts("cost of deciding") as shown:
+        if not shown:
+            return
+        amount("Needed per pixel", f"{shadow.due / pixels:.2f}")
+        if frame.settings.keeps_modes:
+            tip = f"is a primitive hidden by that of the neighbouring pixel? ({count(s.occlusion_tests)} in all)"
+            amount("Occlusion tests per pixel", f"{s.occlusion_tests / pixels:.3f}", tip)
+        if certifies:
+            amount("New certificates", count(s.certificates), "proofs for parts of surfaces, made in this frame")
+
+
+@contextmanager
+def _amounts(name: str, shares: float = 0.0) -> Iterator[bool]:
+    """A table of names and numbers, and a column of shares where that has a width."""
+    shown = imgui.begin_table(name, 3 if shares else 2, int(imgui.TableFlags_.sizing_stretch_prop))
+    if shown:
+        imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_stretch), 1.25)
+        imgui.table_setup_column("number", int(imgui.TableColumnFlags_.width_stretch), 1.0)
+        if shares:
+            imgui.table_setup_column("share", int(imgui.TableColumnFlags_.width_fixed), shares)
+    try:
+        yield shown
+    finally:
+        if shown:
+            imgui.end_table()
+
+
+def _milliseconds(seconds: float) -> str:
+    return f"{1e3 * seconds:.1f} ms"
 
 
 def _work(ui: Ui) -> None:
@@ -85,35 +132,41 @@ def _work(ui: Ui) -> None:
     frame = ui.controller.frame
     assert frame is not None
     s = frame.statistics
-    if not imgui.begin_table("work", 4, int(imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg)):
-        return
-    imgui.table_setup_column("kind", int(imgui.TableColumnFlags_.width_fixed), em(4.8))
-    for title in ("rays", "steps", "tests"):
-        imgui.table_setup_column(title, int(imgui.TableColumnFlags_.width_stretch))
-    for title in ("", "rays", "steps", "tests"):
-        imgui.table_next_column()
-        imgui.text_colored(QUIET, title)
-    told = "traversal steps: nodes of the tree entered; tests: rays against primitives"
+    rows: list[tuple[str, tuple[int, ...]]] = [
+        (name, (part.rays, part.traversal_steps, part.intersection_tests))
+        for name, part in (("primary", s.primary), ("secondary", s.secondary), ("shadow", s.shadow))
+    ]
+    if makes_certificates(frame.settings.method):
+        rows.append(("certificates", (0, s.certificate_steps, s.certificate_tests)))
+    rows.append(("all", tuple(sum(numbers[n] for _, numbers in rows) for n in range(3))))
+    told = "steps: nodes of the tree that rays enter; tests: rays against primitives"
     if frame.settings.accelerator != "kdtree":
         told += "; of whole packets of rays where these are coherent (an experiment counts each ray's, in a kd-tree)"
-    tooltip(told)
-    total = [0, 0, 0]
-    for name, part in (("primary", s.primary), ("secondary", s.secondary), ("shadow", s.shadow)):
-        numbers = (part.rays, part.traversal_steps, part.intersection_tests)
-        total = [t + n for t, n in zip(total, numbers)]
-        _cells(name, numbers)
-    if base_of(frame.settings.method) == "certified":
-        numbers = (0, s.certificate_steps, s.certificate_tests)
-        total = [t + n for t, n in zip(total, numbers)]
-        _cells("certificates", numbers)
-    _cells("all", total)
-    imgui.end_table()
+    if imgui.get_content_region_avail().x > em(_WIDE):
+        _work_table(rows, told)
+        return
+    with _amounts("work") as shown:  # a narrow panel has no room for four columns
+        for name, numbers in rows if shown else ():
+            for title, number in zip(_WORK, numbers, strict=True):
+                if number:
+                    amount(f"{name}, {title}", short(number), f"{count(number)}; {told}")
 
 
-def _cells(name: str, numbers: tuple[int, ...] | list[int]) -> None:
-    imgui.table_next_column()
-    imgui.text_colored(QUIET, name)
-    for number in numbers:
+def _work_table(rows: list[tuple[str, tuple[int, ...]]], told: str) -> None:
+    if not imgui.begin_table("work", 4, int(imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg)):
+        return
+    imgui.table_setup_column("kind", int(imgui.TableColumnFlags_.width_fixed), em(5.2))
+    for title in _WORK:
+        imgui.table_setup_column(title, int(imgui.TableColumnFlags_.width_stretch))
+    for title in ("", *_WORK):
         imgui.table_next_column()
-        imgui.text_unformatted(short(number))
-        tooltip(count(number))
+        right(title, QUIET)
+        tooltip(told)
+    for name, numbers in rows:
+        imgui.table_next_column()
+        clipped(name, QUIET)
+        for number in numbers:
+            imgui.table_next_column()
+            right(short(number))
+            tooltip(count(number))
+    imgui.end_table()

@@ -60,22 +60,14 @@ def _learns(c: Controller) -> bool:
 
 
 def _summary(ui: Ui) -> str:
-    """The picture's samples, size and cost, and how often the window is drawn while anything goes on."""
+    """The picture's size and cost, and how often the window is drawn while anything goes on."""
     c = ui.controller
     frame = c.frame
     parts = []
     if frame is not None:
         if frame.settings.verify:
             parts.append(f"{count(frame.statistics.shadow.wrong)} wrong")
-        parts += [*_samples(c), f"{frame.width} x {frame.height}", f"{1e3 * frame.statistics.seconds:.0f} ms"]
+        parts += [f"{frame.width} x {frame.height}", f"{1e3 * frame.statistics.seconds:.0f} ms"]
     if c.active:
         parts.append(f"{hello_imgui.frame_rate():.0f} frames/s")
     return "   ".join(parts)
-
-
-def _samples(c: Controller) -> list[str]:
-    """How many samples the picture has, while more are added at rest."""
-    shown, wanted = getattr(c.tracing, "samples_shown", 1), getattr(c.tracing, "samples_wanted", 1)
-    if wanted <= 1:
-        return []
-    return [f"{shown} of {wanted} samples" if shown < wanted else f"{shown} samples"]

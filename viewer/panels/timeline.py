@@ -8,6 +8,8 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from viewer.panels.widgets import em, tooltip
 from viewer.ui import Ui
 
+_SHORTEST = 5.0  # ems of a slider that has its moment written beside it
+
 
 def height() -> float:
     """What the bar takes of the window, in ImGui's units."""
@@ -41,14 +43,21 @@ def show(ui: Ui) -> None:
         time, words = c.frame.time, f"{run.name}: {run.label_shown}".replace("%", "%%")
         frame = session.frame_at(time)
     end = f"{time:.2f} s"
-    imgui.set_next_item_width(max(em(4.0), imgui.get_content_region_avail().x - imgui.calc_text_size("0000.00 s").x))
+    room = imgui.get_content_region_avail().x - imgui.calc_text_size("000.00 s").x - imgui.get_style().item_spacing.x
+    timed = room > em(_SHORTEST)
+    if not timed:
+        room = imgui.get_content_region_avail().x
+    if imgui.calc_text_size(words.replace("%d", str(last))).x > room - em(1.0):
+        words = f"%d / {last}" if room > em(_SHORTEST) else "%d"
+    imgui.set_next_item_width(max(em(2.5), room))
     changed, frame = imgui.slider_int("##frame", frame, 0, last, words)
     if changed:
         c.step(frame - session.frame)
-    tooltip("drag to scrub; Ctrl+click to type a frame")
-    imgui.same_line()
-    imgui.align_text_to_frame_padding()
-    imgui.text_unformatted(end)
+    tooltip(f"drag to go through the frames; Ctrl+click to type a number ({end})")
+    if timed:
+        imgui.same_line()
+        imgui.align_text_to_frame_padding()
+        imgui.text_unformatted(end)
     imgui.end_disabled()
 
 

@@ -16,6 +16,7 @@ WARNING = ImVec4(0.96, 0.74, 0.31, 1.0)
 ERROR = ImVec4(1.0, 0.47, 0.42, 1.0)
 QUIET = ImVec4(0.62, 0.65, 0.70, 1.0)
 GOOD = ImVec4(0.36, 0.80, 0.64, 1.0)
+_LABELS = 0.45  # of a panel's width, at most, is for the names of what is in it
 SIZES = ((128, 128), (256, 256), (512, 512), (800, 600), (1024, 1024), (1280, 720), (1920, 1080))
 
 
@@ -35,7 +36,8 @@ def properties(name: str, label_width: float = 7.0) -> Iterator[bool]:
     """A table of two columns, names on the left; yields whether it is visible."""
     shown = imgui.begin_table(name, 2, int(imgui.TableFlags_.sizing_stretch_prop))
     if shown:
-        imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_fixed), em(label_width))
+        label = min(em(label_width), _LABELS * imgui.get_content_region_avail().x)
+        imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_fixed), label)
         imgui.table_setup_column("value", int(imgui.TableColumnFlags_.width_stretch))
     try:
         yield shown
@@ -49,7 +51,7 @@ def row(name: str, tip: str = "") -> None:
     imgui.table_next_row()
     imgui.table_next_column()
     imgui.align_text_to_frame_padding()
-    imgui.text_colored(QUIET, name)
+    clipped(name, QUIET)
     if tip:
         tooltip(tip)
     imgui.table_next_column()
@@ -60,7 +62,7 @@ def value(name: str, text: str, tip: str = "") -> None:
     """A row that only tells something; long text is cut with an ellipsis and told in full on hovering."""
     imgui.table_next_row()
     imgui.table_next_column()
-    imgui.text_colored(QUIET, name)
+    clipped(name, QUIET)
     if tip:
         tooltip(tip)
     imgui.table_next_column()
@@ -78,17 +80,48 @@ def told(name: str, text: str, tip: str = "") -> None:
     paragraph(text)
 
 
+def amount(name: str, text: str, tip: str = "") -> None:
+    """A row of a table whose numbers stand at the right edge, below each other."""
+    imgui.table_next_row()
+    imgui.table_next_column()
+    clipped(name, QUIET)
+    if tip:
+        tooltip(tip)
+    imgui.table_next_column()
+    right(text)
+
+
+def right(text: str, color: ImVec4 | None = None) -> None:
+    """Text at the right edge of its column."""
+    room = imgui.get_content_region_avail().x - imgui.calc_text_size(text).x
+    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(0.0, room))
+    clipped(text, color)
+
+
+def fitted(text: str, room: float) -> str:
+    """The text, or as much of it as there is room for, with an ellipsis."""
+    if imgui.calc_text_size(text).x <= room + 0.5:
+        return text
+    low, high = 0, len(text)
+    while low < high:
+        middle = (low + high + 1) // 2
+        fits = imgui.calc_text_size(text[:middle] + "...").x <= room + 0.5
+        low, high = (middle, high) if fits else (low, middle - 1)
+    return text[:low] + "..."
+
+
+def same_line_for(label: str) -> None:
+    """Go on in this line if a tick with such a label fits into what is left of it."""
+    spacing = em(1.0)
+    needed = imgui.calc_text_size(label).x + imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x
+    edge = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
+    if imgui.get_item_rect_max().x + spacing + needed <= edge:
+        imgui.same_line(0.0, spacing)
+
+
 def clipped(text: str, color: ImVec4 | None = None) -> None:
     """One line of text that ends in an ellipsis where there is no room, with all of it as a tooltip."""
-    room = imgui.get_content_region_avail().x
-    shown = text
-    if imgui.calc_text_size(text).x > room:
-        low, high = 0, len(text)
-        while low < high:
-            middle = (low + high + 1) // 2
-            fits = imgui.calc_text_size(text[:middle] + "...").x <= room
-            low, high = (middle, high) if fits else (low, middle - 1)
-        shown = text[:low] + "..."
+    shown = fitted(text, imgui.get_content_region_avail().x)
     if color is not None:
         imgui.push_style_color(imgui.Col_.text, color)
     imgui.text_unformatted(shown)
@@ -128,8 +161,12 @@ def tooltip_above(text: str) -> None:
 
 
 def checkbox(label: str, state: bool, change: Callable[[bool], None], tip: str = "") -> None:
-    """A tick that calls `change` with its new state."""
-    changed, now = imgui.checkbox(label, state)
+    """A tick that calls `change` with its new state; a label that is too long for its line ends in an ellipsis."""
+    room = imgui.get_content_region_avail().x - imgui.get_frame_height() - imgui.get_style().item_inner_spacing.x
+    shown = label if label.startswith("##") else fitted(label, room)
+    changed, now = imgui.checkbox(label if shown == label else f"{shown}###{label}", state)
+    if shown != label:
+        tip = f"{label}: {tip}" if tip else label
     if tip:
         tooltip(tip)
     if changed:
@@ -159,9 +196,14 @@ def size_field(size: tuple[int, int], longest: int, say: Callable[[str], None]) 
 
 
 def wide_button(label: str, tip: str = "", columns: int = 1, explain: Callable[[str], None] = tooltip) -> bool:
-    """A button that fills its share of the width; `explain` shows its tip."""
-    spacing = imgui.get_style().item_spacing.x
-    width = (imgui.get_content_region_avail().x - spacing * (columns - 1)) / columns
+    """A button that fills its share of the width; `explain` shows its tip.  Where that is too narrow for a label of an
+    icon and words, the words are in the tip alone."""
+    style = imgui.get_style()
+    width = (imgui.get_content_region_avail().x - style.item_spacing.x * (columns - 1)) / columns
+    text, _, _ = label.partition("##")
+    icon, _, words = text.partition("  ")
+    if words and imgui.calc_text_size(text).x > width - 2.0 * style.frame_padding.x:
+        label, tip = f"{icon}###{label}", f"{words}: {tip}" if tip else words
     clicked = imgui.button(label, ImVec2(max(width, em(2.0)), 0.0))
     if tip:
         explain(tip)
