@@ -20,7 +20,7 @@ from imgui_bundle import glfw_utils, hello_imgui, imgui, immapp
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
-from viewer import commands, style
+from viewer import commands, palette, style
 from viewer.controller import Controller
 from viewer.display import Display, Look
 from viewer.failures import failure
@@ -80,7 +80,7 @@ class App:
     def before_widgets(self) -> None:
         """Everything but the widgets: input of the last frame, threads, GL."""
         self._frame_began = time.perf_counter()
-        style.follow_density()
+        self._follow_style()
         style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
         step = self.ui.guard.step
         step("Full screen", self.ui.full_screen.follow)
@@ -116,6 +116,11 @@ class App:
             self.controller.say(f"{len(dropped)} files were dropped; only {dropped[0].name} is opened")
         if dropped:
             self.controller.opener.open(dropped[0])
+
+    def _follow_style(self) -> None:
+        p = self.controller.preferences
+        if style.follow(p.theme, p.ui_scale):
+            self.params.imgui_window_params.background_color = palette.BACKGROUND
 
     def _room_for_picture(self) -> tuple[int, int]:
         window = glfw_utils.glfw_window_hello_imgui()
@@ -185,7 +190,7 @@ class App:
         window.show_menu_bar = window.show_status_bar = True
         window.show_menu_app = window.show_menu_view = window.show_status_fps = False
         window.remember_theme = window.remember_status_bar_settings = False
-        window.background_color = style.BACKGROUND
+        window.background_color = palette.BACKGROUND
         params.renderer_backend_options.open_gl_options = hello_imgui.OpenGlOptions(
             glsl_version="330", major_version=3, minor_version=3, use_core_profile=True, use_forward_compat=True,
             anti_aliasing_samples=0,  # text and widgets are smooth by themselves
@@ -219,7 +224,10 @@ class App:
         window = glfw_utils.glfw_window_hello_imgui()
         glfw.set_window_close_callback(window, self._close_wanted)
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
-        self.controller.opener.start(self.scene_path)
+        opener = self.controller.opener
+        opener.start(self.scene_path)
+        if self.scene_path is None and not (self.controller.preferences.start_where_left and opener.go_on()):
+            opener.open(default_scene())
 
     def _close_wanted(self, window: Any) -> None:
         """The window's close button, or the desktop: the same as the command."""
@@ -251,5 +259,6 @@ def _configure_imgui() -> None:
 
 
 def run(scene_path: Path | None = None) -> int:
-    """Open the viewer on a scene (the embedded room if none is named); returns the exit code."""
-    return App(scene_path if scene_path is not None else default_scene()).run()
+    """Open the viewer on a scene or a saved picture; without one on what was open last, where that is wanted, else on
+    the embedded room.  Returns the exit code."""
+    return App(scene_path).run()

@@ -84,6 +84,23 @@ class Asking:
         )
         self._c.wake()
 
+    def before_resetting(self) -> None:
+        """Reset all settings when the user agrees, and what was collected as well where that is ticked."""
+        fields = {"Forget bookmarks as well": "bookmarks", "Forget recent scenes as well": "recent"}
+        ticked: set[str] = set()
+
+        def reset() -> None:
+            kept = [name for told, name in fields.items() if told not in ticked]
+            self._c.reset_preferences([*kept, "tour", "last"])
+
+        self.question = Question(
+            "Reset all settings?",
+            "View, culling, quality, theme, sizes and where pictures are saved become what they were at first.",
+            (("Keep them", _nothing), ("Reset", reset)),
+            tuple(fields),
+            ticked,
+        )
+
     def follow(self) -> None:
         """Quit when the results have been written that were to be saved; stay if they could not be."""
         run = self._run

@@ -124,7 +124,7 @@ def _view(arguments: list[str], commands: list[str]) -> int:
     except ImportError as error:
         say(f"no window can be opened, as a library is missing ({error}); 'shadowcull render' needs none", ERROR)
         return FAILED
-    return app.run(path)
+    return app.run(path if options.scene is not None else None)
 
 
 def _check_is_scene(parser: _Parser, name: str, commands: list[str]) -> None:

@@ -17,6 +17,7 @@ from viewer import navigation
 from viewer.methods import EXTRAS_TOLD, toggled, with_base
 from viewer.panels import escape
 from viewer.picking import extent_at, point_at
+from viewer.preferences import SCALES
 from viewer.ui import CaptureKind, Ui
 from viewer.views import View
 
@@ -60,6 +61,7 @@ def build(ui: Ui) -> list[Command]:
 
 def _file(ui: Ui) -> list[Command]:
     c = ui.controller
+    p = c.preferences
 
     def browse() -> None:
         ui.browser.open = True
@@ -75,6 +77,14 @@ def _file(ui: Ui) -> list[Command]:
         Command("Reload", "File", c.opener.reload, "F5", enabled=lambda: c.session.scene is not None),
         Command("Save picture", "File", want(CaptureKind.PICTURE), "F12", separated=True),
         Command("Save picture with panels", "File", want(CaptureKind.WINDOW), "Shift+F12"),
+        Command(
+            "Start where I left off",
+            "File",
+            lambda: setattr(p, "start_where_left", not p.start_where_left),
+            checked=lambda: p.start_where_left,
+            separated=True,
+        ),
+        Command("Reset settings...", "File", c.asking.before_resetting),
         Command("Quit", "File", lambda: ui.request_exit(), "Ctrl+Q", separated=True),
     ]
 
@@ -103,9 +113,33 @@ def _view(ui: Ui) -> list[Command]:
         Command("Shares of rays", "View", toggle("work_shares"), "U", checked=lambda: p.work_shares),
         Command("Draw shadow rays", "View", toggle("draw_explanation"), "I", checked=lambda: p.draw_explanation),
         Command("Smooth upscaling", "View", toggle("smooth_upscaling"), checked=lambda: p.smooth_upscaling),
+        *_looks(ui),
         Command("Hide panels", "View", hide, "Tab", checked=lambda: ui.fold.hidden, separated=True),
         Command("Full screen", "View", ui.full_screen.toggle, "F11", checked=lambda: ui.full_screen.wanted),
         Command("Default layout", "View", lambda: ui.reset_layout()),
+    ]
+
+
+def _looks(ui: Ui) -> list[Command]:
+    """The theme, and the size of the interface."""
+    p = ui.controller.preferences
+
+    def sized(steps: int) -> Callable[[], None]:
+        def change() -> None:
+            nearest = min(range(len(SCALES)), key=lambda i: abs(SCALES[i] - p.ui_scale))
+            p.ui_scale = SCALES[min(max(nearest + steps, 0), len(SCALES) - 1)] if steps else 1.0
+            ui.controller.say(f"interface at {100.0 * p.ui_scale:.0f} %")
+
+        return change
+
+    def other_theme() -> None:
+        p.theme = "dark" if p.theme == "light" else "light"
+
+    return [
+        Command("Light theme", "View", other_theme, checked=lambda: p.theme == "light", separated=True),
+        Command("Larger interface", "View", sized(1), "Ctrl+Equal", enabled=lambda: p.ui_scale < SCALES[-1]),
+        Command("Smaller interface", "View", sized(-1), "Ctrl+Minus", enabled=lambda: p.ui_scale > SCALES[0]),
+        Command("Interface at 100 %", "View", sized(0), "Ctrl+0"),
     ]
 
 
@@ -296,7 +330,9 @@ def chord(key: str) -> int:
 
 def key_label(key: str) -> str:
     """A key as the user reads it."""
-    return key.replace("RightArrow", "Right").replace("LeftArrow", "Left")
+    for name, shown in (("RightArrow", "Right"), ("LeftArrow", "Left"), ("Equal", "+"), ("Minus", "-")):
+        key = key.replace(name, shown)
+    return key
 
 
 def _pressed(command: Command, modifiers: int) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -294,6 +294,15 @@ class Controller:
 
     # --- the end ---------------------------------------------------------------------------------
 
+    def reset_preferences(self, kept: Collection[str]) -> None:
+        """All settings as they were at first, but for these fields of the preferences."""
+        if self.runner.refuses():
+            return
+        self.preferences.reset(kept)
+        self.session.settings, self.session.view = self.preferences.settings(), self.preferences.chosen_view()
+        self.save_preferences()
+        self.say("settings reset")
+
     def save_preferences(self) -> None:
         error = save_preferences(self.preferences)
         if error:
@@ -307,5 +316,7 @@ class Controller:
         stopped = self.render.close(timeout)
         for job in jobs:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))
+        if self.session.scene is not None:
+            self.preferences.last = self.session.snapshot().to_json()
         self.save_preferences()
         return stopped

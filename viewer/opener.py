@@ -75,6 +75,23 @@ class Opener:
         else:
             self._c.asking.before_opening(path.name, lambda: self._load(path, None))
 
+    def go_on(self) -> bool:
+        """Open what was open when the window was last closed, as it was seen; where it has gone, only say so."""
+        last = self._c.preferences.last
+        if not last:
+            return False
+        try:
+            snapshot = Snapshot.from_json(last)
+        except ValueError as error:
+            self._c.say(f"cannot start where you left off: {error}", error=True)
+            return False
+        found = opening.find_scene(snapshot.scene, Path(snapshot.scene))
+        if found is None:
+            self._c.say(f"cannot start where you left off: the scene is gone: {snapshot.scene}", error=True)
+            return False
+        self._load(found, snapshot)
+        return True
+
     def reload(self) -> None:
         """Read the scene's file again and keep the place."""
         session = self._c.session

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,9 @@ from viewer.views import BENEATH, View
 
 SETTINGS_FILE = "settings.json"
 RECENT_SCENES = 10
+THEMES = ("dark", "light")
+SCALES = (0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0)
+"""Sizes of the interface that are offered."""
 LONGEST_SIDE = 8192
 """Pixels of a picture of fixed size."""
 LONGEST_BUDGET = 10_000.0
@@ -34,6 +37,7 @@ DEFAULT_TEMPLATE = "{scene}-{view}-{frame:04d}-{date}-{time}.png"
 # Limits of the numbers; whatever lies outside is not from this program.
 _RANGES: dict[str, tuple[float, float]] = {
     "target_fps": (1.0, 240.0),
+    "ui_scale": (0.75, 2.0),
     "speed": (0.001, 1000.0),
     "playback_rate": (0.01, 100.0),
     "fixed_width": (1, LONGEST_SIDE),
@@ -55,7 +59,8 @@ class Preferences:
     """Everything that outlives the window.  `speed` is relative to the scene's own pace, 1 by default; `method` is
     the one to cull by while `culling` is on, `certificate_ms` what certifying may take of a frame; `legend_x` and
     `legend_y` say where in the room that the picture leaves to its legend this lies, 0 to 1 from left and top;
-    `tour` says that the tour has not been shown yet."""
+    `tour` says that the tour has not been shown yet, `last` is the snapshot, as JSON, to start from where that is
+    asked for."""
 
     target_fps: float = 15.0
     dynamic_resolution: bool = True
@@ -92,6 +97,10 @@ class Preferences:
     screenshot_folder: str = ""
     screenshot_template: str = DEFAULT_TEMPLATE
     tour: bool = True
+    theme: str = "dark"
+    ui_scale: float = 1.0
+    start_where_left: bool = False
+    last: dict = field(default_factory=dict)
     recent: list[str] = field(default_factory=list)
     bookmarks: dict[str, list[dict]] = field(default_factory=dict)
 
@@ -116,6 +125,12 @@ class Preferences:
 
     def chosen_view(self) -> View:
         return View(self.view) if self.view in set(View) else View.COLOR
+
+    def reset(self, kept: Collection[str]) -> None:
+        """Everything as it was at first, but for these fields."""
+        for item in fields(self):
+            if item.name not in kept:
+                setattr(self, item.name, getattr(Preferences(), item.name))
 
     def remember_scene(self, path: Path) -> None:
         """Put a scene at the head of the recent ones."""
@@ -189,6 +204,8 @@ def _checked(name: str, value: Any, default: Any) -> Any:
         return type(default)(value)
     if name == "method":
         return value if isinstance(value, str) and is_method(value) and value != "none" else default
+    if name == "theme":
+        return value if value in THEMES else default
     if name == "recent":
         return [v for v in value if isinstance(v, str)][:RECENT_SCENES] if isinstance(value, list) else default
     if name == "bookmarks":

@@ -741,6 +741,65 @@ def closing_panels(d: Driver) -> None:
     assert docked is not None and imgui.internal.find_window_by_name("Camera").dock_id == docked.id_
 
 
+def looks(d: Driver) -> None:
+    """Theme and size of the interface change at once and are kept; settings are reset when the user agrees."""
+    d.settle()
+    p, small = d.c.preferences, imgui.get_font_size()
+    d.c.keeper.add_bookmark("here")
+
+    def brightness() -> float:
+        """Of the window where nothing is drawn: the menu bar's right end."""
+        got: list[np.ndarray] = []
+        size = glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui())
+        d._in_frame.append(lambda: got.append(d.ui.display.read_window(*size)))
+        d.wait(lambda: bool(got), "the window to be read")
+        return float(got[0][6, -40:].mean())
+
+    assert brightness() < 60.0
+    d.context.menu_click("//##MainMenuBar/View/Light theme")
+    d.frames(4)
+    assert p.theme == "light" and brightness() > 200.0
+    for _ in range(3):
+        d.press(int(KEY.equal) | int(KEY.mod_ctrl))
+    d.frames(4)
+    assert p.ui_scale == 1.5 and abs(imgui.get_font_size() - 1.5 * small) <= 1.0
+    d.press(int(KEY._0) | int(KEY.mod_ctrl))
+    d.frames(4)
+    assert p.ui_scale == 1.0 and imgui.get_font_size() == small and d.c.session.view is View.COLOR
+    d.press(int(KEY.minus) | int(KEY.mod_ctrl))
+    d.press(KEY._4)
+    for answer, after in (("Keep them", "light"), ("Reset", "dark")):
+        d.context.menu_click("//##MainMenuBar/File/Reset settings...")
+        d.frames(3)
+        d.context.item_click(f"//Reset all settings?###question/{answer}")
+        d.frames(4)
+        assert p.theme == after
+    assert p.ui_scale == 1.0 and d.c.session.view is View.COLOR and brightness() < 60.0
+    assert p.recent and d.c.keeper.bookmarks[0]["name"] == "here"
+    d.c.asking.before_resetting()
+    d.frames(3)
+    d.context.item_click("//Reset all settings?###question/Forget bookmarks as well")
+    d.context.item_click("//Reset all settings?###question/Reset")
+    d.frames(3)
+    assert not d.c.keeper.bookmarks and p.recent
+
+    # What is open now is where the next start may begin; a scene that has gone since is told of.
+    d.context.menu_click("//##MainMenuBar/File/Start where I left off")
+    d.hold(KEY.d, 0.2)
+    d.settle()
+    camera, path = d.c.session.camera, d.c.session.scene.path
+    p.last = d.c.session.snapshot().to_json()
+    d.press(KEY.r)
+    assert p.start_where_left and d.c.session.camera != camera
+    assert d.c.opener.go_on()
+    d.wait(lambda: d.c.session.camera == camera, "the place that was left")
+    assert d.c.session.scene.path == path
+    d.settle()
+    p.last = p.last | {"scene": str(d.folder / "gone.aff")}
+    assert not d.c.opener.go_on() and "the scene is gone" in d.c.message.text
+    d.settle()
+
+
 def cancelling(d: Driver) -> None:
     """A load that is cancelled leaves the open scene as it is."""
     d.settle()

@@ -10,7 +10,7 @@ from viewer.panels.widgets import em
 from viewer.ui import Ui
 
 _WIDTH, _LEAST = 26.0, 8.0  # in ems: of the note, and of a picture that has room for one
-_BACK = ImVec4(0.05, 0.06, 0.08, 0.86)
+_BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.86), ImVec4(0.93, 0.94, 0.96, 1.0)
 
 
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
@@ -28,7 +28,7 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     flags = imgui.ChildFlags_.auto_resize_y | imgui.ChildFlags_.always_use_window_padding
     if imgui.begin_child("missing", ImVec2(width, 0.0), int(flags)):
         imgui.push_text_wrap_pos(0.0)
-        imgui.text_unformatted(found.text)
+        imgui.text_colored(_FRONT, found.text)
         imgui.pop_text_wrap_pos()
         if found.base and c.runner.current is None and imgui.button(f"Use {found.base}##instead"):
             c.change(method=with_base(c.session.settings.method, found.base))

@@ -12,8 +12,9 @@ import math
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer import navigation
+from viewer.palette import ON_PICTURE_ERROR
 from viewer.panels import explanation, legend, missing, timeline, wipe
-from viewer.panels.widgets import ERROR, QUIET, count, em, paragraph
+from viewer.panels.widgets import QUIET, count, em, paragraph
 from viewer.picking import point_at
 from viewer.ui import Ui
 
@@ -182,5 +183,5 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     draw.add_rect_filled(corner, lower, back, em(0.3))
     draw.add_text(ImVec2(corner.x + 1.5 * pad, corner.y + pad), front, text)
     if counter:
-        color = imgui.get_color_u32(ERROR) if shadow.wrong else front
+        color = imgui.get_color_u32(ON_PICTURE_ERROR) if shadow.wrong else front
         draw.add_text(ImVec2(corner.x + 1.5 * pad + imgui.calc_text_size(text).x, corner.y + pad), color, counter)

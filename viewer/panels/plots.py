@@ -6,33 +6,25 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from numpy.typing import NDArray
 
+from viewer.palette import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
 from viewer.panels.widgets import QUIET, checkbox, count, em, paragraph
 from viewer.ui import Ui
-
-_BLUE, _GREEN, _ORANGE, _SKY, _PINK, _YELLOW = (
-    ImVec4(0.25, 0.56, 0.86, 1.0),
-    ImVec4(0.0, 0.72, 0.53, 1.0),
-    ImVec4(0.93, 0.64, 0.10, 1.0),
-    ImVec4(0.55, 0.78, 0.95, 1.0),
-    ImVec4(0.86, 0.53, 0.72, 1.0),
-    ImVec4(0.94, 0.89, 0.26, 1.0),
-)
 
 _FATES = "What became of shadow rays"
 _LOGARITHMIC = "Milliseconds"
 _PLOTS = (
-    (_FATES, (("culled", "culled", _BLUE), ("moving objects", "dynamic_only", _YELLOW),
-              ("candidates", "candidates_only", _ORANGE), ("cache", "cache_hits", _PINK),
-              ("traced", "traced", ImVec4(0.55, 0.58, 0.64, 1.0)))),
-    ("Steps and tests", (("steps", "steps", _BLUE), ("steps for shadows", "shadow_steps", _SKY),
-                         ("tests", "tests", _ORANGE))),
-    (_LOGARITHMIC, (("tracing", "traced_ms", _BLUE), ("drawing", "drawn_ms", _ORANGE))),
+    (_FATES, (("culled", "culled", BLUE), ("moving objects", "dynamic_only", YELLOW),
+              ("candidates", "candidates_only", ORANGE), ("cache", "cache_hits", PINK),
+              ("traced", "traced", GREY))),
+    ("Steps and tests", (("steps", "steps", BLUE), ("steps for shadows", "shadow_steps", SKY),
+                         ("tests", "tests", ORANGE))),
+    (_LOGARITHMIC, (("tracing", "traced_ms", BLUE), ("drawing", "drawn_ms", ORANGE))),
 )  # fmt: skip
 _SHARES = (0.44, 0.31, 0.25)  # of the panel's width: the first legend is the longest
 FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
 AXIS = int(implot.AxisFlags_.no_highlight)
 LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
-COLORS = (_BLUE, _ORANGE, _GREEN, _SKY, _PINK, _YELLOW)
+COLORS = (BLUE, ORANGE, GREEN, SKY, PINK, YELLOW)
 
 
 def wrong_axis(most: int, condition: int) -> None:

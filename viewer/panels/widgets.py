@@ -11,11 +11,11 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.numbers import count as count
 from viewer.numbers import percent as percent
+from viewer.palette import ERROR as ERROR
+from viewer.palette import GOOD as GOOD
+from viewer.palette import QUIET as QUIET
+from viewer.palette import WARNING as WARNING
 
-WARNING = ImVec4(0.96, 0.74, 0.31, 1.0)
-ERROR = ImVec4(1.0, 0.47, 0.42, 1.0)
-QUIET = ImVec4(0.62, 0.65, 0.70, 1.0)
-GOOD = ImVec4(0.36, 0.80, 0.64, 1.0)
 _LABELS = 0.45  # of a panel's width, at most, is for the names of what is in it
 SIZES = ((128, 128), (256, 256), (512, 512), (800, 600), (1024, 1024), (1280, 720), (1920, 1080))
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from imgui_bundle import ImVec2, ImVec4, imgui, implot
+from imgui_bundle import ImVec2, imgui, implot
 
 from tracer.zoom import Approach, Results, Step
+from viewer.palette import MARK
 from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
 from viewer.panels.runs import export_buttons, side_by_side, start_or_progress
 from viewer.panels.widgets import (
@@ -29,7 +30,6 @@ from viewer.ui import Ui
 
 _NARROWEST = 15.0  # ems of a plot that stands beside another
 _GO_THERE = "go there: traced at the window's size with the window's modes, so that the wrong pixels need not be there"
-_MARK = ImVec4(0.95, 0.96, 0.98, 1.0)
 
 
 def show(ui: Ui) -> None:
@@ -151,8 +151,8 @@ def _plot(test: ZoomTest, approaches: list[Approach], approach: Approach, name: 
     implot.plot_stairs("limit", numbers, limits, implot.Spec(line_color=COLORS[2], line_weight=1.4))
     implot.plot_line("pixels", numbers, pixels, implot.Spec(line_color=COLORS[0], line_weight=1.8))
     changed = np.array([step.number for step in steps if step.changes], np.float64)
-    mark = implot.Spec(marker=int(implot.Marker_.diamond), marker_size=em(0.24), marker_fill_color=_MARK,
-                       marker_line_color=_MARK)  # fmt: skip
+    mark = implot.Spec(marker=int(implot.Marker_.diamond), marker_size=em(0.24), marker_fill_color=MARK,
+                       marker_line_color=MARK)  # fmt: skip
     implot.plot_scatter("modes", changed, pixels[changed.astype(int)], mark)
     if implot.is_plot_hovered():
         _explain(steps, implot.get_plot_mouse_pos().x)
