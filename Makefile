@@ -17,7 +17,7 @@ export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
 export MPLCONFIGDIR := $(CURDIR)/.cache/matplotlib
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run test golden bench frames counters window memory growth lint format lock clean distclean help
+.PHONY: run test golden bench frames quickest counters window memory growth lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -39,6 +39,10 @@ bench:  ## hold ray rates and frames against Embree's (ARGS="--quick SCENE ...")
 frames:  ## time frames with and without culling, phase by phase (ARGS="--frames 10 SCENE ...")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.frame_times $(ARGS)
+
+quickest:  ## hold frames by `auto` against those by `none`, fifty at a time (ARGS="--frames 100 SCENE ...")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.quickest $(ARGS)
 
 counters:  ## time frames with and without counters of steps and tests (ARGS="--frames 10 SCENE")
 	@tools/environment.sh dev

@@ -66,7 +66,7 @@ def explain(renderer: Renderer, frame: Frame, x: int, y: int) -> tuple[Explanati
     met = np.full(len(lights), -1)
     reach = np.zeros(len(lights))
     met[asked], reach[asked] = hits.primitive, hits.t
-    certificates = getattr(renderer, "certificates", None)
+    certificates = getattr(renderer, "certificates", None) if getattr(renderer, "certificates_hold", True) else None
     explanations = []
     for light in range(len(lights)):
         certificate = NO_CERTIFICATE

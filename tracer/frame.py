@@ -23,6 +23,7 @@ class Settings:
 
     `method` is "none", "paper" or "cells", which is the paper's with cells of large triangles for primitives
     (`tracer.culling.cells`); `symmetric` and `zoom_factor` belong to the latter two (§2.3, §2.6).
+    "auto" is whichever of "none" and "certified" it measures to be quicker (`tracer.investor`).
     `verify` traces each culled answer too, counts the wrong ones, and fills Frame.reference and
     Frame.wrong.  `samples` rays a pixel are averaged; all modes and statistics are those of the
     first, through the pixel's centre.
@@ -35,7 +36,8 @@ class Settings:
 
     In a frame of method "certified" at most so many `certificates` are made, in at most so many
     `certificate_seconds` (which leaves it to chance how many: inf for counters that repeat exactly), of which a quarter
-    at least is left for making them.  They take about `certificate_memory` megabytes at most.
+    at least is left for making them.  "auto" takes no more than that, and no more than they are worth; unless it is
+    `patient`, as nobody waits for the frame.  They take about `certificate_memory` megabytes at most.
     """
 
     width: int = 512
@@ -53,6 +55,7 @@ class Settings:
     record_work: bool = False
     certificates: int = 100_000
     certificate_seconds: float = math.inf
+    patient: bool = False
     certificate_memory: float = 256.0
 
     @property

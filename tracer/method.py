@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-BASES = ("none", "paper", "cells", "certified")
+BASES = ("none", "paper", "cells", "certified", "auto")
 EXTRAS = ("cache", "rest")
 _BY_MODES = ("paper", "cells")
 

@@ -29,6 +29,7 @@ from tracer.culling.shadow import Knowledge
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import Pinhole, pinhole
 from tracer.geometry.world import World
+from tracer.investor import Investor, Plan, Trial
 from tracer.method import base_of, culls_by_modes, takes
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
@@ -50,12 +51,14 @@ from tracer.shading.whitted import (
 from tracer.statistics import gather
 
 FEW = 4  # pixels of a block, at most, that are shaded in larger tiles
+GOLDEN = 0.618033988749895  # steps of it visit all tiles evenly
 FILLED = 8  # rows of blocks that a thread fills in at a time
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
 SHARES, SHARE = 8, 6  # of all tiles that each thread takes to look for what is wanted; tiles of one, at least
 SEEKING = 0.5  # of the time for certificates, at most, is spent on looking for what primary hits want
 # What certifying is worth, by what a shadow ray costs: some 250 ns, and 50.
+PRICE = 2.5e-6  # seconds, about, that setting certificates up takes for each primitive, on one thread
 EFFORT = {"kdtree": Effort(4, 12, 6, 48, True, 4), "bvh8": Effort(8, 32, 0, 48, False, 16)}
 Cancel = Callable[[], bool] | None
 
@@ -84,7 +87,10 @@ class Renderer:
         self._first_units = {False: primitives_are_units()}
         self._workspaces: list[Workspace] = []
         self.certificates: Certificates | None = None
+        self.certificates_hold = False  # whether they have followed what moved into the last frame
+        self._investor: Investor | None = None
         self._cache: OccluderCache | None = None
+        self.next_trial = 0  # of the tiles that are shaded both ways
         self._turn = 0
         self._planes: tuple[tuple[int, int], Planes] | None = None
 
@@ -92,7 +98,7 @@ class Renderer:
         """Forget all modes, at every resolution, all certificates and all occluders."""
         self._memories.clear()
         self._cache = None
-        self.certificates = None
+        self.certificates = self._investor = None
 
     def render(self, time: float = 0.0, camera: Camera | None = None, cancel: Cancel = None) -> Frame:
         """The frame at `time` seconds; the scene's own camera where none is given.
@@ -207,6 +213,15 @@ class Renderer:
         bounces = (materials[:, SHINE] > 0.0).any() or (materials[:, TRANSMISSION] > 0.0).any()
         return effort if effort.dear or bounces else effort._replace(asked=0)
 
+    def _invests(self, settings: Settings) -> Investor | None:
+        """Who decides for the method "auto"; nobody for others."""
+        if base_of(settings.method) != "auto":
+            return None
+        if self._investor is None:
+            price = PRICE * len(self.world.object_of) / min(2, thread_count(settings.threads))
+            self._investor = Investor(price, self._effort().dear)
+        return self._investor
+
     def _first(self, settings: Settings) -> np.ndarray:
         """The first unit of each primitive (`tracer.culling.cells`)."""
         if _has_cells(settings) and True not in self._first_units:
@@ -247,14 +262,27 @@ class UnfinishedFrame:
         self._words_seen: np.ndarray | None = None
         self._wanted = nothing_wanted()
         self._base = base_of(settings.method)
+        self._trials: list[Trial] = []
+        self._investor = renderer._invests(settings)
+        self._tiles = self._tiles_of(TILE)
+        self._plan = self._planned()
         self._certifying = np.zeros(CERTIFYING, np.int64)
         self._rays = pinhole(camera, settings.width, settings.height)
         self._in_parts, self._lanes = in_parts, 0
         self._buffers = self._empty_buffers(in_parts)
         self._words: np.ndarray | None = None  # those to shade further samples by
         self._units = np.empty_like(self._buffers.primitive) if _has_cells(settings) else self._buffers.primitive
-        self._tiles = self._tiles_of(TILE)
         self._focus: tuple[float, float] | None = None
+
+    def _planned(self) -> Plan:
+        """What this frame does about certificates."""
+        settings, investor = self._settings, self._investor
+        if investor is None:
+            return Plan(True, settings.certificate_seconds) if self._base == "certified" else Plan()
+        plan = investor.plan(len(self._tiles), settings.certificate_seconds if settings.patient else 0.0)
+        counts_all = settings.verify or settings.record_work
+        seconds = min(plan.seconds, settings.certificate_seconds)
+        return replace(plan, seconds=seconds, trials=0 if counts_all else plan.trials)
 
     def _tiles_of(self, side: int) -> list[tuple[int, int, int, int]]:
         """Left, top, right and bottom of the squares that make the picture."""
@@ -318,6 +346,26 @@ class UnfinishedFrame:
             self.cache.discard_found()
         if self._certificates is not None and self._lanes:
             self._certificates.left = [self._wanted]
+        if self._lanes:
+            self._settle()
+
+    def _settle(self) -> None:
+        """Tell who invests what this frame has cost."""
+        if self._investor is None:
+            return
+        others = sum(trial.plain if self._plan.looks_up else trial.told for trial in self._trials) / self._workers
+        self._investor.spend(others, trying=True)
+        seconds, shading = clock.perf_counter() - self._started, self._phases.get("shading", 0.0)
+        self._investor.finish(seconds, max(0.0, shading - others), self._trials, free=self._settings.patient)
+        self._trials = []
+
+    @contextmanager
+    def _invested(self) -> Iterator[None]:
+        """What takes time for certificates, which who invests must know."""
+        start = clock.perf_counter()
+        yield
+        if self._investor is not None:
+            self._investor.spend(clock.perf_counter() - start)
 
     def _empty_buffers(self, in_parts: bool = False) -> Buffers:
         width, height = self._settings.width, self._settings.height
@@ -336,7 +384,7 @@ class UnfinishedFrame:
             lit=np.zeros((rows, lights), np.bool_),
             reference=np.zeros((verified, 3), np.float32),
             wrong=np.zeros(verified, np.int32),
-            cell=np.zeros(width * height if self._base == "certified" else 0, np.int32),
+            cell=np.zeros(width * height if self._plan.needs_certificates else 0, np.int32),
             saved=np.zeros(worked, np.int32),
             cost=np.zeros(worked, np.int32),
             due_rays=np.zeros(worked, np.int32),
@@ -358,9 +406,10 @@ class UnfinishedFrame:
         object that has come to rest, or rests no longer."""
         renderer = self._renderer
         world, rest, lights = renderer.world, renderer.rest, renderer._look.lights
-        certified = self._base == "certified"
+        certified = self._plan.needs_certificates
+        follows = self._investor is not None and renderer.certificates is not None
         beside = self._settings.modes and not culls_by_modes(self._settings.method)
-        if certified or beside or takes(self._settings.method, "rest"):
+        if certified or follows or beside or takes(self._settings.method, "rest"):
             world.place(self._time, rest)
         else:
             rest.forget()
@@ -368,11 +417,20 @@ class UnfinishedFrame:
         lights[:] = light_positions(renderer.scene, self._time)
         self.memory.follow_lights(lights)
         self.memory.follow_rest(rest.now, world.outlines, self._workers)
+        renderer.certificates_hold = certified
         if certified:
-            if renderer.certificates is None:
-                renderer.certificates = Certificates(world, len(lights), self._workers, renderer._effort())
-            self._certificates = renderer.certificates
-            self._certificates.follow(lights, rest.now, self._workers)
+            with self._invested():
+                self._follow_certificates(lights)
+
+    def _follow_certificates(self, lights: np.ndarray) -> None:
+        """Drop the certificates that no longer hold; set them up, where there are none."""
+        renderer = self._renderer
+        if renderer.certificates is None:
+            renderer.certificates = Certificates(renderer.world, len(lights), self._workers, renderer._effort())
+            if self._investor is not None:
+                self._investor.made_ready()
+        self._certificates = renderer.certificates
+        self._certificates.follow(lights, renderer.rest.now, self._workers)
 
     def trace_primary_rays(self) -> None:
         """What does each pixel see?"""
@@ -406,7 +464,13 @@ class UnfinishedFrame:
         certificates = self._certificates
         if certificates is None:
             return
-        start, seconds = clock.perf_counter(), self._settings.certificate_seconds
+        if self._investor is None or self._plan.seconds > 0.0:
+            with self._invested():
+                self._certify(certificates)
+        self._wanted = certificates.wanted(len(self._tiles))
+
+    def _certify(self, certificates: Certificates) -> None:
+        start, seconds = clock.perf_counter(), self._plan.seconds
         sought, lights = certificates.wanted(len(self._tiles)), self._renderer._look.lights
         tiles = np.array(self._tiles)
         certified = certificates.told(nothing_wanted(), len(tiles))
@@ -424,7 +488,6 @@ class UnfinishedFrame:
         budget = Budget(self._settings.certificates, start + seconds)
         wanted, certificates.left = [sought, *certificates.left], []
         self._certifying = certificates.certify(wanted, budget, certificates.effort, self._cancel)
-        self._wanted = certificates.wanted(len(self._tiles))
 
     def see_surfaces(self) -> None:
         """What do all primary hits look like before any shadow ray is traced?"""
@@ -432,7 +495,7 @@ class UnfinishedFrame:
         nothing = nothing_wanted()
 
         def work(number: int, tile: tuple[int, int, int, int], worker: int) -> None:
-            knowledge = self._knowledge(worker, nothing, learns=False)
+            knowledge = self._knowledge(worker, nothing, self._plan.looks_up, learns=False)
             see_surfaces(placed, look, rays, tile, knowledge, buffers, self._spaces[worker])
 
         self._for_each_tile(work)
@@ -450,16 +513,17 @@ class UnfinishedFrame:
             return _NOT_CERTIFIED[self.memory.words.dtype.itemsize]
         return certificates.told(wanted, len(self._tiles))
 
-    def _knowledge(self, worker: int, wanted: Wanted, learns: bool) -> Knowledge:
-        """What culling goes by, and where it says what it wants; the cache `learns` in a pixel's first sample alone."""
-        memory, certificates = self.memory, self._certificates
+    def _knowledge(self, worker: int, wanted: Wanted, looks_up: bool, learns: bool) -> Knowledge:
+        """What culling goes by, certificates where it is to look them up, and where it says what it wants; the cache
+        `learns` in a pixel's first sample alone."""
+        memory, certificates = self.memory, self._certificates if looks_up else None
         words = self._words if self._words is not None else memory.words
         return Knowledge(
             words if certificates is None else certificates.cells.words,
             words,
             memory.gained[worker],
             first=self._first,
-            cull=self._base != "none",
+            cull=certificates is not None or culls_by_modes(self._settings.method),
             learn=self._settings.keeps_modes,
             verify=self._settings.verify,
             certify=certificates is not None,
@@ -474,12 +538,42 @@ class UnfinishedFrame:
         spaces, wanted = self._spaces, self._wanted
         told = [Wanted(*(a[tile] for a in wanted)) if len(wanted.key) else wanted for tile in range(len(self._tiles))]
 
-        def work(number: int, tile: tuple[int, int, int, int], worker: int) -> None:
-            knowledge = self._knowledge(worker, told[number], learns=first)
-            shade_tile(placed, look, rays, tile, lanes, depth, knowledge, buffers, counts[worker], spaces[worker])
-
         # Of larger tiles where few of their pixels are shaded, lest packets of rays remain half empty.
-        self._for_each_tile(work, TILE if lanes.bit_count() > FEW else 2 * TILE)
+        side = TILE if lanes.bit_count() > FEW else 2 * TILE
+        tried = self._tried(side) if first and not self._lanes else frozenset()
+
+        def work(number: int, tile: tuple[int, int, int, int], worker: int) -> None:
+            def shade(looks_up: bool, counts: np.ndarray) -> None:
+                knowledge = self._knowledge(worker, told[number], looks_up, learns=first)
+                shade_tile(placed, look, rays, tile, lanes, depth, knowledge, buffers, counts, spaces[worker])
+
+            if number in tried:
+                self._try(shade, counts[worker], number % 2 == 0)
+            else:
+                shade(self._plan.looks_up, counts[worker])
+
+        self._for_each_tile(work, side)
+
+    def _tried(self, side: int) -> frozenset[int]:
+        """Numbers of the tiles that are shaded both ways: others in each frame."""
+        count, first = len(self._tiles_of(side)), self._renderer.next_trial
+        self._renderer.next_trial += self._plan.trials
+        return frozenset(int((first + k) * GOLDEN % 1.0 * count) for k in range(self._plan.trials))
+
+    def _try(self, shade: Callable[[bool, np.ndarray], None], counts: np.ndarray, plain_first: bool) -> None:
+        """Shade a tile both ways, one after the other, and note what each took; the picture is the same.
+
+        Of what is counted only that of the way that the whole frame is shaded in is kept."""
+        seconds, counted = {}, {}
+        for looks_up in (False, True) if plain_first else (True, False):
+            counted[looks_up] = np.zeros_like(counts)
+            start = clock.thread_time()
+            shade(looks_up, counted[looks_up])
+            seconds[looks_up] = clock.thread_time() - start
+        counts += counted[self._plan.looks_up]
+        told = gather(counted[True][None], 0, 0).shadow
+        known = told.culled + told.dynamic_only + told.candidates_only
+        self._trials.append(Trial(seconds[False], seconds[True], told.due, known))
 
     def add_sample(self, number: int) -> None:
         """Mix in a further sample of each pixel, placed by the R2 sequence; it uses modes but counts nothing."""
@@ -525,13 +619,15 @@ class UnfinishedFrame:
         else:
             memory.discard_frame()
         if self._certificates is not None:
-            self._words_seen = self._certificates.at_pixels(self._buffers.cell)  # cells may get other numbers now
+            cell = self._buffers.cell
+            if self._plan.looks_up:
+                self._words_seen = self._certificates.at_pixels(cell)  # cells may get other numbers now
             self._certificates.left = [self._wanted]
-            self._certificates.keep_within(1e6 * self._settings.certificate_memory, self._buffers.cell)
+            self._certificates.keep_within(1e6 * self._settings.certificate_memory, cell)
 
     def _cells_seen(self) -> np.ndarray | None:
         """The cell at each pixel, -1 for none, where the method has such."""
-        if self._certificates is not None:
+        if self._plan.looks_up:
             cell = self._buffers.cell.reshape(self._buffers.primitive.shape)
             return np.where(cell > 0, cell, np.int32(-1))
         return self._units if _has_cells(self._settings) else None
@@ -547,7 +643,7 @@ class UnfinishedFrame:
 
         with self.phase("filling"):
             for_each_chunk(fill, -(-rows // FILLED), self._workers, self._cancel)
-        if self._certificates is not None:
+        if self._certificates is not None and self._plan.looks_up:
             self._words_seen = self._certificates.at_pixels(buffers.cell)
         frame, shape = self._frame(), buffers.primitive.shape
         frame.color = color.reshape(*shape, 3)
@@ -572,6 +668,7 @@ class UnfinishedFrame:
         frame = self._frame()
         if self._certificates is not None:
             self._certificates.finish_frame(frame.statistics.certificates, frame.statistics.shadow.due)
+        self._settle()
         return frame
 
     def _frame(self) -> Frame:
@@ -579,6 +676,7 @@ class UnfinishedFrame:
         shape = buffers.primitive.shape
         lights = len(self._renderer.scene.lights)
         statistics = gather(self._counts, int(self._occlusion_tests.sum()), lights if self._settings.keeps_modes else 0)
+        statistics.decision = "" if self._investor is None else self._investor.reason
         statistics.part = self._lanes.bit_count() / TURNS
         statistics.phases = self._phases
         statistics.certificates = int(self._certifying[CERTIFICATES])

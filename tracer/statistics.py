@@ -52,7 +52,7 @@ class FrameStatistics:
     `by_modes` is what modes, as the last frame left them, say of the shadow rays of each light that has modes; nothing
     where none are kept.  `certificates` is how many were made after it, with so many steps through a tree and tests of
     triangles.  `part` is the part of the pixels that were shaded: below 1, shadow and secondary rays are those of that
-    part alone."""
+    part alone.  `decision` is what the method `auto` does now, and why, in a sentence."""
 
     primary: RayCounts = field(default_factory=RayCounts)
     secondary: RayCounts = field(default_factory=RayCounts)
@@ -62,6 +62,7 @@ class FrameStatistics:
     certificate_steps: int = 0
     certificate_tests: int = 0
     part: float = 1.0
+    decision: str = ""
     seconds: float = 0.0
     by_modes: list[SaidByModes] = field(default_factory=list)
     phases: dict[str, float] = field(default_factory=dict)

@@ -141,7 +141,8 @@ def _picture_instead(scene: str | None) -> int:
     say(f"{no_display_reason()}; rendering to a file instead")
     PICTURE.parent.mkdir(exist_ok=True)
     where = ["--frame", "12", "--warmup", "12"] if scene is None else ["--warmup", "8"]
-    return _render([scene or resources.DEFAULT_SCENE, "-o", str(PICTURE.absolute()), "--size", "640x480", *where])
+    where += ["--size", "640x480", "--method", "certified"]  # of which there is most to tell
+    return _render([scene or resources.DEFAULT_SCENE, "-o", str(PICTURE.absolute()), *where])
 
 
 def _render(arguments: list[str]) -> int:
@@ -159,10 +160,9 @@ def _render(arguments: list[str]) -> int:
     add(
         "--method",
         type=method,
-        default="paper",
         metavar="M",
-        help="how shadow rays are culled: none, paper, cells or certified, and what that takes along, like "
-        "certified+cache or cells+rest (default: paper)",
+        help="how shadow rays are culled: none, paper, cells, certified or auto, and what that takes along, like "
+        "certified+cache or cells+rest (default: auto; where a view shows nothing of that, paper or certified)",
     )
     add(
         "--view",
@@ -209,7 +209,7 @@ def _bench(arguments: list[str]) -> int:
         type=lambda text: [name.strip() for name in text.split(",")],
         default=["paper"],
         metavar="M,...",
-        help="like none,paper,cells,certified,certified+cache; none is always among them (default: paper)",
+        help="like none,paper,cells,certified,certified+cache,auto; none is always among them (default: paper)",
     )
     add("--path-frames", type=count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
     add("--frames", metavar="A:B", help="only the frames A to B - 1 of the path")

@@ -135,7 +135,8 @@ def print_table(table: Table) -> None:
 
 def statistics_table(statistics: FrameStatistics, title: str, verified: bool = False) -> Table:
     """The counters of a frame, primary, secondary and shadow rays apart; wrong answers where it was verified."""
-    table = Table(title=title, title_justify="left", title_style="bold")
+    table = Table(title=title, title_justify="left", title_style="bold", caption=statistics.decision or None)
+    table.caption_justify = "left"
     table.add_column("")
     for name in ("primary", "secondary", "shadow"):
         table.add_column(name, justify="right")

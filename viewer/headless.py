@@ -30,6 +30,7 @@ from viewer.console import Work, print_table, statistics_table, working
 from viewer.legend import Chosen, legend_of
 from viewer.legend_picture import with_legend
 from viewer.lines import say
+from viewer.methods import default_for
 from viewer.outputs import check_writable, write_whole
 from viewer.pictures import lights_in_words, picture
 from viewer.session import Session
@@ -60,7 +61,7 @@ def render(path: Path, options: Namespace) -> None:
     """Trace one frame and write it; raises SceneError, ValueError and OSError in one line, or Cancelled."""
     view, light = options.view.view, options.view.light
     modes = view.of_modes or options.buffers is not None
-    settings = replace(tracing_settings(options), method=options.method, modes=modes)
+    settings = replace(tracing_settings(options), method=options.method or default_for(view), modes=modes)
     _check_outputs(options.output, options.buffers)
     if view is View.CERTIFICATE and base_of(settings.method) != "certified":
         raise ValueError(f"--view certificate: the method {settings.method} makes none; give --method certified")

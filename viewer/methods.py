@@ -5,21 +5,30 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tracer.method import BASES, EXTRAS, base_of, takes
+from viewer.views import View
 
-DEFAULT = "certified"
-"""What the window traces with until another method is chosen."""
+DEFAULT = "auto"
+"""What the window and `render` trace with until another method is chosen."""
 
 BASES_TOLD = {
     "none": "no culling: every shadow ray is traced",
     "paper": "the paper's method: what shadow rays of whole primitives met in the frames before",
     "cells": "the paper's method on virtual cells of large triangles",
     "certified": "what is proven of virtual cells: never a wrong answer",
+    "auto": "none or certified, whichever is measured to be quicker: never a wrong answer",
 }
 
 EXTRAS_TOLD = {
     "cache": ("Occluder cache", "test first what blocked the light there before"),
     "rest": ("Objects at rest are static", "what could move but does not move now counts as static until it does"),
 }
+
+
+def default_for(view: View) -> str:
+    """The method for one picture in a view: the default one, or one that has something to show there."""
+    if view is View.CERTIFICATE:
+        return "certified"
+    return "paper" if view.needs_verify else DEFAULT
 
 
 def named(base: str, extras: Iterable[str]) -> str:

@@ -22,7 +22,8 @@ def missing(view: View, frame: Frame) -> Missing | None:
     """What to say over a frame in this view; None where there is something to see, or soon will be."""
     method = frame.settings.method
     if view is View.CERTIFICATE and not view.can_draw(frame):
-        return Missing(f"The method {base_of(method)} makes no certificates; certified does.", "certified")
+        why = frame.statistics.decision or f"The method {base_of(method)} makes no certificates; certified does."
+        return Missing(why, "certified")
     if view.needs_verify and not culls_by_modes(method):
         why = "traces every shadow ray" if base_of(method) == "none" else "is exact"
         text = f"The method {base_of(method)} {why}: no answer can be wrong. The paper's method errs now and then."

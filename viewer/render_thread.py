@@ -235,7 +235,8 @@ class RenderThread:
             if reset:
                 renderer.reset_modes()
             seconds = max(request.settings.certificate_seconds, request.patience)
-            renderer.settings = replace(request.settings, certificate_seconds=seconds)
+            patient = request.patience > 0.0
+            renderer.settings = replace(request.settings, certificate_seconds=seconds, patient=patient)
             frame = renderer.render(request.time, request.camera, lambda: self._cancel)
         except Cancelled:
             pass

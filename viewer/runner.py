@@ -14,7 +14,6 @@ from tracer.scene.model import Progress
 from tracer.zoom import Step
 from viewer import exports
 from viewer.jobs import Job
-from viewer.methods import DEFAULT
 from viewer.preferences import default_screenshot_folder
 from viewer.render_thread import RenderRequest, Traced
 from viewer.runs import Experiment, ExperimentPlan, Run, ZoomPlan, ZoomTest, duration
@@ -28,7 +27,7 @@ class Runner:
 
     def __init__(self, controller: Controller) -> None:
         self._c = controller
-        self.experiment_plan = ExperimentPlan({"paper", DEFAULT})
+        self.experiment_plan = ExperimentPlan({"paper", "certified"})
         self.zoom_plan = ZoomPlan()
         self.experiment: Experiment | None = None
         self.zoom_test: ZoomTest | None = None

@@ -21,7 +21,7 @@ from viewer.views import View
 # Settings that say how a frame was asked for, not what the user chose; those of this machine and of the open scene.
 _NOT_RESTORED = {
     "width", "height", "threads", "accelerator", "modes", "record_lights", "record_work", "certificates",
-    "certificate_seconds",
+    "certificate_seconds", "patient",
 }  # fmt: skip
 
 

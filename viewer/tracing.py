@@ -11,7 +11,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from tracer.frame import Frame, Settings
-from tracer.method import base_of, certifies
+from tracer.method import certifies
 from viewer.methods import with_base
 from viewer.render_thread import RenderRequest, Traced
 from viewer.resolution import ResolutionControl, divided
@@ -90,7 +90,7 @@ class Tracing:
         learns = request.divisor == 1 and request.settings.samples == 1
         if learns and view != self._settled:
             self._settled = view
-            self._lessons = LESSONS if base_of(seen.method) == "certified" else 1
+            self._lessons = LESSONS if certifies(seen.method) else 1
         elif frame.statistics.certificates == 0:
             self._lessons = 0
         if self._c.preferences.keep_tracing or (learns and self._lessons > 0):
@@ -226,5 +226,6 @@ def _as_asked(settings: Settings, asked: Settings) -> Settings:
         verify=asked.verify,
         record_work=asked.record_work,
         modes=asked.modes,
+        patient=asked.patient,
         certificate_seconds=asked.certificate_seconds,
     )

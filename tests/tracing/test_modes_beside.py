@@ -21,7 +21,7 @@ from tracer.culling.modes import FULLY_RENDERED, occlusion_mode
 from tracer.geometry.world import ACCELERATORS
 from tracer.scene.model import Camera
 
-BESIDE = ("none", "certified", "certified+cache", "none+cache+rest")
+BESIDE = ("none", "certified", "certified+cache", "none+cache+rest", "auto")
 PAPER = "paper+rest"
 
 

@@ -47,6 +47,7 @@ class Desk:
         ("none", [0] * 20, 2),
         ("paper", [0] * 20, 2),
         ("certified", [0] * 20, 2),
+        ("auto", [0, 9, 0, 0], 3),
         ("certified", [9, 9, 9, 0, 0, 0], 4),
         ("certified+cache", [9] * 2 * LESSONS, 1 + LESSONS),
     ],

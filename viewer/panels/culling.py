@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.method import BASES, base_of, takes
+from tracer.method import BASES, base_of, certifies, takes
 from viewer.methods import BASES_TOLD, EXTRAS_TOLD, toggled, with_base
 from viewer.panels.widgets import (
     ERROR,
@@ -30,6 +30,8 @@ def show(ui: Ui) -> None:
     c = ui.controller
     s, p = c.session.settings, c.preferences
     _method(ui)
+    if c.frame is not None and c.frame.statistics.decision:
+        paragraph(c.frame.statistics.decision, QUIET)
     tip = "of two neighbouring pixels, test each against the other's primitive, not just one of them (Y)"
     imgui.begin_disabled(not _by_modes(s.method))
     checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.change(symmetric=on), tip)
@@ -47,7 +49,7 @@ def show(ui: Ui) -> None:
             changed, factor = imgui.slider_float("##zoom", s.zoom_factor, 1.0, 64.0, "%.1f", flags)
             if changed:
                 c.change(zoom_factor=factor)
-        if shown and base_of(s.method) == "certified":
+        if shown and certifies(s.method):
             row("Certify", "milliseconds of a frame for it, at most; what is wanted most comes first")
             flags = int(imgui.SliderFlags_.logarithmic | imgui.SliderFlags_.always_clamp)
             budget = min(1e3 * s.certificate_seconds, LONGEST_BUDGET)

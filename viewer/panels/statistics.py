@@ -52,6 +52,8 @@ def show(ui: Ui) -> None:
     clipped(f"for {frame.width} x {frame.height} pixels{coarse}, method {frame.settings.method}")
     if c.tracing.outdated:
         paragraph("These are of the settings before; a new frame is being traced.", QUIET)
+    if s.decision:
+        paragraph(s.decision, QUIET)
     certifies = makes_certificates(frame.settings.method)
     _shadow_rays(frame, pixels, certifies)
     heading("Work")
