@@ -23,7 +23,7 @@ from dataclasses import dataclass
 SHARE, LEAST_SHARE = 0.01, 0.005  # of each frame's time goes into the purse, at first, and after long without return
 FADING = 0.995  # of what is above the least share is left from one frame without return to the next
 RETURNED = 0.5  # of what look-ups save goes into the purse
-ROOM, CAPITAL = 0.6, 0.5  # frames' time that the purse holds at most, and where rays are dear at first
+ROOM, SAVED = 0.6, 0.9  # frames' time that the purse holds at most, and until certificates have been set up
 TRIAL_SHARE = 0.2  # of what is earned goes into trials
 FEW, LATELY, MANY = 6, 10, 40  # trials that a decision needs, that tell of a change, and that are kept
 OLD = 80  # frames after which a trial is forgotten
@@ -121,7 +121,7 @@ class Investor:
         self._typical = useful if first else RECENT * self._typical + (1.0 - RECENT) * useful
         income = self._share * useful
         if first and self._dear:
-            income, self._for_trials = CAPITAL * useful, TRIED_FIRST * useful
+            income, self._for_trials, self._share = SAVED * useful, TRIED_FIRST * useful, LEAST_SHARE
         self._trials.extend((self._frame, trial) for trial in trials if trial.plain > 0.0)
         while self._trials and self._trials[0][0] < self._frame - OLD:
             self._trials.popleft()
@@ -131,7 +131,7 @@ class Investor:
             self._share = SHARE
         else:
             self._share = LEAST_SHARE + FADING * (self._share - LEAST_SHARE)
-        self._purse = min(self._purse + income, ROOM * self._typical)
+        self._purse = min(self._purse + income, (ROOM if self._ready else SAVED) * self._typical)
         self._for_trials = min(self._for_trials + TRIAL_SHARE * income, TRIED_FIRST * self._typical)
         self._spent = 0.0
         self._decide(saved, doubt)
