@@ -582,7 +582,7 @@ def failing(d: Driver) -> None:
     faults.dismiss()
 
     # Panels, with tables, children and plots open: one says what is wrong with it, and is shown again when told to.
-    for label, module, name in (("Statistics", statistics, "_cells"), ("Plots", plots, "_stack")):
+    for label, module, name in (("Statistics", statistics, "_milliseconds"), ("Plots", plots, "_stack")):
         d.ui.show_panel(label)
         d.frames(3)
         good = getattr(module, name)
