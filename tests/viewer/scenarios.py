@@ -199,6 +199,7 @@ def certifying(d: Driver) -> None:
     """Modes are there at once whatever culls; where a view has nothing to show, a note says so and a button switches;
     a method is chosen with what it takes along; key C is off."""
     d.settle()
+    d.wait(lambda: d.c.opener.certifies, "the kernels that make certificates")
     for base in ("certified", "none"):
         d.c.change(method=base)
         d.settle()
