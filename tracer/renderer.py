@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import time as clock
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -132,7 +132,7 @@ class Renderer:
         parts: Sequence[int] = (1, 4, 8, 16),
         samples: int = 1,
         focus: tuple[float, float] | None = None,
-    ) -> Iterator[Frame]:
+    ) -> Generator[Frame, None, None]:
         """Frames of one picture that becomes finer: so many sixteenths of its pixels are shaded in each, the others
         filled in from these (`tracer.shading.filling`), the same surfaces at all of them.
 
@@ -678,7 +678,7 @@ class UnfinishedFrame:
         statistics = gather(self._counts, int(self._occlusion_tests.sum()), lights if self._settings.keeps_modes else 0)
         statistics.decision = "" if self._investor is None else self._investor.reason
         statistics.part = self._lanes.bit_count() / TURNS
-        statistics.phases = self._phases
+        statistics.phases = dict(self._phases)
         statistics.certificates = int(self._certifying[CERTIFICATES])
         statistics.certificate_steps = int(self._certifying[STEPS])
         statistics.certificate_tests = int(self._certifying[TESTS])

@@ -127,11 +127,14 @@ class Controller:
         of_run = self.runner.follow()
         if of_run is not None:
             self.tracing.show(of_run)
-        frame = of_run.frame if of_run is not None else self.tracing.take()
-        if frame is None:
+        before = self.tracing.traced
+        traced = of_run if of_run is not None else self.tracing.take()
+        if traced is None:
             return None
-        if of_run is None:
-            self.history.add(frame, self.drawn_seconds)
+        frame = traced.frame
+        if of_run is None and frame.settings.samples == 1:  # further samples count nothing
+            again = before is not None and before.request is traced.request
+            self.history.add(frame, self.drawn_seconds, again)
         if math.isinf(self._seen):  # from the scene's first frame on, so that the speed does not change on the way
             self._seen = typical_depth(frame)
         if self.selected is not None:

@@ -44,10 +44,13 @@ class History:
         self.frames = 0
         self._values = {name: np.zeros(2 * capacity) for name in SERIES}
 
-    def add(self, frame: Frame, drawn_seconds: float) -> None:
-        """Append one traced frame's numbers; `drawn_seconds` is what the window needed for its last own frame.
+    def add(self, frame: Frame, drawn_seconds: float, again: bool = False) -> None:
+        """Append one traced frame's numbers, or put them in the place of the last where it is that frame `again`, with
+        more of its pixels shaded; `drawn_seconds` is what the window needed for its last own frame.
 
         Steps and tests are all that were made for the frame, those of its certificates too."""
+        if again and self.frames > 0:
+            self.frames -= 1
         s = frame.statistics
         parts = (s.primary, s.secondary, s.shadow)
         self._put(

@@ -71,5 +71,5 @@ class Motion:
             return
         if not preferences.every_frame:
             session.advance(step * preferences.playback_rate, preferences.loop)
-        elif traced is not None and traced.request.time == session.time:
+        elif traced is not None and traced.whole and traced.request.time == session.time:
             session.advance_frame(preferences.loop)

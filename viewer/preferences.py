@@ -28,10 +28,10 @@ RECENT_SCENES = 10
 THEMES = ("dark", "light")
 SCALES = (0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0)
 """Sizes of the interface that are offered."""
+MOST_CERTIFYING = 0.9
+"""Part of a frame's time that may go into certificates."""
 LONGEST_SIDE = 8192
 """Pixels of a picture of fixed size."""
-LONGEST_BUDGET = 10_000.0
-"""Milliseconds of a frame that may go into certificates."""
 DEFAULT_TEMPLATE = "{scene}-{view}-{frame:04d}-{date}-{time}.png"
 
 # Limits of the numbers; whatever lies outside is not from this program.
@@ -43,7 +43,7 @@ _RANGES: dict[str, tuple[float, float]] = {
     "fixed_width": (1, LONGEST_SIDE),
     "fixed_height": (1, LONGEST_SIDE),
     "zoom_factor": (1.0, 1e6),
-    "certificate_ms": (0.0, LONGEST_BUDGET),
+    "certificate_share": (0.0, MOST_CERTIFYING),
     "depth": (0, 100),
     "samples": (1, 64),
     "threads": (0, 1024),
@@ -57,10 +57,10 @@ _RANGES: dict[str, tuple[float, float]] = {
 @dataclass
 class Preferences:
     """Everything that outlives the window.  `speed` is relative to the scene's own pace, 1 by default; `method` is
-    the one to cull by while `culling` is on, `certificate_ms` what certifying may take of a frame; `legend_x` and
-    `legend_y` say where in the room that the picture leaves to its legend this lies, 0 to 1 from left and top;
-    `tour` says that the tour has not been shown yet, `last` is the snapshot, as JSON, to start from where that is
-    asked for."""
+    the one to cull by while `culling` is on, `certificate_share` the part of a frame's time in motion that may go into
+    certificates; `samples` is how many a pixel gets at rest; `legend_x` and `legend_y` say where in the room that the
+    picture leaves to its legend this lies, 0 to 1 from left and top; `tour` says that the tour has not been shown yet,
+    `last` is the snapshot, as JSON, to start from where that is asked for."""
 
     target_fps: float = 15.0
     dynamic_resolution: bool = True
@@ -76,11 +76,11 @@ class Preferences:
     keep_tracing: bool = False
     culling: bool = True
     method: str = DEFAULT
-    certificate_ms: float = 10.0
+    certificate_share: float = 0.15
     symmetric: bool = False
     zoom_factor: float = 4.0
     depth: int = 10
-    samples: int = 1
+    samples: int = 16
     threads: int = 0
     verify: bool = False
     view: str = "color"
@@ -109,9 +109,8 @@ class Preferences:
         method = self.method if self.culling else "none"
         names = ("symmetric", "zoom_factor", "depth", "samples", "threads", "verify")
         try:
-            budget = self.certificate_ms / 1e3
             values = {name: getattr(self, name) for name in names}
-            return Settings(method=method, certificate_seconds=budget, **values).validated()
+            return Settings(method=method, **values).validated()
         except ValueError:
             return Settings(method=DEFAULT)
 
@@ -120,7 +119,6 @@ class Preferences:
         s = settings
         self.culling, self.method = s.method != "none", s.method if s.method != "none" else self.method
         self.symmetric, self.zoom_factor = s.symmetric, s.zoom_factor
-        self.certificate_ms = min(1e3 * s.certificate_seconds, LONGEST_BUDGET)
         self.depth, self.samples, self.threads, self.verify = s.depth, s.samples, s.threads, s.verify
 
     def chosen_view(self) -> View:

@@ -1,11 +1,11 @@
 """Tracing beside the window: one thread, and the newest request wins.
 
 The window submits what it wants to see and looks, frame after frame, whether a picture has come.
-Requests are not queued: one waits at most, and a newer one takes its place.  A trace that is
-under way is cut short when it has become worthless (another scene, other settings, the full
-resolution of a view that was left), but a quick, coarse one is let finish: while the camera
-moves, the next request comes before the last picture is ready, and cancelling each would show
-none at all.
+Requests are not queued: one waits at most, and a newer one takes its place.  A picture is shown with
+a part of its pixels shaded, and becomes whole as long as nothing newer is wanted, then gets more samples
+a pixel.  A trace that is under way is cut short when it has become worthless (another scene, other
+settings, a picture that has been shown), but the first part of one is let finish: while the camera
+moves, the next request comes before the last picture is ready, and cancelling each would show none at all.
 
 An experiment is a `Task`: it has the thread, and with it the scene's world, to itself until it is
 done; the newest request of that time waits for its end.  A `Question` takes a moment: it is answered
@@ -15,13 +15,15 @@ between two frames, while the world still stands as it did in the frame that it 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Protocol
 
 from tracer.renderer import Frame, Settings
 from tracer.scene.model import Camera, Cancelled
+from tracer.statistics import FrameStatistics
 from viewer.failures import Failure, failure
 from viewer.jobs import TRACER, step_back
 
@@ -33,39 +35,58 @@ class Traces(Protocol):
 
     settings: Settings
 
-    def render(self, time: float, camera: Camera | None = None, cancel: Callable[[], bool] | None = None) -> Frame: ...
+    def refine(
+        self,
+        time: float,
+        camera: Camera | None = None,
+        cancel: Callable[[], bool] | None = None,
+        parts: Sequence[int] = ...,
+        samples: int = ...,
+        focus: tuple[float, float] | None = None,
+    ) -> Generator[Frame, None, None]: ...
 
     def reset_modes(self) -> None: ...
 
 
 @dataclass(frozen=True)
 class RenderRequest:
-    """What to trace.  `interactive` marks a coarse frame of a camera in motion; `divisor` is how much coarser than the
-    window it is; `serial` tells requests apart that are otherwise alike; `patience` is for how many seconds, at least,
-    certificates may be made, where nobody waits for the picture."""
+    """What to trace: a picture, with so many samples a pixel in the end.  `divisor` is how much coarser than the window
+    it is; `serial` tells requests apart that are otherwise alike; `patience` is for how many seconds, at least,
+    certificates may be made, where nobody waits for the picture.  How it comes about does not tell requests apart:
+    `parts` of it, in sixteenths, the first of which comes quickly where that is said, around a `focus`."""
 
     time: float
     camera: Camera
     settings: Settings
-    interactive: bool = False
     divisor: int = 1
     serial: int = 0
     patience: float = 0.0
+    samples: int = 1
+    parts: tuple[int, ...] = field(default=(16,), compare=False)
+    quick: bool = field(default=False, compare=False)
+    focus: tuple[float, float] | None = field(default=None, compare=False)
 
-    def supersedes(self, running: RenderRequest) -> bool:
-        """Whether a trace of `running` is no longer worth finishing now that this is wanted."""
+    def supersedes(self, running: RenderRequest, shown: bool = False) -> bool:
+        """Whether a trace of `running`, part of which has been shown or not, is no longer worth going on with now that
+        this is wanted."""
         if running == self:
             return False
         same_kind = replace(running.settings, width=1, height=1) == replace(self.settings, width=1, height=1)
-        return not running.interactive or not same_kind
+        return shown or not running.quick or not same_kind
 
 
 @dataclass(frozen=True)
 class Traced:
-    """A finished frame and the request it answers."""
+    """A frame and the request it answers, and what the first part of this cost."""
 
     request: RenderRequest
     frame: Frame
+    first: FrameStatistics
+
+    @property
+    def whole(self) -> bool:
+        """Whether all of its pixels have been shaded."""
+        return self.frame.statistics.part >= 1.0
 
 
 class Task(Protocol):
@@ -92,6 +113,7 @@ class RenderThread:
         self._renderer: Traces | None = None
         self._waiting: RenderRequest | None = None
         self._running: RenderRequest | None = None
+        self._shown = self._whole = False  # whether a part of what is running, or all of it, has been
         self._task: tuple[Traces, Task] | None = None
         self._question: Question | None = None
         self._placed_at: float | None = None  # the time of what was traced last
@@ -118,7 +140,7 @@ class RenderThread:
             if self._closing:
                 return
             self._waiting = request
-            if self._running is not None and request.supersedes(self._running):
+            if self._running is not None and request.supersedes(self._running, self._shown):
                 self._cancel = True
             self._changed.notify_all()
 
@@ -161,8 +183,9 @@ class RenderThread:
 
     @property
     def busy(self) -> bool:
+        """Whether anything is to come but more samples of a whole picture."""
         with self._changed:
-            if self._running is not None or self._performing:
+            if (self._running is not None and not self._whole) or self._performing:
                 return True
             return self._task is not None or (self._renderer is not None and self._waiting is not None)
 
@@ -207,6 +230,7 @@ class RenderThread:
                     request, reset = self._waiting, self._reset
                     self._cancel = False
                     self._running, self._waiting, self._reset = request, None, False
+                    self._shown = self._whole = False
                     self._placed_at = request.time
                     return partial(self._trace, self._renderer, request, reset)
                 else:
@@ -229,26 +253,51 @@ class RenderThread:
                 self._failure = failure(problem, "no answer", _KNOWN)
         self._wake()
 
+    def _answer_meanwhile(self, renderer: Traces, time: float) -> None:
+        """Answer what was asked about the picture that is being refined."""
+        with self._changed:
+            question = self._question
+            if question is None or renderer is not self._renderer:
+                return
+            self._question = None
+        if question.time == time:
+            self._answer(renderer, question)
+
     def _trace(self, renderer: Traces, request: RenderRequest, reset: bool) -> None:
-        frame, failed = None, None
+        failed = None
         try:
             if reset:
                 renderer.reset_modes()
             seconds = max(request.settings.certificate_seconds, request.patience)
             patient = request.patience > 0.0
             renderer.settings = replace(request.settings, certificate_seconds=seconds, patient=patient)
-            frame = renderer.render(request.time, request.camera, lambda: self._cancel)
+            refining = renderer.refine(
+                request.time, request.camera, lambda: self._cancel, request.parts, request.samples, request.focus
+            )
+            with closing(refining):
+                first = None
+                for frame in refining:
+                    first = first or frame.statistics
+                    if not self._deliver(renderer, Traced(request, frame, first)):
+                        break
+                    self._answer_meanwhile(renderer, request.time)
         except Cancelled:
             pass
         except Exception as problem:
             failed = failure(problem, "frame not traced", _KNOWN)
-        self._deliver(renderer, request, frame, failed)
-
-    def _deliver(self, renderer: Traces, request: RenderRequest, frame: Frame | None, failed: Failure | None) -> None:
         with self._changed:
             self._running = None
-            if renderer is self._renderer:  # else it is a picture of a scene that was left meanwhile
-                if frame is not None:
-                    self._finished = Traced(request, frame)
+            if renderer is self._renderer:
                 self._failure = failed or self._failure
         self._wake()
+
+    def _deliver(self, renderer: Traces, traced: Traced) -> bool:
+        """Hand out a frame, unless it is of a scene that was left meanwhile; whether more of it is wanted."""
+        with self._changed:
+            if renderer is self._renderer:
+                self._finished = traced
+                self._shown, self._whole = True, traced.whole
+            newer = self._waiting is not None and self._waiting.supersedes(traced.request, shown=True)
+            on = not (self._cancel or newer)
+        self._wake()
+        return on

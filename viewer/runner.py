@@ -112,7 +112,7 @@ class Runner:
             self._tell(run)
         if frame is None or run.stopping or not run.is_of(self._c.session.scene):
             return None
-        return Traced(RenderRequest(frame.time, frame.camera, frame.settings), frame)
+        return Traced(RenderRequest(frame.time, frame.camera, frame.settings), frame, frame.statistics)
 
     def _tell(self, run: Run) -> None:
         if run.failure is not None:

@@ -1,7 +1,8 @@
 """What is asked of the render thread so that the picture keeps up with the session, and what has come.
 
-In motion frames are coarse and come fast, at rest they are fine.  Nothing is asked for twice, and
-nothing at all while a run has the render thread to itself.
+Each picture comes fast, with a part of its pixels shaded, and becomes whole where nothing newer is wanted;
+at rest it gets more samples a pixel.  Nothing is asked for twice, and nothing at all while a run has the
+render thread to itself.
 """
 
 from __future__ import annotations
@@ -12,9 +13,9 @@ from typing import TYPE_CHECKING
 
 from tracer.frame import Frame, Settings
 from tracer.method import certifies
+from viewer.governor import AT_ONCE, Governor, Plan, divided
 from viewer.methods import with_base
 from viewer.render_thread import RenderRequest, Traced
-from viewer.resolution import ResolutionControl, divided
 from viewer.views import View
 
 if TYPE_CHECKING:
@@ -27,11 +28,12 @@ PATIENCE = 0.4  # seconds that these may give them: the picture is there, and a 
 class Tracing:
     """`traced` is the newest frame with the request it answers."""
 
-    def __init__(self, controller: Controller) -> None:
+    def __init__(self, controller: Controller, governor: Governor | None = None) -> None:
         self._c = controller
         self.traced: Traced | None = None
-        self._resolution = ResolutionControl()
+        self.governor = governor or Governor()
         self._serial = 0
+        self._considered: RenderRequest | None = None  # the whole picture that was last learnt from
         self._settled: RenderRequest | None = None
         self._lessons = 0  # frames at rest that may still be traced to learn from
         self._learning = False  # whether such a one was asked for last
@@ -46,9 +48,9 @@ class Tracing:
 
     def forget(self) -> None:
         """Another scene: it has no frame yet, and its pixels cost something else."""
-        self.traced = self._asked = self._settled = None
+        self.traced = self._asked = self._settled = self._considered = None
         self._new = True
-        self._resolution.forget()
+        self.governor.forget()
 
     def again(self, modes_are_lost: bool = False) -> None:
         """Trace what was traced last once more."""
@@ -57,7 +59,7 @@ class Tracing:
             self._settled = None
 
     def glance(self) -> None:
-        """The next picture is another: a coarse one of it comes first, and one only."""
+        """The next picture is another: it may come coarse at first, if that must be."""
         self._glance = True
 
     def interrupted(self) -> None:
@@ -69,29 +71,32 @@ class Tracing:
         self.traced = traced
         self.interrupted()
 
-    def take(self) -> Frame | None:
-        """The newest frame that the render thread has finished, once."""
+    def take(self) -> Traced | None:
+        """The newest frame that the render thread has made, once."""
         traced = self._c.render.take()
         if traced is None:
             return None
-        self.traced, frame = traced, traced.frame
-        self._glance = False
-        if not traced.request.patience:  # else it took its time for certificates, not for its pixels
-            self._resolution.observe(frame.statistics.seconds, frame.width * frame.height)
-        if not self._c.moving and not self._c.session.playing:
-            self._settle(traced.request, frame)
-        return frame
+        if self.traced is None or self.traced.request is not traced.request:
+            self._glance = False
+            if not traced.request.patience:  # else it took its time for certificates, not for its pixels
+                self.governor.observe(traced.first, traced.frame.width * traced.frame.height)
+        self.traced = traced
+        return traced
 
-    def _settle(self, request: RenderRequest, frame: Frame) -> None:
-        """At rest the first fine frame of a view teaches the modes; a second one shows what they save.  Certificates
+    def _settle(self) -> None:
+        """At rest the first whole picture of a view teaches the modes; a second one shows what they save.  Certificates
         are made within a budget: some more frames follow, until none are wanted."""
+        traced = self.traced
+        if traced is None or not traced.whole or traced.request is self._considered:
+            return
+        request, self._considered = traced.request, traced.request
         seen = replace(request.settings, verify=False, record_work=False)
-        view = replace(request, settings=seen, interactive=False, serial=0, patience=0.0)
-        learns = request.divisor == 1 and request.settings.samples == 1
+        view = replace(request, settings=seen, serial=0, patience=0.0)
+        learns = request.divisor == 1
         if learns and view != self._settled:
             self._settled = view
             self._lessons = LESSONS if certifies(seen.method) else 1
-        elif frame.statistics.certificates == 0:
+        elif traced.frame.statistics.certificates == 0:
             self._lessons = 0
         if self._c.preferences.keep_tracing or (learns and self._lessons > 0):
             self._lessons -= 1
@@ -108,20 +113,32 @@ class Tracing:
             self._new = False
             c.wake()
             return
+        if not c.moving and not session.playing:
+            self._settle()
         if self._jumped():
             self.glance()
         moving = c.moving or self._glance
         self._learning = self._learning and not moving and not session.playing
-        coarse = moving and c.preferences.dynamic_resolution
-        divisor = self._resolution.choose(width, height, c.preferences.target_fps) if coarse else 1
+        plan = self._plan(width, height)
+        divisor = plan.divisor if moving else 1
         width, height = divided(width, height, divisor)
-        settings = replace(self.settings, width=width, height=height)
+        settings = replace(self.settings, width=width, height=height, samples=1)
         patience = PATIENCE if self._learning else 0.0
-        wanted = RenderRequest(session.time, session.camera, settings, moving, divisor, self._serial, patience)
+        wanted = RenderRequest(
+            session.time, session.camera, settings, divisor, self._serial, patience, session.settings.samples,
+            plan.parts, plan is not AT_ONCE, c.hovered,
+        )  # fmt: skip
         if self._answered(wanted):
             return
         self._asked, self._chosen = wanted, session.settings
         c.render.submit(wanted)
+
+    def _plan(self, width: int, height: int) -> Plan:
+        """How the picture is to come about: at once where one like it is there, and where each is to be whole."""
+        c, preferences = self._c, self._c.preferences
+        if self._learning or not preferences.dynamic_resolution or (c.session.playing and preferences.every_frame):
+            return AT_ONCE
+        return self.governor.plan(width, height, 1.0 / preferences.target_fps)
 
     @property
     def settings(self) -> Settings:
@@ -131,7 +148,15 @@ class Tracing:
         verify = s.settings.verify or s.view.needs_verify
         if certifies(method) and not self._c.opener.certifies:
             method = with_base(method, "none")
-        return replace(s.settings, method=method, verify=verify, record_work=s.view.needs_work, modes=True)
+        seconds = self._c.preferences.certificate_share / self._c.preferences.target_fps
+        return replace(
+            s.settings,
+            method=method,
+            verify=verify,
+            record_work=s.view.needs_work,
+            modes=True,
+            certificate_seconds=seconds,
+        )
 
     def _answered(self, wanted: RenderRequest) -> bool:
         """Whether a frame has been asked for, or is there.  One that holds more for a view serves the next view."""
@@ -147,9 +172,7 @@ class Tracing:
         return False
 
     def _same_picture(self, wanted: RenderRequest) -> bool:
-        if self.traced is None or self._c.render.busy:
-            return False
-        return replace(self.traced.request, interactive=wanted.interactive) == wanted
+        return self.traced is not None and self.traced.whole and self.traced.request == wanted
 
     def _jumped(self) -> bool:
         """Whether, at rest, something else is to be seen than was last asked for; to learn more is to see the same."""
@@ -163,8 +186,19 @@ class Tracing:
 
     @property
     def becoming_finer(self) -> bool:
-        """Whether the picture is a coarse one and a fine one of the same view is to come."""
-        return self.traced is not None and self.traced.request.divisor > 1 and not self._c.session.playing
+        """Whether a part of the picture is shown and the whole of the same view is to come."""
+        partly = self.traced is not None and (self.traced.request.divisor > 1 or not self.traced.whole)
+        return partly and not self._c.session.playing
+
+    @property
+    def samples_shown(self) -> int:
+        """How many samples a pixel has; 0 while not all have one."""
+        return self.traced.frame.settings.samples if self.traced is not None and self.traced.whole else 0
+
+    @property
+    def samples_wanted(self) -> int:
+        """How many it is to have at rest."""
+        return self._c.session.settings.samples
 
     @property
     def outdated(self) -> bool:
@@ -227,5 +261,6 @@ def _as_asked(settings: Settings, asked: Settings) -> Settings:
         record_work=asked.record_work,
         modes=asked.modes,
         patient=asked.patient,
+        samples=asked.samples,
         certificate_seconds=asked.certificate_seconds,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
@@ -178,6 +179,15 @@ class FakeRenderer:
 
     def reset_modes(self) -> None:
         self.resets += 1
+
+    def refine(self, time=0.0, camera=None, cancel=None, parts=(16,), samples=1, focus=None) -> Iterator[Frame]:
+        for part in parts:
+            frame = self.render(time, camera, cancel)
+            frame.statistics.part = part / 16
+            yield frame
+        for sample in range(2, samples + 1):
+            frame = self.render(time, camera, cancel)
+            yield replace(frame, settings=replace(frame.settings, samples=sample))
 
     def render(self, time: float = 0.0, camera: Camera | None = None, cancel=None) -> Frame:
         self.asked.append((time, self.settings))

@@ -54,10 +54,10 @@ def test_of_those_that_wait_only_the_newest_is_traced(thread):
     renderer = FakeRenderer()
     renderer.go.clear()
     thread.use(renderer)
-    thread.submit(request(0.0, interactive=True))
+    thread.submit(request(0.0, quick=True))
     assert renderer.started.wait(5.0)
     for at in (1.0, 2.0, 3.0):
-        thread.submit(request(at, interactive=True))
+        thread.submit(request(at, quick=True))
     renderer.go.set()
     idle(thread)
     assert [at for at, _ in renderer.asked] == [0.0, 3.0]
@@ -69,7 +69,7 @@ def test_a_fine_frame_is_cut_short_by_a_newer_request(thread):
     thread.use(renderer)
     thread.submit(request(0.0))
     assert renderer.started.wait(5.0)
-    thread.submit(request(1.0, interactive=True))
+    thread.submit(request(1.0, quick=True))
     end = time.monotonic() + 5.0
     while not renderer.cancelled and time.monotonic() < end:
         time.sleep(0.002)
@@ -82,9 +82,9 @@ def test_a_coarse_frame_in_motion_is_let_finish(thread):
     renderer = FakeRenderer()
     renderer.go.clear()
     thread.use(renderer)
-    thread.submit(request(0.0, interactive=True))
+    thread.submit(request(0.0, quick=True))
     assert renderer.started.wait(5.0)
-    thread.submit(request(1.0, interactive=True))
+    thread.submit(request(1.0, quick=True))
     time.sleep(0.05)
     assert renderer.cancelled == []
     renderer.go.set()
@@ -95,7 +95,7 @@ def test_a_coarse_frame_in_motion_is_let_finish(thread):
 def test_the_same_request_again_does_not_cancel_itself():
     running = request(0.0)
     assert not request(0.0).supersedes(running)
-    coarse = request(0.0, interactive=True)
+    coarse = request(0.0, quick=True)
     assert not replace(coarse, settings=Settings(width=4, height=4)).supersedes(coarse)
     assert replace(coarse, settings=replace(coarse.settings, method="none")).supersedes(coarse)
 
@@ -256,7 +256,7 @@ def test_a_question_is_answered_between_frames_and_cuts_none_short(thread):
     thread.submit(request(0.0))
     assert renderer.started.wait(5.0)
     thread.ask(question)
-    thread.submit(request(0.0, interactive=True, serial=1))
+    thread.submit(request(0.0, quick=True, serial=1))
     thread.submit(request(0.0, serial=2))
     renderer.go.set()
     idle(thread)
@@ -304,3 +304,55 @@ def test_a_question_about_another_scene_is_dropped_and_one_that_fails_is_told_of
     assert failed.text == "no answer: no such light"
     thread.submit(request(3.0))
     assert taken(thread).frame.time == 3.0, "it goes on"
+
+
+def test_a_picture_becomes_whole_and_gets_samples_as_long_as_nothing_else_is_wanted(thread):
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    thread.submit(request(1.0, parts=(4, 8, 16), samples=3))
+    came = []
+    while not came or came[-1].frame.settings.samples < 3:
+        came.append(taken(thread))
+    idle(thread)
+    assert len(renderer.asked) == 5 and came[-1].whole
+    assert came[-1].first.part == 0.25, "what the first part cost is told with each"
+
+
+def test_a_picture_of_which_a_part_was_shown_is_left_for_a_newer_one(thread):
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    whole = renderer.render
+
+    def with_news(time, camera, cancel):  # while the first part is traced the camera moves on
+        if time == 1.0:
+            thread.submit(request(2.0, quick=True, parts=(4, 16)))
+        return whole(time, camera, cancel)
+
+    renderer.render = with_news  # type: ignore[method-assign]
+    thread.submit(request(1.0, quick=True, parts=(4, 16)))
+    end = time.monotonic() + 5.0
+    while not (traced := taken(thread)).whole:
+        assert time.monotonic() < end
+    idle(thread)
+    assert [at for at, _ in renderer.asked] == [1.0, 2.0, 2.0]
+    assert traced.request.time == 2.0
+
+
+def test_what_is_asked_about_a_picture_is_answered_before_its_next_sample(thread):
+    renderer, question = FakeRenderer(), Asked(1.0)
+    thread.use(renderer)
+    sampled, render = Event(), renderer.render
+
+    def slowly(time, camera, cancel):
+        if len(renderer.asked) == 3:
+            sampled.set()
+            question.answered.wait(0.2)
+        return render(time, camera, cancel)
+
+    renderer.render = slowly  # type: ignore[method-assign]
+    thread.submit(request(1.0, samples=50))
+    assert sampled.wait(5.0)
+    assert not thread.busy, "more samples are nothing to wait for"
+    thread.ask(question)
+    assert question.answered.wait(5.0)
+    assert question.by[0][1] < 50

@@ -39,7 +39,7 @@ class Desk:
     """A controller at work on a scene in a file, without a window."""
 
     def __init__(self, path: Path, folder: Path) -> None:
-        preferences = Preferences(dynamic_resolution=False, threads=1, screenshot_folder=str(folder))
+        preferences = Preferences(dynamic_resolution=False, samples=1, threads=1, screenshot_folder=str(folder))
         self.c = Controller(preferences)
         self.runner = self.c.runner
         self.came: list[Frame] = []
@@ -178,13 +178,14 @@ def test_stopping_keeps_the_whole_frames(desk: Desk) -> None:
 def test_stopped_before_its_first_frame_a_run_leaves_nothing_and_what_it_cut_short_is_traced(desk: Desk) -> None:
     renderer, begun = desk.c.render._renderer, threading.Event()
 
-    def never(_time: float, _camera: Camera, cancel: Callable[[], bool]) -> Frame:
+    def never(_time: float, _camera: Camera, cancel: Callable[[], bool], *_how: object) -> Iterator[Frame]:
         begun.set()
         while not cancel():
             time.sleep(0.001)
+        yield from ()
         raise Cancelled()
 
-    renderer.render = never
+    renderer.refine = never
     desk.c.trace_again()
     desk.tick()
     assert begun.wait(20.0)
@@ -333,7 +334,7 @@ def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytes
         raise AttributeError("no world")
 
     monkeypatch.setattr(experiment, "run", fail)
-    controller = Controller(Preferences(dynamic_resolution=False))
+    controller = Controller(Preferences(dynamic_resolution=False, samples=1))
     controller.show(make_scene(), FakeRenderer(), {})
     controller.runner.experiment_plan.frames = 2
     controller.runner.start_experiment()

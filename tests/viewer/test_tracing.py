@@ -9,6 +9,7 @@ import pytest
 
 from tracer.frame import Settings
 from tracer.scene.model import Camera
+from tracer.statistics import FrameStatistics
 from viewer.render_thread import RenderRequest, Traced
 from viewer.tracing import LESSONS, Tracing
 
@@ -30,12 +31,15 @@ class Desk:
     def frames(self, made: list[int], camera: Camera = CAMERA, **settings: Any) -> int:
         """How many frames of a view are traced, the k-th of which makes so many certificates."""
         for k, certificates in enumerate(made):
-            request = RenderRequest(0.0, camera, Settings(8, 8, **settings), False, 1, k)
-            frame = SimpleNamespace(
-                statistics=SimpleNamespace(certificates=certificates, seconds=0.1), width=8, height=8
-            )
-            self._next, before = Traced(request, frame), self.tracing._serial  # type: ignore[arg-type]
-            self.tracing.take()
+            request = RenderRequest(0.0, camera, Settings(8, 8, **settings), 1, k)
+            before = self.tracing._serial
+            for part in (0.25, 1.0):
+                statistics = FrameStatistics(certificates=certificates, seconds=0.1, part=part)
+                frame = SimpleNamespace(statistics=statistics, width=8, height=8)
+                self._next = Traced(request, frame, statistics)  # type: ignore[arg-type]
+                self.tracing.take()
+                self.tracing._settle()
+                assert part == 1.0 or self.tracing._serial == before, "a part of a picture teaches nothing"
             if self.tracing._serial == before:
                 return k + 1
         return len(made)

@@ -42,7 +42,7 @@ class Desk:
 
 @pytest.fixture
 def desk():
-    controller = Controller(Preferences(dynamic_resolution=False))
+    controller = Controller(Preferences(dynamic_resolution=False, samples=1))
     yield Desk(controller)
     assert controller.close()
 
@@ -127,13 +127,13 @@ def test_what_a_run_cut_short_is_traced_after_it_though_it_showed_no_frame(desk:
     desk.renderer.started.clear()
     desk.c.trace_again()
     desk.c.tick(SIZE)
-    assert desk.renderer.started.wait(10.0) and not desk.c.render.running.interactive
+    assert desk.renderer.started.wait(10.0)
     desk.c.runner.start_experiment()
     end = time.monotonic() + 10.0
     while desk.c.runner.current is not None:
         assert time.monotonic() < end
         desk.c.tick(SIZE)
-    assert desk.c.message.error, "the run fails at once"
+    assert desk.c.faults.notice is not None, "the run fails at once"
     assert desk.renderer.cancelled, "the run came before the frame"
     desk.renderer.go.set()
     assert desk.rest() == [False], "the frame that was cut short has not come"
@@ -146,7 +146,7 @@ def test_a_capture_of_a_runs_frame_is_named_and_restored_as_what_it_shows(desk: 
     desk.c.preferences.screenshot_folder, desk.c.preferences.screenshot_template = str(tmp_path), "{frame:04d}.png"
     for camera, follow in ((elsewhere, False), (own, True)):
         frame = make_frame(time=7.0, camera=camera)
-        desk.c.tracing.show(Traced(RenderRequest(7.0, camera, frame.settings), frame))
+        desk.c.tracing.show(Traced(RenderRequest(7.0, camera, frame.settings), frame, frame.statistics))
         desk.c.keeper.capture(np.zeros((8, 16, 3), np.uint8))
         name = "0007.png" if camera == elsewhere else "0007-2.png"
         assert desk.c.keeper.saving.pop().join(10.0)

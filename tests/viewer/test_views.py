@@ -16,7 +16,6 @@ from viewer import legends, views
 from viewer.history import SERIES, History
 from viewer.panels.widgets import in_window_style, percent
 from viewer.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
-from viewer.resolution import ResolutionControl, divided
 
 
 def test_the_occlusion_legend_counts_primitives_and_pixels():
@@ -245,23 +244,10 @@ def test_fates_of_shadow_rays_add_up_to_those_due():
     assert history.values("tests")[0] == history.values("shadow_tests")[0] == 3
 
 
-def test_resolution_drops_until_the_frame_rate_holds_and_comes_back():
-    control = ResolutionControl()
-    control.observe(1.0, 1000 * 1000)  # a microsecond per pixel
-    assert control.choose(1000, 1000, 30.0) == 6
-    assert control.choose(100, 100, 30.0) == 1
-    assert control.choose(4000, 4000, 60.0) == 8
-
-
-def test_resolution_does_not_flutter():
-    control = ResolutionControl()
-    control.observe(1.0, 1000 * 1000)
-    control.choose(1000, 1000, 4.0)
-    assert control.divisor == 2
-    assert control.choose(1000, 1000, 1.1) == 2  # 1 would fit, but with nothing to spare
-    assert control.choose(1000, 1000, 0.5) == 1
-
-
-def test_divided_sizes_are_never_empty():
-    assert divided(3, 1, 8) == (1, 1)
-    assert divided(1000, 500, 3) == (333, 167)
+def test_a_picture_that_becomes_whole_is_one_frame_of_the_history():
+    history = History()
+    for part, again in ((0.25, False), (0.5, True), (1.0, True), (0.25, False)):
+        frame = make_frame()
+        frame.statistics.shadow.due = round(100 * part)
+        history.add(frame, 0.0, again)
+    assert history.frames == 2 and list(history.values("due")) == [100, 25]

@@ -76,13 +76,14 @@ class Driver:
     def certify(self) -> None:
         """Frames from now on come with cells and certificates drawn by lot, and with work where that was asked for."""
         renderer = self.c.render._renderer
-        render = renderer.render
+        refine = renderer.refine
 
         def with_more(*arguments, **options):
-            frame = with_certificates(render(*arguments, **options))
-            return frame if frame.settings.record_work else replace(frame, saved=None, cost=None, due_rays=None)
+            for frame in refine(*arguments, **options):
+                more = with_certificates(frame)
+                yield more if frame.settings.record_work else replace(more, saved=None, cost=None, due_rays=None)
 
-        renderer.render = with_more
+        renderer.refine = with_more
 
     def press(self, key: int, count: int = 1) -> None:
         self.context.key_press(key, count)
@@ -129,6 +130,7 @@ def main(name: str, scene: str, folder: str) -> int:
         app.ui.tour.end()  # it comes by itself on the first start
     app.controller.preferences.screenshot_folder = str(Path(folder) / "pictures")
     app.controller.preferences.dynamic_resolution = True
+    app.controller.change(samples=1)  # else pictures at rest go on changing
     failed: list[BaseException] = []
 
     def test(context) -> None:

@@ -21,7 +21,7 @@ from viewer.panels.widgets import (
     tooltip,
     wide_button,
 )
-from viewer.preferences import LONGEST_BUDGET
+from viewer.preferences import MOST_CERTIFYING
 from viewer.ui import Ui
 
 
@@ -50,12 +50,11 @@ def show(ui: Ui) -> None:
             if changed:
                 c.change(zoom_factor=factor)
         if shown and certifies(s.method):
-            row("Certify", "milliseconds of a frame for it, at most; what is wanted most comes first")
-            flags = int(imgui.SliderFlags_.logarithmic | imgui.SliderFlags_.always_clamp)
-            budget = min(1e3 * s.certificate_seconds, LONGEST_BUDGET)
-            changed, budget = imgui.slider_float("##budget", budget, 1.0, LONGEST_BUDGET, "%.0f ms", flags)
+            row("Certificates", "part of each frame's time that may go into making them; at rest they get more")
+            share = 100.0 * p.certificate_share
+            changed, share = imgui.slider_float("##share", share, 1.0, 100.0 * MOST_CERTIFYING, "%.0f %%")
             if changed:
-                c.change(certificate_seconds=budget / 1e3)
+                p.certificate_share = min(max(share / 100.0, 0.0), MOST_CERTIFYING)
     if wide_button(f"{icons.ICON_FA_ERASER}  Reset modes", "forget all modes and certificates (Backspace)", 2):
         c.reset_modes()
     imgui.same_line()

@@ -170,6 +170,10 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     text = f"{c.tracing.title}   {frame.width} x {frame.height}"
     if request.divisor > 1:
         text += f"   1/{request.divisor}"
+    if frame.statistics.part < 1.0:
+        text += f"   {frame.statistics.part:.0%} shaded"
+    elif request.samples > 1:
+        text += f"   {c.tracing.samples_shown} of {request.samples} samples"
     shadow, counter = frame.statistics.shadow, ""
     if c.tracing.drawn_view.needs_verify and not ui.legend_shown:
         counter = f"   {count(shadow.wrong)} wrong of {count(shadow.due)} answers"

@@ -1,0 +1,123 @@
+"""How much of a picture is traced before it is shown, so that frames come as fast as they should.
+
+Each picture begins with its primary rays at full resolution and with a few sixteenths of its pixels
+shaded, the rest filled in from them; then it becomes whole.  How many sixteenths fit into the time of a
+frame follows from what the last frames have cost: a fixed part, a part for each primary ray and a part
+for each shaded pixel, learnt apart, and beside them what else was in them (objects placed, certificates
+made).  Only where not even the primary rays fit is the resolution divided by 2, 3, ... as well.  More is
+taken only with some time to spare, so that pictures do not flutter between two steps.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tracer.shading.filling import TURNS
+from tracer.statistics import FrameStatistics
+
+PARTS = (16, 8, 4, 2, 1)  # sixteenths of the pixels that the first picture may have
+LARGEST_DIVISOR = 8
+SPARE = 0.8  # of a frame's time that a finer step may take
+SHOWN_AGAIN = 0.15  # seconds that it takes at least until a picture that becomes whole is shown again
+KEPT, FORGETTING = 24, 0.8  # observations, and what each counts against the one after it
+TRUST = 0.05  # in how costs were divided before, against all that was observed
+SMOOTHING = 0.4
+RAYS, SHADING = ("primary", "surfaces", "filling"), ("shading",)
+BESIDE = ("place", "certification")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The resolution's divisor, and the growing sixteenths of the pixels that are shaded when a picture is shown."""
+
+    divisor: int
+    parts: tuple[int, ...]
+
+
+AT_ONCE = Plan(1, (TURNS,))
+
+
+class Cost:
+    """Seconds that something takes: a fixed part and one for each of many, by least squares over the last observations.
+
+    Where all of these are of one number, the two parts keep the proportion that they had."""
+
+    def __init__(self, fixed: float, each: float) -> None:
+        """The parts to begin with, in seconds."""
+        self.fixed, self.each = fixed, each
+        self._seen: list[tuple[float, float]] = []
+
+    def __call__(self, number: float) -> float:
+        return self.fixed + self.each * number
+
+    def observe(self, number: float, seconds: float) -> None:
+        """Learn that so many took so long."""
+        self._seen = [*self._seen[1 - KEPT :], (number, seconds)]
+        numbers, taken = np.array(self._seen).T
+        weights = FORGETTING ** np.arange(len(taken))[::-1]
+        before = self.fixed + self.each * numbers
+        scale = float((weights * taken * before).sum() / max((weights * before * before).sum(), 1e-30))
+        parts = scale * self.fixed, scale * self.each
+        unit = max(float(numbers.mean()), 1.0)  # so that both unknowns are seconds
+        rows = np.stack([np.ones_like(numbers), numbers / unit], axis=1)
+        weighted = rows * weights[:, None]
+        system = weighted.T @ rows + TRUST * weights.sum() * np.eye(2)
+        known = weighted.T @ taken + TRUST * weights.sum() * np.array([parts[0], parts[1] * unit])
+        fixed, each = np.maximum(np.linalg.solve(system, known), 0.0)
+        self.fixed, self.each = float(fixed), float(each) / unit
+
+
+class Governor:
+    """Plans pictures by what frames have cost."""
+
+    def __init__(self) -> None:
+        self.forget()
+
+    def forget(self) -> None:
+        """Another scene costs something else."""
+        self._rays, self._shading, self._beside = Cost(4e-3, 6e-8), Cost(5e-3, 6e-7), 0.0
+        self._finest = 0.0  # pixels that the last plan shaded
+        self._known = False
+
+    def observe(self, statistics: FrameStatistics, pixels: int) -> None:
+        """Learn from a frame of so many pixels, or the first part of one."""
+        phases = statistics.phases
+        if pixels <= 0 or "shading" not in phases:
+            return
+        self._rays.observe(pixels, sum(phases.get(name, 0.0) for name in RAYS))
+        self._shading.observe(pixels * statistics.part, sum(phases[name] for name in SHADING))
+        beside = sum(phases.get(name, 0.0) for name in BESIDE)
+        self._beside = self._beside + SMOOTHING * (beside - self._beside) if self._known else beside
+        self._known = True
+
+    def seconds(self, pixels: float, part: int) -> float:
+        """What a picture of so many pixels takes until it is shown with so many sixteenths of them shaded."""
+        return self._beside + self._rays(pixels) + self._shading(pixels * part / TURNS)
+
+    def plan(self, width: int, height: int, seconds: float) -> Plan:
+        """How to begin a picture that is to be shown so many seconds later, and how to go on."""
+        for divisor in range(1, LARGEST_DIVISOR + 1):
+            w, h = divided(width, height, divisor)
+            for part in PARTS:
+                shaded = w * h * part / TURNS
+                if self.seconds(w * h, part) <= (seconds if shaded <= self._finest else SPARE * seconds):
+                    self._finest = shaded
+                    return Plan(divisor, self._onward(w * h, part))
+        self._finest = shaded
+        return Plan(LARGEST_DIVISOR, self._onward(w * h, part))
+
+    def _onward(self, pixels: int, part: int) -> tuple[int, ...]:
+        """From a part to the whole, in steps that are worth showing."""
+        parts, more = [part], part
+        while more < TURNS:
+            more *= 2
+            if more == TURNS or self._shading(pixels * (more - parts[-1]) / TURNS) > SHOWN_AGAIN:
+                parts.append(more)
+        return tuple(parts)
+
+
+def divided(width: int, height: int, divisor: int) -> tuple[int, int]:
+    """The size of a frame that is coarser by `divisor`, never empty."""
+    return max(1, round(width / divisor)), max(1, round(height / divisor))
