@@ -17,7 +17,7 @@ export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
 export MPLCONFIGDIR := $(CURDIR)/.cache/matplotlib
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run test golden bench frames quickest counters window memory growth lint format lock clean distclean help
+.PHONY: run test golden bench frames quickest counters window motion memory growth lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -51,6 +51,10 @@ counters:  ## time frames with and without counters of steps and tests (ARGS="--
 window:  ## time how soon the window shows a picture, and its own frames while tracing (ARGS="--seconds 20 SCENE")
 	@tools/environment.sh dev
 	@$(RUN) tools/with_screen.py $(RUN) -m tests.bench.window_times $(ARGS)
+
+motion:  ## how good pictures in motion are, and how soon they are whole (ARGS="--json motion.json SCENE")
+	@tools/environment.sh dev
+	@$(RUN) tools/with_screen.py $(RUN) -m tests.bench.motion $(ARGS)
 
 memory:  ## measure the memory of Kitchen and of a million triangles, and build times (ARGS="--triangles 200000 SCENE")
 	@tools/environment.sh dev
