@@ -842,7 +842,7 @@ def closing_while_tracing(d: Driver) -> None:
     """The window goes at once, whatever is being traced."""
     d.settle()
     d.c.change(samples=4000)
-    d.wait(lambda: d.c.render.running is not None and d.c.render.running.settings.samples == 4000, "a long trace")
+    d.wait(lambda: d.c.render.running is not None and d.c.render.running.samples == 4000, "a long trace")
     _close(d)
 
 
