@@ -121,9 +121,8 @@ def main(arguments: list[str] | None = None) -> int:
     options.json.parent.mkdir(parents=True, exist_ok=True)
     options.json.write_text(json.dumps(report, indent=1) + "\n")
     about = report["machine"]
-    print(
-        f"{about['processor']}, {about['cores']} cores, load {about['load_before']:.1f} before; all in {options.json}"
-    )
+    processor = f"{about['processor']}, {about['cores']} cores, load {about['load_before']:.1f} before"
+    print(f"{processor}; all in {options.json}")
     return 0
 
 

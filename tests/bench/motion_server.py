@@ -26,7 +26,6 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from viewer import navigation
 from viewer.app import App
-from viewer.controller import Controller
 from viewer.governor import LARGEST_DIVISOR, SPARE, Governor, Plan, divided
 from viewer.pictures import picture
 
@@ -167,14 +166,12 @@ class Script:
         self.c.move(navigation.fly(camera, right * pace * step, 0.0, forward * pace * step, up))
 
 
-def compared(controller: Controller, burst: Burst, size: tuple[int, int], renderer: Renderer) -> list[dict[str, float]]:
+def compared(burst: Burst, size: tuple[int, int], renderer: Renderer) -> list[dict[str, float]]:
     """How like the exact picture of their moment some of a burst's pictures are."""
     kept = [burst.shown[round(n)] for n in np.linspace(1, len(burst.shown) - 1, min(KEPT, len(burst.shown) - 1))]
-    found = []
+    found, exactly = [], {"width": size[0], "height": size[1], "method": "none", "modes": False}
     for frame in kept:
-        renderer.settings = replace(
-            frame.settings, width=size[0], height=size[1], method="none", modes=False, threads=0
-        )
+        renderer.settings = replace(frame.settings, **exactly)
         exact = picture(renderer.render(frame.time, frame.camera))
         shown = on_screen(picture(frame), size)
         found.append(
@@ -213,7 +210,7 @@ def main() -> int:
     for burst in script.done:
         about = {"kind": burst.kind, "seconds": burst.seconds, "pictures": len(burst.shown), "window": burst.frames}
         about |= {"settled": burst.settled, "full": burst.full}
-        told.append(about | {"compared": compared(app.controller, burst, size, renderer)})
+        told.append(about | {"compared": compared(burst, size, renderer)})
     Path(out).write_text(json.dumps({"size": size, "bursts": told}))
     return code
 

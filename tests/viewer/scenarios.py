@@ -327,7 +327,7 @@ def flying(d: Driver) -> None:
     assert ahead.basis()[2] @ home.basis()[2] > 0.999
     d.settle()
     assert (d.c.frame.width, d.c.frame.height) == d.c.size, "at rest the resolution is the window's"
-    assert d.c.traced.request.divisor == 1
+    assert d.c.traced.request.divisor == 1 and d.c.traced.whole
 
     before = d.c.session.camera
     d.drag(d.picture_centre(), (80.0, 0.0))
@@ -622,10 +622,10 @@ def failing(d: Driver) -> None:
     threading.Thread(target=fail, name="some thread").start()
     told("some thread")
     renderer = d.c.render._renderer
-    render, renderer.render = renderer.render, fail
+    refine, renderer.refine = renderer.refine, fail
     d.press(KEY.t)
     told("frame not traced")
-    renderer.render = render
+    renderer.refine = refine
     d.press(KEY.t)
     d.settle()
     read, opening.load_visible_scene = opening.load_visible_scene, fail

@@ -192,7 +192,7 @@ def test_stopped_before_its_first_frame_a_run_leaves_nothing_and_what_it_cut_sho
     desk.came.clear()
     desk.runner.start_experiment()
     desk.runner.stop()
-    del renderer.render
+    del renderer.refine
     desk.run_to_its_end()
     assert desk.runner.experiment.results is None
     assert desk.said == "experiment stopped after 0 of 5 frames"
@@ -240,7 +240,7 @@ def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
     desk.until(lambda: desk.runner.experiment.traced > 2)
     before = (session.camera, session.time, session.settings, session.playing, session.follow)
     asked: list[object] = []
-    renderer.render = lambda *arguments: asked.append(arguments)
+    renderer.refine = lambda *arguments: asked.append(arguments)
     for disturb in (
         lambda: desk.c.move(ELSEWHERE),
         lambda: desk.c.glide(ELSEWHERE),
@@ -264,7 +264,7 @@ def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
     many = desk.runner.experiment.traced + 10
     desk.until(lambda: desk.runner.experiment.traced > many)
     assert not asked, "a frame was traced beside the run"
-    del renderer.render
+    del renderer.refine
     assert all(np.array_equal(memory.words, memories[size]) for size, memory in renderer._memories.items())
     desk.runner.stop()
     desk.run_to_its_end()
