@@ -4,8 +4,8 @@ Each picture begins with its primary rays at full resolution and with a few sixt
 shaded, the rest filled in from them; then it becomes whole.  How many sixteenths fit into the time of a
 frame follows from what the last frames have cost: a fixed part, a part for each primary ray and a part
 for each shaded pixel, learnt apart, and beside them what else was in them (objects placed, certificates
-made).  Only where not even the primary rays fit is the resolution divided by 2, 3, ... as well.  More is
-taken only with some time to spare, so that pictures do not flutter between two steps.
+made).  Only where the primary rays alone take nearly all of that time is the resolution divided by 2, 3, ...
+as well.  More is taken only with some time to spare, so that pictures do not flutter between two steps.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from tracer.statistics import FrameStatistics
 PARTS = (16, 8, 4, 2, 1)  # sixteenths of the pixels that the first picture may have
 LARGEST_DIVISOR = 8
 SPARE = 0.8  # of a frame's time that a finer step may take
+ALONE = 0.75  # of a frame's time that primary rays, and what is beside them, may take
 SHOWN_AGAIN = 0.15  # seconds that it takes at least until a picture that becomes whole is shown again
 KEPT, FORGETTING = 24, 0.8  # observations, and what each counts against the one after it
 TRUST = 0.05  # in how costs were divided before, against all that was observed
@@ -79,7 +80,7 @@ class Governor:
         """Another scene costs something else."""
         self._rays, self._shading, self._beside = Cost(4e-3, 6e-8), Cost(5e-3, 6e-7), 0.0
         self._finest = 0.0  # pixels that the last plan shaded
-        self._known = False
+        self._known, self._last_divisor = False, 1
 
     def observe(self, statistics: FrameStatistics, pixels: int) -> None:
         """Learn from a frame of so many pixels, or the first part of one."""
@@ -98,15 +99,26 @@ class Governor:
 
     def plan(self, width: int, height: int, seconds: float) -> Plan:
         """How to begin a picture that is to be shown so many seconds later, and how to go on."""
-        for divisor in range(1, LARGEST_DIVISOR + 1):
-            w, h = divided(width, height, divisor)
-            for part in PARTS:
-                shaded = w * h * part / TURNS
-                if self.seconds(w * h, part) <= (seconds if shaded <= self._finest else SPARE * seconds):
-                    self._finest = shaded
-                    return Plan(divisor, self._onward(w * h, part))
+        divisor = self._divisor(width, height, ALONE * seconds)
+        w, h = divided(width, height, divisor)
+        for part in PARTS:
+            shaded = w * h * part / TURNS
+            if self.seconds(w * h, part) <= (seconds if shaded <= self._finest else SPARE * seconds):
+                break
         self._finest = shaded
-        return Plan(LARGEST_DIVISOR, self._onward(w * h, part))
+        return Plan(divisor, self._onward(w * h, part))
+
+    def _divisor(self, width: int, height: int, seconds: float) -> int:
+        """The finest resolution whose primary rays fit into so many seconds."""
+        for divisor in range(1, LARGEST_DIVISOR):
+            w, h = divided(width, height, divisor)
+            limit = seconds if divisor >= self._last_divisor else SPARE * seconds
+            if self._beside + self._rays(w * h) <= limit:
+                break
+        else:
+            divisor = LARGEST_DIVISOR
+        self._last_divisor = divisor
+        return divisor
 
     def _onward(self, pixels: int, part: int) -> tuple[int, ...]:
         """From a part to the whole, in steps that are worth showing."""
