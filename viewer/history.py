@@ -64,7 +64,7 @@ class History:
             tests=sum(p.intersection_tests for p in parts) + s.certificate_tests,
             shadow_steps=s.shadow.traversal_steps + s.certificate_steps,
             shadow_tests=s.shadow.intersection_tests + s.certificate_tests,
-            pixels=frame.width * frame.height,
+            pixels=frame.width * frame.height * s.part,
             traced_ms=1e3 * s.seconds,
             drawn_ms=1e3 * drawn_seconds,
         )

@@ -12,7 +12,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from tracer.frame import Frame, Settings
-from tracer.method import certifies
+from tracer.method import base_of, certifies
 from viewer.governor import AT_ONCE, Governor, Plan, divided
 from viewer.methods import with_base
 from viewer.render_thread import RenderRequest, Traced
@@ -85,7 +85,8 @@ class Tracing:
 
     def _settle(self) -> None:
         """At rest the first whole picture of a view teaches the modes; a second one shows what they save.  Certificates
-        are made within a budget: some more frames follow, until none are wanted."""
+        are made within a budget: where the user has asked for them, by method or view, more frames follow, until none
+        are wanted; others' time goes into samples."""
         traced = self.traced
         if traced is None or not traced.whole or traced.request is self._considered:
             return
@@ -95,7 +96,8 @@ class Tracing:
         learns = request.divisor == 1
         if learns and view != self._settled:
             self._settled = view
-            self._lessons = LESSONS if certifies(seen.method) else 1
+            certified = base_of(seen.method) == "certified" or self._c.session.view is View.CERTIFICATE
+            self._lessons = LESSONS if certified and certifies(seen.method) else 1
         elif traced.frame.statistics.certificates == 0:
             self._lessons = 0
         if self._c.preferences.keep_tracing or (learns and self._lessons > 0):

@@ -12,6 +12,7 @@ from tracer.scene.model import Camera
 from tracer.statistics import FrameStatistics
 from viewer.render_thread import RenderRequest, Traced
 from viewer.tracing import LESSONS, Tracing
+from viewer.views import View
 
 CAMERA = Camera((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -21,7 +22,7 @@ class Desk:
 
     def __init__(self) -> None:
         self.preferences = SimpleNamespace(keep_tracing=False)
-        self.session, self.moving, self.render = SimpleNamespace(playing=False), False, self
+        self.session, self.moving, self.render = SimpleNamespace(playing=False, view=View.COLOR), False, self
         self.tracing = Tracing(self)  # type: ignore[arg-type]
         self._next: Traced | None = None
 
@@ -51,8 +52,8 @@ class Desk:
         ("none", [0] * 20, 2),
         ("paper", [0] * 20, 2),
         ("certified", [0] * 20, 2),
-        ("auto", [0, 9, 0, 0], 3),
         ("certified", [9, 9, 9, 0, 0, 0], 4),
+        ("auto", [9] * 20, 2),
         ("certified+cache", [9] * 2 * LESSONS, 1 + LESSONS),
     ],
 )

@@ -49,8 +49,8 @@ def show(ui: Ui) -> None:
     pixels = max(round(s.part * frame.width * frame.height), 1)  # that have been shaded
     divisor = c.traced.request.divisor
     coarse = f" (1/{divisor} of the window)" if divisor > 1 else ""
-    coarse += f", {s.part:.0%} of them shaded" if s.part < 1.0 else ""
-    clipped(f"for {frame.width} x {frame.height} pixels{coarse}, method {frame.settings.method}")
+    part = f"{s.part:.0%} of " if s.part < 1.0 else ""
+    clipped(f"for {part}{frame.width} x {frame.height} pixels{coarse}, method {frame.settings.method}")
     if c.tracing.outdated:
         paragraph("These are of the settings before; a new frame is being traced.", QUIET)
     if s.decision:
