@@ -30,6 +30,7 @@ from viewer.layout import Layout, LayoutFile
 from viewer.panels import dialogs, faults, legend, loading, picture, status, strip, tour
 from viewer.preferences import config_folder, load_preferences
 from viewer.resources import default_scene
+from viewer.shots import Shots
 from viewer.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
@@ -87,6 +88,7 @@ class App:
         step("Opening what was dropped", self._open_dropped)
         step("Following the scene", lambda: self.controller.tick(self._room_for_picture()))
         step("Drawing the picture", self._draw)
+        step("Drawing recorded pictures", self._bring_shots)
         step("Saving the picture", self._capture_picture)
         self._stay_awake()
 
@@ -135,6 +137,10 @@ class App:
             return
         display.show(c.frame)
         display.draw(self._look(c.selected.primitive if c.selected is not None else -1))
+
+    def _bring_shots(self) -> None:
+        if self.ui.shots is not None:
+            self.ui.shots.bring()
 
     def _look(self, selected: int) -> Look:
         """How the view is to be drawn, with an outline around a primitive unless it is -1."""
@@ -219,6 +225,7 @@ class App:
     def _ready(self) -> None:
         """The window and its GL context exist."""
         self.ui.display = Display()
+        self.ui.shots = Shots(self.ui.display.context)
         self.ui.renderer_name = self.ui.display.context.info["GL_RENDERER"]
         self.controller.wake = hello_imgui.request_refresh
         window = glfw_utils.glfw_window_hello_imgui()
@@ -244,6 +251,9 @@ class App:
         if self.ui.display is not None:
             self.ui.display.release()
             self.ui.display = None
+        if self.ui.shots is not None:
+            self.ui.shots.release()
+            self.ui.shots = None
 
     def _exit(self) -> None:
         self.params.app_shall_exit = True

@@ -23,6 +23,8 @@ from viewer.version import program_version
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from viewer.film import Film
+
 Results = TypeVar("Results", experiment.Results, zoom.Results)
 Writers = Mapping[str, Callable[[Results, Path], None]]
 """What writes each kind of file; raises OSError in one line, and ValueError where there is nothing to plot."""
@@ -96,6 +98,17 @@ def write_experiment(results: experiment.Results, verified: bool, path: Path) ->
 def write_zoom_test(results: zoom.Results, path: Path) -> None:
     """Into a file of one of ENDINGS; raises OSError, and ValueError where there is nothing to plot."""
     ZOOM_WRITERS[ENDINGS[path.suffix]](results, path)
+
+
+def write_film(film: Film, results: zoom.Results, path: Path) -> None:
+    """The filmstrip of a zoom test, as a picture; raises OSError, and ValueError where there is nothing to draw."""
+
+    def draw() -> Figure:
+        from viewer.film_figure import film_figure
+
+        return film_figure(film, results)
+
+    _plot(draw, path)
 
 
 def save(folder: Path, name: str, ending: str, write: Callable[[Path], None], now: datetime | None = None) -> Path:

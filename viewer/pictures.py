@@ -91,6 +91,15 @@ def lights_in_words(count: int) -> str:
     return "the scene has one light, number 0" if count == 1 else f"the scene's lights are 0 to {count - 1}"
 
 
+def ringed(frame: Frame) -> NDArray[np.uint8]:
+    """(height, width, 3) uint8: the traced picture of a verified frame with rings around wrong pixels.
+
+    Raises ValueError where the frame was not verified."""
+    colors = np.clip(frame.color, 0.0, 1.0)
+    colors[wrong_marks(frame) == Mark.RING] = WRONG
+    return np.round(colors * 255.0).astype(np.uint8)
+
+
 def _on_background(frame: Frame, colors: NDArray) -> NDArray:
     return np.where((frame.primitive >= 0)[..., None], colors, np.asarray(BACKGROUND, np.float32))
 

@@ -6,6 +6,7 @@ meanwhile is refused, in one line that says how to stop it.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -140,14 +141,23 @@ class Runner:
 
     def export(self, run: Run, ending: str) -> None:
         """Write the results, as one of exports.ENDINGS, into the folder of the screenshots."""
+        results = run.results
+        self._export(run, ending, "", lambda path: run.write(results, path))
+
+    def export_film(self, test: ZoomTest) -> None:
+        """Write the filmstrip of a zoom test into that folder, as a picture."""
+        results = test.results
+        if results is not None:
+            self._export(test, ".png", "-film", lambda path: test.write_film(results, path))
+
+    def _export(self, run: Run, ending: str, what: str, write: Callable[[Path], None]) -> None:
         if run.results is None:
             self._c.say("there is nothing to save yet")
             return
-        results = run.results
         folder = Path(self._c.preferences.screenshot_folder or default_screenshot_folder()).expanduser()
-        name = f"{run.scene_path.stem}-{run.name.replace(' ', '-')}"
+        name = f"{run.scene_path.stem}-{run.name.replace(' ', '-')}{what}"
 
         def save(_: Progress) -> Path:
-            return exports.save(folder, name, ending, lambda path: run.write(results, path))
+            return exports.save(folder, name, ending, write)
 
         self._c.keeper.saving.append(Job("Saving", save, lambda: self._c.wake()))

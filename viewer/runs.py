@@ -24,6 +24,7 @@ from tracer.scene.model import Cancelled, Scene
 from viewer import exports
 from viewer.console import TimeLeft
 from viewer.failures import Failure, failure
+from viewer.film import Film
 from viewer.methods import in_order
 from viewer.render_thread import Traces
 from viewer.views import View
@@ -241,7 +242,9 @@ class ZoomPlan:
 
 
 class ZoomTest(Run[zoom.Results]):
-    """Towards a primitive; every frame is the picture once.  Raises ValueError for factors or a size that are none."""
+    """Towards a primitive; every frame is the picture once, and kept in `film`.
+
+    Raises ValueError for factors or a size that are none."""
 
     name = "zoom test"
 
@@ -256,6 +259,7 @@ class ZoomTest(Run[zoom.Results]):
         _check_size(plan.size)
         self.start, self.plan = start, replace(plan)
         self.factors = parse_factors(plan.factors)
+        self.film = Film()
         self.settings = replace(settings, width=plan.size[0], height=plan.size[1]).validated()
         super().__init__(scene, len(self.factors) * (plan.steps + zoom.STILL_FRAMES), wake)
 
@@ -263,6 +267,7 @@ class ZoomTest(Run[zoom.Results]):
         last = self.plan.steps + zoom.STILL_FRAMES - 1
 
         def on_frame(factor: float, number: int, frame: Frame) -> None:
+            self.film.record(factor, number, frame)
             self._count(f"zoom factor {factor:g}, step {number} of {last}")
             self._show(frame, wait=True)
 
@@ -283,6 +288,10 @@ class ZoomTest(Run[zoom.Results]):
 
     def write(self, results: zoom.Results, path: Path) -> None:
         exports.write_zoom_test(results, path)
+
+    def write_film(self, results: zoom.Results, path: Path) -> None:
+        """The filmstrip as a picture; raises OSError in one line, and ValueError where no step is done."""
+        exports.write_film(self.film, results, path)
 
 
 def _check_size(size: tuple[int, int]) -> None:

@@ -22,6 +22,8 @@ from viewer.tour import Tour
 if TYPE_CHECKING:
     from viewer.commands import Command
     from viewer.display import Display
+    from viewer.panels.film import Screening
+    from viewer.shots import Shots
 
 
 class CaptureKind(Enum):
@@ -58,8 +60,9 @@ class Fold:
 @dataclass
 class Ui:
     """See the module.  `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says
-    that the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector; `legend_shown`
-    whether the picture shows its legend, `legend_held` where the pointer holds that."""
+    that the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector; `screening` is
+    the recorded picture that is shown in the picture's place; `legend_shown` says whether the picture shows its legend,
+    `legend_held` where the pointer holds that."""
 
     controller: Controller
     display: Display | None = None
@@ -90,6 +93,8 @@ class Ui:
     log_errors_only: bool = False
     zoom_all_steps: bool = False
     pointed_light: int | None = None
+    shots: Shots | None = None
+    screening: Screening | None = None
     legend_shown: bool = False
     legend_held: tuple[float, float] = (0.0, 0.0)
     tour_placed: bool = False

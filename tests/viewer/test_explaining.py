@@ -16,7 +16,9 @@ from tracer.scene.load import load_scene, scene_info
 from viewer import navigation
 from viewer.controller import Controller
 from viewer.explaining import MOST_OCCLUDERS, Answer, Part, drawn_lines
+from viewer.panels.explanation import sentences
 from viewer.preferences import Preferences
+from viewer.ui import Ui
 
 SIZE = (64, 48)
 
@@ -146,3 +148,21 @@ def test_every_named_occluder_is_drawn_up_to_a_number_and_what_blocks_stands_out
     many = replace(answer, lights=(replace(stopped, blocker=2, named=tuple([2] + [0] * 30)),))
     drawn = [line.part for line in drawn_lines(many, desk.c.frame)]
     assert drawn.count(Part.OCCLUDER) == MOST_OCCLUDERS - 1
+
+
+def test_what_blocks_is_named_once_and_as_what_it_is(desk: Desk):
+    ui = Ui(desk.c)
+    desk.c.select(desk.shadow)
+    answer = desk.answered()
+    found = next(one for one in answer.lights if one.blocked_at is not None)
+    stopped = replace(found, certificate="none", named=())
+    receiver = int(answer.frame.primitive[answer.y, answer.x])
+    by = f"blocked by sphere {stopped.blocker} of tiny"
+    assert sentences(ui, stopped, receiver)[0].startswith(by) and len(sentences(ui, stopped, receiver)) == 1
+    among = replace(stopped, certificate="candidates", named=(stopped.blocker, 0, receiver))
+    first, others = sentences(ui, among, receiver)
+    assert first.startswith(by) and first.endswith("one of its candidates")
+    assert others.startswith("other candidates: ") and f"sphere {stopped.blocker}" not in others
+    assert "its own surface" in others
+    (own,) = sentences(ui, replace(stopped, blocker=receiver), receiver)
+    assert own.startswith("blocked by its own surface: this triangle shadows itself")

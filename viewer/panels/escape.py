@@ -21,6 +21,8 @@ def close_newest(ui: Ui) -> bool:
         ui.shortcuts_open = False
     elif ui.fold.drawer:
         ui.fold.drawer = ""
+    elif ui.screening is not None:
+        ui.screening = None
     elif ui.controller.faults.notice is not None:
         ui.controller.faults.dismiss()
     else:

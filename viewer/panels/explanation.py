@@ -20,7 +20,10 @@ _LIT, _STOPPED = SHADOW_COLORS[ShadowMode.NON_SHADOW], (0.34, 0.71, 0.91)
 _BLOCKER = SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW]
 _COLORS = {Part.REACHING: _LIT, Part.STOPPED: _STOPPED, Part.BLOCKER: _BLOCKER, Part.OCCLUDER: (0.90, 0.62, 0.0)}
 _WIDTHS = {Part.REACHING: 0.13, Part.STOPPED: 0.13, Part.BLOCKER: 0.16, Part.OCCLUDER: 0.1}  # in ems
-_RESTS_ON = {Certificate.FULL.name: "hidden by", Certificate.CANDIDATES.name: "can only be blocked by"}
+_RESTS_ON = {  # and what is said where the blocker is among them
+    Certificate.FULL.name: ("hidden by", "and hidden by"),
+    Certificate.CANDIDATES.name: ("can only be blocked by", "other candidates:"),
+}
 _UNSEEN = 0.6  # of the width of what is seen
 _SHADE = ImVec4(0.05, 0.06, 0.08, 0.6)
 _FADED = 0.18  # opacity of other lights than the one that is pointed at
@@ -106,9 +109,8 @@ def sentences(ui: Ui, one: Explanation, receiver: int) -> list[str]:
     if others:
         names = [_named(ui, number) if number != receiver else "its own surface" for number in others[:MOST_OCCLUDERS]]
         more = f" and {len(others) - MOST_OCCLUDERS} more" if len(others) > MOST_OCCLUDERS else ""
-        rests_on = _RESTS_ON.get(certificate, "certified by")
-        also = "also " if one.blocker in one.named else ""
-        told.append(f"{also}{rests_on} {', '.join(names)}{more}")
+        first, besides = _RESTS_ON.get(certificate, ("certified by", "certified by"))
+        told.append(f"{besides if one.blocker in one.named else first} {', '.join(names)}{more}")
     return told
 
 

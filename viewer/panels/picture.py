@@ -13,7 +13,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer import navigation
 from viewer.palette import ON_PICTURE_ERROR
-from viewer.panels import explanation, legend, missing, timeline, wipe
+from viewer.panels import explanation, film, legend, missing, timeline, wipe
 from viewer.panels.widgets import QUIET, count, em, paragraph
 from viewer.picking import point_at
 from viewer.ui import Ui
@@ -37,7 +37,7 @@ def show(ui: Ui) -> None:
     ui.picture_area = (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y)))
     ui.picture_focused = imgui.is_window_focused()
     top = imgui.get_cursor_pos()
-    if room.x >= 1.0 and room.y >= 1.0:
+    if room.x >= 1.0 and room.y >= 1.0 and not film.screen(ui, room):
         _picture(ui, room)
     if bar > 0.0:
         imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y))

@@ -36,6 +36,9 @@ def side_by_side(
     if scrolls:
         table_width = min(table_width, max(0.5 * (room.x - left), em(18.0)))
     middle = room.x - left - table_width - 2.0 * spacing
+    if middle < em(16.0):  # before they go one below the other, the table gives what it can
+        table_width = max(em(11.0), table_width - (em(16.0) - middle))
+        middle = room.x - left - table_width - 2.0 * spacing
     if middle < em(12.0):
         controls()
         plot(ImVec2(room.x, em(14.0)))

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.zoom import Approach, Results, Step
 from viewer.palette import MARK
+from viewer.panels import film
 from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
 from viewer.panels.runs import export_buttons, side_by_side, start_or_progress
 from viewer.panels.widgets import (
@@ -23,13 +25,15 @@ from viewer.panels.widgets import (
     row,
     size_field,
     tooltip,
+    tooltip_above,
 )
 from viewer.reports import changes_in_words, happenings, modes_in_words
 from viewer.runs import LONGEST_SIDE, ZoomTest
 from viewer.ui import Ui
 
 _NARROWEST = 15.0  # ems of a plot that stands beside another
-_GO_THERE = "go there: traced at the window's size with the window's modes, so that the wrong pixels need not be there"
+_LOW = 9.0  # ems of height below which a plot has no legend
+_FILM, _LEAST_FILM, _MOST_FILM = 0.4, 3.6, 9.0  # the pictures' part of the height, and its limits in ems
 
 
 def show(ui: Ui) -> None:
@@ -37,7 +41,7 @@ def show(ui: Ui) -> None:
     test = ui.controller.runner.zoom_test
     results = test.results if test is not None else None
     side_by_side(lambda: _controls(ui, test), lambda size: _plots(ui, test, results, size),
-                 lambda: _table(ui, results), em(18.0))  # fmt: skip
+                 lambda: _table(ui, test, results), em(18.0))  # fmt: skip
 
 
 def _controls(ui: Ui, test: ZoomTest | None) -> None:
@@ -51,6 +55,10 @@ def _controls(ui: Ui, test: ZoomTest | None) -> None:
     tip = "go towards the primitive, once with each factor"
     start_or_progress(ui, test, c.runner.start_zoom_test, tip)
     export_buttons(ui, test)
+    if test is not None and test.results is not None:
+        if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK} Film"):
+            c.runner.export_film(test)
+        tooltip_above("save the filmstrip as a picture: the paper's Figure 4")
 
 
 def _plan(ui: Ui) -> None:
@@ -108,7 +116,8 @@ def _plots(ui: Ui, test: ZoomTest | None, results: Results | None, size: ImVec2)
     for number, approach in enumerate(approaches):
         if number:
             imgui.same_line()
-        _plot(test, approaches, approach, f"zoom factor {approach.factor:g}##{number}", ImVec2(width, size.y))
+        name = f"zoom factor {approach.factor:g}##{number}"
+        _plot_and_film(ui, test, approaches, approach, name, ImVec2(width, size.y))
     imgui.end_group()
 
 
@@ -119,15 +128,29 @@ def _tabs(ui: Ui, test: ZoomTest, approaches: list[Approach], size: ImVec2) -> N
         for number, approach in enumerate(approaches):
             flags = int(imgui.TabItemFlags_.set_selected) if number == grows else 0
             if imgui.begin_tab_item(f"factor {approach.factor:g}##{number}", None, flags)[0]:
-                _plot(test, approaches, approach, f"##{number}", imgui.get_content_region_avail())
+                room = imgui.get_content_region_avail()
+                _plot_and_film(ui, test, approaches, approach, f"##{number}", room)
                 imgui.end_tab_item()
         imgui.end_tab_bar()
     imgui.end_child()
 
 
-def _plot(test: ZoomTest, approaches: list[Approach], approach: Approach, name: str, size: ImVec2) -> None:
+def _plot_and_film(
+    ui: Ui, test: ZoomTest, approaches: list[Approach], approach: Approach, name: str, size: ImVec2
+) -> None:
+    """A plot, and under it the pictures of its steps."""
+    gap = imgui.get_style().item_spacing.y
+    pictures = min(max(_FILM * size.y, em(_LEAST_FILM)), em(_MOST_FILM))
+    imgui.begin_group()
+    _plot(ui, test, approaches, approach, name, ImVec2(size.x, max(size.y - pictures - gap, em(4.0))))
+    film.strip(ui, test, approach, f"film {approach.factor:g}", ImVec2(size.x, pictures))
+    imgui.end_group()
+
+
+def _plot(ui: Ui, test: ZoomTest, approaches: list[Approach], approach: Approach, name: str, size: ImVec2) -> None:
     """Pixels, and the count past which the primitive is examined anew, on a logarithmic scale; wrong pixels as bars."""
-    if not implot.begin_plot(name, size, FLAGS):
+    low = size.y < em(_LOW)
+    if not implot.begin_plot(name, size, FLAGS | int(implot.Flags_.no_legend) if low else FLAGS):
         return
     steps = approach.steps
     numbers = np.arange(len(steps), dtype=np.float64)
@@ -135,13 +158,13 @@ def _plot(test: ZoomTest, approaches: list[Approach], approach: Approach, name: 
     limits = np.array([approach.factor * step.highest or np.nan for step in steps], np.float64)
     seen = [max(step.pixels, step.highest, 1) for a in approaches for step in a.steps]
     most_wrong = max(1, *(a.most_wrong for a in approaches))
-    implot.setup_axes("", "pixels", AXIS, AXIS)
+    implot.setup_axes("", "" if low else "pixels", AXIS, AXIS)
     implot.setup_axis_scale(implot.ImAxis_.y1, int(implot.Scale_.log10))
     implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
     implot.setup_axis_format(implot.ImAxis_.y1, "%.0f")
-    low, high = 0.3 * min(pixels.min(), *(s.pixels or 0.5 for a in approaches for s in a.steps)), 6.0 * max(seen)
+    least, high = 0.3 * min(pixels.min(), *(s.pixels or 0.5 for a in approaches for s in a.steps)), 6.0 * max(seen)
     always = int(imgui.Cond_.always)
-    implot.setup_axes_limits(-0.7, test.frames / len(test.factors) - 0.3, low, high, always)
+    implot.setup_axes_limits(-0.7, test.frames / len(test.factors) - 0.3, least, high, always)
     wrong_axis(most_wrong, always)
     implot.setup_legend(implot.Location_.south, LEGEND)
     implot.set_axes(implot.ImAxis_.x1, implot.ImAxis_.y2)
@@ -155,13 +178,15 @@ def _plot(test: ZoomTest, approaches: list[Approach], approach: Approach, name: 
                        marker_line_color=MARK)  # fmt: skip
     implot.plot_scatter("modes", changed, pixels[changed.astype(int)], mark)
     if implot.is_plot_hovered():
-        _explain(steps, implot.get_plot_mouse_pos().x)
+        step = steps[min(max(round(implot.get_plot_mouse_pos().x), 0), len(steps) - 1)]
+        _explain(step)
+        if imgui.is_mouse_clicked(imgui.MouseButton_.left):
+            film.show_step(ui, test, approach.factor, step.number)
     implot.end_plot()
 
 
-def _explain(steps: list[Step], x: float) -> None:
-    """The step under the pointer, in numbers and words."""
-    step = steps[min(max(round(x), 0), len(steps) - 1)]
+def _explain(step: Step) -> None:
+    """A step in numbers and words."""
     if imgui.begin_tooltip():
         what = " (highest count while fully rendered)" if step.highest else ""
         imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {judged(step.highest)}{what}")
@@ -171,9 +196,9 @@ def _explain(steps: list[Step], x: float) -> None:
         imgui.end_tooltip()
 
 
-def _table(ui: Ui, results: Results | None) -> None:
-    """The steps, those where something happens or all; a click goes there."""
-    if results is None:
+def _table(ui: Ui, test: ZoomTest | None, results: Results | None) -> None:
+    """The steps, those where something happens or all; a click shows what was recorded there."""
+    if test is None or results is None:
         return
     tip = "else those where modes change, or wrong pixels come or go"
     checkbox("all steps", ui.zoom_all_steps, lambda on: setattr(ui, "zoom_all_steps", on), tip)
@@ -188,18 +213,18 @@ def _table(ui: Ui, results: Results | None) -> None:
     for number, approach in enumerate(results.approaches):
         imgui.push_id(number)
         for step in approach.steps if ui.zoom_all_steps else happenings(approach):
-            _row(ui, approach, step)
+            _row(ui, test, approach, step)
         imgui.pop_id()
     imgui.end_table()
 
 
-def _row(ui: Ui, approach: Approach, step: Step) -> None:
+def _row(ui: Ui, test: ZoomTest, approach: Approach, step: Step) -> None:
     imgui.table_next_row()
     imgui.table_next_column()
     flags = imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_overlap
     if imgui.selectable(f"{approach.factor:g}##{step.number}", False, int(flags))[0]:
-        ui.controller.runner.go_to(step)
-    tooltip("\n".join([_GO_THERE, *changes_in_words(step.changes)]))
+        film.show_step(ui, test, approach.factor, step.number)
+    tooltip("\n".join(["show its picture", *changes_in_words(step.changes)]))
     for text, color in (
         (str(step.number), None),
         (count(step.pixels), None),
