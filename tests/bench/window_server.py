@@ -62,7 +62,7 @@ class Watch:
         self._saw("window")
         if self.c.traced is not None and self.app.ui.display is not None and self.app.ui.display.texture_id is not None:
             self._saw("first picture")
-            if self.c.traced.request.divisor == 1:
+            if self.c.traced.request.divisor == 1 and self.c.traced.whole:
                 self._saw("full picture")
 
     def _now(self) -> tuple[float, float, float]:
@@ -109,6 +109,7 @@ def main() -> int:
     scene, size, seconds, spawned = sys.argv[1:]
     app = App(Path(scene))
     app.ui.tour.end()
+    app.controller.change(samples=1)  # at rest nothing is to go on
     width, height = (int(side) for side in size.split("x"))
     geometry = app.params.app_window_params
     geometry.window_geometry.size, geometry.restore_previous_geometry = (width, height), False
