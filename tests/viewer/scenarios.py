@@ -340,7 +340,7 @@ def flying(d: Driver) -> None:
     d.drag((panel.pos.x + 60.0, panel.pos.y + panel.size.y - 20.0), (50.0, -30.0))
     assert d.c.session.camera == before, "a drag on a panel moved the camera"
 
-    d.app.params.docking_params.focus_dockable_window("Camera")
+    d.ui.show_panel("Camera")
     d.frames(3)
     d.context.item_click("//Camera/##bookmark")
     d.context.key_chars("wasd")
