@@ -97,7 +97,8 @@ class Ui:
     screening: Screening | None = None
     legend_shown: bool = False
     legend_held: tuple[float, float] = (0.0, 0.0)
-    tour_placed: bool = False
+    tour_moved: tuple[float, float] = (0.0, 0.0)
+    tour_at: tuple[float, float] | None = None
     _cache: dict[str, tuple[object, object, Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

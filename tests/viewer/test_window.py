@@ -17,7 +17,7 @@ SCENARIOS = ("views", "difference", "wiping", "culling", "certifying", "explaini
              "playing", "capturing", "dropping", "reopening", "failing", "asking", "closing_panels", "looks",
              "cancelling", "resizing", "closing_while_tracing", "closing_while_loading",
              "closing_while_experimenting", "experimenting", "zooming", "panels", "hiding", "folding",
-             "legends", "filmstrip", "touring")  # fmt: skip
+             "legends", "filmstrip", "touring", "fitting")  # fmt: skip
 
 
 @pytest.mark.parametrize("name", SCENARIOS)

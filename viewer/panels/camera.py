@@ -69,7 +69,7 @@ def _moving(ui: Ui) -> None:
             if imgui.radio_button("Fly", p.navigation == "fly"):
                 p.navigation = "fly"
             tooltip("drag to look around, W A S D Q E to move (G)")
-            imgui.same_line()
+            same_line_for("Orbit")
             if imgui.radio_button("Orbit", p.navigation == "orbit"):
                 p.navigation = "orbit"
             tooltip("drag to turn around the point that was clicked (O)")

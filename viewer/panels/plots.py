@@ -16,7 +16,7 @@ _PLOTS = (
     (_FATES, (("culled", "culled", BLUE), ("moving objects", "dynamic_only", YELLOW),
               ("candidates", "candidates_only", ORANGE), ("cache", "cache_hits", PINK),
               ("traced", "traced", GREY))),
-    ("Steps and tests", (("steps", "steps", BLUE), ("steps for shadows", "shadow_steps", SKY),
+    ("Steps and tests", (("steps", "steps", BLUE), ("for shadows", "shadow_steps", SKY),
                          ("tests", "tests", ORANGE))),
     (_LOGARITHMIC, (("tracing", "traced_ms", BLUE), ("drawing", "drawn_ms", ORANGE))),
 )  # fmt: skip

@@ -115,7 +115,7 @@ def _amounts(name: str, shares: float = 0.0) -> Iterator[bool]:
     """A table of names and numbers, and a column of shares where that has a width."""
     shown = imgui.begin_table(name, 3 if shares else 2, int(imgui.TableFlags_.sizing_stretch_prop))
     if shown:
-        imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_stretch), 1.25)
+        imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_stretch), 1.8)
         imgui.table_setup_column("number", int(imgui.TableColumnFlags_.width_stretch), 1.0)
         if shares:
             imgui.table_setup_column("share", int(imgui.TableColumnFlags_.width_fixed), shares)

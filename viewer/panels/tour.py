@@ -39,21 +39,25 @@ def show(ui: Ui) -> None:
 
 
 def _place(ui: Ui, waiting: bool) -> None:
-    """Under the progress of the first start, else in the lower right corner of the picture, until it is moved."""
+    """Under the progress of the first start, else in the lower right corner of the picture, or where it was moved from
+    there; never outside the window."""
     area = imgui.get_main_viewport()
     width = min(em(1.3 * _WIDTH if waiting else _WIDTH), 0.9 * area.work_size.x)
-    picture = imgui.internal.find_window_by_name("Picture")
-    condition = int(imgui.Cond_.appearing)
+    picture, own = (imgui.internal.find_window_by_name(name) for name in ("Picture", "###tour"))
+    if own is not None and ui.tour_at is not None:  # what the user has dragged it by since
+        ui.tour_moved = tuple(m + now - set_ for m, now, set_ in zip(ui.tour_moved, own.pos, ui.tour_at, strict=True))
     if waiting or picture is None:
         centre = area.get_work_center()
-        imgui.set_next_window_pos(ImVec2(centre.x, centre.y + em(0.5)), int(imgui.Cond_.always), ImVec2(0.5, 0.0))
-        ui.tour_placed = False
+        corner, height = ImVec2(centre.x - 0.5 * width, centre.y + em(0.5)), 0.0
     else:
-        corner = ImVec2(picture.pos.x + picture.size.x - em(1.0), picture.pos.y + picture.size.y - em(3.0))
-        condition = condition if ui.tour_placed else int(imgui.Cond_.always)
-        imgui.set_next_window_pos(corner, condition, ImVec2(1.0, 1.0))
-        ui.tour_placed = True
         width = min(width, 0.7 * picture.size.x)
+        height = own.size.y if own is not None else 0.0
+        right, bottom = picture.pos.x + picture.size.x - em(1.0), picture.pos.y + picture.size.y - em(3.0)
+        corner = ImVec2(right - width, bottom - height)
+    x = min(max(corner.x + ui.tour_moved[0], area.work_pos.x), area.work_pos.x + area.work_size.x - width)
+    y = min(max(corner.y + ui.tour_moved[1], area.work_pos.y), area.work_pos.y + area.work_size.y - max(height, em(4.0)))
+    ui.tour_at = (float(int(x)), float(int(y)))
+    imgui.set_next_window_pos(ImVec2(*ui.tour_at))
     imgui.set_next_window_size(ImVec2(width, 0.0))
 
 
