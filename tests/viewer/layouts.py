@@ -180,6 +180,11 @@ def touring(d: Driver) -> None:
     d.context.menu_click("//##MainMenuBar/Help/Tour")
     d.frames(3)
     assert tour.at == 0
+    for size in ((1400, 900), (480, 360), (900, 600)):
+        resize(d, *size)
+        window = imgui.internal.find_window_by_name("###tour")
+        assert window.pos.x >= 0 and window.pos.x + window.size.x <= size[0], f"the tour is cut off at {size}"
+        assert window.pos.y >= 0 and window.pos.y + window.size.y <= size[1], f"the tour is cut off at {size}"
     camera = d.c.session.camera
     d.context.item_click(show)
     d.wait(lambda: tour.at == 1, "the flight that is shown", 30.0)
