@@ -11,6 +11,7 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from viewer.browsing import Browser
 from viewer.capture import FIELDS
 from viewer.controller import Controller
 from viewer.full_screen import FullScreen
@@ -31,16 +32,6 @@ class CaptureKind(Enum):
 
     PICTURE = "the picture alone"
     WINDOW = "the window with its panels"
-
-
-@dataclass
-class FileBrowser:
-    """The dialog that opens a file: its folder, what was typed, and whether it is up."""
-
-    open: bool = False
-    folder: Path = field(default_factory=Path.cwd)
-    typed: str = ""
-    problem: str = ""
 
 
 @dataclass
@@ -67,7 +58,7 @@ class Ui:
     controller: Controller
     display: Display | None = None
     commands: list[Command] = field(default_factory=list)
-    browser: FileBrowser = field(default_factory=FileBrowser)
+    browser: Browser = field(default_factory=Browser)
     fold: Fold = field(default_factory=Fold)
     full_screen: FullScreen = field(default_factory=FullScreen)
     capture_wanted: CaptureKind | None = None

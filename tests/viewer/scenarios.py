@@ -21,7 +21,7 @@ from viewer import commands, opening
 from viewer.commands import chord
 from viewer.explaining import Part
 from viewer.legends import occlusion_legend
-from viewer.panels import dialogs, plots, statistics, status
+from viewer.panels import browser, plots, statistics, status
 from viewer.pictures import picture
 from viewer.resources import embedded_scenes
 from viewer.views import WRONG, View, wipe_column
@@ -607,11 +607,11 @@ def failing(d: Driver) -> None:
         guard.again(part)
         d.frames(3)
         assert not guard.broken
-    good, dialogs._entries = dialogs._entries, fail
+    good, browser._listing = browser._listing, fail
     d.press(int(KEY.o) | int(KEY.mod_ctrl))
     told("The dialog that opens a file")
     assert not d.ui.browser.open
-    dialogs._entries = good
+    browser._listing = good
     d.ui.commands = [replace(c, run=fail) if c.name == "Depth" else c for c in d.ui.commands]
     d.press(KEY._5)
     told("The command Depth")
@@ -1007,3 +1007,66 @@ def panels(d: Driver) -> None:
     d.c.trace_again()
     d.wait(lambda: d.c.history.frames >= traced + 3, "frames at rest")
     d.c.preferences.keep_tracing = False
+
+
+def browsing(d: Driver) -> None:
+    """The dialog that opens a file, with the keyboard alone and then with the pointer."""
+    d.settle()
+    box = d.folder / "box"
+    (box / "inner").mkdir(parents=True)
+    scene = Path(d.c.session.scene.path).read_text()
+    for name in ("whole.aff", "inner/deep.aff"):
+        (box / name).write_text(scene)
+    (box / "wheel.aff").write_text("f 1 0 0 1 0 1 0 1\ns 0 0 0 1\n")
+    Image.new("RGB", (8, 8)).save(box / "plot.png")
+    b = d.ui.browser
+    b.folder = d.folder
+
+    def keys(text: str) -> None:
+        d.context.key_chars(text)
+        d.frames(2)
+        d.wait(lambda: not b.reading, "the folder to be read")
+
+    d.press(int(KEY.o) | int(KEY.mod_ctrl))
+    d.frames(2)
+    keys("bo")
+    d.press(KEY.tab)
+    assert b.typed == "box/", b.typed
+    d.wait(lambda: not b.reading, "the folder to be read")
+    assert [e.name for e in b.shown()] == ["inner/", "whole.aff", "wheel.aff"]
+    keys("WH")
+    assert [e.name for e in b.shown()] == ["whole.aff", "wheel.aff"] and b.aimed() is None
+    d.press(KEY.down_arrow, 2)
+    assert b.marked == "wheel.aff"
+    d.press(KEY.up_arrow)
+    assert b.marked == "whole.aff" and b.typed == "box/WH"
+    d.press(KEY.enter)
+    assert not b.open and b.folder == box
+    d.wait(lambda: d.c.session.scene.path.name == "whole.aff", "the scene that was chosen")
+    d.settle()
+
+    # What cannot be opened is refused where it was asked for.
+    d.press(int(KEY.o) | int(KEY.mod_ctrl))
+    d.frames(2)
+    keys("plot.png")
+    d.press(KEY.enter)
+    assert b.open and "not one captured" in b.problem
+    d.frames(2)
+    d.press(int(KEY.a) | int(KEY.mod_ctrl))
+    keys("inn")
+    assert not b.problem
+    d.press(KEY.enter)
+    d.wait(lambda: not b.reading, "the folder to be read")
+    assert b.open and b.folder == box / "inner" and b.typed == ""
+
+    # A click marks, and the line to type in keeps the keyboard; a double click opens.
+    d.context.set_ref(d.context.window_info(f"//{browser.TITLE}/files").window)
+    row = "deep.aff/##row"
+    d.context.item_click(row)
+    d.frames(3)
+    assert b.open and b.marked == "deep.aff"
+    d.context.item_double_click(row)
+    d.frames(3)
+    assert not b.open
+    d.wait(lambda: d.c.session.scene.path.name == "deep.aff", "the scene in the folder")
+    d.settle()

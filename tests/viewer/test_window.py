@@ -14,8 +14,8 @@ ROOT = Path(__file__).resolve().parents[2]
 pytestmark = pytest.mark.gui
 
 SCENARIOS = ("views", "difference", "wiping", "culling", "certifying", "explaining", "flying", "orbiting",
-             "playing", "capturing", "dropping", "reopening", "failing", "asking", "closing_panels", "looks",
-             "cancelling", "resizing", "closing_while_tracing", "closing_while_loading",
+             "playing", "capturing", "dropping", "browsing", "reopening", "failing", "asking", "closing_panels",
+             "looks", "cancelling", "resizing", "closing_while_tracing", "closing_while_loading",
              "closing_while_experimenting", "experimenting", "zooming", "panels", "hiding", "folding",
              "legends", "filmstrip", "touring", "fitting")  # fmt: skip
 
