@@ -45,7 +45,8 @@ def _place(ui: Ui, waiting: bool) -> None:
     width = min(em(1.3 * _WIDTH if waiting else _WIDTH), 0.9 * area.work_size.x)
     picture, own = (imgui.internal.find_window_by_name(name) for name in ("Picture", "###tour"))
     if own is not None and ui.tour_at is not None:  # what the user has dragged it by since
-        ui.tour_moved = tuple(m + now - set_ for m, now, set_ in zip(ui.tour_moved, own.pos, ui.tour_at, strict=True))
+        (x, y), (set_x, set_y) = ui.tour_moved, ui.tour_at
+        ui.tour_moved = (x + own.pos.x - set_x, y + own.pos.y - set_y)
     if waiting or picture is None:
         centre = area.get_work_center()
         corner, height = ImVec2(centre.x - 0.5 * width, centre.y + em(0.5)), 0.0
