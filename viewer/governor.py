@@ -20,7 +20,7 @@ from tracer.statistics import FrameStatistics
 PARTS = (16, 8, 4, 2, 1)  # sixteenths of the pixels that the first picture may have
 LARGEST_DIVISOR = 8
 SPARE = 0.8  # of a frame's time that a finer step may take
-ALONE = 0.75  # of a frame's time that primary rays, and what is beside them, may take
+ALONE = 0.9  # of a frame's time that primary rays, and what is beside them, may take
 SHOWN_AGAIN = 0.3  # seconds that it takes at least until a picture that becomes whole is shown again
 KEPT, FORGETTING = 24, 0.8  # observations, and what each counts against the one after it
 TRUST = 0.05  # in how costs were divided before, against all that was observed

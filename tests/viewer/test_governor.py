@@ -50,7 +50,7 @@ def test_old_costs_are_forgotten():
 
 @pytest.mark.parametrize(
     ("seconds", "part", "divisor"),
-    [(1.0, 16, 1), (0.32, 8, 1), (0.2, 4, 1), (0.13, 2, 1), (0.1, 1, 1), (0.065, 1, 1), (0.04, 2, 2), (1e-4, 1, 8)],
+    [(1.0, 16, 1), (0.32, 8, 1), (0.2, 4, 1), (0.13, 2, 1), (0.1, 1, 1), (0.055, 1, 1), (0.04, 2, 2), (1e-4, 1, 8)],
 )
 def test_the_most_that_fits_is_shaded_and_only_then_the_resolution_falls(seconds: float, part: int, divisor: int):
     governor = taught(*(frame(400_000, part) for part in (1, 4, 16, 2, 8) * 3))
