@@ -111,6 +111,12 @@ class Investor:
         self._ready = True
         self.looks_up = self.looks_up or self._dear
 
+    def abandon(self, free: bool = False) -> None:
+        """A frame was left before anything of it was shaded; `free` if nobody waited."""
+        if free:
+            self._purse += self._spent
+        self._spent = 0.0
+
     def finish(self, seconds: float, shading: float, trials: list[Trial], free: bool = False) -> None:
         """A frame took so long, of which `shading` was spent on what the picture shows; `free` if nobody waited."""
         self._frame += 1

@@ -34,7 +34,7 @@ from tracer.method import base_of, culls_by_modes, takes
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
-from tracer.shading.filling import NO_PLANES, TURNS, Planes, fill_in, lanes_of, make_planes, nearest_shaded
+from tracer.shading.filling import NO_PLANES, TURNS, Planes, fill_in, from_nearest, lanes_of, make_planes
 from tracer.shading.look import SHINE, TRANSMISSION, make_look
 from tracer.shading.primary import ALL_LANES, BLOCK
 from tracer.shading.surfaces import see_surfaces
@@ -151,8 +151,9 @@ class Renderer:
         except BaseException:
             frame.discard()
             raise
-        yield frame.finished()
-        yield from frame.sampled(samples)
+        whole = frame.finished()
+        yield whole
+        yield from frame.sampled(whole, samples)
 
     def _next_turn(self, count: int) -> int:
         """Whose turn it is first: consecutive pictures, of which so many sixteenths are shaded, begin at others."""
@@ -346,8 +347,11 @@ class UnfinishedFrame:
             self.cache.discard_found()
         if self._certificates is not None and self._lanes:
             self._certificates.left = [self._wanted]
+            self._certificates.keep_within(1e6 * self._settings.certificate_memory, self._buffers.cell)
         if self._lanes:
             self._settle()
+        elif self._investor is not None:
+            self._investor.abandon(free=self._settings.patient)
 
     def _settle(self) -> None:
         """Tell who invests what this frame has cost."""
@@ -582,9 +586,11 @@ class UnfinishedFrame:
         shift = ((0.5 + number / golden) % 1.0, (0.5 + number / golden**2) % 1.0)
         rays = pinhole(self._camera, self._settings.width, self._settings.height, shift)
         buffers, counts = self._empty_buffers(), np.zeros_like(self._counts)
-        self._trace_primary(rays, buffers, counts)
-        self._shade(rays, buffers, counts, first=False)
-        self.memory.gained[:] = gained
+        try:
+            self._trace_primary(rays, buffers, counts)
+            self._shade(rays, buffers, counts, first=False)
+        finally:
+            self.memory.gained[:] = gained
         if number == 1:
             self._sum, self._reference_sum = self._buffers.color, self._buffers.reference
         self._sum, self._reference_sum = self._sum + buffers.color, self._reference_sum + buffers.reference
@@ -593,9 +599,8 @@ class UnfinishedFrame:
             color=self._sum / taken, reference=self._reference_sum / taken, wrong=self._buffers.wrong + buffers.wrong
         )
 
-    def sampled(self, samples: int) -> Iterator[Frame]:
-        """The finished frame with 2, 3, ... samples a pixel."""
-        whole = self.finished()
+    def sampled(self, whole: Frame, samples: int) -> Iterator[Frame]:
+        """The finished frame, `whole`, with 2, 3, ... samples a pixel."""
         for number in range(1, samples):
             self.add_sample(number)
             yield replace(
@@ -645,22 +650,22 @@ class UnfinishedFrame:
             for_each_chunk(fill, -(-rows // FILLED), self._workers, self._cancel)
         if self._certificates is not None and self._plan.looks_up:
             self._words_seen = self._certificates.at_pixels(buffers.cell)
-        frame, shape = self._frame(), buffers.primitive.shape
-        frame.color = color.reshape(*shape, 3)
-        if len(buffers.reference) + len(buffers.saved) > 0:
+        frame = self._frame()
+        frame.color = color.reshape(*buffers.primitive.shape, 3)
+        with self.phase("filling"):
             self._stretch_records(frame)
+        frame.statistics.phases = dict(self._phases)
         return frame
 
     def _stretch_records(self, frame: Frame) -> None:
         """Let pixels that have not been shaded show what is recorded of the nearest that have; wrong ones do not."""
-        buffers, shape = self._buffers, frame.primitive.shape
-        near = nearest_shaded(self._lanes, *shape)
         if frame.reference is not None and frame.wrong is not None:
-            frame.reference = frame.color + (buffers.reference - buffers.color)[near].reshape(*shape, 3)
+            right = (self._buffers.reference - self._buffers.color).reshape(frame.color.shape)
+            frame.reference = frame.color + from_nearest(right, self._lanes)
             frame.wrong = frame.wrong.copy()
-        if frame.saved is not None:
+        if frame.saved is not None and frame.cost is not None and frame.due_rays is not None:
             frame.saved, frame.cost, frame.due_rays = (
-                work[near].reshape(shape) for work in (buffers.saved, buffers.cost, buffers.due_rays)
+                from_nearest(work, self._lanes) for work in (frame.saved, frame.cost, frame.due_rays)
             )
 
     def finished(self) -> Frame:

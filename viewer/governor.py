@@ -97,9 +97,10 @@ class Governor:
         """What a picture of so many pixels takes until it is shown with so many sixteenths of them shaded."""
         return self._beside + self._rays(pixels) + self._shading(pixels * part / TURNS)
 
-    def plan(self, width: int, height: int, seconds: float) -> Plan:
-        """How to begin a picture that is to be shown so many seconds later, and how to go on."""
-        divisor = self._divisor(width, height, ALONE * seconds)
+    def plan(self, width: int, height: int, seconds: float, coarse: bool = True) -> Plan:
+        """How to begin a picture that is to be shown so many seconds later, and how to go on; at full resolution unless
+        it may be a `coarse` one."""
+        divisor = self._divisor(width, height, ALONE * seconds) if coarse else 1
         w, h = divided(width, height, divisor)
         for part in PARTS:
             shaded = w * h * part / TURNS

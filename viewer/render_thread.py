@@ -53,7 +53,7 @@ class RenderRequest:
     """What to trace: a picture, with so many samples a pixel in the end.  `divisor` is how much coarser than the window
     it is; `serial` tells requests apart that are otherwise alike; `patience` is for how many seconds, at least,
     certificates may be made, where nobody waits for the picture.  How it comes about does not tell requests apart:
-    `parts` of it, in sixteenths, the first of which comes quickly where that is said, around a `focus`."""
+    `parts` of it, in sixteenths, around a `focus`; a `quick` one is not cut short before some of it has been shown."""
 
     time: float
     camera: Camera
@@ -138,6 +138,9 @@ class RenderThread:
         """Ask for a frame; an older request that still waits is forgotten."""
         with self._changed:
             if self._closing:
+                return
+            if request == self._running and not self._cancel:  # it is under way
+                self._waiting = None
                 return
             self._waiting = request
             if self._running is not None and request.supersedes(self._running, self._shown):

@@ -85,8 +85,8 @@ class Tracing:
 
     def _settle(self) -> None:
         """At rest the first whole picture of a view teaches the modes; a second one shows what they save.  Certificates
-        are made within a budget: where the user has asked for them, by method or view, more frames follow, until none
-        are wanted; others' time goes into samples."""
+        are made within a budget: where the user has chosen them, as the method or as the view, more frames follow,
+        until none are wanted; elsewhere the time goes into samples."""
         traced = self.traced
         if traced is None or not traced.whole or traced.request is self._considered:
             return
@@ -121,26 +121,25 @@ class Tracing:
             self.glance()
         moving = c.moving or self._glance
         self._learning = self._learning and not moving and not session.playing
-        plan = self._plan(width, height)
-        divisor = plan.divisor if moving else 1
-        width, height = divided(width, height, divisor)
+        plan = self._plan(width, height, moving)
+        width, height = divided(width, height, plan.divisor)
         settings = replace(self.settings, width=width, height=height, samples=1)
         patience = PATIENCE if self._learning else 0.0
         wanted = RenderRequest(
-            session.time, session.camera, settings, divisor, self._serial, patience, session.settings.samples,
-            plan.parts, plan is not AT_ONCE, c.hovered,
+            session.time, session.camera, settings, plan.divisor, self._serial, patience, session.settings.samples,
+            plan.parts, moving or session.playing, c.hovered,
         )  # fmt: skip
         if self._answered(wanted):
             return
         self._asked, self._chosen = wanted, session.settings
         c.render.submit(wanted)
 
-    def _plan(self, width: int, height: int) -> Plan:
-        """How the picture is to come about: at once where one like it is there, and where each is to be whole."""
+    def _plan(self, width: int, height: int, coarse: bool) -> Plan:
+        """How the picture is to come about: at once where it is traced to learn more, and where each is to be whole."""
         c, preferences = self._c, self._c.preferences
         if self._learning or not preferences.dynamic_resolution or (c.session.playing and preferences.every_frame):
             return AT_ONCE
-        return self.governor.plan(width, height, 1.0 / preferences.target_fps)
+        return self.governor.plan(width, height, 1.0 / preferences.target_fps, coarse)
 
     @property
     def settings(self) -> Settings:
@@ -174,7 +173,10 @@ class Tracing:
         return False
 
     def _same_picture(self, wanted: RenderRequest) -> bool:
-        return self.traced is not None and self.traced.whole and self.traced.request == wanted
+        traced = self.traced
+        if traced is None or self._asked is not None:  # what was asked for last comes, if it is not this
+            return False
+        return traced.whole and traced.request == wanted and traced.frame.settings.samples >= wanted.samples
 
     def _jumped(self) -> bool:
         """Whether, at rest, something else is to be seen than was last asked for; to learn more is to see the same."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -12,8 +13,9 @@ import tracer
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.worlds import quad, quadrics, scene
 from tracer.geometry.world import ACCELERATORS
-from tracer.scene.model import SPHERE, Camera, Material
-from tracer.shading.filling import BAYER, NEIGHBOURS, TURNS, lanes_of, nearest_shaded, neighbours_of
+from tracer.investor import Investor
+from tracer.scene.model import SPHERE, Camera, Cancelled, Material
+from tracer.shading.filling import BAYER, NEIGHBOURS, TURNS, from_nearest, lanes_of, neighbours_of
 
 SETTINGS = tracer.Settings(width=75, height=50, threads=2, verify=True, record_lights=True, record_work=True)
 PIXELS = ("color", "depth", "primitive", "normal", "due", "lit", "reference", "wrong", "saved", "cost")
@@ -130,8 +132,11 @@ def test_turns_lie_evenly_and_neighbours_are_the_nearest():
     assert near.dx.shape == (NEIGHBOURS, TURNS) and (near.weight > 0).all()
     distances = np.hypot(near.dx, near.dy)
     assert (np.diff(distances, axis=0) >= 0).all() and (np.diff(near.weight, axis=0) <= 0).all()
-    found = nearest_shaded(lanes_of(0, 1), 9, 10)
-    assert found[0] == 0 and found[5 * 10 + 5] == 4 * 10 + 4
+    for height, width in ((9, 10), (8, 12), (5, 4)):
+        numbers = np.arange(height * width).reshape(height, width)
+        found = from_nearest(numbers, lanes_of(0, 1))
+        assert ((found // width % 4 == 0) & (found % width % 4 == 0)).all(), "all are of pixels that are known"
+        assert found[0, 0] == 0 and found[4, 3] == 4 * width + (4 if width > 4 else 0)
 
 
 @pytest.mark.parametrize("parts", [(), (0, 16), (4, 4, 16), (4, 8), (16, 4)])
@@ -139,3 +144,38 @@ def test_parts_must_increase_to_the_whole(parts: tuple[int, ...]):
     renderer = tracer.Renderer(scene(quad((-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)), camera=ABOVE), SETTINGS)
     with pytest.raises(ValueError, match="parts increase"):
         next(renderer.refine(parts=parts))
+
+
+def test_what_is_cancelled_in_a_further_sample_teaches_nothing():
+    rng = np.random.default_rng(3)
+    corners = quad((-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)) + list(rng.uniform(1, 5, (20, 3, 3)) - (3, 3, 0))
+    world = scene(corners, lights=[(3, 4, 20), (-5, 2, 12)], camera=ABOVE)
+    settings = replace(SETTINGS, method="paper", threads=1)
+    straight, left = tracer.Renderer(world, settings), tracer.Renderer(world, settings)
+    for stop in (3, 4):
+        asked = Counter()  # how often it was asked whether to go on, in further samples
+
+        def cancel(asked: Counter = asked, stop: int = stop) -> bool:
+            asked["now"] += asked["sampling"]
+            return asked["now"] > stop
+
+        refining = left.refine(cancel=cancel, parts=(16,), samples=9)
+        assert_whole(next(refining), straight.render(), "before")
+        asked["sampling"] = 1
+        with pytest.raises(Cancelled):
+            list(refining)
+        near = replace(ABOVE, position=(0.0, 1.0, 20.0))
+        assert_whole(list(left.refine(0.0, near))[-1], straight.render(0.0, near), "after a sample was cut short")
+
+
+def test_who_invests_in_certificates_is_told_of_each_picture_once(monkeypatch):
+    world = scene(quad((-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)), lights=[(3, 4, 20)], camera=ABOVE)
+    renderer = tracer.Renderer(world, replace(SETTINGS, method="auto", verify=False, record_work=False))
+    told: list[float] = []
+    monkeypatch.setattr(Investor, "finish", lambda self, seconds, *rest, **more: told.append(seconds))
+    list(renderer.refine(parts=(4, 16), samples=3))
+    assert len(told) == 1
+    left = renderer.refine(parts=(4, 16))
+    next(left)
+    left.close()
+    assert len(told) == 2

@@ -15,7 +15,7 @@ pixels are sixteen in a row, and what is written of one block is not far apart.
 
 from __future__ import annotations
 
-from functools import cache, lru_cache
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -113,17 +113,24 @@ def neighbours_of(lanes: int) -> Neighbours:
     return Neighbours(dx, dy, weight, lanes)
 
 
-@lru_cache(maxsize=4)
-def nearest_shaded(lanes: int, height: int, width: int) -> NDArray[np.int64]:
-    """(height * width,) for each pixel the number of the nearest in the picture that is shaded, or of itself."""
-    near, (y, x) = neighbours_of(lanes), np.indices((height, width))
-    lane = BLOCK * (y % BLOCK) + x % BLOCK
-    found = np.where(lanes >> lane & 1, y * width + x, -1)
-    for n in range(NEIGHBOURS):
-        nx, ny = x + near.dx[n, lane], y + near.dy[n, lane]
-        there = (found < 0) & (nx >= 0) & (nx < width) & (ny >= 0) & (ny < height) & (near.weight[n, lane] > 0)
-        found = np.where(there, ny * width + nx, found)
-    return np.where(found < 0, y * width + x, found).reshape(-1)
+def from_nearest(values: NDArray, lanes: int) -> NDArray:
+    """values (height, width, ...) of which those of `lanes` of each block are known: a copy in which each other pixel
+    has what is known of the nearest."""
+    near, filled = neighbours_of(lanes), values.copy()
+    for lane in range(TURNS):
+        (y, x), size = divmod(lane, BLOCK), values.shape
+        if not lanes >> lane & 1 and y < size[0] and x < size[1]:
+            rows = _inside(np.arange(y, size[0], BLOCK) + near.dy[0, lane], size[0])
+            columns = _inside(np.arange(x, size[1], BLOCK) + near.dx[0, lane], size[1])
+            filled[y::BLOCK, x::BLOCK] = values[np.ix_(rows, columns)]
+    return filled
+
+
+def _inside(numbers: NDArray[np.intp], size: int) -> NDArray[np.intp]:
+    """Rows or columns beyond the picture's edge, as the next ones inside of the same place in their blocks."""
+    numbers = np.where(numbers < 0, numbers + BLOCK, numbers)
+    numbers = np.where(numbers >= size, numbers - BLOCK, numbers)
+    return np.clip(numbers, 0, size - 1)
 
 
 @cache
