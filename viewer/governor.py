@@ -4,8 +4,9 @@ Each picture begins with its primary rays at full resolution and with a few sixt
 shaded, the rest filled in from them; then it becomes whole.  How many sixteenths fit into the time of a
 frame follows from what the last frames have cost: a fixed part, a part for each primary ray and a part
 for each shaded pixel, learnt apart, and beside them what else was in them (objects placed, certificates
-made).  Only where the primary rays alone take nearly all of that time is the resolution divided by 2, 3, ...
-as well.  More is taken only with some time to spare, so that pictures do not flutter between two steps.
+made).  Only where the primary rays alone do not fit is the resolution divided by 2, 3, ... as well: rather
+than that, frames take a little longer than they should.  More is taken only with some time to spare, so that
+pictures do not flutter between two steps.
 """
 
 from __future__ import annotations
@@ -20,7 +21,6 @@ from tracer.statistics import FrameStatistics
 PARTS = (16, 8, 4, 2, 1)  # sixteenths of the pixels that the first picture may have
 LARGEST_DIVISOR = 8
 SPARE = 0.8  # of a frame's time that a finer step may take
-ALONE = 0.9  # of a frame's time that primary rays, and what is beside them, may take
 SHOWN_AGAIN = 0.3  # seconds that it takes at least until a picture that becomes whole is shown again
 KEPT, FORGETTING = 24, 0.8  # observations, and what each counts against the one after it
 TRUST = 0.05  # in how costs were divided before, against all that was observed
@@ -100,7 +100,7 @@ class Governor:
     def plan(self, width: int, height: int, seconds: float, coarse: bool = True) -> Plan:
         """How to begin a picture that is to be shown so many seconds later, and how to go on; at full resolution unless
         it may be a `coarse` one."""
-        divisor = self._divisor(width, height, ALONE * seconds) if coarse else 1
+        divisor = self._divisor(width, height, seconds) if coarse else 1
         w, h = divided(width, height, divisor)
         for part in PARTS:
             shaded = w * h * part / TURNS
