@@ -204,7 +204,14 @@ def _tiny_scene(lights: int) -> Scene:
 
 # None compiles what another does, once the parts that it needs are done.
 _PARTS = {
-    "frame": ("primary rays", "occlusion testing", "shading and shadow testing", "mode setting"),
+    "frame": (
+        "primary rays",
+        "occlusion testing",
+        "surfaces",
+        "shading and shadow testing",
+        "filling",
+        "mode setting",
+    ),
     "trees": ("the builder",),
     "queries": ("nearest hits", "shadow rays"),
     "certificates": ("certificates",),

@@ -81,9 +81,7 @@ class Controller:
         """One step of everything: `size` is what the picture's window has room for, in pixels (0 if hidden).
 
         Returns the frame that has just come, if one has."""
-        if size != self.size:
-            self.size = size
-            self.tracing.glance()
+        self.size = size
         self.opener.follow()
         self.keeper.follow()
         self.asking.follow()

@@ -184,7 +184,7 @@ STEPS = (
     Step(
         "Turn culling off and on",
         "Press C twice. The picture stays the same, but without culling every shadow ray is traced: compare "
-        '"Traced" in the Statistics panel.',
+        "the row Traced in the Statistics panel.",
         _has_toggled_culling,
         _toggle_culling,
     ),

@@ -51,6 +51,8 @@ def doing(c: Controller) -> str:
         return "tracing"
     if c.render.busy:
         return "refining the picture" if c.tracing.becoming_finer or _learns(c) else "tracing"
+    if c.render.running is not None and c.tracing.samples_shown < c.tracing.samples_wanted:
+        return f"adding samples: {c.tracing.samples_shown} of {c.tracing.samples_wanted}"
     return "idle   (F1: keyboard and mouse)"
 
 
