@@ -57,8 +57,8 @@ ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
 SHARES, SHARE = 8, 6  # of all tiles that each thread takes to look for what is wanted; tiles of one, at least
 SEEKING = 0.5  # of the time for certificates, at most, is spent on looking for what primary hits want
-# What certifying is worth, by what a shadow ray costs: some 250 ns, and 50.
 PRICE = 2e-6, 2e-7  # seconds, about, that setting certificates up takes for each primitive, and each light besides
+# What certifying is worth, by what a shadow ray costs: some 250 ns, and 50.
 EFFORT = {"kdtree": Effort(4, 12, 6, 48, True, 4), "bvh8": Effort(8, 32, 0, 48, False, 16)}
 Cancel = Callable[[], bool] | None
 

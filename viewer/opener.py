@@ -27,18 +27,12 @@ class Opener:
         self._c = controller
         self.warm_up_job: Job[None] | None = None
         self.load_job: Job[opening.Opened] | None = None
-        self._compiles = False
         self._abandoned: list[Job] = []
         self._restore_after_load: Snapshot | None = None
 
     @property
     def busy(self) -> bool:
         return self.load_job is not None or self.warm_up_job is not None
-
-    @property
-    def first_start(self) -> bool:
-        """Whether the tracer is being compiled, as it is once; later starts only load it."""
-        return self.warm_up_job is not None and self._compiles
 
     @property
     def certifies(self) -> bool:
@@ -48,8 +42,7 @@ class Opener:
 
     def start(self, path: Path | None) -> None:
         """Compile or load the kernels in the background, and open a first scene meanwhile."""
-        self._compiles = not compiled_before()
-        title = "Compiling the tracer (first start only)" if self._compiles else "Loading the tracer"
+        title = "Loading the tracer" if compiled_before() else "Compiling the tracer (first start only)"
         self.warm_up_job = Job(title, warm_up, lambda: self._c.wake())
         if path is not None:
             self.open(path)

@@ -37,10 +37,10 @@ _NAMED = {
     "TITLE": ("C9CED6", "2A3038"),
 }
 _COLORS = {name: rgb(dark) for name, (dark, _) in _NAMED.items()}
-BACKGROUND, QUIET, WARNING, ERROR, GOOD, BLUE, GREEN, ORANGE, SKY, PINK, YELLOW, GREY, MARK = list(_COLORS.values())[
-    :13
-]
-PLOT, GRID, AXIS_TEXT, TITLE = list(_COLORS.values())[13:]
+(
+    BACKGROUND, QUIET, WARNING, ERROR, GOOD, BLUE, GREEN, ORANGE, SKY, PINK, YELLOW, GREY, MARK,
+    PLOT, GRID, AXIS_TEXT, TITLE,
+) = _COLORS.values()  # fmt: skip
 ON_PICTURE_ERROR = rgb("FF786B")
 
 # ImGui's colours: dark, light; with an opacity where it is not 1.

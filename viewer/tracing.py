@@ -58,10 +58,6 @@ class Tracing:
         if modes_are_lost:
             self._settled = None
 
-    def glance(self) -> None:
-        """The next picture is another: it may come coarse at first, if that must be."""
-        self._glance = True
-
     def interrupted(self) -> None:
         """What was asked for may never come: it is asked for anew."""
         self._asked = None
@@ -117,8 +113,8 @@ class Tracing:
             return
         if not c.moving and not session.playing:
             self._settle()
-        if self._jumped():
-            self.glance()
+        if self._jumped():  # the next picture is another: it may come coarse at first, if that must be
+            self._glance = True
         moving = c.moving or self._glance
         self._learning = self._learning and not moving and not session.playing
         plan = self._plan(width, height, moving)

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.bench.embree import embree_version
-from tests.bench.frame_times import KITCHEN, machine
+from tests.bench.frame_times import KITCHEN, in_words, machine
 from tests.bench.frames import whole_frames
 from tests.bench.rays import without_quadrics
 from tests.bench.report import (
@@ -157,7 +157,7 @@ def main(arguments: list[str] | None = None) -> int:
     print_table(goals_table(goals))
     about = report["machine"]
     print(
-        f"{about['processor']}, {about['cores']} cores, load {about['load_before']:.1f} before; "
+        f"{in_words(about)}; "
         f"Embree {about['embree']}, numba {about['numba']}, {options.accelerator}; all figures in {options.json}"
     )
     report |= {"goals": to_json(goals), "faults": found}

@@ -29,7 +29,7 @@ import numpy as np
 from rich.table import Table
 
 from tests.bench import frame_server
-from tests.bench.frame_times import KITCHEN, machine
+from tests.bench.frame_times import KITCHEN, in_words, machine
 from tracer.frame import Settings
 from tracer.kernels import cache_folder
 from tracer.parallel import thread_count
@@ -239,7 +239,7 @@ def run(options: argparse.Namespace) -> int:
         result = measure(trees, scene, settings, options.frames, options.start)
     if result["results"][WITH]:
         print_table(table(result))
-    print(f"{about['processor']}, {about['cores']} cores, load {about['load_before']:.1f} before")
+    print(in_words(about))
     options.json.parent.mkdir(parents=True, exist_ok=True)
     options.json.write_text(json.dumps({"machine": about} | result, indent=1) + "\n")
     for fault in result["faults"]:

@@ -56,6 +56,11 @@ def machine() -> dict[str, Any]:
     }
 
 
+def in_words(about: dict[str, Any]) -> str:
+    """What `machine` tells of the processor, and of what else it did."""
+    return f"{about['processor']}, {about['cores']} cores, load {about['load_before']:.1f} before"
+
+
 def measure(path: Path, settings: Settings, frames: int, start: int) -> dict[str, Any]:
     """Times and counters of `frames` frames by each method; `faults` says what was not as it must be."""
     began = time.perf_counter()
@@ -190,9 +195,7 @@ def main() -> int:
     options.json.parent.mkdir(parents=True, exist_ok=True)
     options.json.write_text(json.dumps(report, indent=1) + "\n")
     about = report["machine"]
-    print(
-        f"{about['processor']}, {about['cores']} cores, load {about['load_before']:.1f} before; numba {about['numba']}"
-    )
+    print(f"{in_words(about)}; numba {about['numba']}")
     print(f"kernels ready in {report['warm_up_seconds']:.1f} s; all figures in {options.json}")
     faults = [f"{Path(r['scene']).name}: {fault}" for r in report["scenes"] for fault in r["faults"]]
     for fault in faults:

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
-from tests.bench.frame_times import KITCHEN, machine
+from tests.bench.frame_times import KITCHEN, in_words, machine
 from tests.bench.motion_server import WAYS
 from viewer.cli import scene_path
 from viewer.console import print_table
@@ -120,9 +120,7 @@ def main(arguments: list[str] | None = None) -> int:
         return 1
     options.json.parent.mkdir(parents=True, exist_ok=True)
     options.json.write_text(json.dumps(report, indent=1) + "\n")
-    about = report["machine"]
-    processor = f"{about['processor']}, {about['cores']} cores, load {about['load_before']:.1f} before"
-    print(f"{processor}; all in {options.json}")
+    print(f"{in_words(report['machine'])}; all in {options.json}")
     return 0
 
 

@@ -26,7 +26,7 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from viewer import navigation
 from viewer.app import App
-from viewer.governor import LARGEST_DIVISOR, SPARE, Governor, Plan, divided
+from viewer.governor import AT_ONCE, LARGEST_DIVISOR, SPARE, Governor, Plan, divided
 from viewer.pictures import picture
 
 BURST = 2.0  # seconds of motion
@@ -53,13 +53,15 @@ class CoarserInMotion(Governor):
         cost = statistics.seconds / max(pixels, 1)
         self._each = self._each + 0.4 * (cost - self._each) if self._each else cost
 
-    def plan(self, width: int, height: int, seconds: float) -> Plan:
+    def plan(self, width: int, height: int, seconds: float, coarse: bool = True) -> Plan:
+        if not coarse:
+            return AT_ONCE
         for divisor in range(1, LARGEST_DIVISOR + 1):
             w, h = divided(width, height, divisor)
             if self._each * w * h <= (SPARE * seconds if divisor < self._divisor else seconds):
                 break
         self._divisor = divisor
-        return Plan(divisor, (16,))
+        return Plan(divisor, AT_ONCE.parts)
 
 
 WAYS = {"parts": Governor, "coarse": CoarserInMotion}
@@ -97,6 +99,8 @@ class Script:
         self._lead(self.began)
         had = self.c.traced
         self._before()
+        if self.c.faults.notice is not None:  # the window lives on, but what it shows is worth nothing
+            raise RuntimeError(self.c.faults.notice.told)
         new = self.c.traced
         if new is had or new is None or self.burst is None:
             return
@@ -106,7 +110,7 @@ class Script:
         if self.state == "settling" and whole and new.request.camera == self.c.session.camera:
             self.burst.settled = time.perf_counter() - self.last_motion
             self.state, self.since = "whole", time.perf_counter()
-        elif self.state == "whole" and new.whole and new.request.parts == (16,):
+        elif self.state == "whole" and new.whole and new.request.parts == AT_ONCE.parts:
             self.burst.full = new.frame.statistics.seconds
 
     def after(self) -> None:

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
-from tests.bench.frame_times import KITCHEN, machine
+from tests.bench.frame_times import KITCHEN, in_words, machine
 from tests.bench.window_server import STATES
 from tracer.kernels import cache_folder
 from viewer.cli import scene_path
@@ -138,10 +138,7 @@ def main(arguments: list[str] | None = None) -> int:
     for result in whole:
         print_table(_frames(result))
     print_table(_starts(whole))
-    about = report["machine"]
-    print(
-        f"{about['processor']}, {about['cores']} cores, load {about['load_before']:.1f} before; all in {options.json}"
-    )
+    print(f"{in_words(report['machine'])}; all in {options.json}")
     faults = [f"{Path(r['scene']).name}: {fault}" for r in report["windows"] for fault in r["faults"]]
     for fault in faults:
         say(f"not to be trusted: {fault}")

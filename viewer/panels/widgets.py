@@ -51,21 +51,23 @@ def row(name: str, tip: str = "") -> None:
     imgui.table_next_row()
     imgui.table_next_column()
     imgui.align_text_to_frame_padding()
+    _name(name, tip)
+    imgui.set_next_item_width(-1.0)
+
+
+def _name(name: str, tip: str) -> None:
+    """A row's name in the first column, to go on in the second."""
     clipped(name, QUIET)
     if tip:
         tooltip(tip)
     imgui.table_next_column()
-    imgui.set_next_item_width(-1.0)
 
 
 def value(name: str, text: str, tip: str = "") -> None:
     """A row that only tells something; long text is cut with an ellipsis and told in full on hovering."""
     imgui.table_next_row()
     imgui.table_next_column()
-    clipped(name, QUIET)
-    if tip:
-        tooltip(tip)
-    imgui.table_next_column()
+    _name(name, tip)
     clipped(text)
 
 
@@ -84,10 +86,7 @@ def amount(name: str, text: str, tip: str = "") -> None:
     """A row of a table whose numbers stand at the right edge, below each other."""
     imgui.table_next_row()
     imgui.table_next_column()
-    clipped(name, QUIET)
-    if tip:
-        tooltip(tip)
-    imgui.table_next_column()
+    _name(name, tip)
     right(text)
 
 
