@@ -289,7 +289,7 @@ def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None
         (["-o", "OUT/x.png", "--view", "difference:1"], "is not a view"),
         (["-o", "OUT/x.png", "--view", "wipe:half"], "is not a view; the views are color, occlusion, shadow:LIGHT"),
         (["-o", "OUT/x.png", "--view", "wipe:1.5"], "the line of a wipe lies at 0 to 1"),
-        (["-o", "OUT/x.png", "--camera", "{"], "--camera: not JSON"),
+        (["-o", "OUT/x.png", "--camera", "{bad"], '--camera: {bad is not JSON; give a camera like {"position"'),
         (["-o", "OUT/x.png", "--camera", "{}"], "--camera: a camera's position"),
         (["-o", "OUT/x.png", "--camera", "nowhere.json"], "neither JSON nor a file"),
         (["-o", "OUT/x.png", "--camera", "[1, 2]"], "neither JSON nor a file"),
@@ -316,10 +316,18 @@ def test_errors_in_a_scene_name_file_and_line(capfd: pytest.CaptureFixture[str],
         assert f"{path}:2" in complaint(run(capfd, *command, path))
 
 
-@pytest.mark.parametrize("command", ["info", "render"])
-def test_a_missing_file(capfd: pytest.CaptureFixture[str], tmp_path: Path, command: str) -> None:
-    more = ["-o", tmp_path / "x.png"] if command == "render" else []
-    assert "no such file" in complaint(run(capfd, command, tmp_path / "no.aff", *more))
+@pytest.mark.parametrize("command", ["info", "render", "bench", "zoom"])
+def test_a_missing_file_is_missed_first(capfd: pytest.CaptureFixture[str], tmp_path: Path, command: str) -> None:
+    """Before what else is not given, such as -o."""
+    assert "no.aff: no such file" in complaint(run(capfd, command, tmp_path / "no.aff"))
+    assert "unknown kind of scene" in complaint(run(capfd, command, ROOT / "README.md"))
+
+
+def test_a_long_name_is_not_broken(capfd: pytest.CaptureFixture[str], room: Path) -> None:
+    path = room.parent / f"{'long-' * 20}name.aff"
+    room.rename(path)
+    code, out, _ = run(capfd, "info", path)
+    assert code == 0 and out.splitlines()[0] == str(path)
 
 
 def test_a_scene_with_nothing_in_it(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from tracer import experiment
 from tracer.experiment import REFERENCE, Results
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
-from tracer.scene.load import load_visible_scene
+from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from viewer import exports
 from viewer.console import Work, print_table, working
@@ -27,6 +27,7 @@ def bench(path: Path, options: Namespace) -> bool:
 
     Raises SceneError, ValueError and OSError, each in one line, or Cancelled where no frame was finished.
     """
+    check_scene_file(path)
     settings = tracing_settings(options)
     methods = experiment.with_reference(options.methods)
     wanted = exports.wanted_files(options)

@@ -22,12 +22,11 @@ from typing import NoReturn
 
 from viewer import examples, resources
 from viewer.argument_types import count, factors, method, number, pixel, size, view
-from viewer.lines import say
+from viewer.lines import ERROR, say
 from viewer.screen import has_display, no_display_reason
 from viewer.version import program_version
 
 FAILED, MISUSED, INTERRUPTED = 1, 2, 130
-ERROR = "error: "
 _CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
 PICTURE = Path("out") / "first-light.png"
 

@@ -128,9 +128,15 @@ def working() -> Iterator[Work]:
 
 
 def print_table(table: Table) -> None:
-    """A table on standard output; in plain 100 columns where that is no terminal."""
+    """A table on standard output; in plain 100 columns where that is no terminal.
+
+    Its title may be wider than itself, such as a path, which must not be broken."""
     console = Console()
-    Console(width=console.width if console.is_terminal else 100).print(table)
+    console = Console(width=console.width if console.is_terminal else 100)
+    title, table.title = table.title, None
+    if title is not None:
+        console.print(Text(str(title), str(table.title_style or "")), soft_wrap=True)
+    console.print(table)
 
 
 def statistics_table(statistics: FrameStatistics, title: str, verified: bool = False) -> Table:

@@ -23,7 +23,7 @@ from tracer.frame import Frame, Settings
 from tracer.kernels import cache_folder, is_kept
 from tracer.method import base_of
 from tracer.renderer import Renderer
-from tracer.scene.load import load_scene, load_visible_scene, scene_info
+from tracer.scene.load import check_scene_file, load_scene, load_visible_scene, scene_info
 from tracer.scene.model import Camera, Scene
 from viewer import capture
 from viewer.console import Work, print_table, statistics_table, working
@@ -46,6 +46,7 @@ PICTURES = {
     ".ppm": "PPM",
 }
 LEGEND_PLACE = 0.0, 1.0  # the lower left corner
+_A_CAMERA = '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
 MOST_PIXELS = 1 << 26  # 8192 × 8192; a frame's buffers then take some 4 GB
 
 
@@ -59,6 +60,7 @@ def info(path: Path, as_json: bool) -> None:
 
 def render(path: Path, options: Namespace) -> None:
     """Trace one frame and write it; raises SceneError, ValueError and OSError in one line, or Cancelled."""
+    check_scene_file(path)
     view, light = options.view.view, options.view.light
     modes = view.of_modes or options.buffers is not None
     settings = replace(tracing_settings(options), method=options.method or default_for(view), modes=modes)
@@ -248,14 +250,15 @@ def _facts_table(path: Path, facts: dict[str, Any]) -> Table:
 
 def camera_option(text: str) -> Camera:
     """`--camera`: JSON, or a file that holds it; raises ValueError in one line."""
+    name = text[:60]
     try:
         if not text.lstrip().startswith("{"):
             text = Path(text).read_text(encoding="utf-8")
         data = json.loads(text)
     except OSError as error:
-        raise ValueError(f"--camera: neither JSON nor a file that can be read: {text[:60]}: {error.strerror}") from None
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"--camera: not JSON: {error}") from None
+        raise ValueError(f"--camera: neither JSON nor a file that can be read: {name}: {error.strerror}") from None
+    except (ValueError, RecursionError):
+        raise ValueError(f"--camera: {name} is not JSON; give a camera like {_A_CAMERA}") from None
     try:
         return Camera.from_json(data)
     except ValueError as error:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 
+ERROR = "error: "
+
 
 def in_one_line(text: object) -> str:
     return " ".join(str(text).split())

@@ -26,7 +26,7 @@ EXTRAS_TOLD = {
 
 def default_for(view: View) -> str:
     """The method for one picture in a view: the default one, or one that has something to show there."""
-    if view is View.CERTIFICATE:
+    if view is View.CERTIFICATE or view.needs_work:
         return "certified"
     return "paper" if view.needs_verify else DEFAULT
 

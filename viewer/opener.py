@@ -14,6 +14,7 @@ from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.scene.model import Scene
 from viewer import capture, opening
 from viewer.jobs import Job
+from viewer.lines import ERROR, say
 from viewer.session import Snapshot
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ class Opener:
         self.load_job: Job[opening.Opened] | None = None
         self._abandoned: list[Job] = []
         self._restore_after_load: Snapshot | None = None
+        self._from_shell = False  # whether what is being opened was named on the command line
 
     @property
     def busy(self) -> bool:
@@ -45,7 +47,8 @@ class Opener:
         title = "Loading the tracer" if compiled_before() else "Compiling the tracer (first start only)"
         self.warm_up_job = Job(title, warm_up, lambda: self._c.wake())
         if path is not None:
-            self.open(path)
+            self._from_shell = True
+            self._open(path)
 
     def follow(self) -> None:
         """Take up what the jobs have finished."""
@@ -60,9 +63,13 @@ class Opener:
 
     def open(self, path: Path) -> None:
         """Open a scene, or restore what a captured picture shows; anything else is one line."""
+        self._from_shell = False
+        self._open(path)
+
+    def _open(self, path: Path) -> None:
         refused = opening.refusal(path)
         if refused:
-            self._c.say(refused, error=True)
+            self._refuse(refused)
         elif opening.is_capture(path):
             self._c.asking.before_opening(path.name, lambda: self._restore_capture(path))
         else:
@@ -109,17 +116,26 @@ class Opener:
         try:
             snapshot = capture.read(path)
         except capture.CaptureError as error:
-            self._c.say(str(error), error=True)
+            self._refuse(str(error))
             return
         found = opening.find_scene(snapshot.scene, path)
         scene = self._c.session.scene
         if found is None:
-            self._c.say(f"{path.name}: its scene was not found: {snapshot.scene}", error=True)
+            self._refuse(f"{path.name}: its scene was not found: {snapshot.scene}")
         elif scene is not None and self.load_job is None and _same_file(found, scene):
             self._c.restore(snapshot)
             self._c.say(f"restored {path.name}")
         else:
             self._load(found, snapshot)
+
+    def _refuse(self, why: str) -> None:
+        self._tell_shell(why)
+        self._c.say(why, error=True)
+
+    def _tell_shell(self, why: str) -> None:
+        """What was named on the command line is missed there too: the window stays open, and empty."""
+        if self._from_shell:
+            say(why, ERROR)
 
     def _load(self, path: Path, then: Snapshot | None) -> None:
         if self.load_job is not None:
@@ -142,6 +158,7 @@ class Opener:
             stays = ": the scene that was open stays" if self._c.session.scene is not None else ""
             self._c.say(f"loading cancelled{stays}")
         elif job.failure is not None:
+            self._tell_shell(job.failure.text)
             self._c.report(job.failure)
         elif job.result is not None:
             opened = job.result

@@ -58,6 +58,10 @@ class Tracing:
         if modes_are_lost:
             self._settled = None
 
+    def reconsider(self) -> None:
+        """What is there may teach more than was wanted of it so far."""
+        self._considered = self._settled = None
+
     def interrupted(self) -> None:
         """What was asked for may never come: it is asked for anew."""
         self._asked = None
@@ -246,8 +250,10 @@ class Tracing:
         if run is not None:
             lacks = wanted is not view and run.lacks(wanted)
             return f"showing {run.label_shown}   {title}{f' (this run {lacks})' if lacks else ''}"
-        if wanted is view or not (wanted.needs_verify or wanted.needs_work):  # what a method lacks is told elsewhere
+        if wanted is view:
             return title
+        if not (wanted.needs_verify or wanted.needs_work):  # why is told over the picture
+            return f"{wanted.label}: none here, {view.label.lower()} shown"
         return f"{wanted.label}: {'verifying' if wanted.needs_verify else 'counting'} ..."
 
 

@@ -15,7 +15,7 @@ from tracer import zoom
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
-from tracer.scene.load import load_visible_scene
+from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from tracer.zoom import Aim, Approach, Results
 from viewer import exports
@@ -45,6 +45,7 @@ def run(path: Path, options: Namespace) -> bool:
 
     Raises SceneError, ValueError and OSError, each in one line, or Cancelled where no frame was finished.
     """
+    check_scene_file(path)
     if options.primitive is None and options.pixel is None:
         raise ValueError(WHICH)
     settings = tracing_settings(options)

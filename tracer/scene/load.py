@@ -25,6 +25,17 @@ def load_scene(path: str | Path, progress: Progress | None = None) -> Scene:
     (Cancelled) comes through, and nothing else is changed.
     """
     path = Path(path)
+    check_scene_file(path)
+    if progress is not None:
+        progress(f"Reading {path.name}", 0.0)
+    scene = load_aff(path, progress) if path.suffix.lower() in AFF_EXTENSIONS else load_mesh(path, progress)
+    if progress is not None:
+        progress(f"Read {path.name}", 1.0)
+    return scene
+
+
+def check_scene_file(path: Path) -> None:
+    """Raise SceneError, in one line, for a path that is not a file that can be read, of a kind that scenes have."""
     try:
         if path.is_dir():
             raise SceneError(f"{path}: it is a folder; give a file in it")
@@ -34,16 +45,9 @@ def load_scene(path: str | Path, progress: Progress | None = None) -> Scene:
             raise SceneError(f"{path}: reading it is not permitted; change its permissions")
     except (OSError, ValueError):
         raise SceneError(f"{str(path)!a}: no file can bear this name; check the path") from None
-    extension = path.suffix.lower()
-    if extension not in SCENE_EXTENSIONS:
+    if path.suffix.lower() not in SCENE_EXTENSIONS:
         known = ", ".join(e[1:] for e in SCENE_EXTENSIONS)
         raise SceneError(f"{path}: unknown kind of scene; give a file of one of these kinds: {known}")
-    if progress is not None:
-        progress(f"Reading {path.name}", 0.0)
-    scene = load_aff(path, progress) if extension in AFF_EXTENSIONS else load_mesh(path, progress)
-    if progress is not None:
-        progress(f"Read {path.name}", 1.0)
-    return scene
 
 
 def load_visible_scene(path: str | Path, progress: Progress | None = None) -> Scene:

@@ -8,6 +8,7 @@ from viewer.methods import with_base
 from viewer.missing import missing
 from viewer.panels.widgets import em
 from viewer.ui import Ui
+from viewer.views import View
 
 _WIDTH, _LEAST = 26.0, 8.0  # in ems: of the note, and of a picture that has room for one
 _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.86), ImVec4(0.93, 0.94, 0.96, 1.0)
@@ -16,12 +17,13 @@ _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.86), ImVec4(0.93, 0.94, 0.96, 1.0)
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """A note in the middle of the picture, below its upper third."""
     c = ui.controller
-    found = missing(c.session.view, c.frame) if c.frame is not None else None
-    room = end.x - corner.x - em(2.0)
+    found = missing(c.session.view, c.frame, c.preferences.work_shares, c.render.busy) if c.frame is not None else None
+    left, right = _free(ui, corner.x, end.x)
+    room = right - left - em(2.0)
     if found is None or room < em(_LEAST):
         return
     width = min(em(_WIDTH), room)
-    imgui.set_cursor_screen_pos(ImVec2((corner.x + end.x - width) / 2.0, corner.y + (end.y - corner.y) / 3.0))
+    imgui.set_cursor_screen_pos(ImVec2((left + right - width) / 2.0, corner.y + (end.y - corner.y) / 3.0))
     imgui.push_style_color(imgui.Col_.child_bg, _BACK)
     imgui.push_style_var(imgui.StyleVar_.child_rounding, em(0.4))
     imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(em(0.8), em(0.7)))
@@ -35,3 +37,11 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     imgui.end_child()
     imgui.pop_style_var(2)
     imgui.pop_style_color()
+
+
+def _free(ui: Ui, left: float, right: float) -> tuple[float, float]:
+    """From where to where across the picture a note may lie: on the wider side of the wipe's line, where that is."""
+    if ui.controller.tracing.drawn_view is not View.WIPE:
+        return left, right
+    line = left + ui.controller.session.wipe * (right - left)
+    return (left, line) if line - left > right - line else (line, right)

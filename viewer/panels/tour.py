@@ -31,7 +31,7 @@ def show(ui: Ui) -> None:
             if number == tour.at or waiting:
                 paragraph(f"{number + 1}  {one.title}", QUIET if number != tour.at else None)
             if number == tour.at or (waiting and imgui.get_main_viewport().work_size.y > em(_HIGH)):
-                paragraph(one.text, QUIET)
+                paragraph(one.text(ui.controller), QUIET)
         _buttons(ui, waiting)
     imgui.end()
     if not stays:
@@ -78,6 +78,6 @@ def _buttons(ui: Ui, waiting: bool) -> None:
     if imgui.button("Finish" if last else "Skip"):
         tour.skip()
     tooltip("end the tour; the menu Help has it again" if last else "go on to the next step")
-    if tour.at:
+    if tour.done:
         imgui.same_line()
-        imgui.text_colored(GOOD, icons.ICON_FA_CHECK * tour.at)
+        imgui.text_colored(GOOD, icons.ICON_FA_CHECK * len(tour.done))
