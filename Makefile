@@ -9,6 +9,7 @@ SHELL := /bin/bash
 PYTHON ?=
 ARGS ?=
 RUN := .venv/bin/python
+PARALLEL := -n auto --maxprocesses 4 --dist worksteal
 
 # Compiled kernels, Mesa's compiled shaders and matplotlib's list of fonts stay in the project's folder.
 export PYTHON
@@ -25,7 +26,8 @@ run:  ## open the viewer; without a display, render the default scene to a file 
 
 test:  ## run the tests; without a display, on a virtual one (ARGS="-k culling")
 	@tools/environment.sh dev
-	@$(RUN) tools/with_screen.py $(RUN) -m pytest $(ARGS)
+	@$(RUN) -m tests.compiled
+	@$(RUN) tools/with_screen.py $(RUN) -m pytest $(PARALLEL) $(ARGS)
 
 golden:  ## render the golden pictures of the tests anew, and say what changed
 	@tools/environment.sh dev

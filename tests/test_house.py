@@ -40,6 +40,13 @@ def test_imports_point_one_way() -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+def test_no_test_imports_another() -> None:
+    """What tests share lies in modules that are none: a test can be moved, split or run alone."""
+    for path in (ROOT / "tests").rglob("*.py"):
+        found = re.search(r"^(from|import) tests(\.\w+)*[. ](import )?(test_|conftest)", path.read_text(), re.MULTILINE)
+        assert not found, f"{path.relative_to(ROOT)}: {found[0]}"
+
+
 def test_commands_without_a_window_load_no_gl() -> None:
     """Not even on the way: a machine without libGL can render, and `--help` is quick."""
     code = (

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.conftest import in_cells, with_certificates
+from tests.viewer.fakes import in_cells, with_certificates
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.test_cli import CAMERA, ROOM, run
+from tests.commands import CAMERA, ROOM, run
 from viewer import capture
 
 
 @pytest.fixture
 def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The room of `tests.test_cli` in a folder of its own, which is the current one."""
+    """The room of `tests.commands` in a folder of its own, which is the current one."""
     monkeypatch.chdir(tmp_path)
     path = tmp_path / "room.aff"
     path.write_text(ROOM)

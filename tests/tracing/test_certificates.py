@@ -11,8 +11,7 @@ import pytest
 
 import tracer
 from tests.tracing.brute import meet_all
-from tests.tracing.test_culling import BEHIND, floor, roof
-from tests.tracing.test_rest import GOING, MIDDLES, going, kite
+from tests.tracing.shades import BEHIND, GOING, MIDDLES, floor, going, kite, roof
 from tests.tracing.worlds import quad, scene
 from tracer import renderer as rendering
 from tracer.culling.certified.cells import CANDIDATES, FINAL, FULL, LIT, NOBODY, SETTLED, make_cells, named_by

@@ -12,7 +12,7 @@ import pytest
 
 import tracer
 from tests.tracing.nasty_worlds import NastyWalk, nasty_walk
-from tests.tracing.test_repeatable import contents
+from tests.tracing.same import contents
 from tracer import renderer
 from tracer.culling.certified.certificates import Effort
 from tracer.geometry.world import ACCELERATORS

@@ -3,34 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
 
 import tracer
-from tests.tracing.worlds import moved, quad, scene
+from tests.tracing.shades import BEHIND, floor, roof
+from tests.tracing.worlds import moved, scene
 from tracer.culling.modes import OcclusionMode, ShadowMode, occlusion_mode, shadow_mode
 from tracer.scene.model import Camera
 
 SETTINGS = tracer.Settings(width=48, height=48, depth=2, threads=1, verify=True)
 LIGHT = (0.0, 0.0, 20.0)
-BEHIND = Camera((0.0, -12.0, 4.0), (0.0, 12.0, -4.0), (0.0, 0.0, 1.0), 40.0)
-
-
-def floor(n: int = 8) -> list:
-    """A floor of n x n squares in z = 0, all of it in the picture of the default camera."""
-    edge = np.linspace(-3, 3, n + 1)
-    return [
-        t
-        for x0, x1 in pairwise(edge)
-        for y0, y1 in pairwise(edge)
-        for t in quad((x0, y0, 0), (x1, y0, 0), (x1, y1, 0), (x0, y1, 0))
-    ]
-
-
-def roof(z: float, half: float) -> list:
-    return quad((-half, -half, z), (half, -half, z), (half, half, z), (-half, half, z))
 
 
 def shadow_scene(**extra):

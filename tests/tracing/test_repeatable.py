@@ -2,34 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
 
 import tracer
+from tests.tracing.same import assert_same
 from tracer.geometry.world import ACCELERATORS
-
-
-def contents(frame: tracer.Frame) -> dict[str, Any]:
-    """Everything a frame holds but how long it took and on how many threads."""
-    held = {f.name: getattr(frame, f.name) for f in fields(frame) if f.name not in ("settings", "statistics")}
-    counted = frame.statistics.to_dict()
-    del counted["seconds"], counted["phases"]
-    return held | {"occlusion_mode": frame.occlusion_mode, "shadow_mode": frame.shadow_mode, "counters": counted}
-
-
-def assert_same(expected: tracer.Frame, frame: tracer.Frame, where: str) -> None:
-    a, b = contents(expected), contents(frame)
-    for name, value in a.items():
-        if isinstance(value, np.ndarray):
-            assert value.dtype == b[name].dtype and value.shape == b[name].shape, f"{name} {where}"
-            assert value.tobytes() == b[name].tobytes(), f"{name} {where}"
-        else:
-            assert value == b[name], f"{name} {where}"
 
 
 def render(world: tracer.World, settings: tracer.Settings, first: int, count: int) -> list[tracer.Frame]:

@@ -13,13 +13,13 @@ from hypothesis import given
 
 import tracer
 from tests.tracing.random_worlds import Walk, quickly, walks
-from tests.tracing.test_culling import floor, roof
+from tests.tracing.shades import BEHIND, GOING, MIDDLES, floor, going, kite, roof
 from tests.tracing.worlds import random_corners, scene, triangles
 from tracer.culling.modes import OcclusionMode, ShadowMode, occlusion_mode, shadow_mode
 from tracer.culling.rest import Rest
 from tracer.geometry.world import ACCELERATORS
-from tracer.scene.animation import Animation, Keys, TrackSet, deformed
-from tracer.scene.model import Camera, Deformation, SceneObject, empty_quadrics
+from tracer.scene.animation import Animation, TrackSet, deformed
+from tracer.scene.model import Deformation, SceneObject, empty_quadrics
 
 
 @pytest.fixture(params=ACCELERATORS)
@@ -28,19 +28,6 @@ def accelerator(request) -> str:
 
 
 # --- who rests ----------------------------------------------------------------------------------------
-
-
-def going(stops: list[tuple[float, float]]) -> TrackSet:
-    """Along x, from place to place: (time, x), straight in between; bit for bit still where x stays the same."""
-    stops = [stops[0], *stops, stops[-1]]
-    values = np.array([[x, 0.0, 0.0] for _, x in stops])
-    return TrackSet(
-        translation=Keys(np.array([t for t, _ in stops]), values, np.tile([1.0, 0.0, 0.0], (len(stops), 1)))
-    )
-
-
-def kite(name: str, z: float = 5.0, half: float = 0.6, hidden: tuple = ()) -> SceneObject:
-    return SceneObject(name, triangles(roof(z, half)), empty_quadrics(), (name,))
 
 
 TRACKS = {
@@ -97,7 +84,6 @@ def test_what_deforms_does_not_rest(bart: Path):
 # --- modes --------------------------------------------------------------------------------------------
 
 SETTINGS = tracer.Settings(width=64, height=64, depth=2, threads=1, method="paper+rest", verify=True)
-BEHIND = Camera((0.0, -12.0, 4.0), (0.0, 12.0, -4.0), (0.0, 0.0, 1.0), 40.0)
 SAILING = scene(
     floor() + roof(6.0, 0.7),
     dynamic=(kite("sails"),),
@@ -106,7 +92,6 @@ SAILING = scene(
     animation=Animation(TRACKS),
 )
 SQUARES = slice(0, 128)  # the floor's triangles
-MIDDLES = np.asarray(floor()).mean(axis=1)  # of them
 
 
 def under(x: float) -> np.ndarray:
@@ -141,9 +126,6 @@ def test_what_depends_on_an_object_is_forgotten_and_nothing_else(accelerator):
     gone = ~kept
     assert (occlusion_mode(stopped[SQUARES][gone]) != OcclusionMode.FULLY_RENDERED).all()
     assert not (shadow_mode(stopped, 0)[SQUARES][gone] & ShadowMode.NON_SHADOW).any()
-
-
-GOING = (0.0, 0.3, 0.6, 0.9, 1.2, 1.5, 1.8, 2.1, 2.4, 2.7, 2.7, 0.9, 0.9, 0.9, 3.0)
 
 
 def test_shadows_stay_right_while_objects_start_and_stop(accelerator):

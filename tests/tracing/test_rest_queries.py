@@ -14,7 +14,7 @@ import tracer
 from tests.tracing import brute
 from tests.tracing.brute8 import meet_all8
 from tests.tracing.random_worlds import END, quickly, scenes
-from tests.tracing.test_bvh8_queries import shoals
+from tests.tracing.shoals import shoals
 from tests.tracing.worlds import SomeRest, moved, quadrics, random_corners, scene
 from tracer.geometry.queries import DYNAMIC, STATIC, batch_of
 from tracer.geometry.rays import Rays

@@ -8,19 +8,11 @@ from pathlib import Path
 import pytest
 
 import tracer
+from tests.tracing.same import assert_verified
 from tracer.geometry.world import ACCELERATORS
 
 SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
 SETTINGS = tracer.Settings(width=128, height=128, depth=10, verify=True)
-
-
-def assert_verified(frame: tracer.Frame, none: tracer.Frame) -> None:
-    """A frame by method paper against the same one by method none."""
-    assert frame.reference.tobytes() == none.color.tobytes()
-    assert frame.wrong.sum() == frame.statistics.shadow.wrong
-    assert (frame.color[frame.wrong == 0] == none.color[frame.wrong == 0]).all()
-    assert none.reference.tobytes() == none.color.tobytes()
-    assert none.statistics.shadow.wrong == 0 == none.wrong.sum()
 
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import tracer
-from tests.tracing.test_culling import BEHIND, floor, roof
+from tests.tracing.shades import BEHIND, floor, roof
 from tests.tracing.worlds import scene
 from tracer import renderer as rendering
 from tracer.culling.certified import certificates as certifying

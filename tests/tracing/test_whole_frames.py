@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import tracer
 from tests.tracing.naive_frame import NaiveFrame, NaiveRenderer
 from tests.tracing.random_worlds import Walk, quickly, walks
-from tests.tracing.test_verify import assert_verified
+from tests.tracing.same import assert_verified
 from tracer.culling import cells
 from tracer.geometry.world import ACCELERATORS
 

@@ -3,49 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
-from threading import Event
 
-import numpy as np
 import pytest
 
-from tracer.frame import Frame, Settings
-from tracer.scene.animation import Animation
-from tracer.scene.model import (
-    Camera,
-    Cancelled,
-    Light,
-    Material,
-    Quadrics,
-    Scene,
-    SceneObject,
-    Triangles,
-    empty_quadrics,
-)
-from tracer.statistics import FrameStatistics
-
-TINY_SCENE = """
-b 0.3 0.4 0.5
-v
-from 0 1.5 6
-at 0 0.5 0
-up 0 1 0
-angle 45
-hither 0.01
-resolution 64 48
-l 3 5 4  0.6 0.6 0.6
-l -4 4 3  0.4 0.4 0.4
-f 0.8 0.3 0.2  0.7 0.2 10 0 1
-s 0 0.8 0 0.8
-f 0.6 0.6 0.6  0.8 0 1 0 1
-p 4
--4 0 -4
--4 0 4
-4 0 4
-4 0 -4
-a 0 4 20
-"""
+from tests.viewer.desk import Desk
+from tests.viewer.fakes import TINY_SCENE
+from viewer.resources import embedded_scenes
 
 
 @pytest.fixture(autouse=True)
@@ -64,138 +28,15 @@ def tiny_scene_file(tmp_path: Path) -> Path:
     return path
 
 
-def triangles(count: int) -> Triangles:
-    zero = np.zeros(count, np.int32)
-    corners = np.zeros((count, 3, 3), np.float32)
-    return Triangles(corners, corners.copy(), np.zeros((count, 3, 2), np.float32), zero, zero - 1)
+@pytest.fixture
+def desk(tiny_scene_file: Path, tmp_path: Path) -> Iterator[Desk]:
+    desk = Desk(tiny_scene_file, tmp_path / "pictures")
+    yield desk
+    assert desk.c.close()
 
 
-def make_scene(lights: int = 3, frames: int = 11, path: str = "scene.aff") -> Scene:
-    """Four static triangles and a sphere, two triangles that move; time runs from 0 to 10 seconds."""
-    sphere = Quadrics(np.zeros(1, np.int32), np.eye(4)[None, :3], np.ones((1, 2), np.float32),
-                      np.zeros(1, np.bool_), np.zeros(1, np.int32))  # fmt: skip
-    return Scene(
-        path=Path(path),
-        objects=(
-            SceneObject("static", triangles(4), sphere),
-            SceneObject("train", triangles(2), empty_quadrics(), (np.eye(4),)),
-        ),
-        materials=(Material("brick"),),
-        textures=(),
-        lights=tuple(Light(f"light {i}", (0.0, 5.0, float(i))) for i in range(lights)),
-        camera=Camera((0.0, 1.0, 5.0), (0.0, 0.0, -1.0)),
-        animation=Animation.empty(),
-        time_range=(0.0, 10.0),
-        frames=frames,
-    )
-
-
-def make_frame(settings: Settings | None = None, time: float = 0.0, camera: Camera | None = None) -> Frame:
-    """A frame whose columns are the scene's seven primitives and one miss; two units away, facing us.
-
-    Where it is to be verified, one answer is wrong at pixel 3, 2 and two at 5, 6, which are 0.1 too dark."""
-    settings = settings or Settings(width=16, height=8)
-    width, height = settings.width, settings.height
-    primitive = np.broadcast_to((np.arange(width) * 8 // width).astype(np.int32), (height, width)).copy()
-    primitive[primitive == 7] = -1
-    hit = primitive >= 0
-    counts = np.bincount(primitive[hit], minlength=7).astype(np.int32)
-    #        occlusion   light 0    light 1    light 2
-    modes = [0, 1, 2 | 1 << 2 | 2 << 4, 2 | 2 << 2 | 3 << 4 | 1 << 6, 3, 3, 2 | 3 << 2]
-    normal = np.zeros((height, width, 3), np.float32)
-    normal[hit] = (0, 0, 1)
-    color = np.full((height, width, 3), 0.5, np.float32)
-    wrong = np.zeros((height, width), np.int32)
-    wrong[2:3, 3:4], wrong[6:7, 5:6] = 1, 2
-    statistics = FrameStatistics()
-    statistics.shadow.due, statistics.shadow.culled = 4 * width * height, width * height
-    statistics.shadow.wrong = int(wrong.sum()) if settings.verify else 0
-    return Frame(
-        time=time,
-        camera=camera or Camera((0.0, 1.0, 5.0), (0.0, 0.0, -1.0)),
-        settings=settings,
-        color=color,
-        depth=np.where(hit, np.float32(2.0), np.float32(np.inf)),
-        primitive=primitive,
-        normal=normal,
-        modes=np.array(modes, np.uint32),
-        pixel_count=counts,
-        highest_count=np.where(np.arange(7) == 3, counts * 2, 0).astype(np.int32),
-        lights=3,
-        reference=np.where(wrong[..., None] > 0, np.float32(0.6), color) if settings.verify else None,
-        wrong=wrong if settings.verify else None,
-        saved=wrong if settings.record_work else None,
-        cost=wrong + 1 if settings.record_work else None,
-        due_rays=2 * wrong if settings.record_work else None,
-        statistics=statistics,
-    )
-
-
-def with_certificates(frame: Frame) -> Frame:
-    """The frame with cells, 8 pixels wide and some 4, with certificates of each light drawn by lot, and work counted.
-
-    What moves and what is missed has no cell."""
-    y, x = np.indices(frame.primitive.shape)
-    side = np.where((x // 16 + y // 16) % 2 == 0, 8, 4)
-    place = (frame.primitive.astype(np.int64) << 40) + ((y // side) << 22) + ((x // side) << 2) + side // 8
-    none = (frame.primitive < 0) | (frame.occlusion_mode == 3)
-    known, cells = np.unique(np.where(none, -1, place), return_inverse=True)
-    cells = cells.reshape(none.shape).astype(np.int32) - int(known[0] == -1)
-    lots = np.random.default_rng(1)
-    words = np.zeros(int(cells.max()) + 1, frame.modes.dtype)
-    for light in range(frame.lights):
-        words |= lots.integers(0, 4, len(words)).astype(words.dtype) << words.dtype.type(2 + 2 * light)
-    certificates = np.where(none, words.dtype.type(0), words[np.maximum(cells, 0)])
-    saved = np.where(none, 0, frame.lights + x % 5).astype(np.int32)
-    cost = (1 + 2 * (frame.primitive >= 0) + y % 7).astype(np.int32)
-    due_rays = np.where((x + y) % 8 == 0, 0, saved + y % 3).astype(np.int32)
-    saved = np.minimum(saved, due_rays)
-    return replace(frame, cells=cells, certificates=certificates, saved=saved, cost=cost, due_rays=due_rays)
-
-
-def in_cells(frame: Frame) -> Frame:
-    """The frame as of a method whose units are cells: odd columns of every primitive have others than even ones."""
-    x = np.indices(frame.primitive.shape)[1]
-    cells = np.where(frame.primitive < 0, -1, 2 * frame.primitive + x % 2).astype(np.int32)
-    words = np.repeat(frame.modes, 2)
-    words[1::2] ^= words.dtype.type(5 << 2)  # other shadow modes
-    counts = np.bincount(cells[cells >= 0], minlength=len(words)).astype(np.int32)
-    highest = np.repeat(frame.highest_count, 2)
-    return replace(frame, cells=cells, modes=words, pixel_count=counts, highest_count=highest)
-
-
-class FakeRenderer:
-    """Delivers `make_frame` when `go` is set; says what it was asked, and stops when told to."""
-
-    def __init__(self) -> None:
-        self.settings = Settings()
-        self.asked: list[tuple[float, Settings]] = []
-        self.cancelled: list[float] = []
-        self.resets = 0
-        self.started = Event()
-        self.go = Event()
-        self.go.set()
-        self.failing: Exception | None = None
-
-    def reset_modes(self) -> None:
-        self.resets += 1
-
-    def refine(self, time=0.0, camera=None, cancel=None, parts=(16,), samples=1, focus=None) -> Iterator[Frame]:
-        for part in parts:
-            frame = self.render(time, camera, cancel)
-            frame.statistics.part = part / 16
-            yield frame
-        for sample in range(2, samples + 1):
-            frame = self.render(time, camera, cancel)
-            yield replace(frame, settings=replace(frame.settings, samples=sample))
-
-    def render(self, time: float = 0.0, camera: Camera | None = None, cancel=None) -> Frame:
-        self.asked.append((time, self.settings))
-        self.started.set()
-        while not self.go.wait(0.002):
-            if cancel is not None and cancel():
-                self.cancelled.append(time)
-                raise Cancelled()
-        if self.failing is not None:
-            raise self.failing
-        return make_frame(self.settings, time, camera)
+@pytest.fixture
+def figure4(tmp_path: Path) -> Iterator[Desk]:
+    desk = Desk(embedded_scenes()["figure4"], tmp_path / "pictures")
+    yield desk
+    assert desk.c.close()

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image, PngImagePlugin
 
-from tests.viewer.conftest import TINY_SCENE
+from tests.viewer.fakes import TINY_SCENE
 from tracer.scene.model import Cancelled
 from viewer import browsing, capture
 from viewer.browsing import Browser, Kind, completed, entries, kind_of

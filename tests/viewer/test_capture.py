@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image, PngImagePlugin
 
-from tests.viewer.conftest import make_frame
+from tests.viewer.fakes import make_frame
 from tracer.scene.model import Camera
 from viewer import capture
 from viewer.session import Snapshot

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.conftest import make_frame
+from tests.viewer.fakes import make_frame
 from tracer.frame import Frame, Settings
 from tracer.scene.model import Camera
 from tracer.zoom import Approach, Change, Results, Step

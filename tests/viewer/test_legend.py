@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.conftest import in_cells, make_frame, with_certificates
-from tests.viewer.test_views import luminance
+from tests.viewer.colors import luminance
+from tests.viewer.fakes import in_cells, make_frame, with_certificates
 from tracer.frame import Frame, Settings
 from tracer.statistics import SaidByModes
 from viewer.legend import Chosen, Legend, Tone, legend_of, light_in_words

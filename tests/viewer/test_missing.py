@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.conftest import make_frame, with_certificates
+from tests.viewer.fakes import make_frame, with_certificates
 from tracer.frame import Settings
 from viewer.methods import BASES_TOLD
 from viewer.missing import missing

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from tests.viewer.conftest import make_frame
+from tests.viewer.fakes import make_frame
 from tracer.frame import Frame, Settings
 from tracer.scene.model import Camera
 from viewer.picking import point_at

@@ -8,7 +8,7 @@ from threading import Event
 
 import pytest
 
-from tests.viewer.conftest import FakeRenderer
+from tests.viewer.fakes import FakeRenderer
 from tracer.frame import Settings
 from tracer.scene.model import Camera
 from viewer.render_thread import RenderRequest, RenderThread, Traced

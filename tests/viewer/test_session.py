@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from tests.viewer.conftest import make_scene
+from tests.viewer.fakes import make_scene
 from tracer.frame import Settings
 from tracer.scene.model import Camera
 from viewer.session import Session, Snapshot

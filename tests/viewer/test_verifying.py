@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.viewer.conftest import FakeRenderer, make_frame, make_scene
+from tests.viewer.fakes import FakeRenderer, make_frame, make_scene
 from tracer import experiment
 from tracer.scene.model import Camera
 from viewer.controller import Controller

@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.conftest import in_cells, make_frame, make_scene, with_certificates
+from tests.viewer.colors import luminance
+from tests.viewer.fakes import in_cells, make_frame, make_scene, with_certificates
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
 from viewer import legends, views
@@ -82,12 +83,6 @@ def dichromat(color: views.Color) -> np.ndarray:
     lms[1] = 0.4942 * lms[0] + 1.2483 * lms[2]
     back = np.linalg.inv([[17.88, 43.52, 4.12], [3.46, 27.16, 3.87], [0.03, 0.18, 1.47]]) @ lms
     return np.power(np.clip(back, 0.0, 1.0), 1 / 2.2)
-
-
-def luminance(color: views.Color) -> float:
-    """Relative luminance (WCAG 2)."""
-    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color]
-    return float(np.dot(linear, (0.2126, 0.7152, 0.0722)))
 
 
 def test_the_colour_of_wrong_answers_is_unmistakable():

@@ -1,34 +1,35 @@
-"""The real window, driven by keyboard and pointer: one process for each scenario of `tests.viewer.scenarios`."""
+"""The real window, driven by keyboard and pointer: the scenarios of `tests.viewer.scenarios`, at two sizes in turn."""
 
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
+from tests.viewer.driver import SIZES
+from tests.viewer.player import Player
+from tests.viewer.scenarios import SCENARIOS
+
 pytestmark = pytest.mark.gui
 
-SCENARIOS = ("views", "difference", "wiping", "culling", "certifying", "explaining", "flying", "orbiting",
-             "playing", "capturing", "dropping", "browsing", "reopening", "failing", "asking", "closing_panels",
-             "looks", "cancelling", "resizing", "closing_while_tracing", "closing_while_loading",
-             "closing_while_experimenting", "experimenting", "zooming", "panels", "hiding", "folding",
-             "legends", "filmstrip", "touring", "fitting")  # fmt: skip
+
+@pytest.fixture(scope="module")
+def player() -> Iterator[Player]:
+    player = Player()
+    yield player
+    player.close()
 
 
-@pytest.mark.parametrize("name", SCENARIOS)
-def test_window(name: str, tiny_scene_file: Path, own_settings: Path):
-    folder = tiny_scene_file.parent
-    (folder / "big.aff").write_text(_big_scene())
-    command = [sys.executable, "-m", "tests.viewer.window", name, str(tiny_scene_file), str(folder)]
-    environment = os.environ | {"SHADOWCULL_CONFIG_DIR": str(own_settings), "LIBGL_ALWAYS_SOFTWARE": "1"}
-    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=600)
-    assert done.returncode == 0, f"{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
-    assert "[imgui-error]" not in done.stdout + done.stderr, "ImGui was used wrongly"
+@pytest.mark.parametrize(
+    ("name", "size"), [pytest.param(name, SIZES[number % len(SIZES)], id=name) for number, name in enumerate(SCENARIOS)]
+)
+def test_window(name: str, size: tuple[int, int], player: Player, tiny_scene_file: Path, own_settings: Path) -> None:
+    (tiny_scene_file.parent / "big.aff").write_text(_big_scene())
+    code, said = player.play(name, size, tiny_scene_file, own_settings, last=name.startswith("closing_while"))
+    assert code == 0, said[-6000:]
+    assert "[imgui-error]" not in said, "ImGui was used wrongly"
     settings = json.loads((own_settings / "settings.json").read_text())
     assert str(tiny_scene_file) in settings["recent"]
     kept = {p.name for p in own_settings.iterdir()}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from numpy.typing import NDArray
@@ -25,6 +27,19 @@ FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_
 AXIS = int(implot.AxisFlags_.no_highlight)
 LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
 COLORS = (BLUE, ORANGE, GREEN, SKY, PINK, YELLOW)
+
+
+def whole_numbers(first: float, last: float, width: float) -> None:
+    """Ticks along the x axis of a plot of `first` to `last`, so many pixels wide: at whole numbers, and none so near to
+    an edge that its label would be cut off."""
+    room = max(width - em(5.0), em(2.0))  # what the labels of the other axes leave, at least
+    label = imgui.calc_text_size(f"{last:.0f}").x
+    apart = (last - first) / room  # what one pixel is
+    power = 10 ** max(math.ceil(math.log10(2.5 * label * apart)) - 1, 0)
+    step = next((n * power for n in (1, 2, 5) if n * power >= 2.5 * label * apart), 10 * power)
+    least, most = math.ceil(first / step) * step, math.floor((last - 0.6 * label * apart) / step) * step
+    ticks = range(least, most + 1, step)
+    implot.setup_axis_ticks(implot.ImAxis_.x1, [float(tick) for tick in ticks], [str(tick) for tick in ticks])
 
 
 def wrong_axis(most: int, condition: int) -> None:
@@ -75,7 +90,7 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
     if title == _FATES:
         top = float(_values(ui, "due", per_pixel).max())
     implot.setup_axes("", "", AXIS, AXIS)
-    implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
+    whole_numbers(history.first, last, size.x)
     implot.setup_axis_format(implot.ImAxis_.y1, "%.4g")
     if title == _LOGARITHMIC:  # full frames and those in motion differ a hundredfold
         implot.setup_axis_scale(implot.ImAxis_.y1, int(implot.Scale_.log10))

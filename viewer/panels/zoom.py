@@ -9,7 +9,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tracer.zoom import Approach, Results, Step
 from viewer.palette import MARK
 from viewer.panels import film
-from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
+from viewer.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
 from viewer.panels.runs import export_buttons, side_by_side, start_or_progress
 from viewer.panels.widgets import (
     ERROR,
@@ -160,11 +160,12 @@ def _plot(ui: Ui, test: ZoomTest, approaches: list[Approach], approach: Approach
     most_wrong = max(1, *(a.most_wrong for a in approaches))
     implot.setup_axes("", "" if low else "pixels", AXIS, AXIS)
     implot.setup_axis_scale(implot.ImAxis_.y1, int(implot.Scale_.log10))
-    implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
+    last = test.frames / len(test.factors) - 0.3
+    whole_numbers(-0.7, last, size.x)
     implot.setup_axis_format(implot.ImAxis_.y1, "%.0f")
     least, high = 0.3 * min(pixels.min(), *(s.pixels or 0.5 for a in approaches for s in a.steps)), 6.0 * max(seen)
     always = int(imgui.Cond_.always)
-    implot.setup_axes_limits(-0.7, test.frames / len(test.factors) - 0.3, least, high, always)
+    implot.setup_axes_limits(-0.7, last, least, high, always)
     wrong_axis(most_wrong, always)
     implot.setup_legend(implot.Location_.south, LEGEND)
     implot.set_axes(implot.ImAxis_.x1, implot.ImAxis_.y2)

@@ -1,0 +1,37 @@
+"""Whether frames are the same, bit for bit."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+import tracer
+
+
+def contents(frame: tracer.Frame) -> dict[str, Any]:
+    """Everything a frame holds but how long it took and on how many threads."""
+    held = {f.name: getattr(frame, f.name) for f in fields(frame) if f.name not in ("settings", "statistics")}
+    counted = frame.statistics.to_dict()
+    del counted["seconds"], counted["phases"]
+    return held | {"occlusion_mode": frame.occlusion_mode, "shadow_mode": frame.shadow_mode, "counters": counted}
+
+
+def assert_same(expected: tracer.Frame, frame: tracer.Frame, where: str) -> None:
+    a, b = contents(expected), contents(frame)
+    for name, value in a.items():
+        if isinstance(value, np.ndarray):
+            assert value.dtype == b[name].dtype and value.shape == b[name].shape, f"{name} {where}"
+            assert value.tobytes() == b[name].tobytes(), f"{name} {where}"
+        else:
+            assert value == b[name], f"{name} {where}"
+
+
+def assert_verified(frame: tracer.Frame, none: tracer.Frame) -> None:
+    """A frame by method paper against the same one by method none."""
+    assert frame.reference.tobytes() == none.color.tobytes()
+    assert frame.wrong.sum() == frame.statistics.shadow.wrong
+    assert (frame.color[frame.wrong == 0] == none.color[frame.wrong == 0]).all()
+    assert none.reference.tobytes() == none.color.tobytes()
+    assert none.statistics.shadow.wrong == 0 == none.wrong.sum()

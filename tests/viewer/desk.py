@@ -1,0 +1,76 @@
+"""A controller at work without a window, as far as runs go."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from tracer.frame import Frame
+from tracer.renderer import Renderer
+from tracer.scene.load import load_scene, scene_info
+from tracer.scene.model import Camera
+from viewer.controller import Controller
+from viewer.preferences import Preferences
+from viewer.runs import ExperimentPlan
+
+SIZE = (64, 48)
+ELSEWHERE = Camera((0.0, 2.0, 8.0), (0.0, -0.2, -1.0))
+
+
+class Desk:
+    """A controller at work on a scene in a file, without a window."""
+
+    def __init__(self, path: Path, folder: Path) -> None:
+        preferences = Preferences(dynamic_resolution=False, samples=1, threads=1, screenshot_folder=str(folder))
+        self.c = Controller(preferences)
+        self.runner = self.c.runner
+        self.came: list[Frame] = []
+        self.open(path)
+        self.runner.experiment_plan = ExperimentPlan({"paper"}, frames=5, size=(32, 24), depth=1)
+        self.runner.zoom_plan = replace(self.runner.zoom_plan, steps=4, size=(32, 24))
+
+    def open(self, path: Path) -> None:
+        scene = load_scene(path)
+        self.c.show(scene, Renderer(scene, self.c.session.settings), scene_info(scene))
+        self.rest()
+
+    def tick(self) -> None:
+        frame = self.c.tick(SIZE)
+        if frame is not None:
+            self.came.append(frame)
+        time.sleep(0.001)
+
+    def until(self, happens: Callable[[], object]) -> None:
+        end = time.monotonic() + 60.0
+        while not happens():
+            assert time.monotonic() < end, f"waited in vain; the status says {self.c.message}"
+            self.tick()
+
+    def rest(self) -> None:
+        quiet = 0
+
+        def rested() -> bool:
+            nonlocal quiet
+            quiet = 0 if self.c.active else quiet + 1
+            return quiet > 10
+
+        self.until(rested)
+
+    def run_to_its_end(self) -> None:
+        self.until(lambda: self.runner.current is None)
+        self.rest()
+
+    @property
+    def said(self) -> str:
+        assert self.c.message is not None
+        return self.c.message.text
+
+
+def is_the_same_picture(one: Frame, other: Frame) -> bool:
+    """Of the same place, traced alike."""
+    same = (one.time, one.camera, one.settings) == (other.time, other.camera, other.settings)
+    return same and np.array_equal(one.primitive, other.primitive)

@@ -1,0 +1,152 @@
+"""A user's hands and eyes in the real window: what scenarios drive it with."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from imgui_bundle import glfw_utils, imgui
+
+import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
+
+from tests.viewer.fakes import with_certificates
+from viewer.app import App
+
+PATIENCE = 240.0  # a first run compiles the kernels
+SIZES = ((1280, 800), (1600, 1000))  # of windows that people have
+FASTEST = 120.0  # frames a second
+
+
+class Driver:
+    """The window under test, its controller, and hands on keyboard and pointer."""
+
+    def __init__(self, app: App, context, folder: Path, dozes: bool = False) -> None:
+        """`dozes`: the window rests when nothing moves, as for a user, else it draws frame after frame."""
+        self.app, self.ui, self.c = app, app.ui, app.controller
+        self.context, self.folder = context, folder
+        self._in_frame: list[Callable[[], None]] = []
+        stay_awake = app._stay_awake
+
+        def with_errands() -> None:
+            while self._in_frame:
+                self._in_frame.pop()()
+            stay_awake()
+            if not dozes:
+                app.params.fps_idling.enable_idling = False
+
+        app._stay_awake = with_errands  # type: ignore[method-assign]
+        if not dozes:
+            app.params.fps_idling.fps_max = FASTEST
+
+    def wait(self, until: Callable[[], bool], what: str, patience: float = PATIENCE) -> None:
+        end = time.monotonic() + patience
+        while not until():
+            assert self.c.frame is not None or self.c.message is None or not self.c.message.error, self.c.message.text
+            assert time.monotonic() < end, f"waited in vain: {what}; the status says {self.c.message}"
+            self.context.yield_()
+        self.context.yield_()
+
+    def frames(self, count: int) -> None:
+        self.context.yield_(count)
+
+    def pause(self, seconds: float) -> None:
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.frames(1)
+
+    def settle(self) -> None:
+        """Until everything is loaded and traced, and has been drawn."""
+        quiet = 0
+
+        def rested() -> bool:  # the fine frame is asked for one frame after the motion ends: one quiet frame may lie
+            nonlocal quiet
+            quiet = quiet + 1 if self.c.frame is not None and not self.c.active else 0
+            return quiet >= 5
+
+        self.frames(3)
+        self.wait(rested, "a picture at rest")
+        self.frames(3)
+
+    def shown(self) -> np.ndarray:
+        """The drawn view, read where GL work is done: scenarios run on a thread without the window's context."""
+        got: list[np.ndarray] = []
+        self._in_frame.append(lambda: got.append(self.ui.display.read()))
+        self.wait(lambda: bool(got), "the picture to be read")
+        return got[0]
+
+    def window(self) -> np.ndarray:
+        """All of the window as it was last drawn."""
+        got: list[np.ndarray] = []
+        size = glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui())
+        self._in_frame.append(lambda: got.append(self.ui.display.read_window(*size)))
+        while not got:
+            self.context.yield_()
+        return got[0]
+
+    def certify(self) -> None:
+        """Frames from now on come with cells and certificates drawn by lot, and with work where that was asked for."""
+        renderer = self.c.render._renderer
+        refine = renderer.refine
+
+        def with_more(*arguments, **options):
+            for frame in refine(*arguments, **options):
+                more = with_certificates(frame)
+                yield more if frame.settings.record_work else replace(more, saved=None, cost=None, due_rays=None)
+
+        renderer.refine = with_more
+
+    def resize(self, width: int, height: int) -> None:
+        """Give the window another size, and wait until its panels have taken their places."""
+        glfw.set_window_size(glfw_utils.glfw_window_hello_imgui(), width, height)
+        self.wait(lambda: imgui.get_io().display_size.x == width, "the window's new size", 20.0)
+        self.frames(5)
+
+    def sizes(self) -> Iterator[tuple[int, int]]:
+        """Give the window each of SIZES, one after another, with a picture at rest in it."""
+        for size in SIZES:
+            self.resize(*size)
+            self.settle()
+            yield size
+
+    def scroll_down(self, panel: str) -> None:
+        """To the end of everything that scrolls in a panel."""
+        for window in imgui.get_current_context().windows:
+            if window.was_active and window.name.startswith((panel, f"{panel}/")):
+                imgui.internal.set_scroll_y(window, window.scroll_max.y)
+        self.frames(3)
+
+    def press(self, key: int, count: int = 1) -> None:
+        self.context.key_press(key, count)
+        self.frames(2)
+
+    def hold(self, key: int, seconds: float) -> None:
+        self.context.key_down(key)
+        self.pause(seconds)
+        self.context.key_up(key)
+        self.frames(2)
+
+    def picture_centre(self) -> tuple[float, float]:
+        window = imgui.internal.find_window_by_name("Picture")
+        return window.pos.x + 0.5 * window.size.x, window.pos.y + 0.45 * window.size.y
+
+    def picture_edges(self) -> tuple[float, float, float, float]:
+        """Left, top, right and bottom of the picture inside its window."""
+        area = self.context.item_info("//Picture/picture").rect_full
+        return area.min.x, area.min.y, area.max.x, area.max.y
+
+    def drag(self, start: tuple[float, float], by: tuple[float, float], button: int = 0) -> None:
+        self.context.mouse_move_to_pos(start)
+        self.frames(2)
+        self.context.mouse_down(button)
+        self.context.mouse_move_to_pos((start[0] + by[0], start[1] + by[1]))
+        self.frames(2)
+        self.context.mouse_up(button)
+        self.frames(2)
+
+    def drop(self, *paths: Path) -> None:
+        """What GLFW calls when files are let go over the window."""
+        self.app._dropped(None, [str(p) for p in paths])
+        self.frames(3)

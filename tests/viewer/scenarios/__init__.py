@@ -1,0 +1,24 @@
+"""What a user does in the window, and what must come of it.  Each function is run by `tests.viewer.window`."""
+
+from tests.viewer.scenarios.closing import closing_while_experimenting, closing_while_loading, closing_while_tracing
+from tests.viewer.scenarios.culling import certifying, culling, explaining
+from tests.viewer.scenarios.drawing import difference, views, wiping
+from tests.viewer.scenarios.failing import failing
+from tests.viewer.scenarios.files import browsing, cancelling, capturing, dropping, reopening
+from tests.viewer.scenarios.film import filmstrip
+from tests.viewer.scenarios.fitting import fitting
+from tests.viewer.scenarios.legends import legends
+from tests.viewer.scenarios.moving import flying, orbiting, playing, resizing
+from tests.viewer.scenarios.panels import closing_panels, folding, hiding, looks, panels
+from tests.viewer.scenarios.runs import asking, experimenting, zooming
+from tests.viewer.scenarios.touring import touring
+
+SCENARIOS = {
+    scenario.__name__: scenario
+    for scenario in (
+        views, difference, wiping, legends, culling, certifying, explaining, flying, orbiting, playing, resizing,
+        capturing, dropping, reopening, cancelling, browsing, experimenting, zooming, asking, filmstrip, failing,
+        panels, closing_panels, looks, hiding, folding, touring, fitting,
+        closing_while_tracing, closing_while_loading, closing_while_experimenting,
+    )
+}  # fmt: skip

@@ -1,0 +1,46 @@
+"""The window is closed in the middle of something; each ends its process."""
+
+from __future__ import annotations
+
+import time
+
+from tests.viewer.driver import Driver
+
+
+def closing_while_tracing(d: Driver) -> None:
+    """The window goes at once, whatever is being traced."""
+    d.settle()
+    d.c.change(samples=4000)
+    d.wait(lambda: d.c.render.running is not None and d.c.render.running.samples == 4000, "a long trace")
+    _close(d)
+
+
+def closing_while_loading(d: Driver) -> None:
+    """The window goes at once, whatever is being loaded."""
+    d.wait(lambda: d.c.session.scene is not None, "the first scene")
+    d.drop(d.folder / "big.aff")
+    d.wait(lambda: d.c.opener.load_job is not None, "a load")
+    _close(d)
+
+
+def closing_while_experimenting(d: Driver) -> None:
+    """The window goes at once, whatever is being measured."""
+    d.settle()
+    d.c.runner.experiment_plan.size = (2048, 2048)
+    d.c.runner.start_experiment()
+    d.wait(lambda: d.c.runner.experiment.traced > 0, "a first frame")
+    _close(d)
+
+
+def _close(d: Driver) -> None:
+    began = time.monotonic()
+    closed = d.c.close
+
+    def timed(*args: float) -> bool:
+        done = closed(*args)
+        assert done, "a thread would not stop"
+        assert time.monotonic() - began < 10.0, "closing took too long"
+        return done
+
+    d.c.close = timed
+    d.app._exit()

@@ -1,0 +1,165 @@
+"""Culling and what it knows: switched on and off, certified, and explained for a pixel."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from imgui_bundle import imgui
+
+from tests.viewer.driver import Driver
+from tracer.renderer import Renderer
+from viewer.commands import chord
+from viewer.explaining import Part
+from viewer.legends import occlusion_legend
+from viewer.pictures import picture
+from viewer.views import View
+
+KEY = imgui.Key
+
+
+def culling(d: Driver) -> None:
+    """Tracing again culls; the key switches it off and on; resetting forgets."""
+    d.c.change(method="paper")
+    d.settle()
+    first = d.c.frame.statistics.shadow
+    assert first.due > 0 and first.culled == 0
+    d.press(KEY.t)
+    d.settle()
+    second = d.c.frame.statistics.shadow
+    assert second.culled + second.dynamic_only > 0
+    assert second.due == first.due
+    d.press(KEY.c)
+    d.settle()
+    assert d.c.frame.settings.method == "none" and d.c.frame.statistics.shadow.culled == 0
+    d.press(KEY.c)
+    d.settle()
+    d.press(KEY.backspace)
+    d.settle()
+    assert d.c.frame.statistics.shadow.culled == 0
+    d.context.item_click("//Culling/Symmetric occlusion test")
+    d.settle()
+    assert d.c.frame.settings.symmetric
+
+
+def certifying(d: Driver) -> None:
+    """Modes are there at once whatever culls; where a view has nothing to show, a note says so and a button switches;
+    a method is chosen with what it takes along; key C is off."""
+    d.settle()
+    d.wait(lambda: d.c.opener.certifies, "the kernels that make certificates")
+    for base in ("certified", "none"):
+        d.c.change(method=base)
+        d.settle()
+        traced = d.c.history.frames
+        for key, view in ((KEY._2, View.OCCLUSION), (KEY._3, View.SHADOW), (KEY._7, View.PIXEL_COUNT)):
+            d.press(key)
+            assert d.c.tracing.drawn_view is view and d.c.history.frames == traced
+            assert np.abs(d.shown().astype(int) - picture(d.c.frame, view, d.c.session.light)).max() <= 2
+        seen = [row.name for row in occlusion_legend(d.c.frame) if row.pixels]
+        assert "FULLY_RENDERED" in seen, seen
+        said = d.c.frame.statistics.by_modes_in_all
+        assert said.full_shadow + said.non_shadow > 0
+        d.press(KEY._8)
+        d.settle()
+        d.context.item_click("//Picture/**/Use paper##instead")
+        d.settle()
+        assert d.c.frame.settings.method == "paper"
+    d.press(KEY._0)
+    assert d.c.session.view is View.CERTIFICATE and d.c.frame.certificates is None
+    assert d.c.tracing.drawn_view is View.COLOR
+    d.certify()
+    d.context.item_click("//Picture/**/Use certified##instead")
+    d.settle()
+    assert d.c.frame.settings.method == "certified" and d.c.tracing.drawn_view is View.CERTIFICATE
+    d.context.menu_click("//##MainMenuBar/Culling/Method certified")
+    d.context.item_click("//Culling/+cache")
+    d.settle()
+    assert d.c.frame.settings.method == "certified+cache" == d.c.preferences.method
+    assert d.c.frame.certificates is not None
+    expected = picture(d.c.frame, View.CERTIFICATE, shading=d.c.preferences.shading)
+    assert np.abs(d.shown().astype(int) - expected).max() <= 2
+    d.press(KEY.c)
+    d.settle()
+    assert d.c.frame.settings.method == "none"
+    d.press(KEY.c)
+    d.settle()
+    assert d.c.frame.settings.method == "certified+cache"
+    for key in ("H", "Shift+H"):
+        d.press(chord(key))
+        d.settle()
+        assert d.c.tracing.drawn_view is d.c.session.view and not d.c.tracing.outdated
+
+
+def explaining(d: Driver) -> None:
+    """What the pointer is on, or was clicked, is explained beside the window's own frames; a key hides the lines."""
+    d.settle()
+    explaining = d.c.explaining
+    assert explaining.answer is None
+    traced = d.c.history.frames
+    left, top, right, bottom = d.picture_edges()
+    shadow, lit = (_places(d, lit) for lit in (False, True))
+    d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
+    d.wait(lambda: explaining.answer is not None, "an answer about the pointer's pixel", 20.0)
+    blocked = [one for one in explaining.answer.lights if one.blocked_at is not None]
+    assert blocked and all(one.due and not one.lit for one in blocked)
+    d.frames(3)
+    hovering = _lines_drawn(d)
+    d.press(KEY.i)
+    assert _lines_drawn(d) == hovering, "shadow rays are drawn for a pixel that was not clicked"
+    d.press(KEY.i)
+    lines = explaining.lines(d.c.frame)
+    assert {line.part for line in lines} >= {Part.BLOCKER, Part.REACHING, Part.STOPPED}
+    d.context.mouse_move_to_pos((left + lit[0] * (right - left), top + lit[1] * (bottom - top)))
+    d.wait(lambda: all(one.lit for one in explaining.answer.lights if one.due), "an answer about another pixel", 20.0)
+    parts = {line.part for line in explaining.lines(d.c.frame)}
+    assert Part.REACHING in parts and not parts & {Part.STOPPED, Part.BLOCKER}  # candidates there may be
+    d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
+    d.context.mouse_click(0)
+    d.frames(3)
+    assert d.c.selected is not None
+    d.context.mouse_move_to_pos((left + lit[0] * (right - left), top + lit[1] * (bottom - top)))
+    d.wait(lambda: explaining.answer is not None, "an answer about what was clicked", 20.0)
+    assert any(one.blocked_at is not None for one in explaining.answer.lights), "it goes on following the pointer"
+    assert d.c.history.frames == traced, "asking has traced a frame"
+    point = explaining.answer.lights[0].point
+    d.hold(KEY.d, 0.3)
+    d.settle()
+    assert explaining.answer is not None and math.dist(explaining.answer.lights[0].point, point) < 0.2
+    d.context.mouse_move(f"//Inspector/**/{d.c.session.scene.lights[0].name}##light")
+    d.frames(3)
+    assert d.ui.pointed_light == 0
+    d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
+    d.frames(3)
+    drawn = _lines_drawn(d)
+    d.press(KEY.i)
+    assert not d.c.preferences.draw_explanation and _lines_drawn(d) < drawn - 50
+    d.press(KEY.i)
+    assert _lines_drawn(d) == drawn
+    d.press(KEY.escape)
+    assert d.c.selected is None and _lines_drawn(d) < drawn - 50, "Escape clears"
+    d.context.mouse_click(0)
+    d.frames(3)
+    assert d.c.selected is not None
+    d.context.mouse_move_to_pos((left + 0.5 * (right - left), top + 0.02 * (bottom - top)))
+    d.context.mouse_click(0)
+    d.frames(3)
+    assert d.c.selected is None and explaining.answer is None, "a click on nothing clears"
+
+
+def _lines_drawn(d: Driver) -> int:
+    """How much is drawn over the picture, in corners of triangles."""
+    return imgui.internal.find_window_by_name("Picture").draw_list.vtx_buffer.size()
+
+
+def _places(d: Driver, lit: bool) -> tuple[float, float]:
+    """A pixel of the square, on the picture, that a light which is due reaches, or does not, and so its neighbours."""
+    renderer = Renderer(d.c.session.scene, replace(d.c.frame.settings, method="none", record_lights=True))
+    frame = renderer.render(d.c.frame.time, d.c.frame.camera)
+    here = (frame.primitive >= 0) & (frame.primitive < d.c.session.scene.triangle_count)
+    here &= (frame.lit == frame.due).all(-1) if lit else (frame.due & ~frame.lit).any(-1)
+    inner = here.copy()
+    for shift in (-4, 4):
+        inner &= np.roll(here, shift, 0) & np.roll(here, shift, 1)
+    y, x = np.argwhere(inner)[inner.sum() // 2]
+    return (x + 0.5) / frame.width, (y + 0.5) / frame.height

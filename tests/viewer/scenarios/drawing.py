@@ -1,0 +1,143 @@
+"""Every view of the picture: its keys, what is wrong by difference and wipe, and legends."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from imgui_bundle import imgui
+
+from tests.viewer.driver import Driver
+from tests.viewer.scenarios.steps import figure4
+from viewer.commands import chord
+from viewer.pictures import picture
+from viewer.views import WRONG, View, wipe_column
+
+KEY = imgui.Key
+
+
+def views(d: Driver) -> None:
+    """Every view by its key, each the same as what the command line would draw; only what must be verified, or
+    counted, is traced for, once, and as little for the views after it."""
+    d.c.change(method="paper")
+    d.settle()
+    d.certify()
+    d.press(KEY.t)
+    d.settle()
+    traced = d.c.history.frames
+    d.c.preferences.shading = 0.35
+    for view in View:
+        before = d.c.history.frames
+        d.press(chord(view.key))
+        assert d.c.session.view is view
+        assert view.needs_verify or view.needs_work or d.c.history.frames == before, "changing the view has traced"
+        d.settle()
+        shown = d.shown().astype(int)
+        expected = picture(d.c.frame, view, d.c.session.light).astype(int)
+        difference = np.abs(shown - expected)
+        assert difference.max() <= 2, f"{view}: off by {difference.max()} at {np.argwhere(difference > 2)[:3]}"
+    d.press(KEY._3)
+    d.press(KEY.l)
+    assert d.c.session.light == 1
+    d.press(int(KEY.l) | int(KEY.mod_shift))
+    assert d.c.session.light == 0
+    d.press(KEY.h)
+    d.press(KEY.u)
+    for view in (View.SAVED, View.COST):
+        d.c.set_view(view)
+        d.frames(2)
+        expected = picture(d.c.frame, view, shares=True).astype(int)
+        assert np.abs(d.shown().astype(int) - expected).max() <= 2
+        assert np.abs(expected - picture(d.c.frame, view)).max() > 20
+    d.settle()
+    assert d.c.history.frames == traced + 2, "only the first of the views that verify traces, and of those that count"
+    assert not d.c.session.settings.verify and not d.c.preferences.verify
+
+
+def difference(d: Driver) -> None:
+    """The dimmed picture where all is right; where culling misses a shadow, one colour, counted, and ringed where that
+    is wanted."""
+    of_wrong = np.round(np.multiply(255.0, WRONG))
+
+    def dimmed() -> np.ndarray:
+        return d.c.preferences.beneath * picture(d.c.frame).astype(float)
+
+    d.settle()
+    d.press(KEY._8)
+    d.settle()
+    assert d.c.frame.wrong is not None and not d.c.frame.wrong.any()
+    assert np.abs(d.shown() - dimmed()).max() <= 1, "nothing is wrong, yet something shines"
+    d.press(KEY._1)
+    figure4(d, 20)
+    assert d.c.frame.wrong is None, "verified, though no view asks for it"
+    d.press(KEY._8)
+    d.settle()
+    wrong = d.c.frame.wrong > 0
+    assert d.c.frame.statistics.shadow.wrong == d.c.frame.wrong.sum() > 0
+    marked = d.shown()
+    assert np.array_equal((marked == of_wrong).all(axis=-1), wrong)
+    assert np.count_nonzero(np.abs(marked - dimmed()).max(axis=-1) > 1) > np.count_nonzero(wrong), "no rings"
+    d.press(KEY.m)
+    assert not d.c.preferences.mark_wrong
+    assert np.abs(d.shown() - dimmed())[~wrong].max() <= 1, "the picture, dimmed, where every answer is right"
+    d.c.preferences.beneath = 0.0
+    d.frames(2)
+    assert np.array_equal(d.shown().any(axis=-1), wrong), "black beneath, if so chosen"
+    d.c.preferences.beneath = 0.5
+    d.press(KEY.m)
+    y, x = np.argwhere(wrong)[0]
+    d.c.select(((x + 0.5) / 128, (y + 0.5) / 128))
+    d.frames(3)
+    assert d.c.selected.wrong == d.c.frame.wrong[y, x] > 0
+    d.press(KEY.c)
+    d.settle()
+    assert d.c.frame.settings.method == "none" and not d.c.frame.wrong.any()
+    d.c.selected = None
+    d.frames(3)
+    assert np.abs(d.shown() - dimmed()).max() <= 1
+    assert not d.c.session.settings.verify
+
+
+def wiping(d: Driver) -> None:
+    """The line of the wipe is dragged by the pointer and nothing else moves; elsewhere a drag turns the camera."""
+    d.settle()
+    figure4(d, 20)
+    d.c.preferences.mark_wrong = False
+    d.press(KEY._9)
+    d.settle()
+    frame = d.c.frame
+    assert (frame.color != frame.reference).any()
+    left, top, right, bottom = d.picture_edges()
+    camera, pivot, middle = d.c.session.camera, d.ui.pivot, (top + bottom) / 2.0
+
+    def drag_line(start: float, end: float, height: float) -> None:
+        x = left + start * (right - left)
+        d.drag((x, height), ((end - start) * (right - left), 7.0))
+        assert abs(d.c.session.wipe - end) < 0.02
+        assert d.c.session.camera == camera and d.ui.pivot is pivot and d.c.selected is None
+
+    drag_line(0.5, 0.3, middle)
+    assert np.abs(d.shown().astype(int) - picture(frame, View.WIPE, marked=False, wipe=d.c.session.wipe)).max() <= 1
+    drag_line(0.3, 0.9, top + 0.2 * (bottom - top))
+    pixels, column = d.shown(), wipe_column(128, d.c.session.wipe)
+    assert np.array_equal(pixels[:, :column], picture(frame)[:, :column]), "left of the line is the traced picture"
+    x = left + d.c.session.wipe * (right - left)
+    d.drag((x, middle), (2.0 * (right - left), 0.0))
+    assert d.c.session.wipe == 1.0, "past the edge it stays on it"
+    d.drag((right - 1.0, middle), (-(right - left) - 30.0, 0.0))
+    assert d.c.session.wipe == 0.0
+    pixels = d.shown()
+    right_one = picture(replace(frame, color=frame.reference))
+    assert np.array_equal(pixels[:, 1:], right_one[:, 1:]), "right of the line is the reference"
+    assert d.c.frame is frame and d.c.session.camera == camera, "dragging the line has traced"
+    traced = d.c.history.frames
+    d.drag((left + 0.7 * (right - left), middle), (60.0, 0.0))
+    assert d.c.session.wipe == 0.0 and d.c.session.camera != camera, "elsewhere a drag turns the camera"
+    d.settle()
+    assert d.c.history.frames > traced and d.c.frame.settings.verify
+    d.c.session.wipe = 0.5
+    camera = d.c.session.camera
+    x = (left + right) / 2.0
+    d.drag((x, middle), (90.0, 0.0), 1)
+    assert d.c.session.wipe == 0.5 and d.c.session.camera != camera, "only the left button takes the line"
+    d.settle()

@@ -1,0 +1,133 @@
+"""Whatever fails while the window is open."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import replace
+
+import numpy as np
+from imgui_bundle import imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from tests.viewer.driver import Driver
+from viewer import commands, opening
+from viewer.faults import QUIET_AFTER
+from viewer.panels import browser, plots, statistics, status
+from viewer.pictures import picture
+from viewer.resources import embedded_scenes
+from viewer.views import View
+
+KEY = imgui.Key
+
+
+def failing(d: Driver) -> None:
+    """Whatever fails, in drawing, a panel, a menu, a command or a thread, is a notice; the window lives on."""
+    d.settle()
+    faults, log, guard, display = d.c.faults, d.c.log, d.ui.guard, d.ui.display
+    again = f"{icons.ICON_FA_ROTATE_RIGHT}  Try again"
+
+    def fail(*_: object) -> None:
+        raise ZeroDivisionError("made to fail")
+
+    def told(about: str, times: int = 1) -> None:
+        """There is a notice, of one failure only, with all that is known; it is copied, and goes."""
+        d.wait(lambda: faults.notice is not None, f"a notice about {about}", 20.0)
+        d.frames(8)  # a flood would be counted by now
+        notice = faults.notice
+        assert about in notice.text and "made to fail" in notice.text and "Traceback" in notice.details, notice
+        assert notice.count == times and len([e for e in log.entries() if e.text == notice.text]) == 1
+        d.context.item_click(f"//##fault/{icons.ICON_FA_COPY}  Copy details")
+        d.frames(2)
+        assert imgui.get_clipboard_text() == notice.told
+        d.context.item_click("//##fault/Dismiss")
+        d.frames(3)
+        assert faults.notice is None and d.c.frame is not None
+
+    # Drawing: the picture stays what it was, is not tried again until it should be another, and is not saved as one.
+    before, frame = d.shown(), d.c.frame
+    draw_into, display._draw_into = display._draw_into, fail
+    d.press(KEY._5)
+    told("Drawing the picture")
+    assert np.array_equal(d.shown(), before)
+    d.press(KEY.f12)
+    d.frames(3)
+    assert not (d.folder / "pictures").exists() and "no picture to save" in d.c.message.text
+    faults.dismiss()
+    display._draw_into = draw_into
+    d.press(KEY._6)
+    expected = picture(frame, View.NORMAL, shading=d.c.preferences.shading)
+    assert np.abs(d.shown().astype(int) - expected).max() <= 2
+    most, display.context.info["GL_MAX_TEXTURE_SIZE"] = display.context.info["GL_MAX_TEXTURE_SIZE"], 16
+    d.c.preferences.fixed_resolution, d.c.preferences.fixed_width, d.c.preferences.fixed_height = True, 120, 90
+    d.settle()
+    assert "120 x 90 is too large for this GPU" in faults.notice.text
+    display.context.info["GL_MAX_TEXTURE_SIZE"] = most
+    d.c.preferences.fixed_resolution = False
+    d.settle()
+    assert display.size == (d.c.frame.width, d.c.frame.height)
+    faults.dismiss()
+
+    # Panels, with tables, children and plots open: one says what is wrong with it, and is shown again when told to.
+    for label, module, name in (("Statistics", statistics, "_milliseconds"), ("Plots", plots, "_stack")):
+        d.ui.show_panel(label)
+        d.frames(3)
+        good = getattr(module, name)
+        setattr(module, name, fail)
+        told(f"The panel {label}")
+        assert f"The panel {label}" in guard.broken
+        d.pause(QUIET_AFTER)
+        d.context.item_click(f"//{label}/{again}")
+        told(f"The panel {label}", 2)
+        setattr(module, name, good)
+        d.context.item_click(f"//{label}/{again}")
+        d.frames(3)
+        assert not guard.broken
+
+    # Bars, dialogs and commands.
+    for module, name, part in ((commands, "menus", "The menus"), (status, "_summary", "The status bar")):
+        good = getattr(module, name)
+        setattr(module, name, fail)
+        told(part)
+        setattr(module, name, good)
+        assert part in guard.broken
+        guard.again(part)
+        d.frames(3)
+        assert not guard.broken
+    good, browser._listing = browser._listing, fail
+    d.press(int(KEY.o) | int(KEY.mod_ctrl))
+    told("The dialog that opens a file")
+    assert not d.ui.browser.open
+    browser._listing = good
+    d.ui.commands = [replace(c, run=fail) if c.name == "Depth" else c for c in d.ui.commands]
+    d.press(KEY._5)
+    told("The command Depth")
+    d.pause(QUIET_AFTER)
+    d.context.menu_click("//##MainMenuBar/View/Depth")
+    told("The command Depth", 2)
+
+    # Threads.
+    threading.Thread(target=fail, name="some thread").start()
+    told("some thread")
+    renderer = d.c.render._renderer
+    refine, renderer.refine = renderer.refine, fail
+    d.press(KEY.t)
+    told("frame not traced")
+    renderer.refine = refine
+    d.press(KEY.t)
+    d.settle()
+    read, opening.load_visible_scene = opening.load_visible_scene, fail
+    d.drop(embedded_scenes()["figure4"])
+    told("Loading figure4.aff failed")
+    opening.load_visible_scene = read
+
+    # All of it is in the log, with what the status bar has said.
+    d.ui.show_panel("Log")
+    d.frames(3)
+    texts = [e.text for e in log.entries()]
+    assert sum("made to fail" in t for t in texts) >= 10 and any("opened in" in t for t in texts)
+    d.context.item_click(f"//Log/{icons.ICON_FA_COPY}  Copy all")
+    d.frames(2)
+    assert all(t in imgui.get_clipboard_text() for t in texts)
+    d.context.item_click("//Log/Clear")
+    d.frames(2)
+    assert not log.entries()

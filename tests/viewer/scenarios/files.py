@@ -1,0 +1,214 @@
+"""What is opened and saved: by dropping, from saved pictures, and by the dialog."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import glfw
+import numpy as np
+from imgui_bundle import glfw_utils, imgui
+from PIL import Image
+
+from tests.viewer.driver import Driver
+from viewer.commands import chord
+from viewer.panels import browser
+from viewer.pictures import picture
+from viewer.resources import embedded_scenes
+from viewer.views import View
+
+KEY = imgui.Key
+
+
+def capturing(d: Driver) -> None:
+    """Pictures with and without panels; dropping one brings everything back."""
+    pictures = d.folder / "pictures"
+    d.settle()
+    d.press(KEY._2)
+    d.hold(KEY.d, 0.2)
+    d.press(KEY.c)
+    d.settle()
+    d.c.preferences.screenshot_template = "{scene}-{view}-{frame:04d}.png"
+    d.press(KEY.f12)
+    d.wait(lambda: not d.c.keeper.busy, "the picture to be written")
+    d.press(int(KEY.f12) | int(KEY.mod_shift))
+    d.wait(lambda: not d.c.keeper.busy, "the window's picture to be written")
+    files = sorted(p.name for p in pictures.iterdir())
+    assert files == ["tiny-occlusion-0000-2.png", "tiny-occlusion-0000.png"]
+    with Image.open(pictures / files[1]) as alone, Image.open(pictures / files[0]) as window:
+        assert alone.size == (d.c.frame.width, d.c.frame.height)
+        assert window.size == tuple(glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui()))
+        assert np.array_equal(np.asarray(alone), d.shown())
+        data = json.loads(alone.text["shadowcull"])
+    assert data["statistics"]["shadow"]["due"] == d.c.frame.statistics.shadow.due
+    camera = d.c.session.camera
+    for key in (KEY.c, KEY._1, KEY.r):
+        d.press(key)
+    d.settle()
+    assert d.c.session.camera != camera
+    d.drop(pictures / files[1])
+    assert d.c.session.camera == camera
+    assert d.c.session.view is View.OCCLUSION and d.c.session.settings.method == "none"
+    d.c.preferences.screenshot_template = "moving.png"
+    d.hold(KEY.d, 0.3)
+    d.press(KEY.f12)
+    d.settle()
+    d.wait(lambda: (pictures / "moving.png").exists(), "the picture of a camera that has just come to rest")
+    with Image.open(pictures / "moving.png") as picture:
+        assert picture.size == (d.c.frame.width, d.c.frame.height), "the fine picture is waited for"
+    d.c.preferences.screenshot_template = "{nonsense}"
+    d.press(KEY.f12)
+    assert d.c.message.error and "nonsense" in d.c.message.text
+    (d.folder / "file").write_text("")
+    d.c.preferences.screenshot_folder, d.c.preferences.screenshot_template = str(d.folder / "file"), "a.png"
+    d.press(KEY.f12)
+    d.wait(lambda: not d.c.keeper.busy, "the failure to write")
+    d.frames(2)
+    assert d.c.message.error and "cannot write" in d.c.message.text
+    d.settle()
+
+
+def dropping(d: Driver) -> None:
+    """Scenes open; whatever is none is one line, and the open scene stays."""
+    d.settle()
+    scene = d.c.session.scene
+    bad = d.folder / "bad.aff"
+    bad.write_text("l 1 2\nf 1 1\np 3\n0 0 zero\n")
+    text = d.folder / "notes.txt"
+    text.write_text("hello")
+    fake = d.folder / "fake.png"
+    fake.write_bytes(b"no picture")
+    for path in (bad, text, fake, d.folder / "gone.aff", d.folder):
+        d.c.message = None
+        d.drop(path)
+        d.wait(lambda: not d.c.opener.busy, "the load to fail")
+        d.frames(2)
+        assert d.c.message is not None and d.c.message.error, f"{path} was not refused"
+        assert path.name in d.c.message.text and "\n" not in d.c.message.text
+        assert d.c.session.scene is scene
+    lights = "\n".join(f"l {i} 5 3 0.1 0.1 0.1" for i in range(40))
+    many = d.folder / "many.aff"
+    many.write_text(Path(scene.path).read_text() + lights)
+    d.drop(many, text)
+    d.wait(lambda: d.c.session.scene is not scene, "the other scene")
+    d.settle()
+    assert len(d.c.session.scene.lights) == 42
+    d.c.set_view(View.SHADOW)
+    d.c.set_light(35)
+    d.frames(3)
+    dark = d.folder / "dark.nff"
+    dark.write_text(
+        "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 0.1\nresolution 8 8\nf 1 0 0 1 0 1 0 1\ns 0 0 0 1\n"
+    )
+    d.drop(dark)
+    d.wait(lambda: d.c.session.scene.path.name == "dark.nff", "the scene without lights")
+    d.settle()
+    d.press(KEY._3)
+    assert d.c.frame.primitive.max() >= 0
+
+
+def reopening(d: Driver) -> None:
+    """A picture saved in a view that needs more of a frame opens over another scene; so do the keys of such views."""
+    d.c.preferences.screenshot_template = "{view}.png"
+    d.settle()
+    first = Path(d.c.session.scene.path)
+    for key in ("H", "Shift+H", "8", "9"):
+        d.press(chord(key))
+        d.settle()
+        d.press(KEY.f12)
+        d.wait(lambda: not d.c.keeper.busy, "the picture to be written")
+    d.press(KEY._1)
+    take = d.c.render.take
+    for view in (View.SAVED, View.COST, View.DIFFERENCE, View.WIPE):
+        d.drop(embedded_scenes()["figure4"])
+        d.wait(lambda: d.c.session.scene.path.name == "figure4.aff", "the other scene")
+        d.press(KEY._1)
+        d.settle()
+        d.c.render.take = lambda: None  # the first frame of the scene is long in coming
+        d.drop(d.folder / "pictures" / f"{view}.png")
+        d.wait(lambda: d.c.session.scene.path == first, "the picture's scene")
+        assert d.c.session.view is view and d.c.frame is None
+        for key in ("8", "9", "H", "Shift+H", "0", "3", view.key):
+            d.press(chord(key))
+        d.press(KEY.f12)
+        d.c.render.take = take
+        d.settle()
+        assert d.c.tracing.drawn_view is view
+        expected = picture(d.c.frame, view, shading=d.c.preferences.shading)
+        assert np.abs(d.shown().astype(int) - expected).max() <= 2
+
+
+def cancelling(d: Driver) -> None:
+    """A load that is cancelled leaves the open scene as it is."""
+    d.settle()
+    scene, frame = d.c.session.scene, d.c.frame
+    d.drop(d.folder / "big.aff")
+    assert d.c.opener.load_job is not None
+    d.press(KEY.escape)
+    d.wait(lambda: d.c.opener.load_job is None, "the load to stop", 20.0)
+    d.frames(3)
+    assert d.c.session.scene is scene and d.c.frame is frame
+    assert "cancelled" in d.c.message.text
+
+
+def browsing(d: Driver) -> None:
+    """The dialog that opens a file, with the keyboard alone and then with the pointer."""
+    d.settle()
+    box = d.folder / "box"
+    (box / "inner").mkdir(parents=True)
+    scene = Path(d.c.session.scene.path).read_text()
+    for name in ("whole.aff", "inner/deep.aff"):
+        (box / name).write_text(scene)
+    (box / "wheel.aff").write_text("f 1 0 0 1 0 1 0 1\ns 0 0 0 1\n")
+    Image.new("RGB", (8, 8)).save(box / "plot.png")
+    b = d.ui.browser
+    b.folder = d.folder
+
+    def keys(text: str) -> None:
+        d.context.key_chars(text)
+        d.frames(2)
+        d.wait(lambda: not b.reading, "the folder to be read")
+
+    d.press(int(KEY.o) | int(KEY.mod_ctrl))
+    d.frames(2)
+    keys("bo")
+    d.press(KEY.tab)
+    assert b.typed == "box/", b.typed
+    d.wait(lambda: not b.reading, "the folder to be read")
+    assert [e.name for e in b.shown()] == ["inner/", "whole.aff", "wheel.aff"]
+    keys("WH")
+    assert [e.name for e in b.shown()] == ["whole.aff", "wheel.aff"] and b.aimed() is None
+    d.press(KEY.down_arrow, 2)
+    assert b.marked == "wheel.aff"
+    d.press(KEY.up_arrow)
+    assert b.marked == "whole.aff" and b.typed == "box/WH"
+    d.press(KEY.enter)
+    assert not b.open and b.folder == box
+    d.wait(lambda: d.c.session.scene.path.name == "whole.aff", "the scene that was chosen")
+    d.settle()
+
+    # What cannot be opened is refused where it was asked for.
+    d.press(int(KEY.o) | int(KEY.mod_ctrl))
+    d.frames(2)
+    keys("plot.png")
+    d.press(KEY.enter)
+    assert b.open and "not one captured" in b.problem
+    d.frames(2)
+    d.press(int(KEY.a) | int(KEY.mod_ctrl))
+    keys("inn")
+    assert not b.problem
+    d.press(KEY.enter)
+    d.wait(lambda: not b.reading, "the folder to be read")
+    assert b.open and b.folder == box / "inner" and b.typed == ""
+
+    # A click marks, and the line to type in keeps the keyboard; a double click opens.
+    d.context.set_ref(d.context.window_info(f"//{browser.TITLE}/files").window)
+    row = "deep.aff/##row"
+    d.context.item_click(row)
+    d.frames(3)
+    assert b.open and b.marked == "deep.aff"
+    d.context.item_double_click(row)
+    d.frames(3)
+    assert not b.open
+    d.wait(lambda: d.c.session.scene.path.name == "deep.aff", "the scene in the folder")
+    d.settle()

@@ -1,0 +1,111 @@
+"""The legend in the picture: dragged, switched off, and saved with it."""
+
+from __future__ import annotations
+
+import numpy as np
+from imgui_bundle import imgui
+from PIL import Image
+
+from tests.viewer.driver import Driver
+from viewer import capture
+from viewer.preferences import load_preferences
+from viewer.views import View
+
+KEY = imgui.Key
+
+
+def legends(d: Driver) -> None:
+    """Every view has its legend in the picture; it can be dragged, catches in corners, stays inside, and can be off."""
+    d.c.change(method="paper")
+    d.settle()
+    for _ in d.sizes():
+        for view in View:
+            d.c.set_view(view)
+            d.settle()
+            assert d.ui.legend_shown == (view is not View.COLOR and view.can_draw(d.c.frame)), view
+            if d.ui.legend_shown:
+                _legend(d)
+        _dragged(d)
+    d.resize(900, 600)
+    right, bottom = d.picture_edges()[2:]
+    area = _legend(d)
+    assert right - area[2] < 20.0 and bottom - area[3] < 20.0, "it has left its corner"
+    _off_and_on(d)
+    _in_saved_pictures(d)
+    d.c.save_preferences()
+    kept = load_preferences()[0]
+    assert (kept.legend, kept.legend_in_pictures, kept.legend_x, kept.legend_y) == (True, False, 1.0, 1.0)
+
+
+def _legend(d: Driver) -> tuple[float, float, float, float]:
+    """Left, top, right and bottom of the legend, which lies inside the picture."""
+    d.frames(2)
+    area = d.context.item_info("//Picture/legend").rect_full
+    left, top, right, bottom = d.picture_edges()
+    assert left <= area.min.x and area.max.x <= right and top <= area.min.y and area.max.y <= bottom
+    return area.min.x, area.min.y, area.max.x, area.max.y
+
+
+def _dragged(d: Driver) -> None:
+    """About the picture, and into two corners; nothing but the legend moves, and a click on it selects nothing."""
+    d.c.set_view(View.OCCLUSION)
+    d.settle()
+    p, camera, frame = d.c.preferences, d.c.session.camera, d.c.frame
+    left, top, right, bottom = d.picture_edges()
+
+    def drag_to(x: float, y: float) -> tuple[float, float, float, float]:
+        area = _legend(d)
+        hold = (area[0] + area[2]) / 2.0, area[3] - 6.0
+        d.drag(hold, (x - (area[0] + area[2]) / 2.0, y - (area[1] + area[3]) / 2.0))
+        return _legend(d)
+
+    area = drag_to((left + right) / 2.0, (top + bottom) / 2.0)
+    assert abs(area[0] + area[2] - left - right) < 6.0 and abs(area[1] + area[3] - top - bottom) < 6.0
+    d.context.mouse_click(0)
+    d.frames(2)
+    assert d.c.selected is None and d.c.session.camera == camera and d.c.frame is frame
+    area = drag_to(left, top)
+    assert (p.legend_x, p.legend_y) == (0.0, 0.0) and area[0] - left < 20.0
+    area = drag_to(right - (area[2] - area[0]) / 2.0 - 20.0, bottom - (area[3] - area[1]) / 2.0 - 20.0)
+    assert (p.legend_x, p.legend_y) == (1.0, 1.0) and right - area[2] < 20.0 and bottom - area[3] < 20.0
+    assert d.c.session.camera == camera and d.c.frame is frame and d.c.selected is None
+
+
+def _off_and_on(d: Driver) -> None:
+    """Where the picture has no legend, the panel has it."""
+
+    def panel() -> float:
+        d.ui.show_panel("View")
+        d.frames(4)
+        return imgui.internal.find_window_by_name("View").content_size.y
+
+    with_legend = panel()
+    d.press(KEY.n)
+    assert not d.c.preferences.legend and not d.ui.legend_shown
+    assert panel() > with_legend + 60.0
+    d.press(KEY.n)
+    assert d.ui.legend_shown and panel() == with_legend
+
+
+def _in_saved_pictures(d: Driver) -> None:
+    """Only where that is wanted; then the rest of the picture is what it was, and it still brings everything back."""
+    p, folder = d.c.preferences, d.folder / "pictures"
+
+    def saved(name: str) -> np.ndarray:
+        p.screenshot_template = f"{name}.png"
+        d.press(KEY.f12)
+        d.wait(lambda: not d.c.keeper.busy, "the picture to be written")
+        assert capture.read(folder / f"{name}.png").view is d.c.session.view
+        with Image.open(folder / f"{name}.png") as image:
+            return np.asarray(image)
+
+    assert np.array_equal(saved("without"), d.shown())
+    d.ui.show_panel("Saving")
+    d.frames(3)
+    d.context.item_click("//Saving/With legend")
+    assert p.legend_in_pictures
+    other = (saved("with") != d.shown()).any(axis=-1)
+    rows, columns = np.nonzero(other)
+    assert other.any() and rows.min() > d.c.frame.height // 4 and columns.min() > d.c.frame.width // 4
+    d.context.item_click("//Saving/With legend")
+    assert not p.legend_in_pictures

@@ -1,0 +1,137 @@
+"""What moves: the camera by keys and pointer, time, and the window's size."""
+
+from __future__ import annotations
+
+import math
+
+import glfw
+import numpy as np
+from imgui_bundle import glfw_utils, imgui
+
+from tests.viewer.driver import Driver
+
+KEY = imgui.Key
+
+
+def flying(d: Driver) -> None:
+    """Keys and drags on the picture move the camera; typing and drags on panels do not."""
+    d.settle()
+    home = d.c.session.camera
+    d.hold(KEY.w, 0.3)
+    ahead = d.c.session.camera
+    assert np.dot(np.subtract(ahead.position, home.position), home.basis()[2]) > 0.0
+    assert ahead.basis()[2] @ home.basis()[2] > 0.999
+    d.settle()
+    assert (d.c.frame.width, d.c.frame.height) == d.c.size, "at rest the resolution is the window's"
+    assert d.c.traced.request.divisor == 1 and d.c.traced.whole
+
+    before = d.c.session.camera
+    d.drag(d.picture_centre(), (80.0, 0.0))
+    assert d.c.session.camera.position == before.position
+    assert d.c.session.camera.basis()[2] @ before.basis()[0] > 0.05, "dragging right looks right"
+    d.drag(d.picture_centre(), (-80.0, 0.0), 1)
+
+    before = d.c.session.camera
+    panel = imgui.internal.find_window_by_name("Statistics")
+    d.drag((panel.pos.x + 60.0, panel.pos.y + panel.size.y - 20.0), (50.0, -30.0))
+    assert d.c.session.camera == before, "a drag on a panel moved the camera"
+
+    d.ui.show_panel("Camera")
+    d.frames(3)
+    d.context.item_click("//Camera/##bookmark")
+    d.context.key_chars("wasd")
+    d.frames(3)
+    assert d.ui.new_bookmark == "wasd"
+    assert d.c.session.camera == before, "typing moved the camera"
+    d.context.key_press(KEY.enter)
+    d.frames(2)
+    assert d.c.keeper.bookmarks[0]["name"] == "wasd"
+    d.context.mouse_move_to_pos(d.picture_centre())
+    d.context.mouse_click(0)
+    d.frames(2)
+    assert d.c.selected is not None and d.c.session.camera == before, "a click only inspects"
+
+    d.press(KEY.r)
+    assert d.c.session.follow
+    d.wait(lambda: d.c.session.camera == home, "the scene's own camera")
+    d.c.keeper.go_to_bookmark(0)
+    d.wait(lambda: not d.c.moving, "the glide to the bookmark")
+    assert math.dist(d.c.session.camera.position, before.position) < 1e-9
+    d.settle()
+
+
+def orbiting(d: Driver) -> None:
+    """An orbit keeps the distance to what was clicked; F goes near it; the wheel comes nearer."""
+    d.settle()
+    d.press(KEY.o)
+    assert d.c.preferences.navigation == "orbit"
+    d.drag(d.picture_centre(), (90.0, 40.0))
+    pivot, camera = d.ui.pivot, d.c.session.camera
+    assert pivot is not None and not d.c.session.follow
+    d.settle()
+    d.drag(d.picture_centre(), (0.0, 0.0))
+    distance = math.dist(camera.position, pivot)
+    d.context.mouse_move_to_pos(d.picture_centre())
+    d.frames(2)
+    d.context.mouse_wheel_y(3.0)
+    d.frames(3)
+    assert math.dist(d.c.session.camera.position, d.ui.pivot) < distance
+    d.settle()
+    d.press(KEY.f)
+    d.wait(lambda: not d.c.moving, "the glide of the focus")
+    view = d.c.session.camera.basis()[2]
+    to_pivot = np.subtract(d.ui.pivot, d.c.session.camera.position)
+    assert view @ to_pivot / np.linalg.norm(to_pivot) > 0.9999
+    d.settle()
+
+
+def playing(d: Driver) -> None:
+    """Play, pause, step and scrub; every frame is traced in full where that was asked for."""
+    d.settle()
+    d.press(KEY.space)
+    assert d.c.session.playing
+    d.wait(lambda: d.c.session.time > 0.3, "time to pass")
+    d.press(KEY.space)
+    assert not d.c.session.playing
+    d.settle()
+    assert d.c.frame.time == d.c.session.time
+    frame = d.c.session.frame
+    d.press(KEY.right_arrow)
+    assert d.c.session.frame == frame + 1
+    d.press(KEY.left_arrow)
+    d.press(KEY.home)
+    assert d.c.session.frame == 0
+    d.c.preferences.every_frame = True
+    d.c.preferences.loop = False
+    d.settle()
+    d.c.history.clear()
+    d.press(KEY.space)
+    d.wait(lambda: not d.c.session.playing, "the last frame")
+    d.settle()
+    assert d.c.session.frame == d.c.session.scene.frames - 1
+    assert d.c.history.frames >= d.c.session.scene.frames - 1
+    assert len(set(d.c.history.values("pixels"))) == 1, "all in full resolution"
+
+
+def resizing(d: Driver) -> None:
+    """The picture follows the window, keeps a fixed resolution's aspect, and rests while minimised."""
+    d.settle()
+    window = glfw_utils.glfw_window_hello_imgui()
+    for size in ((1300, 900), (640, 400), (200, 120), (1000, 700)):
+        glfw.set_window_size(window, *size)
+        d.frames(4)
+        d.settle()
+        if min(d.c.size) > 0:
+            assert (d.c.frame.width, d.c.frame.height) == d.c.size
+    d.c.preferences.fixed_resolution, d.c.preferences.fixed_width, d.c.preferences.fixed_height = True, 120, 90
+    d.settle()
+    assert (d.c.frame.width, d.c.frame.height) == (120, 90)
+    d.app._room_for_picture = lambda: (0, 0)  # as while minimised; without a window manager nothing minimises
+    d.frames(3)
+    traced = d.c.history.frames
+    d.press(KEY.t)
+    d.frames(5)
+    assert d.c.history.frames == traced, "a window that cannot be seen is traced for"
+    del d.app._room_for_picture
+    d.settle()
+    assert d.c.history.frames == traced + 1

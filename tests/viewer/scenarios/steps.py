@@ -1,0 +1,46 @@
+"""Steps that scenarios of several subjects take."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from imgui_bundle import imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+from PIL import Image
+
+from tests.viewer.driver import Driver
+from viewer.resources import embedded_scenes
+
+KEY = imgui.Key
+
+
+def figure4(d: Driver, frame: int) -> None:
+    """The paper's Figure 4 up to a frame, as it is described there: 128 x 128 pixels, frame by frame."""
+    p = d.c.preferences
+    p.dynamic_resolution, p.fixed_resolution, p.fixed_width, p.fixed_height = False, True, 128, 128
+    p.every_frame = p.loop = False
+    d.c.change(method="paper")
+    d.drop(embedded_scenes()["figure4"])
+    d.wait(lambda: d.c.session.scene.path.name == "figure4.aff", "the scene of Figure 4")
+    d.settle()
+    for number in range(1, frame + 1):
+        d.press(KEY.right_arrow)
+        d.settle()
+        assert d.c.session.frame == number
+
+
+def saved_results(d: Driver, panel: str) -> dict[str, Path]:
+    """Save results by the panel's buttons; the files by their endings."""
+    folder = d.folder / "pictures"
+    before = set(folder.glob("*"))
+    d.scroll_down(panel)
+    for kind in ("JSON", "CSV", "Plot"):
+        d.context.item_click(f"//{panel}/**/{icons.ICON_FA_FLOPPY_DISK} {kind}")
+    d.wait(lambda: not d.c.keeper.busy, "the files to be written")
+    d.frames(2)
+    assert not d.c.message.error, d.c.message.text
+    files = {path.suffix: path for path in set(folder.glob("*")) - before}
+    assert set(files) == {".json", ".csv", ".png"}
+    with Image.open(files[".png"]) as plot:
+        assert plot.size == (1920, 1080)
+    return files

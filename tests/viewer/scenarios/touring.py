@@ -1,0 +1,89 @@
+"""The tour of the first start."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from tests.viewer.driver import Driver
+from viewer.panels.status import doing
+from viewer.preferences import load_preferences
+from viewer.tour import STEPS
+from viewer.views import View
+
+KEY = imgui.Key
+
+
+def touring(d: Driver) -> None:
+    """The tour comes on the first start; a step is done by doing it, by "Show me", or skipped; Help has it again."""
+    tour = d.ui.tour
+    assert tour.at == 0 and not d.c.preferences.tour, "a first start begins with the tour, and only that one"
+    d.settle()
+    assert doing(d.c).startswith("idle")
+    show, skip = f"//###tour/{icons.ICON_FA_PLAY}  Show me", "//###tour/Skip"
+    finish = "//###tour/Finish"
+    d.frames(5)
+    assert tour.at == 0, "nothing has been done yet"
+    d.hold(KEY.w, 0.1)
+    assert tour.at == 1 and STEPS[1].title == "Turn culling off and on"
+    d.settle()
+    assert not d.c.frame.statistics.shadow.culled and "Choose paper" in tour.step.text(d.c)
+    d.press(KEY._3)
+    d.press(KEY._1)
+    assert tour.at == 1 and tour.done == {0}
+    d.press(KEY._2)
+    assert tour.at == 1 and tour.done == {0, 2}, "a later step that is done early counts"
+    d.c.change(method="paper")
+    d.settle()
+    assert tour.at == 1 and "Press C twice" in tour.step.text(d.c)
+    d.press(KEY.c)
+    d.settle()
+    assert tour.at == 1 and "Press C twice" in tour.step.text(d.c), "off, but not on again"
+    d.press(KEY.c)
+    d.settle()
+    assert tour.at == 3
+    d.context.mouse_move_to_pos((d.picture_edges()[0] + 3.0, d.picture_edges()[1] + 30.0))
+    d.context.mouse_click(0)  # the sky
+    d.frames(5)
+    assert tour.at == 3
+    d.context.item_click(show)
+    d.wait(lambda: tour.at == 4, "a shadow that was clicked", 60.0)
+    assert d.c.selected is not None and any(one.blocked_at is not None for one in d.c.explaining.answer.lights)
+    d.c.runner.zoom_plan.steps, d.c.runner.zoom_plan.size = 3, (32, 32)
+    d.context.item_click(show)
+    d.wait(lambda: tour.at is None, "the zoom test", 120.0)
+    assert d.c.runner.zoom_test is not None and d.c.runner.zoom_test.whole
+    d.settle()
+
+    d.context.menu_click("//##MainMenuBar/Help/Tour")
+    d.frames(3)
+    assert tour.at == 0
+    for size in ((1400, 900), (480, 360), (900, 600)):
+        d.resize(*size)
+        window = imgui.internal.find_window_by_name("###tour")
+        assert window.pos.x >= 0 and window.pos.x + window.size.x <= size[0], f"the tour is cut off at {size}"
+        assert window.pos.y >= 0 and window.pos.y + window.size.y <= size[1], f"the tour is cut off at {size}"
+    camera = d.c.session.camera
+    d.context.item_click(show)
+    d.wait(lambda: tour.at == 1, "the flight that is shown", 30.0)
+    assert d.c.session.camera != camera
+    d.c.change(method="auto")
+    method = d.c.session.settings.method
+    d.context.item_click(show)
+    d.wait(lambda: tour.at == 2, "culling off and on", 30.0)
+    assert d.c.session.settings.method == method
+    d.context.item_click(show)
+    d.wait(lambda: tour.at == 3, "the modes", 30.0)
+    assert d.c.session.view is View.COLOR
+    d.frames(5)
+    assert tour.at == 3
+    d.context.item_click(skip)
+    d.frames(2)
+    assert tour.at == 4
+    d.context.item_click(finish)
+    d.frames(2)
+    assert tour.at is None
+    d.press(KEY.c)
+    d.settle()
+    d.c.save_preferences()
+    assert not load_preferences()[0].tour
