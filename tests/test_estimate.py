@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from tracer.estimate import Estimate
@@ -19,7 +21,7 @@ class Clock:
 
 def test_an_estimate_follows_what_the_machine_shows() -> None:
     clock = Clock()
-    estimate = Estimate(PARTS, SHARES, 2, clock)
+    estimate = Estimate(PARTS, SHARES, 2, clock=clock)
     assert estimate.seconds_left() is None and estimate.fraction == 0.0
     estimate.begin("a1")
     estimate.begin("b1")
@@ -47,6 +49,23 @@ def test_an_estimate_follows_what_the_machine_shows() -> None:
     assert estimate.fraction == pytest.approx(0.6 + 0.95 * 0.4)
     estimate.end("c1")
     assert estimate.seconds_left() == 0.0 and estimate.fraction == pytest.approx(1.0)
+
+
+def test_the_bar_moves_before_anything_is_done_and_never_ends_before_the_work() -> None:
+    clock = Clock()
+    estimate = Estimate(PARTS, SHARES, 2, 40.0, clock)
+    estimate.begin("b1")
+    estimate.begin("c1")
+    seen = [estimate.fraction]
+    for _ in range(60):
+        clock.now += 1.0
+        seen.append(estimate.fraction)
+    assert estimate.seconds_left() is None, "but how long it takes is not known yet"
+    assert seen[4] == pytest.approx(8.0 / 40.0), "two steps, as quick as they usually are"
+    assert all(0.0 < later - earlier <= 2.0 / 40.0 + 1e-9 for earlier, later in pairwise(seen[:20]))
+    assert seen == sorted(seen) and seen[-1] < 0.6
+    estimate.end("b1")
+    assert seen[-1] <= estimate.fraction < 0.6, "this machine is slower: the bar waits, and does not go back"
 
 
 def test_a_step_that_never_began_cannot_end() -> None:

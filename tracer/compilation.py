@@ -66,6 +66,7 @@ _SHARES = {
     "mode setting": 0.01,
     "certificates": 0.23,
 }
+_USUAL = 70.0  # seconds that all of it takes one process on a usual machine, with all cores busy
 _POLL = 0.1  # seconds from one look at a process to the next
 
 
@@ -228,7 +229,7 @@ def _compile_beside(
     Calls `drawable` when all that a picture needs is there; what `report` raises ends the processes."""
     read, write = os.pipe()
     slots = max(2, os.cpu_count() or 1)
-    estimate = Estimate(_PARTS, _SHARES, slots)
+    estimate = Estimate(_PARTS, _SHARES, slots, _USUAL)
     workers: dict[str, subprocess.Popen] = {}
     under_way: dict[str, str] = {}
     waiting, ended, told, drawn = list(_PARTS), set[str](), b"", False

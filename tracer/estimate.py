@@ -1,29 +1,34 @@
 """How far work in several processes is, and how long it will take still, judged by what it has taken so far.
 
 Shares say how the steps compare with each other; how fast the machine is they do not say.  That is learnt from the
-steps that are done, so that there is no estimate before the first of them.
+steps that are done; until then a usual machine's pace makes the bar move, and no time left is told.
 """
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 _ALMOST = 0.95  # of a step, at most, counts as done while it is under way
+_ON_TIME = 0.8  # of what a step should take, until which the bar moves evenly
 
 
 class Estimate:
     """`parts` names the steps that one process does one after another, in the order in which parts are begun;
-    `shares` is how much of all the work each step is, `slots` how many processes work at once.  Times are seconds."""
+    `shares` is how much of all the work each step is, `slots` how many processes work at once, and `usual` what all
+    the work takes one process on a usual machine.  Times are seconds."""
 
     def __init__(
         self,
         parts: Mapping[str, Sequence[str]],
         shares: Mapping[str, float],
         slots: int,
+        usual: float = math.inf,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._parts, self._shares, self._slots, self._clock = parts, shares, slots, clock
+        self._usual = usual
         self._began: dict[str, float] = {}
         self._took: dict[str, float] = {}
         self._fraction = 0.0
@@ -44,11 +49,12 @@ class Estimate:
 
     @property
     def fraction(self) -> float:
-        """How much of the work is done, from 0 to 1; never less than it was."""
-        pace, now = self.pace, self._clock()
+        """How much of the work is done, from 0 to 1; never less than it was.  A step that takes longer than it should
+        goes on ever more slowly, and is not done before it ends."""
+        pace, now = self.pace or self._usual, self._clock()
         done = sum(self._shares[step] for step in self._took)
-        if pace:
-            done += sum(min((now - at) / pace, _ALMOST * self._shares[step]) for step, at in self._began.items())
+        for step, at in self._began.items():
+            done += self._shares[step] * _part((now - at) / (pace * self._shares[step]))
         self._fraction = max(self._fraction, min(done, 1.0))
         return self._fraction
 
@@ -79,3 +85,11 @@ class Estimate:
                 whole = self._shares[step] * pace
                 left += whole - min(now - self._began.get(step, now), _ALMOST * whole)
         return left
+
+
+def _part(elapsed: float) -> float:
+    """How much of a step is done after so many times what it should take: evenly at first, then ever more slowly."""
+    if elapsed <= _ON_TIME:
+        return elapsed
+    room = _ALMOST - _ON_TIME
+    return _ALMOST - room * math.exp((_ON_TIME - elapsed) / room)

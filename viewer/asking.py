@@ -95,7 +95,7 @@ class Asking:
 
         self.question = Question(
             "Reset all settings?",
-            "View, culling, quality, theme, sizes and where pictures are saved become what they were at first.",
+            "View, culling, quality, theme, sizes and the folder of pictures become what they were at first.",
             (("Keep them", _nothing), ("Reset", reset)),
             tuple(fields),
             ticked,

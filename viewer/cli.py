@@ -160,8 +160,8 @@ def _render(arguments: list[str]) -> int:
         "--method",
         type=method,
         metavar="M",
-        help="how shadow rays are culled: none, paper, cells, certified or auto, and what that takes along, like "
-        "certified+cache or cells+rest (default: auto; where a view shows nothing of that, paper or certified)",
+        help="how shadow rays are culled: none, paper, cells, certified or auto; +cache and +rest add to any, as in "
+        "certified+cache (default: auto, or paper or certified for views that show what these do)",
     )
     add(
         "--view",
@@ -208,7 +208,7 @@ def _bench(arguments: list[str]) -> int:
         type=lambda text: [name.strip() for name in text.split(",")],
         default=["paper"],
         metavar="M,...",
-        help="like none,paper,cells,certified,certified+cache,auto; none is always among them (default: paper)",
+        help="like none,paper,cells,certified,certified+cache,auto; none is always measured too (default: paper)",
     )
     add("--path-frames", type=count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
     add("--frames", metavar="A:B", help="only the frames A to B - 1 of the path")
@@ -229,7 +229,7 @@ def _bench(arguments: list[str]) -> int:
 def _zoom(arguments: list[str]) -> int:
     parser = _Parser(
         prog="shadowcull zoom",
-        description="Go towards a primitive in steps, and tell whether its shadows keep up, for several zoom factors.",
+        description="Move towards a primitive in steps, and tell whether its shadows stay right for each zoom factor.",
         epilog=examples.ZOOM,
     )
     add = parser.add_argument
@@ -245,7 +245,7 @@ def _zoom(arguments: list[str]) -> int:
         type=number(0.001, 0.9999),
         default=0.94,
         metavar="R",
-        help="part of its distance that a step leaves (0.94)",
+        help="each step goes to this part of the distance (default: 0.94)",
     )
     add("--factors", type=factors, default=(4.0, 16.0), metavar="F,...", help="zoom factors (default: 4,16)")
     add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
@@ -280,7 +280,7 @@ def _add_tracing_options(parser: _Parser, accelerator: str) -> None:
 
 
 def _add_zoom_factor(parser: _Parser) -> None:
-    told = "a primitive that covers this many times more pixels is judged anew (4)"
+    told = "a primitive that covers this many times its highest pixel count is judged anew (default: 4)"
     parser.add_argument("--zoom-factor", type=number(1.0, 1e9), default=4.0, metavar="F", help=told)
 
 

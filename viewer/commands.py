@@ -222,7 +222,7 @@ def _culling(ui: Ui) -> list[Command]:
         Command("Verify", "Culling", lambda: c.change(verify=not s().verify), "V", checked=lambda: s().verify),
         Command("Reset modes", "Culling", c.reset_modes, "Backspace", separated=True),
         Command("Trace again", "Culling", c.trace_again, "T"),
-        Command("Keep tracing at rest", "Culling", toggle_tracing, "K", checked=lambda: p.keep_tracing),
+        Command("Keep tracing when idle", "Culling", toggle_tracing, "K", checked=lambda: p.keep_tracing),
     ]  # fmt: skip
 
 

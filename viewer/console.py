@@ -22,6 +22,8 @@ from rich.text import Text
 
 from tracer.scene.model import Cancelled
 from tracer.statistics import FrameStatistics
+from viewer import terms
+from viewer.history import fully_traced
 from viewer.lines import in_one_line, say
 
 
@@ -152,19 +154,24 @@ def statistics_table(statistics: FrameStatistics, title: str, verified: bool = F
     table.add_row("intersection tests", *(f"{kind.intersection_tests:,}" for kind in kinds), end_section=True)
     shadow = statistics.shadow
     due = max(shadow.due, 1)
-    table.add_row("shadow rays due", "", "", f"{shadow.due:,}")
-    table.add_row("  culled", f"{shadow.culled / due:.1%}", "", f"{shadow.culled:,}")
-    table.add_row("  dynamic objects alone", f"{shadow.dynamic_only / due:.1%}", "", f"{shadow.dynamic_only:,}")
+    table.add_row(f"shadow rays {terms.DUE}", "", "", f"{shadow.due:,}")
+    table.add_row(f"  {terms.CULLED}", f"{shadow.culled / due:.1%}", "", f"{shadow.culled:,}")
+    table.add_row(f"  {terms.DYNAMIC_ONLY}", f"{shadow.dynamic_only / due:.1%}", "", f"{shadow.dynamic_only:,}")
     if shadow.candidates_only:
-        table.add_row("  candidates", f"{shadow.candidates_only / due:.1%}", "", f"{shadow.candidates_only:,}")
+        table.add_row(
+            f"  {terms.CANDIDATES_ONLY}", f"{shadow.candidates_only / due:.1%}", "", f"{shadow.candidates_only:,}"
+        )
+    if shadow.cache_hits:
+        table.add_row(f"  {terms.CACHE_HITS}", f"{shadow.cache_hits / due:.1%}", "", f"{shadow.cache_hits:,}")
+    table.add_row(f"  {terms.TRACED}", f"{fully_traced(shadow) / due:.1%}", "", f"{fully_traced(shadow):,}")
     if verified:
-        table.add_row("  wrong answers", f"{shadow.wrong / due:.3%}", "", f"{shadow.wrong:,}")
+        table.add_row(f"  {terms.WRONG}", f"{shadow.wrong / due:.3%}", "", f"{shadow.wrong:,}")
     if statistics.certificates:
         table.add_row("certificates made", "", "", f"{statistics.certificates:,}")
         table.add_row("  traversal steps", "", "", f"{statistics.certificate_steps:,}")
         table.add_row("  intersection tests", "", "", f"{statistics.certificate_tests:,}")
     table.add_row("occlusion tests", f"{statistics.occlusion_tests:,}", "", "", end_section=True)
     for name, seconds in statistics.phases.items():
-        table.add_row(name, f"{1000.0 * seconds:,.1f} ms", "", "")
+        table.add_row(terms.PHASES.get(name, (name,))[0], f"{1000.0 * seconds:,.1f} ms", "", "")
     table.add_row("frame", f"{1000.0 * statistics.seconds:,.1f} ms", "", "")
     return table

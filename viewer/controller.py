@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 
-from tracer.method import base_of
 from tracer.renderer import Frame, Renderer
 from tracer.scene.model import Camera, Scene
 from viewer import navigation
@@ -211,8 +210,8 @@ class Controller:
         self.preferences.keep(settings)
 
     def set_view(self, view: View) -> None:
-        if view is View.CERTIFICATE and base_of(self.session.settings.method) == "auto":
-            self.tracing.reconsider()  # at rest certificates may still be made, for this view to show
+        if view is View.CERTIFICATE and self.frame is not None and self.frame.statistics.certificates:
+            self.tracing.reconsider()  # more may be made at rest, for this view to show
         self.session.view = view
         self.preferences.view = view.value
 

@@ -5,7 +5,7 @@ commands:
   shadowcull [SCENE]       open the viewer
   shadowcull render SCENE  trace one frame into a picture, its buffers, or both; needs no display
   shadowcull bench SCENE   measure, over a path of frames, what culling saves
-  shadowcull zoom SCENE    go towards a primitive, and see whether its shadows keep up
+  shadowcull zoom SCENE    go towards a primitive, and see whether its shadows stay right
   shadowcull info SCENE    say what a scene holds
 
 examples:
@@ -45,7 +45,7 @@ wrong shadow answers of each pixel. A frame of the method certified has certific
 --view difference and --view wipe verify by themselves: the first shows the pixels with wrong shadow answers,
 the second the picture left of a line and what it should be right of it; wipe:0.3 puts the line at 30 % of
 the width. Rings show where wrong pixels are; --no-marks leaves them out. --view saved and --view cost are maps
-of the shadow rays that were spared at each pixel, and of all rays that were traced for it.
+of the shadow rays that culling saves at each pixel, and of all rays that are traced for it.
 """
 
 BENCH = """\
@@ -72,7 +72,7 @@ examples:
   shadowcull zoom figure4 --pixel 64,64 --size 128x128 --json zoom.json --csv zoom.csv
 
 A primitive that was seen whole from afar is culled by what its few pixels met then, until it covers more
-than the zoom factor times its highest pixel count; then it is examined anew. The camera goes straight
+than the zoom factor times its highest pixel count; then it is judged anew. The camera goes straight
 towards it, from its place at that time: where it looks at the primitive already straight ahead, else
 turned to the middle of what is to be seen of it. The first frames are still, for the modes to settle.
 Every culled shadow ray is verified, and a pixel with a wrong answer is a wrong pixel. Ctrl-C ends the test

@@ -206,8 +206,8 @@ def _splits() -> list[hello_imgui.DockingSplit]:
         split("MainDockSpace", "Right", imgui.Dir.right, 0.295),
         split("MainDockSpace", "Bottom", down, 0.25),
         split("Left", "LeftBottom", down, 0.52),
-        split("Right", "RightBottom", down, 0.38),
-        split("Right", "RightMiddle", down, 0.45),
+        split("Right", "RightBottom", down, 0.33),
+        split("Right", "RightMiddle", down, 0.56),
     ]
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from tracer.frame import Frame
 from tracer.method import culls_by_modes
+from viewer import terms
 from viewer.legends import (
     LegendRow,
     certificate_legend,
@@ -137,18 +138,18 @@ def _by_modes(frame: Frame, light: int | None = None) -> tuple[Entry, ...]:
     culls = culls_by_modes(frame.settings.method)
     parts = columns.values()
     return (
-        Entry(f"shadow rays{'' if culls else ', by modes'}", None, tuple(columns), _BY_MODES, quiet=True),
+        Entry(f"shadow rays{'' if culls else ', if by modes'}", None, tuple(columns), _BY_MODES, quiet=True),
         Entry(
-            "culled" if culls else "would be culled",
+            terms.CULLED,
             None,
             tuple(percent(one.full_shadow, one.due) for one in parts),
-            "of those due; they end on primitives that are fully rendered and in full shadow",
+            "of the rays due: those of fully rendered primitives in full shadow",
         ),
         Entry(
-            "ask moving objects" if culls else "would ask moving objects",
+            terms.DYNAMIC_ONLY,
             None,
             tuple(percent(one.non_shadow, one.due) for one in parts),
-            "of those due, and nothing else; they end on primitives that are fully rendered and in non-shadow",
+            "of the rays due: those of fully rendered primitives in non-shadow, tested against dynamic objects only",
         ),
     )
 
@@ -166,7 +167,10 @@ def _of_light(frame: Frame, view: View, chosen: Chosen) -> Legend:
     else:
         rows, units, facts = certificate_legend(frame, chosen.light), "cells", ()
     if not rows:
-        return Legend(title, notes=(Note("Culling does not cover this light: all its rays are traced.", Tone.WARNING),))
+        return Legend(
+            title,
+            notes=(Note("This light is not culled, as there are too many: all its rays are traced.", Tone.WARNING),),
+        )
     return Legend(title, ("pixels", units), _classes(rows, units), facts=facts)
 
 
@@ -194,14 +198,16 @@ def _pixel_counts(frame: Frame, view: View, chosen: Chosen) -> Legend:
 
 def _work(frame: Frame, view: View, chosen: Chosen) -> Legend:
     found, saved = work_legend(frame, view), view is View.SAVED
-    part = f"{percent(found.total, found.whole)}{' of due' if saved else ''}"
+    part = f"{percent(found.total, found.whole)}{' of those due' if saved else ''}"
     facts = [Entry("in all", values=(f"{count(found.total)} ({part})",), meaning=_IN_ALL_SAVED if saved else _IN_ALL)]
     facts.append(Entry("per pixel", values=(f"{found.per_pixel:.2f}, at most {count(found.most)}",)))
     if not chosen.shares:
         return Legend(
             view.label, (), (), Scale("0", f"{found.top:.4g} and more", f"{found.top / 2.0:.3g}"), tuple(facts)
         )
-    title = "Share of due shadow rays saved" if saved else "Share of rays traced, of those without culling"
+    title = (
+        "Share of the shadow rays due that is saved" if saved else "Share of the rays without culling that is traced"
+    )
     entries = (Entry("no shadow ray is due", GREY),) if saved else ()
     return Legend(title, (), entries, Scale("0 %", "100 %", "50 %"), tuple(facts))
 
@@ -215,7 +221,10 @@ def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
     entries = (Entry(name if colored else "wrong pixels", WRONG if colored else None, (pixels,), _WRONG_PIXELS),)
     facts = (
         Entry(
-            "wrong answers", None, (f"{count(found.answers)} ({percent(found.answers, found.due)} of due)",), _ANSWERS
+            "wrong answers",
+            None,
+            (f"{count(found.answers)} ({percent(found.answers, found.due)} of those due)",),
+            _ANSWERS,
         ),
         Entry("largest difference", None, (f"{255.0 * found.largest:.0f} of 255",), _LARGEST),
     )
@@ -224,17 +233,15 @@ def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
     elif not shadow.culled + shadow.candidates_only + shadow.dynamic_only + shadow.cache_hits:
         note = Note("No shadow ray of this frame was culled, so none can be wrong.", Tone.WARNING)
     elif not found.pixels:
-        note = Note("Nothing is wrong: every culled shadow ray was answered as a trace answers it.", Tone.GOOD)
+        note = Note("Nothing is wrong: every culled shadow ray was answered as tracing answers it.", Tone.GOOD)
     else:
         return Legend(view.label, (), entries, facts=facts)
     return Legend(view.label, (), entries, notes=(note,))
 
 
-_BY_MODES = "of this frame, at all bounces, by the modes that the frame before has left: what the paper's method spares"
-_IN_ALL_SAVED = "of the first sample of each pixel; its share of all shadow rays that were due"
-_IN_ALL = "of the first sample of each pixel; its share of the rays that tracing without culling takes"
-_WRONG_PIXELS = "with a wrong answer of any light at any bounce, of all samples"
-_ANSWERS = (
-    "culled shadow rays whose answer a trace contradicts, of all that were due; of the first sample of each pixel"
-)
-_LARGEST = "between a wrong pixel's colour and the right one; an answer deep in reflections may change nothing"
+_BY_MODES = "of this frame, at all bounces, by the modes as the frame before left them: what the paper's method saves"
+_IN_ALL_SAVED = "of the first sample of each pixel; the share is of the shadow rays due"
+_IN_ALL = "of the first sample of each pixel; the share is of the rays traced without culling"
+_WRONG_PIXELS = "with a wrong answer for any light, at any bounce, in any sample"
+_ANSWERS = "shadow rays that culling answered otherwise than tracing does; of the first sample of each pixel"
+_LARGEST = "between a wrong pixel's colour and the right one; a wrong answer deep in reflections may change nothing"

@@ -12,15 +12,15 @@ DEFAULT = "auto"
 
 BASES_TOLD = {
     "none": "no culling: every shadow ray is traced",
-    "paper": "the paper's method: what shadow rays of whole primitives met in the frames before",
+    "paper": "the paper's method: by what shadow rays of each primitive met in earlier frames",
     "cells": "the paper's method on virtual cells of large triangles",
-    "certified": "what is proven of virtual cells: never a wrong answer",
-    "auto": "none or certified, whichever is measured to be quicker: never a wrong answer",
+    "certified": "by what is proven of virtual cells: never a wrong answer",
+    "auto": "as none or as certified, whichever is quicker here: never a wrong answer",
 }
 
 EXTRAS_TOLD = {
-    "cache": ("Occluder cache", "test first what blocked the light there before"),
-    "rest": ("Objects at rest are static", "what could move but does not move now counts as static until it does"),
+    "cache": ("Occluder cache", "test first what blocked the light there last time"),
+    "rest": ("Idle objects are static", "objects that could move, but do not move now, count as static until they do"),
 }
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from tracer import experiment, zoom
 from tracer.experiment import REFERENCE, Row
 from tracer.zoom import Approach, Change, Step
+from viewer import terms
 
 # --- experiments -----------------------------------------------------------------------------------
 
@@ -94,7 +95,7 @@ def zoom_title(results: zoom.Results) -> str:
     return f"{name}, {results.time:.3f} s, towards primitive {results.primitive}, {width} × {height}"
 
 
-NEVER_WHOLE = "never seen whole in any step: it is never culled, and the zoom factor does not matter"
+NEVER_WHOLE = "never seen whole, so that it is never culled and the zoom factor does not matter"
 
 
 def never_whole(results: zoom.Results) -> bool:
@@ -103,7 +104,7 @@ def never_whole(results: zoom.Results) -> bool:
 
 
 WRONG_PIXELS = "wrong pixels of this primitive"
-SUMMARY = ("factor", "judged anew", "wrong pixels", "most", "at the end", "culled", "dynamic only")
+SUMMARY = ("factor", "judged anew", "wrong pixels", "most", "at the end", terms.CULLED, terms.DYNAMIC_ONLY)
 
 
 def summary(approach: Approach) -> tuple[str, ...]:

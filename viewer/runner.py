@@ -68,7 +68,9 @@ class Runner:
         try:
             if start is None and selected is not None:
                 if selected.dynamic:
-                    raise ValueError(f"primitive {selected.primitive} moves, and what moves is never culled")
+                    raise ValueError(
+                        f"primitive {selected.primitive} moves, and is never culled: choose one that does not"
+                    )
                 start = zoom.aim(frame, selected.primitive)
             assert start is not None
             run = ZoomTest(scene, self._c.session.settings, start, self.zoom_plan, lambda: self._c.wake())

@@ -53,7 +53,8 @@ class Ui:
     """See the module.  `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says
     that the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector; `screening` is
     the recorded picture that is shown in the picture's place; `legend_shown` says whether the picture shows its legend,
-    `legend_held` where the pointer holds that."""
+    `legend_held` where the pointer holds that; `tour_height` is what the picture leaves free below it for the tour,
+    `tour_place` where that is: left, top and width."""
 
     controller: Controller
     display: Display | None = None
@@ -88,8 +89,8 @@ class Ui:
     screening: Screening | None = None
     legend_shown: bool = False
     legend_held: tuple[float, float] = (0.0, 0.0)
-    tour_moved: tuple[float, float] = (0.0, 0.0)
-    tour_at: tuple[float, float] | None = None
+    tour_height: float = 0.0
+    tour_place: tuple[float, float, float] | None = None
     _cache: dict[str, tuple[object, object, Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

@@ -103,21 +103,21 @@ _KEYS = {
 
 _EXPLANATIONS = {
     View.COLOR: "The traced picture.",
-    View.OCCLUSION: "How much of each primitive the camera has seen: only a fully rendered one is culled.",
+    View.OCCLUSION: "How much of each primitive the camera has seen: only fully rendered ones are culled.",
     View.SHADOW: "What the shadow rays of each primitive have met on their way to the chosen light.",
     View.PRIMITIVE: "Every primitive in a colour of its own.",
     View.DEPTH: "Distance from the camera along the ray.",
     View.NORMAL: "The shading normal: x, y, z as red, green, blue.",
     View.PIXEL_COUNT: "Pixels a primitive covers now, against the most it covered while fully rendered.",
-    View.DIFFERENCE: "Pixels for which a culled shadow ray was answered wrongly, over the picture, dimmed, where every "
-    "answer is right.",
-    View.WIPE: "Left of the line the traced picture, right of it that with every shadow answer right. Drag the line.",
-    View.CERTIFICATE: "What is proven for each virtual cell and the chosen light; lines are the borders of cells. Each "
+    View.DIFFERENCE: "Pixels with a wrong shadow answer; where all answers are right, the picture is shown, dimmed.",
+    View.WIPE: "Left of the line is the traced picture, right of it the picture with every shadow answer right. Drag "
+    "the line.",
+    View.CERTIFICATE: "What is proven of each virtual cell for the chosen light; lines are the borders of cells. Each "
     "frame proves more: T traces one more, K keeps tracing.",
-    View.SAVED: "Shadow rays of each pixel, at all bounces, that need not be traced through static geometry: how "
-    "many, or which share of those needed.",
-    View.COST: "Rays traced for each pixel, of all kinds and at all bounces: how many, or which share of those that "
-    "tracing without culling takes.",
+    View.SAVED: "Shadow rays of each pixel, at all bounces, that culling saves tracing through the whole scene: how "
+    "many, or which share of those due.",
+    View.COST: "Rays traced for each pixel, of all kinds, at all bounces: how many, or which share of those that are "
+    "traced without culling.",
 }
 
 
@@ -169,22 +169,22 @@ CELL_LINE = 0.55
 OCCLUSION_MEANING = {
     OcclusionMode.INIT: "not seen yet, or to be judged again",
     OcclusionMode.PARTIALLY_OCCLUDED: "something hides a part of it in this frame",
-    OcclusionMode.FULLY_RENDERED: "seen as a whole: its shadow modes are trusted",
+    OcclusionMode.FULLY_RENDERED: "seen whole: culled by its shadow modes",
     OcclusionMode.DYNAMIC: "it moves: never culled",
 }
 
 SHADOW_MEANING = {
     ShadowMode.INIT: "no shadow ray yet",
     ShadowMode.FULL_SHADOW: "every shadow ray was blocked: culled once fully rendered",
-    ShadowMode.NON_SHADOW: "no shadow ray was blocked: tested against moving objects only, once fully rendered",
+    ShadowMode.NON_SHADOW: "no shadow ray was blocked: tested against dynamic objects only once fully rendered",
     ShadowMode.PARTIAL_SHADOW: "some were blocked: always traced",
 }
 
 CERTIFICATE_MEANING = {
     Certificate.NONE: "nothing is proven, or the light is behind it: its shadow rays are traced",
     Certificate.FULL: "all of it is in the shadow of static geometry: its shadow rays are culled",
-    Certificate.LIT: "nothing static lies between it and the light: tested against moving objects only",
-    Certificate.CANDIDATES: "only a few triangles can lie between: these and moving objects are tested",
+    Certificate.LIT: "nothing static is between it and the light: tested against dynamic objects only",
+    Certificate.CANDIDATES: "only a few primitives can block the light: tested against these and dynamic objects",
 }
 
 WRONG = _hex("FF00FF")

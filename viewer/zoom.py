@@ -114,9 +114,7 @@ def _steps_table(approach: Approach) -> Table:
 
 def _summary_table(results: Results) -> Table:
     table = Table(*SUMMARY, title=zoom_title(results), title_justify="left", title_style="bold", caption_justify="left")
-    table.caption = (
-        "wrong pixels: of this primitive\nof the shadow rays due: culled, and those that asked moving objects alone"
-    )
+    table.caption = "wrong pixels: those of this primitive\nculled, dynamic only: shares of the shadow rays due"
     for approach in results.approaches:
         table.add_row(*summary(approach))
     return table

@@ -59,11 +59,14 @@ class Driver:
 
     def settle(self) -> None:
         """Until everything is loaded and traced, and has been drawn."""
-        quiet = 0
+        quiet, traced = 0, -1
 
-        def rested() -> bool:  # the fine frame is asked for one frame after the motion ends: one quiet frame may lie
-            nonlocal quiet
-            quiet = quiet + 1 if self.c.frame is not None and not self.c.active else 0
+        def rested() -> bool:
+            """Whether nothing has come for some of the window's frames: in one of them a frame may be taken, and the
+            next be asked for and traced."""
+            nonlocal quiet, traced
+            still = self.c.frame is not None and not self.c.active and self.c.history.frames == traced
+            quiet, traced = quiet + 1 if still else 0, self.c.history.frames
             return quiet >= 5
 
         self.frames(3)

@@ -65,7 +65,7 @@ def test_heat_maps_say_whether_they_count_or_share(frame: Frame):
     assert (counts.scale.low, counts.scale.high) == ("0", "7 and more")
     assert (shares.scale.low, shares.scale.high) == ("0 %", "100 %") and "Share" in shares.title
     assert counts.facts == shares.facts
-    total = f"{100 * frame.saved.sum() / frame.due_rays.sum():.1f} % of due"
+    total = f"{100 * frame.saved.sum() / frame.due_rays.sum():.1f} % of those due"
     assert total in counts.facts[0].values[0]
     assert "without culling" in of(frame, View.COST, shares=True).title
 
@@ -168,6 +168,6 @@ def test_modes_say_what_the_papers_method_would_cull(frame: Frame):
         replace(frame, settings=replace(SETTINGS, method="certified", modes=True)), View.SHADOW, light=1
     ).facts
     assert [fact.values for fact in of_light] == [("light 1", "all lights"), ("5.0 %", "10.0 %"), ("0.0 %", "2.5 %")]
-    assert of_light[0].quiet and of_light[1].name == "would be culled"
+    assert of_light[0].quiet and of_light[1].name == "culled"
     assert [fact.values for fact in of(frame, View.OCCLUSION).facts] == [("all lights",), ("10.0 %",), ("2.5 %",)]
     assert of(frame, View.OCCLUSION).facts[1].name == "culled"

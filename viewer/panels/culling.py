@@ -18,6 +18,7 @@ from viewer.panels.widgets import (
     percent,
     properties,
     row,
+    same_line_for,
     tooltip,
     wide_button,
 )
@@ -32,25 +33,27 @@ def show(ui: Ui) -> None:
     _method(ui)
     if c.frame is not None and c.frame.statistics.decision:
         paragraph(c.frame.statistics.decision, QUIET)
-    tip = "of two neighbouring pixels, test each against the other's primitive, not just one of them (Y)"
-    imgui.begin_disabled(not _by_modes(s.method))
+    tip = "test two neighbouring pixels both ways: each one's ray against the other's primitive (Y)"
     checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.change(symmetric=on), tip)
-    imgui.end_disabled()
+    same_line_for("Verify")
     tip = "trace every culled shadow ray as well, and count wrong answers (V)"
     checkbox("Verify", s.verify, lambda on: c.change(verify=on), tip)
     _wrong(ui)
     with properties("culling", 6.5) as shown:
-        if shown and _by_modes(s.method):
+        if shown:
             row(
                 "Zoom factor",
-                "a primitive that covers this many times more pixels than when it was judged is judged anew",
+                "a primitive that covers this many times its highest pixel count is judged anew",
             )
             flags = int(imgui.SliderFlags_.logarithmic)
             changed, factor = imgui.slider_float("##zoom", s.zoom_factor, 1.0, 64.0, "%.1f", flags)
             if changed:
                 c.change(zoom_factor=factor)
         if shown and certifies(s.method):
-            row("Certificates", "part of each frame's time that may go into making them; at rest they get more")
+            row(
+                "Certificates",
+                "the share of each frame's time for making them while anything moves; when idle they get more",
+            )
             share = 100.0 * p.certificate_share
             changed, share = imgui.slider_float("##share", share, 1.0, 100.0 * MOST_CERTIFYING, "%.0f %%")
             if changed:
@@ -60,7 +63,7 @@ def show(ui: Ui) -> None:
     imgui.same_line()
     if wide_button(
         f"{icons.ICON_FA_ROTATE_RIGHT}  Trace again",
-        "trace the same frame once more, with what the last one taught (T)",
+        "trace the same frame once more, with what the last one has taught (T)",
     ):
         c.trace_again()
 
@@ -69,10 +72,10 @@ def show(ui: Ui) -> None:
         c.trace_again()
 
     checkbox(
-        "Keep tracing at rest",
+        "Keep tracing when idle",
         p.keep_tracing,
         keep,
-        "trace frame after frame, to watch modes and certificates settle (K)",
+        "trace frame after frame, to watch modes and certificates being learnt (K)",
     )
 
 
@@ -99,17 +102,11 @@ def _method(ui: Ui) -> None:
             c.change(method=toggled(method, extra))
 
 
-def _by_modes(method: str) -> bool:
-    """Whether a method tests occlusion and sets modes."""
-    return base_of(method) in ("paper", "cells")
-
-
 def _wrong(ui: Ui) -> None:
     c = ui.controller
     if c.frame is None or not c.frame.settings.verify:
         return
     shadow = c.frame.statistics.shadow
-    imgui.same_line()
     if shadow.wrong:
         paragraph(f"{count(shadow.wrong)} wrong ({percent(shadow.wrong, shadow.due)})", ERROR)
     elif not shadow.culled + shadow.candidates_only + shadow.dynamic_only + shadow.cache_hits:

@@ -32,7 +32,7 @@ from viewer.ui import Ui
 
 _WORKS = (("steps", "steps"), ("tests", "tests"))
 _SHORT = ("steps saved", "  most (frame)", "tests saved", "  most (frame)", "extra / pixel", "wrong", "time in window")
-_TIME_TIP = "while the window draws as well: not to be compared with the times of shadowcull bench"
+_TIME_TIP = "measured while the window draws as well: do not compare it with times of shadowcull bench"
 _FEWEST_FRAMES, _LEAST_TOP = 10, 2.0  # frames and percents that the plot's axes span at least
 _HEADING, _REFERENCE, _METHOD = 6.8, 5.4, 7.4  # widths of the table's columns in ems
 
@@ -141,7 +141,7 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
     """Savings of each method but the reference, and its wrong answers, over the frames of the path."""
     if run is None or results is None:
         if imgui.begin_child("nothing", size):
-            paragraph("How much work for shadow rays culling saves, frame by frame, and the paper's Table 1.", QUIET)
+            paragraph("The work of shadow rays that culling saves, frame by frame, and the paper's Table 1.", QUIET)
         imgui.end_child()
         return
     wrong = run.settings.verify and any(any(figures["wrong"]) for figures in results.methods.values())

@@ -35,13 +35,13 @@ def rows(ui: Ui) -> None:
     heading("Shadow rays")
     p = c.preferences
     tip = (
-        "over the picture, the lights' ways to the point that was clicked (I): yellow as far as they get, blue where "
-        "they are in shadow; red what blocks them, orange what a certificate rests on, in dashes what is hidden"
+        "in the picture, the shadow rays of the clicked point (I): yellow as far as light comes, then blue; outlined "
+        "in red is what blocks it, in orange what a certificate names; dashes are hidden"
     )
     checkbox("Draw for a click", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), tip)
     answer = c.explaining.answer
     if answer is None:
-        paragraph("traced while the picture rests", QUIET)
+        paragraph("traced when nothing moves", QUIET)
         return
     if not answer.lights:
         paragraph("The scene has no lights.", QUIET)

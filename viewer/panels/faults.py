@@ -28,7 +28,7 @@ def notice(ui: Ui) -> None:
         others = f", and {faults.others} more in the log" if faults.others else ""
         imgui.text_colored(ERROR, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  A mistake of the program{times}{others}")
         paragraph(entry.text)
-        paragraph("Nothing is lost: all else goes on. The details help to mend it.", QUIET)
+        paragraph("Nothing is lost, and the rest of the window works on. The details help to mend it.", QUIET)
         copy_button(ui, entry)
         imgui.same_line()
         if imgui.button("Show log"):

@@ -134,7 +134,7 @@ def _caption(ui: Ui, shown: Screening, top: ImVec2, room: ImVec2) -> None:
             imgui.same_line()
             if imgui.button("Fly there"):
                 ui.controller.runner.go_to(step)
-            tooltip("traced at the window's size, with the window's modes: the wrong pixels need not be there")
+            tooltip("traced at the window's size and with its modes, so that wrong pixels may be missing")
     imgui.end_child()
     imgui.pop_style_color()
 

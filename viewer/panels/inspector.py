@@ -52,11 +52,11 @@ def _details(ui: Ui, pick: Pick) -> None:
                 told("Cell", f"{pick.unit}", "the part of it that carries modes and counts")
             if pick.material is not None:
                 told("Material", pick.material.name, _describe(pick))
-            tip = "that it covers now; its modes are judged by its highest count while fully rendered"
+            tip = "that it covers now; it was judged by the most it covered while fully rendered"
             told("Pixels", f"{count(pick.pixels)} now{f', {judged(pick.highest)}' if by_modes else ''}", tip)
             if pick.wrong is not None:
                 answers = f"{count(pick.wrong)} shadow {'answer' if pick.wrong == 1 else 'answers'}"
-                told("Wrong here", answers, "of this pixel, of any light at any bounce: what is mirrored counts too")
+                told("Wrong here", answers, "for any light, at any bounce: what is seen in mirrors counts too")
             told("Depth", f"{pick.depth:.5g}")
             if pick.point is not None:
                 told("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
@@ -78,7 +78,7 @@ def _modes(ui: Ui, pick: Pick) -> None:
                 _mode(ui.light_name(light), shadow.name, SHADOW_COLORS[shadow], SHADOW_MEANING[shadow])
     uncovered = sum(mode is None for mode in pick.shadows)
     if uncovered:
-        paragraph(f"{uncovered} more lights: not culled", QUIET)
+        paragraph(f"{uncovered} more {'light is' if uncovered == 1 else 'lights are'} not culled", QUIET)
 
 
 def _mode(name: str, mode: str, color: tuple[float, float, float], meaning: str) -> None:
@@ -99,13 +99,19 @@ def _describe(pick: Pick) -> str:
 
 
 def _verdict(pick: Pick) -> str:
-    """In words: which shadow rays of this primitive its modes spare, in a method that goes by them."""
+    """In words: which shadow rays of this primitive the paper's method saves by its modes."""
     if pick.occlusion is OcclusionMode.DYNAMIC:
-        return "It moves: modes spare none of its shadow rays."
+        return "It moves, so its shadow rays are always traced."
     if pick.occlusion is not OcclusionMode.FULLY_RENDERED:
-        return "Not seen as a whole yet: modes spare none of its shadow rays."
+        return "Not seen whole yet, so its shadow rays are traced."
+    lights = len(pick.shadows)
     full = sum(mode is ShadowMode.FULL_SHADOW for mode in pick.shadows)
     free = sum(mode is ShadowMode.NON_SHADOW for mode in pick.shadows)
     if not full and not free:
-        return "Seen as a whole, but no light is all seen or all hidden: modes spare nothing."
-    return f"Modes spare its rays to {full} of the lights, and let those to {free} ask moving objects alone."
+        return "Seen whole, but partly lit by each light, so its shadow rays are traced."
+    saved = (f"{full} of {lights} lights are culled" if full else "", _dynamic_only(free, lights) if free else "")
+    return f"By its modes, shadow rays to {' and those to '.join(filter(None, saved))}."
+
+
+def _dynamic_only(free: int, lights: int) -> str:
+    return f"{free} of {lights} lights are tested against dynamic objects only"

@@ -13,7 +13,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer import navigation
 from viewer.palette import ON_PICTURE_ERROR
-from viewer.panels import explanation, film, legend, missing, timeline, wipe
+from viewer.panels import explanation, film, legend, missing, timeline, tour, wipe
 from viewer.panels.widgets import QUIET, count, em, paragraph
 from viewer.picking import point_at
 from viewer.ui import Ui
@@ -29,10 +29,12 @@ FASTER = 4.0
 
 
 def show(ui: Ui) -> None:
-    """The window's content: the picture, and the timeline under it."""
+    """The window's content: the picture, the tour's strip and the timeline under it."""
     room = imgui.get_content_region_avail()
     bar = timeline.height() if ui.controller.session.animated else 0.0
     room = ImVec2(room.x, room.y - bar)
+    strip = tour.leave_room(ui, imgui.get_cursor_screen_pos(), room)
+    room = ImVec2(room.x, room.y - strip)
     scale = imgui.get_io().display_framebuffer_scale
     ui.picture_area = (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y)))
     ui.picture_focused = imgui.is_window_focused()
@@ -40,7 +42,7 @@ def show(ui: Ui) -> None:
     if room.x >= 1.0 and room.y >= 1.0 and not film.screen(ui, room):
         _picture(ui, room)
     if bar > 0.0:
-        imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y))
+        imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y + strip))
         timeline.show(ui)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from numpy.typing import NDArray
 
+from viewer import terms
 from viewer.palette import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
 from viewer.panels.widgets import QUIET, checkbox, count, em, paragraph
 from viewer.ui import Ui
@@ -15,14 +16,14 @@ from viewer.ui import Ui
 _FATES = "What became of shadow rays"
 _LOGARITHMIC = "Milliseconds"
 _PLOTS = (
-    (_FATES, (("culled", "culled", BLUE), ("moving objects", "dynamic_only", YELLOW),
-              ("candidates", "candidates_only", ORANGE), ("cache", "cache_hits", PINK),
-              ("traced", "traced", GREY))),
+    (_FATES, ((terms.CULLED, "culled", BLUE), (terms.DYNAMIC_ONLY, "dynamic_only", YELLOW),
+              (terms.CANDIDATES_ONLY, "candidates_only", ORANGE), (terms.CACHE_HITS, "cache_hits", PINK),
+              (terms.TRACED, "traced", GREY))),
     ("Steps and tests", (("steps", "steps", BLUE), ("for shadows", "shadow_steps", SKY),
                          ("tests", "tests", ORANGE))),
     (_LOGARITHMIC, (("tracing", "traced_ms", BLUE), ("drawing", "drawn_ms", ORANGE))),
 )  # fmt: skip
-_SHARES = (0.44, 0.31, 0.25)  # of the panel's width: the first legend is the longest
+_SHARES = (0.46, 0.29, 0.25)  # of the panel's width: the first legend is the longest
 FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
 AXIS = int(implot.AxisFlags_.no_highlight)
 LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
@@ -98,6 +99,9 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
     else:
         lowest, highest = 0.0, 1.12 * top if top > 0.0 else 1.0
     implot.setup_axes_limits(history.first, last, lowest, highest, int(imgui.Cond_.always))
+    _label_frames(history.first, last, size.x)
+    if title == _LOGARITHMIC:
+        _label_decades(highest, size.y)
     implot.setup_legend(implot.Location_.south, LEGEND)
     if title == _FATES:
         _stack(curves, float(history.first))
@@ -105,6 +109,24 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
         for label, values, color in curves:
             implot.plot_line(label, values, 1.0, float(history.first), implot.Spec(line_color=color, line_weight=1.6))
     implot.end_plot()
+
+
+def _label_frames(first: int, last: int, width: float) -> None:
+    """Numbers of frames at round places, far enough apart to be read in a plot so wide."""
+    room = max(width - em(4.0), em(1.0)) / (imgui.calc_text_size("0").x * (len(str(last)) + 1.5))
+    step = next(
+        s for k in range(12) for s in (10**k, 2 * 10**k, 5 * 10**k) if (last - first) / s <= max(room - 1.0, 1.0)
+    )
+    ticks = [float(n) for n in range(-(-first // step) * step, last + 1, step)]
+    implot.setup_axis_ticks(implot.ImAxis_.x1, ticks, [f"{tick:.0f}" for tick in ticks])
+
+
+def _label_decades(highest: float, height: float) -> None:
+    """1, 10, 100, ... at the left edge; every second or third of them where the plot is low."""
+    decades = max(1, math.floor(math.log10(highest)))
+    room = max((height - em(5.0)) / (1.3 * imgui.get_text_line_height()), 1.0)
+    ticks = [10.0**k for k in range(0, decades + 1, math.ceil((decades + 1) / room))]
+    implot.setup_axis_ticks(implot.ImAxis_.y1, ticks, [f"{tick:.0f}" for tick in ticks])
 
 
 def _stack(curves: list[tuple[str, NDArray[np.float64], ImVec4]], first: float) -> None:

@@ -21,19 +21,19 @@ def show(ui: Ui) -> None:
     if p.fixed_resolution:
         imgui.same_line()
         p.fixed_width, p.fixed_height = size_field((p.fixed_width, p.fixed_height), LONGEST_SIDE, ui.controller.say)
-    tip = "show a picture before all of its pixels are shaded, so that frames come fast"
+    tip = "show pictures before all of their pixels are shaded, so that frames come fast"
     checkbox("Shade in parts", p.dynamic_resolution, lambda on: setattr(p, "dynamic_resolution", on), tip)
     with properties("quality", 5.0) as shown:
         if shown:
             if p.dynamic_resolution:
-                row("In motion", "how many frames per second to aim at")
+                row("In motion", "frames per second to aim at")
                 changed, fps = imgui.slider_float("##fps", p.target_fps, 2.0, 60.0, "%.0f fps")
                 p.target_fps = min(max(fps, 1.0), 240.0) if changed else p.target_fps
             row("Bounces", "of reflected and refracted rays, at most")
             changed, depth = imgui.slider_int("##depth", c.session.settings.depth, 0, 20)
             if changed:
                 c.change(depth=min(max(depth, 0), 100))
-            row("Samples", "per pixel, at rest: they are added one after the other once the picture is whole")
+            row("Samples", "per pixel, when nothing moves: added one by one once the picture is whole")
             now = SAMPLES.index(c.session.settings.samples) if c.session.settings.samples in SAMPLES else 0
             changed, index = imgui.combo("##samples", now, [str(n) for n in SAMPLES])
             if changed:

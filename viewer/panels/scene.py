@@ -66,13 +66,13 @@ def _facts(ui: Ui) -> None:
             value("File", scene.path.name, str(scene.path))
             value("Triangles", count(info.get("triangles", 0)))
             value(
-                "  moving",
+                "  dynamic",
                 count(info.get("dynamic_triangles", 0)),
-                "triangles of objects that move; their shadow rays are never culled",
+                "triangles of objects that move: their shadow rays are never culled",
             )
             if info.get("spheres") or info.get("cones"):
                 value("Spheres, cones", f"{count(info.get('spheres', 0))}, {count(info.get('cones', 0))}")
-            value("Objects", f"{len(scene.objects) - 1} that move" if len(scene.objects) > 1 else "none moves")
+            value("Objects", f"{len(scene.objects) - 1} dynamic" if len(scene.objects) > 1 else "all static")
             value("Materials", f"{len(scene.materials)}, {len(scene.textures)} textures")
             if c.session.animated:
                 start, end = scene.time_range

@@ -10,6 +10,7 @@ from imgui_bundle import imgui
 from tracer.frame import Frame
 from tracer.method import certifies as makes_certificates
 from tracer.method import takes
+from viewer import terms
 from viewer.history import fully_traced
 from viewer.panels.widgets import (
     QUIET,
@@ -28,14 +29,6 @@ from viewer.ui import Ui
 
 _WIDE = 15.0  # ems of a panel that has room for counts and shares beside each other
 _WORK = ("rays", "steps", "tests")
-_PHASES = {
-    "place": ("moving objects", "put where they are at this time, and their trees made anew"),
-    "primary": ("primary rays", "from the camera to the first surface"),
-    "occlusion testing": ("occlusion tests", "which primitives hide each other at neighbouring pixels"),
-    "certification": ("certificates", "proofs of what blocks a light, or that nothing does"),
-    "shading": ("shading", "shadow rays, light, textures, reflections and refractions"),
-    "mode setting": ("modes", "what the frame has taught of each primitive"),
-}  # what the phases of a frame are called here, in their order
 
 
 def show(ui: Ui) -> None:
@@ -52,7 +45,7 @@ def show(ui: Ui) -> None:
     part = f"{s.part:.0%} of " if s.part < 1.0 else ""
     clipped(f"for {part}{frame.width} x {frame.height} pixels{coarse}, method {frame.settings.method}")
     if c.tracing.outdated:
-        paragraph("These are of the settings before; a new frame is being traced.", QUIET)
+        paragraph("These are for the previous settings; a new frame is being traced.", QUIET)
     if s.decision:
         paragraph(s.decision, QUIET)
     certifies = makes_certificates(frame.settings.method)
@@ -62,10 +55,10 @@ def show(ui: Ui) -> None:
     heading("Time")
     with _amounts("time") as shown:
         if shown:
-            amount("Traced in", _milliseconds(s.seconds), "from the request to the picture")
-            for name in [*_PHASES, *(n for n in s.phases if n not in _PHASES)]:
+            amount("Frame", _milliseconds(s.seconds), "from the request to the picture; below, its parts")
+            for name in [*terms.PHASES, *(n for n in s.phases if n not in terms.PHASES)]:
                 if name in s.phases and (certifies or name != "certification"):
-                    label, tip = _PHASES.get(name, (name, ""))
+                    label, tip = terms.PHASES.get(name, (name, ""))
                     amount(f"  {label}", _milliseconds(s.phases[name]), tip)
             amount("Window drawn in", _milliseconds(c.drawn_seconds), "what the window needs for one of its own frames")
 
@@ -75,8 +68,8 @@ def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
     s, shadow = frame.statistics, frame.statistics.shadow
     wide = imgui.get_content_region_avail().x > em(_WIDE)
 
-    def fate(name: str, part: int, tip: str) -> None:
-        share = percent(part, shadow.due)
+    def fate(term: str, part: int) -> None:
+        name, tip, share = term.capitalize(), terms.MEANINGS[term], percent(part, shadow.due)
         if wide:
             amount(name, count(part), tip)
             imgui.table_next_column()
@@ -85,26 +78,26 @@ def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
             amount(name, share, f"{tip} ({count(part)})")
 
     heading("Shadow rays")
-    with _amounts("shadow", em(3.6) if wide else 0.0) as shown:
+    with _amounts("shadow" if wide else "shadow, narrow", em(3.6) if wide else 0.0) as shown:
         if not shown:
             return
-        tip = "towards every light on the side of the surface that is seen"
-        amount("Needed", count(shadow.due) if wide else short(shadow.due), f"{tip} ({count(shadow.due)})")
-        fate("Culled", shadow.culled, "known to be in shadow: not traced at all")
-        fate("Moving objects", shadow.dynamic_only, "nothing static is in the way: traced to moving objects only")
+        due = count(shadow.due) if wide else short(shadow.due)
+        amount(terms.DUE.capitalize(), due, f"{terms.MEANINGS[terms.DUE]} ({count(shadow.due)})")
+        fate(terms.CULLED, shadow.culled)
+        fate(terms.DYNAMIC_ONLY, shadow.dynamic_only)
         if certifies or shadow.candidates_only:
-            fate("Candidates", shadow.candidates_only, "tested against a few primitives instead of the tree")
+            fate(terms.CANDIDATES_ONLY, shadow.candidates_only)
         if takes(frame.settings.method, "cache") or shadow.cache_hits:
-            fate("Cache hits", shadow.cache_hits, "blocked by what blocked a ray there before")
-        fate("Traced", fully_traced(shadow), "nothing was known: traced through the whole scene")
+            fate(terms.CACHE_HITS, shadow.cache_hits)
+        fate(terms.TRACED, fully_traced(shadow))
         if frame.settings.verify:
-            fate("Wrong", shadow.wrong, "culled, but tracing gives another answer")
+            fate(terms.WRONG, shadow.wrong)
     with _amounts("cost of deciding") as shown:
         if not shown:
             return
-        amount("Needed per pixel", f"{shadow.due / pixels:.2f}")
+        amount("Due per pixel", f"{shadow.due / pixels:.2f}")
         if frame.settings.keeps_modes:
-            tip = f"is a primitive hidden by that of the neighbouring pixel? ({count(s.occlusion_tests)} in all)"
+            tip = f"whether a primitive hides that of the neighbouring pixel ({count(s.occlusion_tests)} in all)"
             amount("Occlusion tests per pixel", f"{s.occlusion_tests / pixels:.3f}", tip)
         if certifies:
             amount("New certificates", count(s.certificates), "proofs for parts of surfaces, made in this frame")
@@ -148,7 +141,7 @@ def _work(ui: Ui) -> None:
     if imgui.get_content_region_avail().x > em(_WIDE):
         _work_table(rows, told)
         return
-    with _amounts("work") as shown:  # a narrow panel has no room for four columns
+    with _amounts("work, narrow") as shown:  # a narrow panel has no room for four columns
         for name, numbers in rows if shown else ():
             for title, number in zip(_WORK, numbers, strict=True):
                 if number:

@@ -44,7 +44,7 @@ def doing(c: Controller) -> str:
     if c.runner.current is not None:
         return f"{c.runner.current.name}, traced: {c.runner.current.label}   (Escape stops it)"
     if preparing is not None:
-        return f"compiling certificates (first start only), until then no culling: {preparing.label}"
+        return f"compiling certificates (first start only), not culled by them until then: {preparing.label}"
     if c.session.scene is None:
         return "no scene is open"
     if c.moving or c.session.playing:

@@ -45,7 +45,7 @@ def show(ui: Ui) -> None:
     imgui.same_line(0.0, em(1.0))
     checkbox("Outlines", p.outlines, lambda on: setattr(p, "outlines", on), "borders between primitives (B)")
     if c.session.view.needs_work:
-        tip = "which share of the rays that were due, not how many (U)"
+        tip = "the share of the shadow rays due, or of the rays traced without culling, instead of counts (U)"
         checkbox("Shares", p.work_shares, lambda on: setattr(p, "work_shares", on), tip)
     if c.session.view.needs_verify:
         tip = "rings around pixels with wrong shadow answers, so that a lone one is found (M)"
@@ -62,5 +62,5 @@ def _explanation(ui: Ui) -> None:
     if lacks:
         paragraph(f"This run {lacks}.", WARNING)
     elif view.needs_verify:
-        told += " While it is chosen each culled ray is traced as well, so that frames take longer."
+        told += " It traces every culled ray as well, so that frames take longer."
     paragraph(told, QUIET)

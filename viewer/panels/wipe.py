@@ -38,7 +38,7 @@ def _near(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
 
 
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
-    """The line, its handle, and the names of both sides at the picture's lower edge."""
+    """The line, its handle, and the names of both sides near the picture's upper edge, below what is told there."""
     c = ui.controller
     if c.tracing.drawn_view is not View.WIPE or c.frame is None:
         return
@@ -53,7 +53,7 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     _knob(draw, ImVec2(x, (corner.y + end.y) / 2.0), bright, dark)
     left = c.frame.settings.method if c.frame.settings.method != "none" else "no culling"
     pad, text = em(0.35), imgui.get_text_line_height()
-    top = end.y - text - 3.0 * pad
+    top = corner.y + text + 4.0 * pad
     for name, side in ((left, -1.0), ("reference", 1.0)):
         width = imgui.calc_text_size(name).x + 2.0 * pad
         start = x + 2.0 * pad if side > 0.0 else x - 2.0 * pad - width

@@ -52,7 +52,7 @@ def _controls(ui: Ui, test: ZoomTest | None) -> None:
     else:
         _plan(ui)
 
-    tip = "go towards the primitive, once with each factor"
+    tip = "move towards the primitive, once with each factor"
     start_or_progress(ui, test, c.runner.start_zoom_test, tip)
     export_buttons(ui, test)
     if test is not None and test.results is not None:
@@ -82,9 +82,12 @@ def _plan(ui: Ui) -> None:
             imgui.same_line()
             if imgui.radio_button("start", plan.same_start):
                 plan.same_start = True
-        row("Factors", "past so many times its highest pixel count the primitive is examined anew; several to compare")
+        row(
+            "Factors",
+            "the primitive is judged anew at so many times its highest pixel count; give several to compare",
+        )
         _, plan.factors = imgui.input_text("##factors", plan.factors)
-        row("Steps", "how many, and to which part of the distance each goes")
+        row("Steps", "how many, and which part of the distance is left after each")
         imgui.set_next_item_width(em(4.6))
         changed, steps = imgui.input_int("##steps", plan.steps, 0)
         if changed:
@@ -95,7 +98,7 @@ def _plan(ui: Ui) -> None:
         if changed:
             plan.ratio = min(max(ratio, 0.01), 0.999)
         tooltip(f"the last step is at {100.0 * plan.ratio**plan.steps:.2g} % of the distance")
-        row("Size", "counts, and what can be seen from afar, are those of this size")
+        row("Size", "of the test's pictures: it decides the pixel counts, and what can be seen from afar")
         plan.size = size_field(plan.size, LONGEST_SIDE, c.say)
 
 
@@ -104,7 +107,9 @@ def _plots(ui: Ui, test: ZoomTest | None, results: Results | None, size: ImVec2)
     approaches = [a for a in results.approaches if a.steps] if results is not None else []
     if test is None or not approaches:
         if imgui.begin_child("nothing", size):
-            paragraph("A shadow that can only be seen from near: does it appear? Click a primitive, and start.", QUIET)
+            paragraph(
+                "Does a shadow that can only be seen from near appear in time? Click a primitive, and start.", QUIET
+            )
         imgui.end_child()
         return
     spacing = imgui.get_style().item_spacing.x
@@ -201,7 +206,7 @@ def _table(ui: Ui, test: ZoomTest | None, results: Results | None) -> None:
     """The steps, those where something happens or all; a click shows what was recorded there."""
     if test is None or results is None:
         return
-    tip = "else those where modes change, or wrong pixels come or go"
+    tip = "else only those where modes or wrong pixels change"
     checkbox("all steps", ui.zoom_all_steps, lambda on: setattr(ui, "zoom_all_steps", on), tip)
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_y | imgui.TableFlags_.sizing_stretch_prop
     if not imgui.begin_table("steps", 5, int(flags)):

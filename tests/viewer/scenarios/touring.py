@@ -63,6 +63,8 @@ def touring(d: Driver) -> None:
         window = imgui.internal.find_window_by_name("###tour")
         assert window.pos.x >= 0 and window.pos.x + window.size.x <= size[0], f"the tour is cut off at {size}"
         assert window.pos.y >= 0 and window.pos.y + window.size.y <= size[1], f"the tour is cut off at {size}"
+        d.frames(3)
+        assert d.picture_edges()[3] <= window.pos.y + 1.0, f"the tour covers the picture at {size}"
     camera = d.c.session.camera
     d.context.item_click(show)
     d.wait(lambda: tour.at == 1, "the flight that is shown", 30.0)

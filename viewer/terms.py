@@ -1,0 +1,36 @@
+"""What counters and phases are called wherever people read them, in the window and on the command line alike.
+
+JSON and CSV have names of their own, which do not change.
+"""
+
+from __future__ import annotations
+
+DUE = "due"
+CULLED = "culled"
+DYNAMIC_ONLY = "dynamic only"
+CANDIDATES_ONLY = "candidates"
+CACHE_HITS = "cache hits"
+TRACED = "traced"
+WRONG = "wrong answers"
+
+MEANINGS = {
+    DUE: "one towards each light on the visible side of a surface, at all bounces",
+    CULLED: "known to be in shadow: not traced at all",
+    DYNAMIC_ONLY: "nothing static is in the way: tested against dynamic objects, those that move",
+    CANDIDATES_ONLY: "tested against a few primitives and dynamic objects instead of the whole scene",
+    CACHE_HITS: "blocked by what blocked a ray there before",
+    TRACED: "nothing was known: traced through the whole scene",
+    WRONG: "answers of culling that tracing contradicts",
+}
+
+PHASES = {
+    "place": ("dynamic objects", "moving them to where they are at this time, and making their trees anew"),
+    "primary": ("primary rays", "from the camera to the first surface"),
+    "occlusion testing": ("occlusion tests", "whether primitives hide each other at neighbouring pixels"),
+    "certification": ("certificates", "proving what blocks a light, or that nothing does"),
+    "surfaces": ("surfaces", "what each pixel shows, and its light if nothing were in the way"),
+    "shading": ("shading", "shadow rays, light, textures, reflections and refractions"),
+    "filling": ("filling in", "pixels that are not shaded yet, from their neighbours"),
+    "mode setting": ("modes", "keeping what the frame has taught about each primitive"),
+}
+"""What the phases of a frame are called, in their order, and what happens in each."""
