@@ -167,16 +167,16 @@ class Investor:
         """What is done now, and why, in a sentence."""
         saved, doubt = self.saving
         if not self._ready:
-            return "Every shadow ray is traced: certificates would take longer to set up than they can save soon."
+            return "Every shadow ray is traced: setting certificates up takes longer than they would save soon."
         if self.looks_up:
             if math.isinf(doubt):
-                return "Certificates are looked up: tracing is slow here, so they should pay; trials will tell."
+                return "Certificates are looked up: tracing is slow here, so they should save time; trials will tell."
             return f"Certificates are looked up: that saves {100.0 * saved:.0f} % of the shading time."
         if math.isinf(doubt):
             return "Every shadow ray is traced, while trials tell whether looking certificates up would be quicker."
         if saved < 0.0:
-            return f"Every shadow ray is traced: certificates would add {-100.0 * saved:.0f} % to shading."
-        return f"Every shadow ray is traced: certificates would save {100.0 * saved:.0f} % of shading, too little."
+            return f"Every shadow ray is traced: with certificates, shading would take {-100.0 * saved:.0f} % longer."
+        return f"Every shadow ray is traced: certificates would save only {100.0 * saved:.0f} % of the shading time."
 
 
 def _saving(pairs: list[Trial]) -> tuple[float, float]:

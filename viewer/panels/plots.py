@@ -112,12 +112,12 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
 
 
 def _label_frames(first: int, last: int, width: float) -> None:
-    """Numbers of frames at round places, far enough apart to be read in a plot so wide."""
-    room = max(width - em(4.0), em(1.0)) / (imgui.calc_text_size("0").x * (len(str(last)) + 1.5))
-    step = next(
-        s for k in range(12) for s in (10**k, 2 * 10**k, 5 * 10**k) if (last - first) / s <= max(room - 1.0, 1.0)
-    )
-    ticks = [float(n) for n in range(-(-first // step) * step, last + 1, step)]
+    """Numbers of frames at round places, far enough apart to be read in a plot so wide, none past its right edge."""
+    across, digit = max(width - em(4.0), em(1.0)), imgui.calc_text_size("0").x
+    most = max(across / (digit * (len(str(last)) + 1.5)) - 1.0, 1.0)
+    step = next(s for k in range(12) for s in (10**k, 2 * 10**k, 5 * 10**k) if (last - first) / s <= most)
+    over = max(0.5 * digit * len(str(last)) - em(0.4), 0.0) / across * (last - first)  # that a number at the end is
+    ticks = [float(n) for n in range(-(-first // step) * step, math.floor(last - over) + 1, step)]
     implot.setup_axis_ticks(implot.ImAxis_.x1, ticks, [f"{tick:.0f}" for tick in ticks])
 
 
