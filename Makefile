@@ -10,6 +10,9 @@ PYTHON ?=
 ARGS ?=
 RUN := .venv/bin/python
 PARALLEL := -n auto --maxprocesses 4 --dist worksteal
+QUICK := tests/test_house.py tests/test_golden.py tests/test_cli.py tests/scene tests/viewer \
+    $(addprefix tests/tracing/test_,culling.py modes.py pictures.py intersect.py traversal.py waves.py zoom.py) \
+    -m "not slow"
 
 # Compiled kernels, Mesa's compiled shaders and matplotlib's list of fonts stay in the project's folder.
 export PYTHON
@@ -18,7 +21,7 @@ export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
 export MPLCONFIGDIR := $(CURDIR)/.cache/matplotlib
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run test golden bench frames quickest counters window motion memory growth lint format lock clean distclean help
+.PHONY: run test quick test-all golden bench frames quickest counters window motion memory growth lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -28,6 +31,12 @@ test:  ## run the tests; without a display, on a virtual one (ARGS="-k culling")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.compiled
 	@$(RUN) tools/with_screen.py $(RUN) -m pytest $(PARALLEL) $(ARGS)
+
+quick:  ## run the tests that show soonest whether something is broken, one window among them
+	@$(MAKE) --no-print-directory test ARGS='$(QUICK) $(ARGS)'
+
+test-all:  ## run the tests with many times as many random scenes and frames as in every run
+	@SHADOWCULL_TESTS=all $(MAKE) --no-print-directory test
 
 golden:  ## render the golden pictures of the tests anew, and say what changed
 	@tools/environment.sh dev
@@ -91,4 +100,4 @@ distclean: clean  ## remove the environment as well
 
 help:  ## show this
 	@echo "make run and make test are all that is needed; the first run sets everything up."
-	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## ?/  make \1|/' | column -t -s '|'
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## ?/  make \1|/' | column -t -s '|'

@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 
 import tracer
+from tests.sweeps import cases
 from tracer.culling.modes import OcclusionMode, ShadowMode, occlusion_mode, shadow_mode
 
 ASSETS = Path(__file__).resolve().parent.parent / "assets"
@@ -93,7 +94,7 @@ def test_the_camera_never_touches_anything(study: tracer.Scene) -> None:
     random = np.random.default_rng(0)
     directions = random.normal(size=(120, 3))
     directions = (directions / np.linalg.norm(directions, axis=1, keepdims=True)).astype(np.float32)
-    for frame in range(0, study.frames, 5):
+    for frame in range(0, study.frames, cases(20, 2)):
         time = study.frame_time(frame)
         origin = np.asarray(study.camera_at(time).position, np.float32)
         world = tracer.World(study, time)

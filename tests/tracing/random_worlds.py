@@ -11,6 +11,7 @@ from hypothesis import Phase, settings
 from hypothesis import strategies as st
 
 import tracer
+from tests.sweeps import examples
 from tests.tracing.worlds import affine, quad, quadrics, random_corners, scene, triangles
 from tracer.scene.animation import Animation, Keys, TrackSet
 from tracer.scene.model import (
@@ -35,10 +36,12 @@ MATERIALS = (
 )
 
 
-def quickly(examples: int, shrink: bool = False) -> Callable:
-    """Hypothesis, the same examples in every run.  To shrink a scene that fails takes minutes, and is not asked for."""
+def quickly(usual: int, shrink: bool = False) -> Callable:
+    """Hypothesis, so many examples, or many more by `make test-all`, the same in every run.
+
+    To shrink a scene that fails takes minutes, and is not asked for."""
     phases = set(Phase) - (set() if shrink else {Phase.shrink, Phase.explain})
-    return settings(max_examples=examples, deadline=None, derandomize=True, database=None, phases=phases)
+    return settings(max_examples=examples(usual), deadline=None, derandomize=True, database=None, phases=phases)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import tracer
+from tests.sweeps import cases
 from tests.tracing.same import assert_same
 from tracer.geometry.world import ACCELERATORS
 
@@ -22,7 +23,7 @@ def render(world: tracer.World, settings: tracer.Settings, first: int, count: in
 @pytest.mark.parametrize(
     "name, first, count, size, method, symmetric",
     [
-        pytest.param("kitchen/kitchen.aff", 395, 10, 320, "paper", False, marks=pytest.mark.slow),
+        ("kitchen/kitchen.aff", 395, cases(4, 10), cases(160, 320), "paper", False),
         ("robot/Robot.aff", 0, 3, 96, "paper", True),
         ("robot/Robot.aff", 0, 3, 96, "cells", True),
         ("robot/Robot.aff", 0, 3, 96, "paper+cache", False),

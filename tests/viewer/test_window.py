@@ -23,7 +23,11 @@ def player() -> Iterator[Player]:
 
 
 @pytest.mark.parametrize(
-    ("name", "size"), [pytest.param(name, SIZES[number % len(SIZES)], id=name) for number, name in enumerate(SCENARIOS)]
+    ("name", "size"),
+    [
+        pytest.param(name, SIZES[number % len(SIZES)], id=name, marks=() if name == "flying" else pytest.mark.slow)
+        for number, name in enumerate(SCENARIOS)
+    ],
 )
 def test_window(name: str, size: tuple[int, int], player: Player, tiny_scene_file: Path, own_settings: Path) -> None:
     (tiny_scene_file.parent / "big.aff").write_text(_big_scene())

@@ -48,6 +48,7 @@ def certifying(d: Driver) -> None:
     a method is chosen with what it takes along; key C is off."""
     d.settle()
     d.wait(lambda: d.c.opener.certifies, "the kernels that make certificates")
+    d.c.preferences.fixed_resolution, d.c.preferences.fixed_width, d.c.preferences.fixed_height = True, 240, 180
     for base in ("certified", "none"):
         d.c.change(method=base)
         d.settle()
