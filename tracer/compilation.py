@@ -165,6 +165,7 @@ def _certificates(lights: int, accelerator: str) -> Iterator[str]:
     frame.place_objects_and_lights()  # an object has come to rest: what that darkens is looked for
     frame._buffers.primitive.fill(MISS)
     frame.certify_cells()
+    frame.see_cells()
     certificates = renderer.certificates
     assert certificates is not None
     wanted = certificates.wanted(1)

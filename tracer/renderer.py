@@ -32,12 +32,12 @@ from tracer.geometry.world import World
 from tracer.investor import Investor, Plan, Trial
 from tracer.method import base_of, culls_by_modes, takes
 from tracer.parallel import for_each_chunk, thread_count
+from tracer.parts import LEVELS, Parts, after
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
-from tracer.shading.filling import NO_PLANES, TURNS, Planes, fill_in, from_nearest, lanes_of, make_planes
+from tracer.shading.blocks import NO_PLANES, TURNS, Planes, all_blocks, make_planes
 from tracer.shading.look import SHINE, TRANSMISSION, make_look
-from tracer.shading.primary import ALL_LANES, BLOCK
-from tracer.shading.surfaces import see_surfaces
+from tracer.shading.surfaces import see_cells, see_surfaces
 from tracer.shading.whitted import (
     COUNTERS,
     TILE,
@@ -50,9 +50,8 @@ from tracer.shading.whitted import (
 )
 from tracer.statistics import gather
 
-FEW = 4  # pixels of a block, at most, that are shaded in larger tiles
+FEW = 4  # pixels of each block, at most, that are shaded in larger tiles
 GOLDEN = 0.618033988749895  # steps of it visit all tiles evenly
-FILLED = 8  # rows of blocks that a thread fills in at a time
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
 SHARES, SHARE = 8, 6  # of all tiles that each thread takes to look for what is wanted; tiles of one, at least
@@ -129,25 +128,25 @@ class Renderer:
         time: float = 0.0,
         camera: Camera | None = None,
         cancel: Cancel = None,
-        parts: Sequence[int] = (1, 4, 8, 16),
+        parts: Sequence[float] = (1, 4, 8, 16),
         samples: int = 1,
         focus: tuple[float, float] | None = None,
     ) -> Generator[Frame, None, None]:
-        """Frames of one picture that becomes finer: so many sixteenths of its pixels are shaded in each, the others
-        filled in from these (`tracer.shading.filling`), the same surfaces at all of them.
+        """Frames of one picture that becomes finer: so many sixteenths of its pixels are shaded in each, the most where
+        it helps the most (`tracer.parts`), the others filled in from these, the same surfaces at all of them.
 
         The frame that is whole is that of `render`, bit for bit, and only with it anything is learnt: whoever closes
         the generator before has seen a picture and taught nothing.  After it come frames of 2 to `samples` samples a
         pixel; the last is that of `render` with so many.  `parts` increase up to 16.  Pixels near `focus`, parts of
         the width and height, come first where not all come at once.  Raises Cancelled as `render` does.
         """
-        if list(parts) != sorted(set(parts)) or not parts or parts[0] < 1 or parts[-1] != TURNS:
-            raise ValueError(f"parts increase from 1 at least to {TURNS}")
+        if list(parts) != sorted(set(parts)) or not parts or parts[0] < LEVELS[0] or parts[-1] != TURNS:
+            raise ValueError(f"parts increase from {LEVELS[0]} at least to {TURNS}")
         settings = replace(self.settings, samples=1)
         frame = self.begin(time, camera, cancel, settings, in_parts=parts[0] < TURNS)
         frame.begin_at(focus)
         try:
-            yield from frame.refined(parts, self._next_turn(parts[0]))
+            yield from frame.refined(parts)
         except BaseException:
             frame.discard()
             raise
@@ -155,9 +154,9 @@ class Renderer:
         yield whole
         yield from frame.sampled(whole, samples)
 
-    def _next_turn(self, count: int) -> int:
+    def next_turn(self, part: float) -> int:
         """Whose turn it is first: consecutive pictures, of which so many sixteenths are shaded, begin at others."""
-        self._turn = (self._turn // count + 1) * count % TURNS
+        self._turn = after(self._turn, part)
         return self._turn
 
     def begin(
@@ -269,7 +268,9 @@ class UnfinishedFrame:
         self._plan = self._planned()
         self._certifying = np.zeros(CERTIFYING, np.int64)
         self._rays = pinhole(camera, settings.width, settings.height)
-        self._in_parts, self._lanes = in_parts, 0
+        self._in_parts, self._everywhere = in_parts, all_blocks(settings.width, settings.height)
+        self._parts: Parts | None = None
+        self._begun = False  # shading
         self._buffers = self._empty_buffers(in_parts)
         self._words: np.ndarray | None = None  # those to shade further samples by
         self._units = np.empty_like(self._buffers.primitive) if _has_cells(settings) else self._buffers.primitive
@@ -313,9 +314,8 @@ class UnfinishedFrame:
         yield
         self._phases[name] = self._phases.get(name, 0.0) + clock.perf_counter() - start
 
-    def refined(self, parts: Sequence[int], first: int) -> Iterator[Frame]:
-        """All phases: frames of which so many sixteenths are shaded, `first` the turn that comes first, until none is
-        left out."""
+    def refined(self, parts: Sequence[float]) -> Iterator[Frame]:
+        """All phases: frames of which so many sixteenths are shaded, until none is left out."""
         with self.phase("place"):
             self.place_objects_and_lights()
         with self.phase("primary"):
@@ -324,15 +324,10 @@ class UnfinishedFrame:
             self.certify_cells()
         if self._in_parts:
             with self.phase("surfaces"):
-                self.see_surfaces()
-        done = 0
-        for count in parts:
-            with self.phase("shading"):
-                if count == TURNS:  # nobody will be filled in
-                    self._buffers = self._buffers._replace(planes=NO_PLANES)
-                self.shade(lanes_of(first + done, count - done))
-            done = count
-            if count < TURNS:
+                self.see_surfaces(self._renderer.next_turn(parts[0]))
+        for part in parts:
+            self.shade_part(part)
+            if part < TURNS:
                 yield self.so_far()
         with self.phase("occlusion testing"):
             self.test_occlusion()
@@ -340,15 +335,27 @@ class UnfinishedFrame:
         with self.phase("mode setting"):
             self.set_modes()
 
+    def shade_part(self, part: float) -> None:
+        """Shade what is left until so many sixteenths of the pixels are shaded."""
+        if self._parts is None:
+            with self.phase("shading"):
+                self.shade()
+            return
+        if part == TURNS:  # nobody will be filled in
+            self._buffers = self._buffers._replace(planes=NO_PLANES)
+        for lanes in self._parts.left_up_to(part, self._fill):
+            with self.phase("shading"):
+                self.shade(lanes)
+
     def discard(self) -> None:
         """Learn nothing from this frame; but what its rays wanted to be certified is wanted still."""
         self.memory.discard_frame()
         if self.cache is not None:
             self.cache.discard_found()
-        if self._certificates is not None and self._lanes:
+        if self._certificates is not None and self._begun:
             self._certificates.left = [self._wanted]
             self._certificates.keep_within(1e6 * self._settings.certificate_memory, self._buffers.cell)
-        if self._lanes:
+        if self._begun:
             self._settle()
         elif self._investor is not None:
             self._investor.abandon(free=self._settings.patient)
@@ -446,7 +453,9 @@ class UnfinishedFrame:
     def _trace_primary(self, rays: Pinhole, buffers: Buffers, counts: np.ndarray) -> None:
         placed, spaces = self._renderer.world.placed, self._spaces
         self._for_each_tile(
-            lambda _, tile, worker: trace_primary(placed, rays, tile, buffers, counts[worker], spaces[worker])
+            lambda _, tile, worker: trace_primary(
+                placed, rays, tile, self._everywhere, buffers, counts[worker], spaces[worker]
+            )
         )
 
     def test_occlusion(self) -> None:
@@ -493,21 +502,33 @@ class UnfinishedFrame:
         wanted, certificates.left = [sought, *certificates.left], []
         self._certifying = certificates.certify(wanted, budget, certificates.effort, self._cancel)
 
-    def see_surfaces(self) -> None:
-        """What do all primary hits look like before any shadow ray is traced?"""
+    def see_surfaces(self, first: int = 0) -> None:
+        """What do all primary hits look like before any shadow ray is traced?  `first` says which pixels
+        are to be shaded first (`tracer.parts`)."""
         placed, look, rays, buffers = self._renderer.world.placed, self._renderer._look, self._rays, self._buffers
-        nothing = nothing_wanted()
+        width, height = self._settings.width, self._settings.height
+        self._parts = Parts(width, height, buffers.planes, float(rays.spread), first)
 
-        def work(number: int, tile: tuple[int, int, int, int], worker: int) -> None:
-            knowledge = self._knowledge(worker, nothing, self._plan.looks_up, learns=False)
-            see_surfaces(placed, look, rays, tile, knowledge, buffers, self._spaces[worker])
+        self._for_each_tile(lambda _, tile, worker: see_surfaces(placed, look, rays, tile, buffers))
+        if self._plan.looks_up:
+            self.see_cells()
+
+    def see_cells(self) -> None:
+        """Which certified cells do the primary hits lie in?"""
+        placed, look, rays, buffers = self._renderer.world.placed, self._renderer._look, self._rays, self._buffers
+        nothing, spaces = nothing_wanted(), self._spaces
+
+        def work(_: int, tile: tuple[int, int, int, int], worker: int) -> None:
+            knowledge = self._knowledge(worker, nothing, looks_up=True, learns=False)
+            see_cells(placed, look, rays, tile, self._everywhere, knowledge, buffers, spaces[worker])
 
         self._for_each_tile(work)
 
-    def shade(self, lanes: int = ALL_LANES) -> None:
-        """§2.4, §2.5: Whitted shading, with shadow testing and shadow-mode setting; of these pixels of each block."""
-        self._shade(self._rays, self._buffers, self._counts, lanes)
-        self._lanes |= lanes
+    def shade(self, lanes: np.ndarray | None = None) -> None:
+        """§2.4, §2.5: Whitted shading, with shadow testing and shadow-mode setting; of these pixels of each block
+        (`tracer.shading.primary`), or of all."""
+        self._shade(self._rays, self._buffers, self._counts, self._everywhere if lanes is None else lanes)
+        self._begun = True
         for sample in range(1, self._settings.samples):
             self.add_sample(sample)
 
@@ -536,15 +557,15 @@ class UnfinishedFrame:
         )
 
     def _shade(
-        self, rays: Pinhole, buffers: Buffers, counts: np.ndarray, lanes: int = ALL_LANES, first: bool = True
+        self, rays: Pinhole, buffers: Buffers, counts: np.ndarray, lanes: np.ndarray, first: bool = True
     ) -> None:
         placed, look, depth = self._renderer.world.placed, self._renderer._look, self._settings.depth
         spaces, wanted = self._spaces, self._wanted
         told = [Wanted(*(a[tile] for a in wanted)) if len(wanted.key) else wanted for tile in range(len(self._tiles))]
 
         # Of larger tiles where few of their pixels are shaded, lest packets of rays remain half empty.
-        side = TILE if lanes.bit_count() > FEW else 2 * TILE
-        tried = self._tried(side) if first and not self._lanes else frozenset()
+        side = TILE if int(np.bitwise_count(lanes).sum()) > FEW * lanes.size else 2 * TILE
+        tried = self._tried(side) if first and not self._begun else frozenset()
 
         def work(number: int, tile: tuple[int, int, int, int], worker: int) -> None:
             def shade(looks_up: bool, counts: np.ndarray) -> None:
@@ -588,7 +609,7 @@ class UnfinishedFrame:
         buffers, counts = self._empty_buffers(), np.zeros_like(self._counts)
         try:
             self._trace_primary(rays, buffers, counts)
-            self._shade(rays, buffers, counts, first=False)
+            self._shade(rays, buffers, counts, self._everywhere, first=False)
         finally:
             self.memory.gained[:] = gained
         if number == 1:
@@ -637,35 +658,35 @@ class UnfinishedFrame:
             return np.where(cell > 0, cell, np.int32(-1))
         return self._units if _has_cells(self._settings) else None
 
+    def _fill(self) -> None:
+        """Fill in the pixels that have not been shaded."""
+        if self._parts is not None:
+            with self.phase("filling"):
+                color = self._buffers.color.reshape(*self._buffers.primitive.shape, 3)
+                self._parts.fill(color, self._workers, self._cancel)
+
     def so_far(self) -> Frame:
         """A frame of which some pixels have not been shaded: these are filled in from the others."""
-        buffers = self._buffers
-        color, rows = buffers.color.copy(), -(-self._settings.height // BLOCK)
-
-        def fill(chunk: int, worker: int) -> None:
-            some = chunk * FILLED, min(rows, (chunk + 1) * FILLED)
-            fill_in(buffers.planes, self._lanes, some, float(self._rays.spread), self._settings.width, color)
-
-        with self.phase("filling"):
-            for_each_chunk(fill, -(-rows // FILLED), self._workers, self._cancel)
+        assert self._parts is not None, "a picture in parts"
+        self._fill()
         if self._certificates is not None and self._plan.looks_up:
-            self._words_seen = self._certificates.at_pixels(buffers.cell)
+            self._words_seen = self._certificates.at_pixels(self._buffers.cell)
         frame = self._frame()
-        frame.color = color.reshape(*buffers.primitive.shape, 3)
+        frame.color = self._parts.give()
         with self.phase("filling"):
-            self._stretch_records(frame)
+            self._stretch_records(frame, self._parts)
         frame.statistics.phases = dict(self._phases)
         return frame
 
-    def _stretch_records(self, frame: Frame) -> None:
+    def _stretch_records(self, frame: Frame, parts: Parts) -> None:
         """Let pixels that have not been shaded show what is recorded of the nearest that have; wrong ones do not."""
         if frame.reference is not None and frame.wrong is not None:
             right = (self._buffers.reference - self._buffers.color).reshape(frame.color.shape)
-            frame.reference = frame.color + from_nearest(right, self._lanes)
+            frame.reference = frame.color + parts.stretched(right)
             frame.wrong = frame.wrong.copy()
         if frame.saved is not None and frame.cost is not None and frame.due_rays is not None:
             frame.saved, frame.cost, frame.due_rays = (
-                from_nearest(work, self._lanes) for work in (frame.saved, frame.cost, frame.due_rays)
+                parts.stretched(work) for work in (frame.saved, frame.cost, frame.due_rays)
             )
 
     def finished(self) -> Frame:
@@ -682,7 +703,7 @@ class UnfinishedFrame:
         lights = len(self._renderer.scene.lights)
         statistics = gather(self._counts, int(self._occlusion_tests.sum()), lights if self._settings.keeps_modes else 0)
         statistics.decision = "" if self._investor is None else self._investor.reason
-        statistics.part = self._lanes.bit_count() / TURNS
+        statistics.part = 1.0 if self._parts is None else self._parts.share
         statistics.phases = dict(self._phases)
         statistics.certificates = int(self._certifying[CERTIFICATES])
         statistics.certificate_steps = int(self._certifying[STEPS])

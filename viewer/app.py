@@ -36,8 +36,11 @@ from viewer.ui import CaptureKind, Ui
 TITLE = "Shadowcull"
 WINDOW_SIZE = (1440, 900)
 FASTEST = 60.0  # frames a second of the window's own
-# Where a processor draws the window, each frame takes time from tracing, which gives fewer pictures than this anyway.
-FASTEST_BY_PROCESSOR = 30.0
+# Where a processor draws the window, each frame takes time from tracing: one is drawn for each picture and each of the
+# user's doings, up to so many a second, and while something moves not fewer than so many.
+FASTEST_BY_PROCESSOR, SLOWEST_BY_PROCESSOR = 30.0, 12.0
+IDLE = 8.0  # frames a second while nothing happens
+ACTIVE = 0.25  # seconds after an event until nothing happens
 DRAWN_BY_PROCESSOR = ("llvmpipe", "softpipe", "swrast", "software")
 
 
@@ -60,6 +63,7 @@ class App:
             self.ui.tour.start()
         self._frame_began = time.perf_counter()
         self._capture_this_frame = False
+        self.drawn_by_processor = False
         if problem:
             self.controller.say(problem, error=True)
 
@@ -186,7 +190,11 @@ class App:
 
     def _stay_awake(self) -> None:
         """Doze but when something moves: whatever comes from a thread wakes the window, and it needs the processor."""
-        self.params.fps_idling.enable_idling = not self.controller.lively
+        idling, lively = self.params.fps_idling, self.controller.lively
+        by_processor = lively and self.drawn_by_processor
+        idling.enable_idling = by_processor or not lively
+        idling.fps_idle = SLOWEST_BY_PROCESSOR if by_processor else IDLE
+        idling.time_active_after_last_event = 0.0 if by_processor else ACTIVE
 
     # --- the window ------------------------------------------------------------------------------
 
@@ -207,9 +215,9 @@ class App:
         )  # fmt: skip
         params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
         params.ini_filename = str(self.layout_file.working_copy)
-        params.fps_idling.fps_idle = 8.0
+        params.fps_idling.fps_idle = IDLE
         params.fps_idling.fps_max = FASTEST
-        params.fps_idling.time_active_after_last_event = 0.25
+        params.fps_idling.time_active_after_last_event = ACTIVE
         call = params.callbacks
         call.setup_imgui_config = _configure_imgui
         call.load_additional_fonts = style.load_fonts
@@ -231,7 +239,8 @@ class App:
         self.ui.display = Display()
         self.ui.shots = Shots(self.ui.display.context)
         self.ui.renderer_name = self.ui.display.context.info["GL_RENDERER"]
-        if any(name in self.ui.renderer_name.lower() for name in DRAWN_BY_PROCESSOR):
+        self.drawn_by_processor = any(name in self.ui.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
+        if self.drawn_by_processor:
             self.params.fps_idling.fps_max = FASTEST_BY_PROCESSOR
         self.controller.wake = hello_imgui.request_refresh
         window = glfw_utils.glfw_window_hello_imgui()

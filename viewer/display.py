@@ -1,10 +1,11 @@
 """From a frame's buffers to a picture on the screen, on the GPU.
 
 A frame's buffers become textures once, when it arrives; a view is one pass of a small shader over
-them into an RGBA target, which ImGui then shows as an image.  Modes and counts travel as one entry
-per primitive, laid out in rows of a 2D texture, and the shader looks them up by the primitive's
-number.  So changing the view, the light or the selection never traces and never uploads anything;
-only what the views of verified frames need is brought there when the first of them is drawn.
+them into an RGBA target, which ImGui then shows as an image; the plain picture goes there as it is.
+Modes and counts travel as one entry per primitive, laid out in rows of a 2D texture, and the shader
+looks them up by the primitive's number.  So changing the view, the light or the selection never traces
+and never uploads anything; only what the views of verified frames need is brought there when the first
+of them is drawn.
 
 All of it runs before the widgets of a frame, and leaves the window's framebuffer bound as it was.
 """
@@ -89,6 +90,12 @@ class Look:
     line: bool = True
     shares: bool = False
     beneath: float = BENEATH
+
+    @property
+    def plain(self) -> bool:
+        """Whether the picture is shown as it was traced: then it is brought to the target without a pass over it, which
+        takes long where a processor draws."""
+        return self.view is View.COLOR and not self.outlines and self.selected < 0
 
 
 class Display:
@@ -186,6 +193,18 @@ class Display:
     def _draw_into(self, target: Any, look: Look) -> None:
         if look.view.needs_verify:
             self._mark_wrong(look.magnified)
+        assert self._frame is not None
+        if look.plain:
+            target.color_attachments[0].write(_bytes(self._frame.color), alignment=1)
+        else:
+            self._render_into(target, look)
+        filtering = moderngl.LINEAR if look.smooth and look.view in _PICTURES else moderngl.NEAREST
+        target.color_attachments[0].filter = (filtering, filtering)
+        problem = self.context.error
+        if problem != "GL_NO_ERROR":
+            raise DisplayError(f"the GPU could not draw this: {problem}")
+
+    def _render_into(self, target: Any, look: Look) -> None:
         program, triangle = self._pass(look.view)
         self._set_uniforms(program, look)
         for unit, name in enumerate(_UNITS):
@@ -195,11 +214,6 @@ class Display:
         target.use()
         self.context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         triangle.render(moderngl.TRIANGLES, vertices=3)
-        filtering = moderngl.LINEAR if look.smooth and look.view in _PICTURES else moderngl.NEAREST
-        target.color_attachments[0].filter = (filtering, filtering)
-        problem = self.context.error
-        if problem != "GL_NO_ERROR":
-            raise DisplayError(f"the GPU could not draw this: {problem}")
 
     def drawn(self, look: Look) -> bool:
         """Whether the target shows the frame in this look."""
@@ -321,6 +335,15 @@ class Display:
         most = self.context.info["GL_MAX_TEXTURE_SIZE"]
         if max(size) > most:
             raise DisplayError(f"{size[0]} x {size[1]} is too large for this GPU, which takes {most} pixels a side")
+
+
+def _bytes(color: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Colours (height, width, 3) as a target holds them, (height, width, 4), opaque."""
+    scaled = np.clip(color, 0.0, 1.0)
+    scaled *= np.float32(255)
+    pixels = np.full((*color.shape[:2], 4), 255, np.uint8)
+    pixels[..., :3] = np.rint(scaled, out=scaled)
+    return pixels
 
 
 def _release_framebuffer(framebuffer: Any) -> None:

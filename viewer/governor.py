@@ -1,6 +1,6 @@
 """How much of a picture is traced before it is shown, so that frames come as fast as they should.
 
-Each picture begins with its primary rays at full resolution and with a few sixteenths of its pixels
+Each picture begins with its primary rays at full resolution and with some sixteenths of its pixels
 shaded, the rest filled in from them; then it becomes whole.  How many sixteenths fit into the time of a
 frame follows from what the last frames have cost: a fixed part, a part for each primary ray and a part
 for each shaded pixel, learnt apart, and beside them what else was in them (objects placed, certificates
@@ -15,13 +15,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracer.shading.filling import TURNS
+from tracer.shading.blocks import TURNS
 from tracer.statistics import FrameStatistics
 
-PARTS = (16, 8, 4, 2, 1)  # sixteenths of the pixels that the first picture may have
+PARTS = (16, 12, 8, 6, 4, 2, 1, 0.5)  # sixteenths of the pixels that the first picture may have
 LARGEST_DIVISOR = 8
 SPARE = 0.8  # of a frame's time that a finer step may take
-SHOWN_AGAIN = 0.3  # seconds that it takes at least until a picture that becomes whole is shown again
+LENIENCE = 1.25  # how much longer than it should a frame may take before the resolution falls
+SOON = 0.3  # seconds that a whole picture may take without a part of it being shown, where nothing moves
+SHOWN_AGAIN = 0.5  # seconds that it takes at least until a picture that becomes whole is shown again
 KEPT, FORGETTING = 24, 0.8  # observations, and what each counts against the one after it
 TRUST = 0.05  # in how costs were divided before, against all that was observed
 SMOOTHING = 0.4
@@ -34,7 +36,7 @@ class Plan:
     """The resolution's divisor, and the growing sixteenths of the pixels that are shaded when a picture is shown."""
 
     divisor: int
-    parts: tuple[int, ...]
+    parts: tuple[float, ...]
 
 
 AT_ONCE = Plan(1, (TURNS,))
@@ -87,20 +89,23 @@ class Governor:
         phases = statistics.phases
         if pixels <= 0 or "shading" not in phases:
             return
-        self._rays.observe(pixels, sum(phases.get(name, 0.0) for name in RAYS))
+        if "surfaces" in phases:  # else it was whole at once, without what parts need
+            self._rays.observe(pixels, sum(phases.get(name, 0.0) for name in RAYS))
         self._shading.observe(pixels * statistics.part, sum(phases[name] for name in SHADING))
         beside = sum(phases.get(name, 0.0) for name in BESIDE)
         self._beside = self._beside + SMOOTHING * (beside - self._beside) if self._known else beside
         self._known = True
 
-    def seconds(self, pixels: float, part: int) -> float:
+    def seconds(self, pixels: float, part: float) -> float:
         """What a picture of so many pixels takes until it is shown with so many sixteenths of them shaded."""
         return self._beside + self._rays(pixels) + self._shading(pixels * part / TURNS)
 
-    def plan(self, width: int, height: int, seconds: float, coarse: bool = True) -> Plan:
+    def plan(self, width: int, height: int, seconds: float, coarse: bool = True, playing: bool = True) -> Plan:
         """How to begin a picture that is to be shown so many seconds later, and how to go on; at full resolution unless
-        it may be a `coarse` one."""
+        it may be a `coarse` one, and at once where nothing moves and the whole does not take long."""
         divisor = self._divisor(width, height, seconds) if coarse else 1
+        if not coarse and not playing and self.seconds(width * height, TURNS) <= SOON:
+            return AT_ONCE
         w, h = divided(width, height, divisor)
         for part in PARTS:
             shaded = w * h * part / TURNS
@@ -113,7 +118,7 @@ class Governor:
         """The finest resolution whose primary rays fit into so many seconds."""
         for divisor in range(1, LARGEST_DIVISOR):
             w, h = divided(width, height, divisor)
-            limit = seconds if divisor >= self._last_divisor else SPARE * seconds
+            limit = LENIENCE * seconds if divisor >= self._last_divisor else seconds
             if self._beside + self._rays(w * h) <= limit:
                 break
         else:
@@ -121,11 +126,11 @@ class Governor:
         self._last_divisor = divisor
         return divisor
 
-    def _onward(self, pixels: int, part: int) -> tuple[int, ...]:
+    def _onward(self, pixels: int, part: float) -> tuple[float, ...]:
         """From a part to the whole, in steps that are worth showing."""
         parts, more = [part], part
         while more < TURNS:
-            more *= 2
+            more = min(2 * more, TURNS)
             if more == TURNS or self._shading(pixels * (more - parts[-1]) / TURNS) > SHOWN_AGAIN:
                 parts.append(more)
         return tuple(parts)

@@ -40,7 +40,7 @@ class Traces(Protocol):
         time: float,
         camera: Camera | None = None,
         cancel: Callable[[], bool] | None = None,
-        parts: Sequence[int] = ...,
+        parts: Sequence[float] = ...,
         samples: int = ...,
         focus: tuple[float, float] | None = None,
     ) -> Generator[Frame, None, None]: ...
@@ -53,7 +53,8 @@ class RenderRequest:
     """What to trace: a picture, with so many samples a pixel in the end.  `divisor` is how much coarser than the window
     it is; `serial` tells requests apart that are otherwise alike; `patience` is for how many seconds, at least,
     certificates may be made, where nobody waits for the picture.  How it comes about does not tell requests apart:
-    `parts` of it, in sixteenths, around a `focus`; a `quick` one is not cut short before some of it has been shown."""
+    `parts` of it, in sixteenths, around a `focus`; a `quick` one is not cut short before some of it has been shown, but
+    by one that is `final`: nothing moves any more."""
 
     time: float
     camera: Camera
@@ -62,8 +63,9 @@ class RenderRequest:
     serial: int = 0
     patience: float = 0.0
     samples: int = 1
-    parts: tuple[int, ...] = field(default=(16,), compare=False)
+    parts: tuple[float, ...] = field(default=(16,), compare=False)
     quick: bool = field(default=False, compare=False)
+    final: bool = field(default=False, compare=False)
     focus: tuple[float, float] | None = field(default=None, compare=False)
 
     def supersedes(self, running: RenderRequest, shown: bool = False) -> bool:
@@ -72,7 +74,7 @@ class RenderRequest:
         if running == self:
             return False
         same_kind = replace(running.settings, width=1, height=1) == replace(self.settings, width=1, height=1)
-        return shown or not running.quick or not same_kind
+        return shown or not running.quick or not same_kind or (self.final and not running.final)
 
 
 @dataclass(frozen=True)
@@ -146,6 +148,12 @@ class RenderThread:
             if self._running is not None and request.supersedes(self._running, self._shown):
                 self._cancel = True
             self._changed.notify_all()
+
+    def hurry(self, request: RenderRequest) -> None:
+        """If this is what waits, let it wait no longer than it must, and come about as it says now."""
+        with self._changed:
+            if self._waiting == request:
+                self.submit(request)
 
     def perform(self, task: Task) -> None:
         """Do this instead of frames, from now on until it is done; what is under way is cut short, or dropped.

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from tracer.frame import Frame, Settings
 from tracer.method import base_of, certifies
+from tracer.shading.blocks import TURNS
 from viewer.governor import AT_ONCE, Governor, Plan, divided
 from viewer.methods import with_base
 from viewer.render_thread import RenderRequest, Traced
@@ -127,19 +128,27 @@ class Tracing:
         patience = PATIENCE if self._learning else 0.0
         wanted = RenderRequest(
             session.time, session.camera, settings, plan.divisor, self._serial, patience, session.settings.samples,
-            plan.parts, moving or session.playing, c.hovered,
+            plan.parts, moving or session.playing, focus=c.hovered,
         )  # fmt: skip
         if self._answered(wanted):
+            self._make_final(wanted)
             return
         self._asked, self._chosen = wanted, session.settings
         c.render.submit(wanted)
+
+    def _make_final(self, wanted: RenderRequest) -> None:
+        """What is asked for twice in a row is where a motion ended, or rests: it comes before what is on its way."""
+        asked, quick = self._asked, wanted.parts[0] < TURNS
+        if asked is not None and wanted == asked and not asked.final and not self._c.session.playing:
+            self._asked = replace(wanted, quick=quick, final=True)
+            self._c.render.hurry(self._asked)
 
     def _plan(self, width: int, height: int, coarse: bool) -> Plan:
         """How the picture is to come about: at once where it is traced to learn more, and where each is to be whole."""
         c, preferences = self._c, self._c.preferences
         if self._learning or not preferences.dynamic_resolution or (c.session.playing and preferences.every_frame):
             return AT_ONCE
-        return self.governor.plan(width, height, 1.0 / preferences.target_fps, coarse)
+        return self.governor.plan(width, height, 1.0 / preferences.target_fps, coarse, c.session.playing)
 
     @property
     def settings(self) -> Settings:

@@ -53,7 +53,7 @@ class CoarserInMotion(Governor):
         cost = statistics.seconds / max(pixels, 1)
         self._each = self._each + 0.4 * (cost - self._each) if self._each else cost
 
-    def plan(self, width: int, height: int, seconds: float, coarse: bool = True) -> Plan:
+    def plan(self, width: int, height: int, seconds: float, coarse: bool = True, playing: bool = True) -> Plan:
         if not coarse:
             return AT_ONCE
         for divisor in range(1, LARGEST_DIVISOR + 1):
@@ -135,7 +135,6 @@ class Script:
             if now - self.last_motion > PATIENCE:
                 raise RuntimeError("the picture does not become whole")
         elif self.state == "whole":
-            self.app.params.fps_idling.enable_idling = False
             if self.burst is not None and self.burst.full == 0.0 and not c.active:
                 c.preferences.dynamic_resolution = False  # a whole frame, all at once
                 c.trace_again()

@@ -8,9 +8,10 @@ import pytest
 from tracer.geometry.camera import pinhole
 from tracer.kernels import kernel
 from tracer.scene.model import Camera
+from tracer.shading.blocks import all_blocks
 from tracer.shading.octants import sorted_by_octant
 from tracer.shading.places import CELLS, FEWEST, sorted_by_place
-from tracer.shading.primary import ALL_LANES, primary_wave
+from tracer.shading.primary import primary_wave
 from tracer.shading.wave import DIRECTION, HIT_T, MOVED, MOVING, ORIGIN, PIXEL, WAVE_ROWS, wave_in
 
 
@@ -26,8 +27,8 @@ def _by_octant(memory, n, target):
 
 
 @kernel
-def _primary(camera, tile, width, memory, place):
-    return primary_wave(camera, tile, width, ALL_LANES, memory, place).size
+def _primary(camera, tile, width, lanes, memory, place):
+    return primary_wave(camera, tile, width, lanes, memory, place).size
 
 
 def _wave(rng: np.random.Generator, n: int, rest: float) -> np.ndarray:
@@ -93,7 +94,7 @@ def test_a_tile_has_each_of_its_pixels_once(tile: tuple[int, int, int, int]):
     left, top, right, bottom = tile
     camera = pinhole(Camera((0.0, 0.0, 5.0), (0.1, 0.2, -1.0)), width, height)
     memory, place = np.zeros((WAVE_ROWS, 4112), np.float32), np.zeros(4112, np.int32)
-    n = _primary(camera, tile, width, memory, place)
+    n = _primary(camera, tile, width, all_blocks(width, height), memory, place)
     y, x = np.divmod(place[:n], width)
     assert sorted(zip(x.tolist(), y.tolist())) == [(i, j) for i in range(left, right) for j in range(top, bottom)]
     directions = camera.corner + x[:, None] * camera.column + y[:, None] * camera.row
@@ -104,3 +105,13 @@ def test_a_tile_has_each_of_its_pixels_once(tile: tuple[int, int, int, int]):
         for size, (across, down) in ((16, (4, 4)), (128, (16, 8))):
             for start in range(0, n, size):
                 assert np.ptp(x[start : start + size]) == across - 1 and np.ptp(y[start : start + size]) == down - 1
+
+
+def test_of_a_tile_those_of_its_pixels_that_are_asked_for():
+    size, camera = 70, pinhole(Camera((0.0, 0.0, 5.0), (0.1, 0.2, -1.0)), 70, 70)
+    lanes, place = all_blocks(size, size), np.zeros(4112, np.int32)
+    lanes[::2] = 1 << 6  # column 2 of row 1; one row of an edge's blocks comes before the picture's first
+    n = _primary(camera, (0, 0, 64, 64), size, lanes, np.zeros((WAVE_ROWS, 4112), np.float32), place)
+    y, x = np.divmod(np.arange(size * size), size)
+    chosen = ((y // 4 % 2 == 0) | ((x % 4 == 2) & (y % 4 == 1))) & (x < 64) & (y < 64)
+    assert sorted(place[:n]) == np.flatnonzero(chosen).tolist()

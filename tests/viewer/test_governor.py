@@ -11,9 +11,9 @@ from viewer.governor import PARTS, Cost, Governor, divided
 FIXED, RAY, PIXEL = 5e-3, 1e-7, 1e-6
 
 
-def frame(pixels: int, part: int, beside: float = 0.0, slower: float = 1.0) -> FrameStatistics:
+def frame(pixels: int, part: float, beside: float = 0.0, slower: float = 1.0) -> FrameStatistics:
     """What a frame of a machine with these costs tells."""
-    phases = {"place": beside, "primary": slower * (FIXED / 2 + RAY * pixels),
+    phases = {"place": beside, "primary": slower * FIXED / 2, "surfaces": slower * RAY * pixels,
               "shading": slower * (FIXED / 2 + PIXEL * pixels * part / 16)}  # fmt: skip
     return FrameStatistics(part=part / 16, phases=phases)
 
@@ -50,9 +50,19 @@ def test_old_costs_are_forgotten():
 
 @pytest.mark.parametrize(
     ("seconds", "part", "divisor"),
-    [(1.0, 16, 1), (0.32, 8, 1), (0.2, 4, 1), (0.13, 2, 1), (0.1, 1, 1), (0.055, 1, 1), (0.04, 2, 2), (1e-4, 1, 8)],
+    [
+        (1.0, 16, 1),
+        (0.32, 8, 1),
+        (0.2, 4, 1),
+        (0.13, 2, 1),
+        (0.1, 1, 1),
+        (0.055, 0.5, 1),
+        (0.04, 0.5, 1),
+        (0.02, 0.5, 2),
+        (1e-4, 0.5, 8),
+    ],
 )
-def test_the_most_that_fits_is_shaded_and_only_then_the_resolution_falls(seconds: float, part: int, divisor: int):
+def test_the_most_that_fits_is_shaded_and_only_then_the_resolution_falls(seconds: float, part: float, divisor: int):
     governor = taught(*(frame(400_000, part) for part in (1, 4, 16, 2, 8) * 3))
     assert governor.seconds(400_000, 4) == pytest.approx(FIXED + RAY * 4e5 + PIXEL * 1e5, rel=0.1)
     plan = governor.plan(800, 500, seconds)
@@ -64,6 +74,14 @@ def test_steps_on_the_way_to_the_whole_are_worth_showing():
     slow = taught(*(frame(400_000, part, slower=8.0) for part in (1, 4, 16) * 3)).plan(800, 500, 0.5)
     quick = taught(*(frame(400_000, part, slower=0.2) for part in (1, 4, 16) * 3)).plan(800, 500, 0.02)
     assert len(slow.parts) > len(quick.parts) == 2
+
+
+def test_what_does_not_take_long_is_whole_at_once_where_nothing_moves():
+    quick = taught(*(frame(400_000, part, slower=0.5) for part in (1, 4, 16) * 3))
+    assert quick.plan(800, 500, 0.1).parts[0] < 16, "in motion as much as fits"
+    assert quick.plan(800, 500, 0.1, coarse=False, playing=False).parts == (16,)
+    slow = taught(*(frame(400_000, part) for part in (1, 4, 16) * 3))
+    assert slow.plan(800, 500, 0.1, coarse=False, playing=False).parts[0] < 16, "something is seen soon"
 
 
 def test_a_finer_step_needs_time_to_spare_and_a_coarser_one_none():

@@ -1,220 +1,207 @@
-"""Pixels that are not shaded yet, filled in from those that are.
+"""Pixels that are not shaded yet, filled in from those that are, and where that is the least to be trusted.
 
-Pixels are shaded in turns: each pixel of a block of 4 x 4 has its own, in the order of Bayer's matrix
-(1973), so that the first turns, and any later run of 1, 2, 4 or 8, lie as evenly as can be.  A pixel
-whose turn has not come asks its nearest shaded neighbours which part of their unshadowed light
-arrives there and what they get by reflection and refraction, and believes those the most that lie on
-the same surface: the same material and object, normals alike, in one plane (the guides of a joint bilateral
-filter, Eisemann and Durand 2004).  Its own light, texture and highlight are exact; what is soft are
-borders of shadows, and reflections.
+A pixel whose turn has not come asks the shaded pixels of its block and of the eight around it which part
+of their unshadowed light arrives there and what they get by reflection and refraction, and believes those
+the most that are near and lie on the same surface: the same material and object, normals alike, in one plane
+(the guides of a joint bilateral filter, Eisemann and Durand 2004).  Its own light, texture and highlight
+are exact; what is soft are borders of shadows, and reflections.
 
-What pixels know of each other lies in planes, one number of all pixels each.  In a row of blocks follow one
-another, plane by plane, the pixels of each place in their blocks, side by side: so the neighbours of sixteen
-pixels are sixteen in a row, and what is written of one block is not far apart.
+Where those that it asks disagree, or none of them lies on its surface, a pixel is in doubt, and so is its
+block: there more pixels are worth shading than elsewhere (adaptive sampling, Mitchell 1987).
 """
 
 from __future__ import annotations
 
-from functools import cache
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.memory import aligned_rows, borrowed
+from tracer.geometry.memory import borrowed
 from tracer.geometry.rays import MISS
 from tracer.kernels import inlined, kernel
-from tracer.shading.primary import BLOCK
+from tracer.shading.blocks import (
+    ARRIVED,
+    BLOCK,
+    EDGE,
+    NORMAL,
+    PLANE,
+    POSITION,
+    SENT,
+    SURFACE,
+    TURNS,
+    UNSHADOWED,
+    Planes,
+    planes_at,
+)
 from tracer.simd import (
     address_of,
     as_i32,
     f32_at,
     f32x16,
+    load_f32,
     load_f32x16,
+    load_i32,
     local_memory,
+    lowest_bit,
     maximum,
+    minimum,
+    ones,
     select,
+    square_root,
+    store,
     store_three,
 )
 
-TURNS = BLOCK * BLOCK
-# The turn of each pixel of a block, row by row.
-BAYER = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]])
-NEIGHBOURS = 8
-REACH = 5  # pixels: neighbours are sought that far to each side
-MARGIN = 2  # blocks around the picture, which show nothing
-DOUBT = np.float32(1e-3)  # what the word of another surface is worth
+AROUND = 9  # blocks: a pixel's own, in the middle, and those around it
+SOFTNESS = 0.7  # of the distance between shaded pixels: the filter's width
+LEAST = 2e-3  # a weight that is too small to ask for
+STRANGER = np.float32(1e-3)  # what the word of another surface is worth
+UNSEEN = np.float32(0.5)  # how much a pixel is in doubt of whose surface nothing is known
+DARKNESS = np.float32(0.3)  # light against which differences count: of darker places less is seen
 ZERO, ONE = np.float32(0), np.float32(1)
 
-# Planes: the surface's number, as the bits of int32 (MISS for none); its normal; where it is, seen from the eye; the
-# local light it has where nothing is in the way; what part of that arrives; and what mirrors and glass send besides.
-SURFACE, NORMAL, POSITION, UNSHADOWED, ARRIVED, SENT, PLANES = 0, 1, 4, 7, 10, 13, 16
+
+def _make_weights() -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+    """By how many pixels of a block are shaded, for each block around and each pixel there, what its word is worth by
+    its distance to each pixel of the block; and the bits of those there that are worth asking."""
+    y, x = np.divmod(np.arange(TURNS), BLOCK)
+    down, across = np.divmod(np.arange(AROUND), 3)
+    ys = BLOCK * (down - 1)[:, None] + y
+    xs = BLOCK * (across - 1)[:, None] + x
+    distances = (ys[:, :, None] - y) ** 2 + (xs[:, :, None] - x) ** 2
+    apart = TURNS / np.maximum(np.arange(TURNS + 1), 0.5)  # on average; none is shaded in half of the blocks at least
+    weights = np.exp(-distances / (SOFTNESS**2 * apart[:, None, None, None]))
+    asked = (weights.max(axis=-1) > LEAST) << np.arange(TURNS)
+    return np.ascontiguousarray(weights, np.float32), np.ascontiguousarray(asked.sum(axis=-1))
 
 
-class Planes(NamedTuple):
-    """values (n,) float32, of the pixels of a picture that is shaded in parts, or none where it is not, and `columns`
-    in a row, one for each block and more.  A plane is TURNS * columns numbers after the one before it."""
-
-    values: NDArray[np.float32]
-    columns: int
-
-
-NO_PLANES = Planes(np.empty(0, np.float32), 0)
-
-
-def make_planes(width: int, height: int) -> Planes:
-    """Room for the planes of a picture, in which nothing is seen yet."""
-    columns, rows = -(-width // BLOCK) + 2 * MARGIN, -(-height // BLOCK) + 2 * MARGIN
-    columns = (-(-(columns + 16) // 16) | 1) * 16  # an odd number of lines of the cache, lest all rows meet in the same
-    values = aligned_rows(rows, PLANES * TURNS * columns)
-    values[:] = 0
-    values.reshape(rows, PLANES, -1)[:, SURFACE].view(np.int32)[:] = MISS
-    return Planes(values.reshape(-1), columns)
-
-
-@inlined
-def where(planes, x, y):
-    """The number of a pixel in the first plane."""
-    lane = (y & (BLOCK - 1)) * BLOCK + (x & (BLOCK - 1))
-    return (PLANES * TURNS * (y // BLOCK + MARGIN) + lane) * planes.columns + x // BLOCK + MARGIN
-
-
-class Neighbours(NamedTuple):
-    """For each of the NEIGHBOURS nearest shaded pixels (rows) and each pixel of a block: dx and dy int32, from the
-    pixel to the neighbour, and weight float32 by the distance; lanes are those that are shaded, as bits."""
-
-    dx: NDArray[np.int32]
-    dy: NDArray[np.int32]
-    weight: NDArray[np.float32]
-    lanes: int
-
-
-def lanes_of(first: int, count: int) -> int:
-    """The pixels of a block, as bits, whose turn is one of `count` from `first` on, around the end."""
-    turns = (BAYER.reshape(-1) - first) % TURNS
-    return int(sum(1 << lane for lane in range(TURNS) if turns[lane] < count))
-
-
-@cache
-def neighbours_of(lanes: int) -> Neighbours:
-    """Where the nearest pixels that are shaded, `lanes` of each block, lie from each pixel of a block."""
-    shaded = np.array([lanes >> lane & 1 for lane in range(TURNS)], bool).reshape(BLOCK, BLOCK)
-    dx, dy = (np.zeros((NEIGHBOURS, TURNS), np.int32) for _ in range(2))
-    weight = np.zeros((NEIGHBOURS, TURNS), np.float32)
-    apart = (TURNS / max(1, int(shaded.sum()))) ** 0.5
-    steps = [(y, x) for y in range(-REACH, REACH + 1) for x in range(-REACH, REACH + 1)]
-    steps.sort(key=lambda step: step[0] ** 2 + step[1] ** 2)
-    for lane in range(TURNS):
-        y, x = divmod(lane, BLOCK)
-        found = [step for step in steps if shaded[(y + step[0]) % BLOCK, (x + step[1]) % BLOCK]][:NEIGHBOURS]
-        for n, (down, across) in enumerate(found):
-            dx[n, lane], dy[n, lane] = across, down
-            weight[n, lane] = np.exp(-(down**2 + across**2) / (0.7 * apart) ** 2)
-    return Neighbours(dx, dy, weight, lanes)
-
-
-def from_nearest(values: NDArray, lanes: int) -> NDArray:
-    """values (height, width, ...) of which those of `lanes` of each block are known: a copy in which each other pixel
-    has what is known of the nearest."""
-    near, filled = neighbours_of(lanes), values.copy()
-    for lane in range(TURNS):
-        (y, x), size = divmod(lane, BLOCK), values.shape
-        if not lanes >> lane & 1 and y < size[0] and x < size[1]:
-            rows = _inside(np.arange(y, size[0], BLOCK) + near.dy[0, lane], size[0])
-            columns = _inside(np.arange(x, size[1], BLOCK) + near.dx[0, lane], size[1])
-            filled[y::BLOCK, x::BLOCK] = values[np.ix_(rows, columns)]
-    return filled
-
-
-def _inside(numbers: NDArray[np.intp], size: int) -> NDArray[np.intp]:
-    """Rows or columns beyond the picture's edge, as the next ones inside of the same place in their blocks."""
-    numbers = np.where(numbers < 0, numbers + BLOCK, numbers)
-    numbers = np.where(numbers >= size, numbers - BLOCK, numbers)
-    return np.clip(numbers, 0, size - 1)
-
-
-@cache
-def _shifts(lanes: int, columns: int) -> NDArray[np.int64]:
-    """(NEIGHBOURS, TURNS) how much higher the number of a neighbour is in planes than that of the pixel."""
-    near, (y, x) = neighbours_of(lanes), np.divmod(np.arange(TURNS), BLOCK)
-    down, row = np.divmod(y + near.dy, BLOCK)
-    across, column = np.divmod(x + near.dx, BLOCK)
-    lane = (row * BLOCK + column - np.arange(TURNS)).astype(np.int64)
-    return (PLANES * TURNS * down + lane) * columns + across
+WEIGHTS, ASKED = _make_weights()
 
 
 def fill_in(
-    planes: Planes, lanes: int, rows: tuple[int, int], spread: float, width: int, color: NDArray[np.float32]
+    planes: Planes,
+    shaded: NDArray[np.int32],
+    wanted: NDArray[np.bool_],
+    rows: tuple[int, int],
+    spread: float,
+    color: NDArray[np.float32],
+    filled: NDArray[np.float32],
+    doubt: NDArray[np.float32],
 ) -> None:
-    """Fill the pixels that are not of `lanes` into color (height * width, 3), in rows of blocks from the first to one
-    before the last; spread is the width of a pixel at distance 1."""
-    shifts, foot = _shifts(lanes, planes.columns), np.float32((2.0 * spread) ** 2)
-    _fill(planes, shifts, neighbours_of(lanes).weight, lanes, *rows, foot, width, color)
+    """Fill in the blocks that are `wanted`, in rows of these from the first to one before the last.
+
+    shaded (rows, columns) int32 and wanted, alike, are of all blocks with the edges; spread is the width of a pixel at
+    distance 1.  What color (height, width, 3) has of pixels that are shaded goes into filled, alike, and the
+    others are made from these; doubt, of all blocks, says how much their pixels are in doubt together."""
+    _fill(planes, shaded, wanted, *rows, np.float32((4.0 * spread) ** 2), WEIGHTS, ASKED, color, filled, doubt)
+
+
+def nearest(values: NDArray, y: int, x: int) -> NDArray:
+    """values (height, width, ...) of which those in row y and column x of each block are known: at each pixel, what is
+    known the nearest to it."""
+    rows, columns = (_nearest(size, place) for size, place in zip(values.shape, (y, x), strict=False))
+    return values[np.ix_(rows, columns)]
+
+
+def _nearest(size: int, place: int) -> NDArray[np.intp]:
+    """For each of so many pixels in a row the nearest that has this place in its block."""
+    if place >= size:
+        return np.full(size, size - 1)
+    return np.minimum(np.arange(size) // BLOCK * BLOCK + place, (size - 1 - place) // BLOCK * BLOCK + place)
 
 
 @inlined
-def _load(planes, plane, at):
-    return load_f32x16(address_of(planes.values) + 4 * (TURNS * planes.columns * plane + at))
+def _plane(block, plane):
+    return load_f32x16(block + PLANE * plane)
 
 
 @inlined
-def _three(planes, plane, at):
-    return _load(planes, plane, at), _load(planes, plane + 1, at), _load(planes, plane + 2, at)
+def _three(block, plane):
+    return _plane(block, plane), _plane(block, plane + 1), _plane(block, plane + 2)
 
 
 @inlined
-def _likeness(planes, surface, normal, position, foot, at):
-    """How far sixteen pixels show the surface of sixteen others: 1 for the same in one plane, 0 for another."""
-    other, (x, y, z) = _three(planes, NORMAL, at), _three(planes, POSITION, at)
+def _three_of(pixel, plane):
+    """Three numbers of one pixel."""
+    at = pixel + PLANE * plane
+    return load_f32(at), load_f32(at + PLANE), load_f32(at + 2 * PLANE)
+
+
+@inlined
+def _likeness(normal, position, flatness, pixel):
+    """How far sixteen pixels lie in the plane of another: 1 for the same, 0 for one at a right angle."""
+    other, (x, y, z) = _three_of(pixel, NORMAL), _three_of(pixel, POSITION)
     cosine = maximum(normal[0] * other[0] + normal[1] * other[1] + normal[2] * other[2], ZERO)
     off = normal[0] * (x - position[0]) + normal[1] * (y - position[1]) + normal[2] * (z - position[2])
-    cosine = cosine * cosine
-    cosine = cosine * cosine
-    like = cosine * cosine * foot / (foot + off * off)
-    return select(as_i32(_load(planes, SURFACE, at)) == surface, like, ZERO)
+    like = cosine * cosine * maximum(ONE - off * off * flatness, ZERO)
+    return like * like
 
 
 @inlined
-def _filled(planes, shifts, weight, lane, at, foot):
-    """The light of sixteen pixels from `at` on, which have this place in their blocks.  foot is the square of the
-    width of a pixel at distance 1."""
-    surface, normal = as_i32(_load(planes, SURFACE, at)), _three(planes, NORMAL, at)
-    p = _three(planes, POSITION, at)
-    foot = (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) * foot + np.float32(1e-30)
-    total = a0 = a1 = a2 = s0 = s1 = s2 = f32x16(ZERO)
-    for n in range(NEIGHBOURS):
-        there = at + shifts[n, lane]
-        like = _likeness(planes, surface, normal, p, foot, there)
-        w = (like + DOUBT) * weight[n, lane]
-        w = select(as_i32(_load(planes, SURFACE, there)) > np.int32(MISS), w, ZERO)
-        arrived, sent = _three(planes, ARRIVED, there), _three(planes, SENT, there)
-        total = total + w
-        a0, a1, a2 = a0 + w * arrived[0], a1 + w * arrived[1], a2 + w * arrived[2]
-        s0, s1, s2 = s0 + w * sent[0], s1 + w * sent[1], s2 + w * sent[2]
-    full, known = _three(planes, UNSHADOWED, at), (total > ZERO) & (surface > np.int32(MISS))
-    scale = ONE / select(known, total, f32x16(ONE))
+def _filled(planes, shaded, row, column, foot, weights, asked):
+    """The light of a block's sixteen pixels, and how much each is in doubt."""
+    block, count = planes_at(planes, row, column), ones(np.int64(shaded[row, column]))
+    surface, normal, p = as_i32(_plane(block, SURFACE)), _three(block, NORMAL), _three(block, POSITION)
+    full = _three(block, UNSHADOWED)
+    flatness = ONE / ((p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) * foot + np.float32(1e-30))
+    total = known = mean = square = a0 = a1 = a2 = s0 = s1 = s2 = f32x16(ZERO)
+    for n in range(AROUND):
+        r, c = row + n // 3 - 1, column + n % 3 - 1
+        there = np.int64(shaded[r, c]) & asked[count, n]
+        base, weight = planes_at(planes, r, c), address_of(weights) + PLANE * TURNS * (AROUND * count + n)
+        while there != 0:
+            lane = lowest_bit(there)
+            there &= there - 1
+            pixel = base + 4 * lane
+            number = load_i32(pixel + PLANE * SURFACE)
+            if number == MISS:
+                continue
+            near = load_f32x16(weight + PLANE * lane)
+            like = select(surface == number, _likeness(normal, p, flatness, pixel), ZERO) * near
+            w = like + STRANGER * near
+            arrived, sent = _three_of(pixel, ARRIVED), _three_of(pixel, SENT)
+            light = full[0] * arrived[0] + full[1] * arrived[1] + full[2] * arrived[2] + (sent[0] + sent[1] + sent[2])
+            total, known = total + w, known + like
+            mean, square = mean + w * light, square + w * light * light
+            a0, a1, a2 = a0 + w * arrived[0], a1 + w * arrived[1], a2 + w * arrived[2]
+            s0, s1, s2 = s0 + w * sent[0], s1 + w * sent[1], s2 + w * sent[2]
+    seen, told = surface > np.int32(MISS), total > ZERO
+    scale = ONE / select(told, total, f32x16(ONE))
+    mean, told = mean * scale, told & seen
+    spread = square_root(maximum(square * scale - mean * mean, ZERO)) / (DARKNESS + mean)
+    doubt = select(seen, spread + UNSEEN * (ONE - minimum(known * np.float32(4), ONE)), ZERO)
     return (
-        select(known, (full[0] * a0 + s0) * scale, full[0]),
-        select(known, (full[1] * a1 + s1) * scale, full[1]),
-        select(known, (full[2] * a2 + s2) * scale, full[2]),
-    )
+        select(told, (full[0] * a0 + s0) * scale, full[0]),
+        select(told, (full[1] * a1 + s1) * scale, full[1]),
+        select(told, (full[2] * a2 + s2) * scale, full[2]),
+    ), doubt
 
 
 @kernel
-def _fill(planes, shifts, weight, lanes, first_row, last_row, foot, width, color):
-    planes, shifts, weight, color = borrowed(planes), borrowed(shifts), borrowed(weight), borrowed(color)
-    height, memory = len(color) // width, local_memory(192)
+def _fill(planes, shaded, wanted, first, last, foot, weights, asked, color, filled, doubt):
+    planes, shaded, wanted = borrowed(planes), borrowed(shaded), borrowed(wanted)
+    color, filled, doubt = borrowed(color), borrowed(filled), borrowed(doubt)
+    height, width = color.shape[:2]
+    memory = local_memory(256)
     channel = f32_at(memory)
-    for row in range(first_row, last_row):
-        for lane in range(TURNS):
-            y, left = BLOCK * row + lane // BLOCK, lane % BLOCK
-            if (lanes >> lane) & 1 or y >= height or left >= width:
+    for row in range(first + EDGE, last + EDGE):
+        for column in range(EDGE, planes.columns - EDGE):
+            if not wanted[row, column]:
                 continue
-            count = (width - left + BLOCK - 1) // BLOCK
-            for start in range(0, count, 16):
-                at = where(planes, left + BLOCK * start, y)
-                store_three(memory, 64, _filled(planes, shifts, weight, lane, at, foot))
-                pixel = y * width + left + BLOCK * start
-                for i in range(min(16, count - start)):
+            bits = np.int64(shaded[row, column])
+            light, in_doubt = _filled(planes, shaded, row, column, foot, weights, asked)
+            store_three(memory, 64, light)
+            store(memory + 192, in_doubt)
+            doubts = ZERO
+            y, x = BLOCK * (row - EDGE), BLOCK * (column - EDGE)
+            for lane in range(TURNS):
+                py, px = y + lane // BLOCK, x + lane % BLOCK
+                if py >= height or px >= width:
+                    continue
+                if (bits >> lane) & 1:
                     for c in range(3):
-                        color[pixel + BLOCK * i, c] = channel[16 * c + i]
+                        filled[py, px, c] = color[py, px, c]
+                else:
+                    doubts += channel[48 + lane]
+                    for c in range(3):
+                        filled[py, px, c] = channel[16 * c + lane]
+            doubt[row, column] = doubts

@@ -28,6 +28,30 @@ def _row(points, row, v):
     return load_f32x16(row_of(points.memory, row) + 64 * v)
 
 
+@inlined
+def toward(place, position, normal, direction, asked):
+    """The cosine of a light at `place` against the normals of a vector of points, which of those that are asked it can
+    reach, and how near the viewer is to the direction in which it is mirrored."""
+    px, py, pz = position
+    nx, ny, nz = normal
+    dx, dy, dz = direction
+    lx, ly, lz = place[0] - px, place[1] - py, place[2] - pz
+    scale = ONE / square_root(lx * lx + ly * ly + lz * lz)
+    cosine = (nx * lx + ny * ly + nz * lz) * scale
+    nv = nx * dx + ny * dy + nz * dz
+    lv = (lx * dx + ly * dy + lz * dz) * scale
+    return cosine, asked & (cosine > ZERO), maximum(lv - np.float32(2) * cosine * nv, ZERO)
+
+
+@inlined
+def highlight(reached, shine, exponent, mirrored):
+    """Phong's specular term, 0 where nothing shines."""
+    shines = reached & (shine > ZERO) & (mirrored > ZERO)
+    if not any_lane(shines):
+        return f32x16(ZERO)
+    return select(shines, power(mirrored, exponent), ZERO)
+
+
 @subkernel
 def add_light(points, look, number, lit, wave, light):
     """Add light `number` to light (3, n) where bits of lit (n / 16,) say so: diffuse N.L, and (R.V)^exponent
@@ -36,23 +60,13 @@ def add_light(points, look, number, lit, wave, light):
     for v in range((wave.size + 15) // 16):
         if lit[v] == 0:
             continue
-        px, py, pz = load_three(points.position, v)
-        nx, ny, nz = load_three(points.normal, v)
-        dx, dy, dz = load_three(wave.rays.direction, v)
-        lx, ly, lz = place[0] - px, place[1] - py, place[2] - pz
-        scale = ONE / square_root(lx * lx + ly * ly + lz * lz)
-        cosine = (nx * lx + ny * ly + nz * lz) * scale
-        reached = mask16(np.int64(lit[v])) & (cosine > ZERO)
+        position, normal = load_three(points.position, v), load_three(points.normal, v)
+        direction = load_three(wave.rays.direction, v)
+        cosine, reached, mirrored = toward(place, position, normal, direction, mask16(np.int64(lit[v])))
         if not any_lane(reached):
             continue
-        nv = nx * dx + ny * dy + nz * dz
-        lv = (lx * dx + ly * dy + lz * dz) * scale
-        rv = maximum(lv - np.float32(2) * cosine * nv, ZERO)  # the mirrored light's direction against the viewer's
-        shines = reached & (_row(points, SHINE_ROW, v) > ZERO) & (rv > ZERO)
-        highlight = f32x16(ZERO)
-        if any_lane(shines):
-            highlight = select(shines, power(rv, _row(points, EXPONENT_ROW, v)), ZERO)
+        specular = highlight(reached, _row(points, SHINE_ROW, v), _row(points, EXPONENT_ROW, v), mirrored)
         for c in range(3):
-            local = _row(points, DIFFUSE_ROW + c, v) * cosine + _row(points, SPECULAR_ROW + c, v) * highlight
+            local = _row(points, DIFFUSE_ROW + c, v) * cosine + _row(points, SPECULAR_ROW + c, v) * specular
             at = row_of(light, c) + 64 * v
             store(at, load_f32x16(at) + select(reached, strength[c] * local, ZERO))

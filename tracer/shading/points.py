@@ -21,6 +21,7 @@ from tracer.simd import (
     any_lane,
     as_i32,
     bits_of,
+    f32_at,
     f32x16,
     gather_f32x16,
     i32x16,
@@ -153,54 +154,108 @@ def _texture(look, textured, primitive, w, u, v, across, cosine, cone):
 
 
 @subkernel
-def _quadric_point(world, points, i, primitive):
-    """Normal of the i-th point, in world space and of any length, into its rows."""
-    m, to_object = pointer(world.to_object), 12 * world.object_of[primitive]
-    p = points.position
-    a = to_object
-    x = m[a] * p[0, i] + m[a + 1] * p[1, i] + m[a + 2] * p[2, i] + m[a + 3]
-    y = m[a + 4] * p[0, i] + m[a + 5] * p[1, i] + m[a + 6] * p[2, i] + m[a + 7]
-    z = m[a + 8] * p[0, i] + m[a + 9] * p[1, i] + m[a + 10] * p[2, i] + m[a + 11]
+def _quadric_normal(world, rows, lane, primitive):
+    """Normal of a quadric, in world space and of any length, at the point whose place is in this lane of three rows
+    of vectors; it takes the place of what the next three rows, and those after them, have there."""
+    m, at, value = pointer(world.to_object), 12 * world.object_of[primitive], f32_at(rows)
+    px, py, pz = value[lane], value[16 + lane], value[32 + lane]
+    x = m[at] * px + m[at + 1] * py + m[at + 2] * pz + m[at + 3]
+    y = m[at + 4] * px + m[at + 5] * py + m[at + 6] * pz + m[at + 7]
+    z = m[at + 8] * px + m[at + 9] * py + m[at + 10] * pz + m[at + 11]
     nx, ny, nz = quadric_normal(world.quadrics, primitive - len(world.triangles), x, y, z)
     for axis in range(3):
-        normal = m[a + axis] * nx + m[a + 4 + axis] * ny + m[a + 8 + axis] * nz
-        points.geometric[axis, i], points.normal[axis, i] = normal, normal
+        normal = m[at + axis] * nx + m[at + 4 + axis] * ny + m[at + 8 + axis] * nz
+        value[16 * (3 + axis) + lane] = value[16 * (6 + axis) + lane] = normal
 
 
 @inlined
-def _quadrics(world, points, v, there, primitive, geometric, normal):
-    """Normals of the v-th vector of points, those on quadrics made good."""
+def _quadrics(world, position, there, primitive, geometric, normal):
+    """Normals of a vector of points, those on quadrics made good."""
     rest = bits_of(primitive > np.int32(len(world.triangles) - 1)) & there
     if rest == 0:
         return geometric, normal
-    stride = 4 * points.memory.shape[1]
-    store_three(address_of(points.geometric) + 64 * v, stride, geometric)
-    store_three(address_of(points.normal) + 64 * v, stride, normal)
+    rows = local_memory(576)
+    store_three(rows, 64, position)
+    store_three(rows + 192, 64, geometric)
+    store_three(rows + 384, 64, normal)
     while rest != 0:
         lane = lowest_bit(rest)
         rest &= rest - 1
-        _quadric_point(world, points, 16 * v + lane, np.int64(lane_of(primitive, lane)))
-    return load_three(points.geometric, v), load_three(points.normal, v)
+        _quadric_normal(world, rows, lane, np.int64(lane_of(primitive, lane)))
+    geometric = load_f32x16(rows + 192), load_f32x16(rows + 256), load_f32x16(rows + 320)
+    return geometric, (load_f32x16(rows + 384), load_f32x16(rows + 448), load_f32x16(rows + 512))
+
+
+@inlined
+def normals_at(world, facet, there, primitive, position, direction, w, u, v):
+    """Unit normals of a vector of points, the geometric one towards the viewer and the shading one in its half space,
+    whether rays of this direction come from outside, and their cosines against the geometric normal that points
+    there; facet are the columns of the primitives' rows, and there the bits of the lanes that mean anything."""
+    geometric = facet[ACROSS], facet[ACROSS + 1], facet[ACROSS + 2]
+    normal = _mixed(facet, NORMALS, w, u, v)
+    objects = as_i32(facet[OBJECT])
+    moves = objects > np.int32(0)
+    if any_lane(moves):
+        geometric = _chosen(moves, _to_world(world.to_object, objects, geometric), geometric)
+        normal = _chosen(moves, _to_world(world.to_object, objects, normal), normal)
+    shrunk = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2] < np.float32(1e-24)
+    normal = _chosen(shrunk, geometric, normal)
+    geometric, normal = _quadrics(world, position, there, primitive, geometric, normal)
+
+    geometric, normal = _unit(geometric), _unit(normal)
+    d = direction
+    against = geometric[0] * d[0] + geometric[1] * d[1] + geometric[2] * d[2]
+    entering = against <= ZERO
+    geometric = _chosen(entering, geometric, _opposite(geometric))
+    behind = geometric[0] * normal[0] + geometric[1] * normal[1] + geometric[2] * normal[2] < ZERO
+    return geometric, _chosen(behind, _opposite(normal), normal), entering, against
+
+
+@inlined
+def colors_at(look, facet, there, primitive, w, u, v, against, cone):
+    """Colours that a vector of points has by textures, 1 where there are none."""
+    textured = (as_i32(facet[TEXTURE]) > np.int32(-1)) & mask16(there)
+    if not any_lane(textured):
+        return f32x16(ONE), f32x16(ONE), f32x16(ONE)
+    across = facet[ACROSS], facet[ACROSS + 1], facet[ACROSS + 2]
+    return _texture(look, textured, primitive, w, u, v, across, maximum(against, -against), cone)
+
+
+@inlined
+def material_at(look, material):
+    """The columns of the rows of materials."""
+    rows = local_memory(64)
+    store(rows, material)
+    return load_columns(address_of(look.materials), rows, MATERIAL_COLUMNS)
+
+
+@inlined
+def ambient_at(look, m, color):
+    """Ambient light of materials, given by their columns, seen through textures' colours."""
+    return (
+        look.ambient[0] * m[AMBIENT] * color[0],
+        look.ambient[1] * m[AMBIENT + 1] * color[1],
+        look.ambient[2] * m[AMBIENT + 2] * color[2],
+    )
+
+
+@inlined
+def diffuse_at(m, color):
+    """Diffuse colours of materials, seen through textures' colours."""
+    return m[DIFFUSE] * color[0], m[DIFFUSE + 1] * color[1], m[DIFFUSE + 2] * color[2]
 
 
 @inlined
 def _put_surface(points, look, v, material, color, verify):
     """What the materials are made of, seen through the textures' colours."""
-    rows = local_memory(64)
-    store(rows, material)
-    m = load_columns(address_of(look.materials), rows, MATERIAL_COLUMNS)
+    m = material_at(look, material)
     stride = 4 * points.memory.shape[1]
     at = address_of(points.memory) + 64 * v
-    ambient = (
-        look.ambient[0] * m[AMBIENT] * color[0],
-        look.ambient[1] * m[AMBIENT + 1] * color[1],
-        look.ambient[2] * m[AMBIENT + 2] * color[2],
-    )
+    ambient = ambient_at(look, m, color)
     store_three(at + stride * LIGHT_ROW, stride, ambient)
     if verify:
         store_three(at + stride * REFERENCE_ROW, stride, ambient)
-    diffuse = (m[DIFFUSE] * color[0], m[DIFFUSE + 1] * color[1], m[DIFFUSE + 2] * color[2])
-    store_three(at + stride * DIFFUSE_ROW, stride, diffuse)
+    store_three(at + stride * DIFFUSE_ROW, stride, diffuse_at(m, color))
     store_three(at + stride * SPECULAR_ROW, stride, (m[SPECULAR], m[SPECULAR + 1], m[SPECULAR + 2]))
     store(at + stride * EXPONENT_ROW, m[EXPONENT])
     store(at + stride * SHINE_ROW, m[SHINE])
@@ -239,32 +294,14 @@ def points_at(world, look, wave, memory, spread, knowledge):
 
         facet = load_columns(address_of(look.facets), numbers, FACET_COLUMNS)
         w = ONE - u - v
-        across = facet[ACROSS], facet[ACROSS + 1], facet[ACROSS + 2]
-        geometric, normal = across, _mixed(facet, NORMALS, w, u, v)
-        objects = as_i32(facet[OBJECT])
-        moves = objects > np.int32(0)
-        if any_lane(moves):
-            geometric = _chosen(moves, _to_world(world.to_object, objects, geometric), geometric)
-            normal = _chosen(moves, _to_world(world.to_object, objects, normal), normal)
-        shrunk = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2] < np.float32(1e-24)
-        normal = _chosen(shrunk, geometric, normal)
-        geometric, normal = _quadrics(world, points, k, there, primitive, geometric, normal)
-
-        geometric, normal = _unit(geometric), _unit(normal)
-        against = geometric[0] * d[0] + geometric[1] * d[1] + geometric[2] * d[2]
-        entering = against <= ZERO
+        geometric, normal, entering, against = normals_at(world, facet, there, primitive, (x, y, z), d, w, u, v)
         points.entering[k] = bits_of(entering)
-        geometric = _chosen(entering, geometric, _opposite(geometric))
-        behind = geometric[0] * normal[0] + geometric[1] * normal[1] + geometric[2] * normal[2] < ZERO
         store_three(at + stride * GEOMETRIC_ROW, stride, geometric)
         gx, gy, gz = geometric
         store_three(at + stride * LIFTED_ROW, stride, (x + offset * gx, y + offset * gy, z + offset * gz))
-        store_three(at + stride * NORMAL_ROW, stride, _chosen(behind, _opposite(normal), normal))
+        store_three(at + stride * NORMAL_ROW, stride, normal)
 
-        color = f32x16(ONE), f32x16(ONE), f32x16(ONE)
-        textured = (as_i32(facet[TEXTURE]) > np.int32(-1)) & mask16(there)
-        if any_lane(textured):
-            cone = spread * (_hit(wave, REACH, k) + t)
-            color = _texture(look, textured, primitive, w, u, v, across, maximum(against, -against), cone)
+        cone = spread * (_hit(wave, REACH, k) + t)
+        color = colors_at(look, facet, there, primitive, w, u, v, against, cone)
         _put_surface(points, look, k, as_i32(facet[MATERIAL]), color, knowledge.verify)
     return points

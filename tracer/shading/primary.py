@@ -18,6 +18,7 @@ from tracer.simd import (
     bits_of,
     f32x16,
     lane_numbers_x16,
+    lane_of,
     mask16,
     ones,
     pack,
@@ -28,6 +29,7 @@ from tracer.simd import (
 )
 
 BLOCK = 4  # pixels
+EDGE = 1  # blocks around the picture, where what is told of blocks leaves room
 ALL_LANES = 0xFFFF  # of a block: every pixel
 
 
@@ -61,12 +63,14 @@ def block_at(tile, number):
 
 @subkernel
 def primary_wave(camera, tile, width, lanes, memory, place):
-    """Primary rays of those lanes of a tile's blocks whose bits are set, in a wave's memory, and in place (n,) int32
-    where each one's pixel is in the picture."""
+    """Primary rays of a tile, in a wave's memory, and in place (n,) int32 where each one's pixel is in the picture: of
+    the pixels whose bits are set in lanes, int32 of all blocks of the picture and an edge of one around them."""
     n, stride = 0, 4 * memory.shape[1]
     for number in range(blocks_of(tile)):
         x, y, inside = block_at(tile, number)
-        inside = inside & mask16(lanes)
+        if not any_lane(inside):
+            continue
+        inside = inside & mask16(np.int64(lanes[lane_of(y, 0) // BLOCK + EDGE, lane_of(x, 0) // BLOCK + EDGE]))
         if not any_lane(inside):
             continue
         direction = primary_direction(camera, to_f32(x), to_f32(y))

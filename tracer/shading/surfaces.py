@@ -11,62 +11,124 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.culling.certified.lookup import find_cells
-from tracer.culling.shadow import faces
-from tracer.geometry.facets import MATERIAL, OBJECT
+from tracer.geometry.camera import primary_direction
+from tracer.geometry.facets import COLUMNS, MATERIAL, OBJECT
 from tracer.geometry.memory import borrowed, pointer
 from tracer.geometry.rays import MISS
-from tracer.kernels import kernel, subkernel
-from tracer.shading.filling import NORMAL, POSITION, TURNS, UNSHADOWED, where
-from tracer.shading.phong import add_light
-from tracer.shading.points import points_at
-from tracer.shading.primary import ALL_LANES, primary_wave, recall_hits
-from tracer.shading.wave import bring_home, room, without_misses
-from tracer.shading.whitted import record_cells, see_normals, tile_in
+from tracer.kernels import inlined, kernel
+from tracer.shading.blocks import NORMAL, PLANE, POSITION, SURFACE, UNSHADOWED, block_of, planes_at
+from tracer.shading.look import EXPONENT, SHINE, SPECULAR
+from tracer.shading.phong import highlight, toward
+from tracer.shading.points import ambient_at, colors_at, diffuse_at, material_at, normals_at, points_at
+from tracer.shading.primary import BLOCK, block_at, blocks_of, primary_wave, recall_hits
+from tracer.shading.wave import without_misses
+from tracer.shading.whitted import record_cells, tile_in
+from tracer.simd import (
+    address_of,
+    any_lane,
+    as_i32,
+    bits_of,
+    f32_at,
+    f32x16,
+    gather_f32x16,
+    gather_i32x16,
+    i32x16,
+    lane_of,
+    load_columns,
+    local_memory,
+    select,
+    store,
+    store_three,
+    to_f32,
+)
 
 MATERIALS = 1 << 16  # in the number of a surface; an object's number is above
+ZERO, ONE = np.float32(0), np.float32(1)
 
 
-@subkernel
-def _put_planes(wave, points, look, tile, count, buffers):
-    """What all pixels of a tile know of their surfaces; there is none where rays miss, but background."""
-    planes, width, facets = buffers.planes, buffers.primitive.shape[1], look.facets.view(np.int32)
-    values, plane = pointer(planes.values), TURNS * planes.columns
-    surfaces = pointer(planes.values.view(np.int32))
-    for i in range(count):
-        at = where(planes, tile.place[i] % width, tile.place[i] // width)
-        surfaces[at] = MISS
-        for c in range(3):
-            values[at + plane * (UNSHADOWED + c)] = np.float32(tile.light[c, i])
-    for i in range(wave.size):
-        place = tile.place[wave.pixel[i]]
-        at = where(planes, place % width, place // width)
-        facet = facets[wave.hits.primitive[i]]
-        surfaces[at] = facet[MATERIAL] + MATERIALS * facet[OBJECT]
-        for c in range(3):
-            values[at + plane * (NORMAL + c)] = points.normal[c, i]
-            values[at + plane * (POSITION + c)] = wave.hits.t[i] * wave.rays.direction[c, i]
+@inlined
+def _unshadowed(look, m, color, position, geometric, normal, direction, hit):
+    """The light that points of these materials and colours send to the viewer where nothing is in the way."""
+    r, g, b = ambient_at(look, m, color)
+    red, green, blue = diffuse_at(m, color)
+    for number in range(len(look.lights)):
+        place, strength = look.lights[number], look.light_colors[number]
+        x, y, z = place[0] - position[0], place[1] - position[1], place[2] - position[2]
+        faces = hit & (geometric[0] * x + geometric[1] * y + geometric[2] * z > ZERO)
+        cosine, reached, mirrored = toward(place, position, normal, direction, faces)
+        if not any_lane(reached):
+            continue
+        specular = highlight(reached, m[SHINE], m[EXPONENT], mirrored)
+        r = r + select(reached, strength[0] * (red * cosine + m[SPECULAR] * specular), ZERO)
+        g = g + select(reached, strength[1] * (green * cosine + m[SPECULAR + 1] * specular), ZERO)
+        b = b + select(reached, strength[2] * (blue * cosine + m[SPECULAR + 2] * specular), ZERO)
+    return r, g, b
 
 
 @kernel
-def see_surfaces(world, look, camera, tile, knowledge, buffers, space):
-    """Normals, surfaces, unshadowed light and certified cells of a tile whose primary hits the buffers hold."""
+def see_surfaces(world, look, camera, tile, buffers):
+    """Normals, surfaces and unshadowed light of a tile (left, top, right, bottom) whose primary hits the buffers
+    hold, a block at a time."""
+    world, look, buffers = borrowed(world), borrowed(look), borrowed(buffers)
+    planes, normals, width = buffers.planes, pointer(buffers.normal), np.int32(buffers.primitive.shape[1])
+    rows = local_memory(192)
+    channel, background = f32_at(rows), look.background
+    for number in range(blocks_of(tile)):
+        x, y, inside = block_at(tile, number)
+        if not any_lane(inside):
+            continue
+        row, column = block_of(lane_of(x, 0), lane_of(y, 0))
+        block = planes_at(planes, row, column)
+
+        # The hits, as they were found.
+        place = select(inside, y * width + x, i32x16(0))
+        primitive = gather_i32x16(address_of(buffers.primitive), place)
+        hit = inside & (primitive > np.int32(MISS))
+        if not any_lane(hit):
+            store(block + PLANE * SURFACE, i32x16(MISS))
+            store_three(
+                block + PLANE * UNSHADOWED, PLANE, (f32x16(background[0]), f32x16(background[1]), f32x16(background[2]))
+            )
+            continue
+        t = gather_f32x16(address_of(buffers.depth), place)
+        u, v = gather_f32x16(address_of(buffers.u), place), gather_f32x16(address_of(buffers.v), place)
+        primitive = select(hit, primitive, i32x16(0))
+        direction = primary_direction(camera, to_f32(x), to_f32(y))
+        seen = t * direction[0], t * direction[1], t * direction[2]
+        position = camera.origin[0] + seen[0], camera.origin[1] + seen[1], camera.origin[2] + seen[2]
+
+        # What is there, and its light.
+        store(rows, primitive)
+        facet = load_columns(address_of(look.facets), rows, COLUMNS)
+        w, there = ONE - u - v, bits_of(hit)
+        geometric, normal, _, against = normals_at(world, facet, there, primitive, position, direction, w, u, v)
+        color = colors_at(look, facet, there, primitive, w, u, v, against, camera.spread * t)
+        m = material_at(look, select(hit, as_i32(facet[MATERIAL]), i32x16(0)))
+        r, g, b = _unshadowed(look, m, color, position, geometric, normal, direction, hit)
+
+        surface = as_i32(facet[MATERIAL]) + np.int32(MATERIALS) * as_i32(facet[OBJECT])
+        store(block + PLANE * SURFACE, select(hit, surface, i32x16(MISS)))
+        store_three(block + PLANE * NORMAL, PLANE, normal)
+        store_three(block + PLANE * POSITION, PLANE, seen)
+        light = select(hit, r, background[0]), select(hit, g, background[1]), select(hit, b, background[2])
+        store_three(block + PLANE * UNSHADOWED, PLANE, light)
+        store_three(rows, 64, normal)
+        for lane in range(BLOCK * BLOCK):
+            if (there >> lane) & 1:
+                pixel = 3 * np.int64(lane_of(place, lane))
+                for axis in range(3):
+                    normals[pixel + axis] = channel[16 * axis + lane]
+
+
+@kernel
+def see_cells(world, look, camera, tile, lanes, knowledge, buffers, space):
+    """The certified cells of a tile's primary hits, into the buffers, which hold the hits."""
     world, look, knowledge = borrowed(world), borrowed(look), borrowed(knowledge)
     buffers, space = borrowed(buffers), borrowed(space)
     pixels = tile_in(space.tile)
-    wave = primary_wave(camera, tile, buffers.primitive.shape[1], ALL_LANES, space.wave, pixels.place)
-    count = wave.size
+    wave = primary_wave(camera, tile, buffers.primitive.shape[1], lanes, space.wave, pixels.place)
     recall_hits(wave, pixels.place, buffers)
-    pixels.light[:, :count] = 0
     wave = without_misses(wave, look.background, pixels.light, pixels.reference)
     points = points_at(world, look, wave, space.points, camera.spread, knowledge)
-    facing = room(space.answers, wave.size)[0].view(np.int32)
-    for number in range(len(look.lights)):
-        for v in range((wave.size + 15) // 16):
-            facing[v] = faces(points, look.lights[number], v)
-        add_light(points, look, number, facing, wave, points.light)
-    bring_home(wave, points.light, pixels.light)
-    see_normals(wave, points, pixels, buffers)
-    _put_planes(wave, points, look, pixels, count, buffers)
-    if knowledge.certify:
-        find_cells(knowledge.certified, points, wave.size)
-        record_cells(wave, points, pixels, buffers.cell)
+    find_cells(knowledge.certified, points, wave.size)
+    record_cells(wave, points, pixels, buffers.cell)

@@ -16,16 +16,16 @@ from numpy.typing import NDArray
 from tracer.culling.answers import ANSWER_ROWS, answers_in
 from tracer.culling.certified.lookup import Wanted, find_cells, seek, want
 from tracer.culling.shadow import RAYS, SHADOW_COUNTERS, shadow_testing
-from tracer.geometry.memory import borrowed, pointer
+from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
+from tracer.shading.blocks import ARRIVED, BLOCK, PLANE, SENT, UNSHADOWED, Planes, block_of, planes_at
 from tracer.shading.bounce import next_wave
-from tracer.shading.filling import ARRIVED, SENT, TURNS, UNSHADOWED, Planes, where
 from tracer.shading.phong import add_light
 from tracer.shading.places import sorted_by_place
 from tracer.shading.points import POINT_ROWS, points_at
-from tracer.shading.primary import ALL_LANES, block_at, blocks_of, keep_hits, primary_wave, recall_hits
+from tracer.shading.primary import block_at, blocks_of, keep_hits, primary_wave, recall_hits
 from tracer.shading.wave import WAVE_ROWS, bring_home, room, trace, without_misses
-from tracer.simd import any_lane, i32x16, select
+from tracer.simd import any_lane, f32_at, i32x16, select
 
 TILE = 64  # pixels on a side: more would make a few packets more coherent, but leave too little to share among threads
 
@@ -82,6 +82,7 @@ class Tile(NamedTuple):
 
 
 TILE_ROWS = 10
+NUMBERS = PLANE // 4  # of a plane
 TINY = np.float32(1e-6)  # of light: less of it cannot be divided into parts
 
 
@@ -98,7 +99,7 @@ def workspace() -> Workspace:
         rows(WAVE_ROWS, n),
         rows(POINT_ROWS, n),
         rows(ANSWER_ROWS, n),
-        rows(TILE_ROWS, TILE * TILE, np.float64),
+        rows(TILE_ROWS, n, np.float64),
     )
 
 
@@ -109,11 +110,11 @@ def tile_in(memory):
 
 
 @kernel
-def trace_primary(world, camera, tile, buffers, counts, space):
+def trace_primary(world, camera, tile, lanes, buffers, counts, space):
     """Primary rays of a tile (left, top, right, bottom): depth, primitive and barycentric weights into the buffers."""
     world, buffers, space = borrowed(world), borrowed(buffers), borrowed(space)
     place = tile_in(space.tile).place
-    wave = primary_wave(camera, tile, buffers.primitive.shape[1], ALL_LANES, space.wave, place)
+    wave = primary_wave(camera, tile, buffers.primitive.shape[1], lanes, space.wave, place)
     trace(world, wave, counts[PRIMARY:])
     counts[PRIMARY + RAYS] += wave.size
     keep_hits(wave, place, buffers)
@@ -219,20 +220,21 @@ def see_normals(wave, points, tile, buffers):
 @subkernel
 def _take_apart(tile, count, buffers):
     """What part of the unshadowed light of the pixels' surfaces has arrived, and what these mirrors and glass sent."""
-    planes, width = buffers.planes, buffers.primitive.shape[1]
-    values, plane = pointer(planes.values), TURNS * planes.columns
+    width = buffers.primitive.shape[1]
     for i in range(count):
-        at = where(planes, tile.place[i] % width, tile.place[i] // width)
+        x, y = tile.place[i] % width, tile.place[i] // width
+        row, column = block_of(x, y)
+        values = f32_at(planes_at(buffers.planes, row, column) + 4 * (y % BLOCK * BLOCK + x % BLOCK))
         for c in range(3):
-            unshadowed, local = values[at + plane * (UNSHADOWED + c)], np.float32(tile.local[c, i])
-            values[at + plane * (ARRIVED + c)] = local / unshadowed if unshadowed > TINY else np.float32(1)
-            values[at + plane * (SENT + c)] = np.float32(tile.light[c, i] - tile.local[c, i])
+            unshadowed, local = values[NUMBERS * (UNSHADOWED + c)], np.float32(tile.local[c, i])
+            values[NUMBERS * (ARRIVED + c)] = local / unshadowed if unshadowed > TINY else np.float32(1)
+            values[NUMBERS * (SENT + c)] = np.float32(tile.light[c, i] - tile.local[c, i])
 
 
 @kernel
 def shade_tile(world, look, camera, tile, lanes, depth, knowledge, buffers, counts, space):
-    """Shade a tile whose primary hits the buffers hold, with at most `depth` bounces: the pixels of each of its blocks
-    whose bits are set in `lanes`."""
+    """Shade a tile whose primary hits the buffers hold, with at most `depth` bounces: the pixels whose bits are set in
+    `lanes` (`primary_wave`)."""
     world, look, knowledge = borrowed(world), borrowed(look), borrowed(knowledge)
     buffers, space = borrowed(buffers), borrowed(space)
     pixels, spare = tile_in(space.tile), space.next

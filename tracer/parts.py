@@ -1,0 +1,126 @@
+"""Which pixels of a picture are shaded first, and what the others show until their turn comes.
+
+Each part of a picture is told in sixteenths of its pixels.  Of 1, 2, 4 or 16 each block of 4 x 4 pixels has
+as many, of a half every other block has one; what is over goes to the blocks whose pixels are the most in
+doubt (`tracer.shading.filling`): borders of shadows and reflections are shaded before what is even.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.parallel import for_each_chunk
+from tracer.shading.blocks import BAYER, EDGE, TURNS, Planes, all_blocks, blocks_in, lanes_of, pixels_of
+from tracer.shading.filling import fill_in, nearest
+
+LEVELS = (0.5, 1, 2, 4, TURNS)  # sixteenths that are the same for all blocks
+HALVES = 2 * TURNS  # steps of half a sixteenth in a whole picture
+FILLED = 8  # rows of blocks that a thread fills in at a time
+
+
+def level_of(part: float) -> float:
+    """The highest level in so many sixteenths."""
+    return max(level for level in LEVELS if level <= part)
+
+
+def after(first: int, part: float) -> int:
+    """What comes first in a picture that begins with so many sixteenths, where the last one began with `first`."""
+    step = int(2 * level_of(part))
+    return (first // step + 1) * step % HALVES
+
+
+class Parts:
+    """The pixels of a picture of this size that have been shaded: `shaded` (rows, columns) int32 has the bits of each
+    block, edges and all.  `first`, a number of half sixteenths, says which come first (`after`); spread is the width
+    of a pixel at distance 1."""
+
+    def __init__(self, width: int, height: int, planes: Planes, spread: float, first: int = 0) -> None:
+        self._width, self._height, self._planes, self._spread = width, height, planes, spread
+        self._first, self._odd = first // 2, first % 2
+        self.shaded = np.zeros(blocks_in(width, height), np.int32)
+        self._stale = all_blocks(width, height) > 0  # blocks that are to be filled in, or once more
+        self._doubt = np.zeros(self.shaded.shape, np.float32)
+        self._filled = np.empty((height, width, 3), np.float32)
+        self._given = False  # whether somebody has what is filled in, who may go on showing it
+
+    @property
+    def share(self) -> float:
+        """How much of the picture has been shaded, 0 to 1."""
+        inside = self.shaded[EDGE:-EDGE, EDGE:-EDGE]
+        return int(np.bitwise_count(inside).sum()) / (TURNS * inside.size)
+
+    def left_up_to(self, part: float, fill: Callable[[], None]) -> Iterator[NDArray[np.int32]]:
+        """The pixels of each block that are to be shaded until so many sixteenths are, in one step or in two, between
+        which `fill` has to fill in the others."""
+        level = level_of(part)
+        lanes = self._left(level)
+        if lanes.any():
+            yield self._take(lanes)
+        if part > level:
+            more = LEVELS[LEVELS.index(level) + 1]
+            fill()
+            yield self._take(self._most_in_doubt(self._left(more), (part - level) / (more - level)))
+
+    def _left(self, level: float) -> NDArray[np.int32]:
+        """What is left to shade before this level is reached."""
+        lanes = all_blocks(self._width, self._height, lanes_of(self._first, math.ceil(level)))
+        if level < 1:
+            rows, columns = np.indices(lanes.shape)
+            lanes[(rows + columns) % 2 != self._odd] = 0
+        return lanes & ~self.shaded
+
+    def _most_in_doubt(self, lanes: NDArray[np.int32], share: float) -> NDArray[np.int32]:
+        """Of these pixels, those of such a share of all blocks."""
+        inside = lanes[EDGE:-EDGE, EDGE:-EDGE]
+        had = 1.0 - np.count_nonzero(inside) / inside.size
+        count = round(max(share - had, 0.0) * inside.size)
+        doubt = np.where(lanes != 0, self._doubt, np.float32(-1)).reshape(-1)
+        chosen = np.zeros_like(lanes)
+        which = np.argpartition(-doubt, count)[:count]
+        chosen.reshape(-1)[which] = lanes.reshape(-1)[which]
+        return chosen
+
+    def _take(self, lanes: NDArray[np.int32]) -> NDArray[np.int32]:
+        self.shaded |= lanes
+        self._stale[1:-1, 1:-1] |= _with_neighbours(lanes != 0)
+        return lanes
+
+    def fill(
+        self, color: NDArray[np.float32], workers: int, cancel: Callable[[], bool] | None = None
+    ) -> NDArray[np.float32]:
+        """(height, width, 3): of color, alike, the pixels that have been shaded, the others filled in from them.
+
+        Raises Cancelled once `cancel()` turns true."""
+        if self._given:
+            self._filled, self._given = self._filled.copy(), False
+        rows = self.shaded.shape[0] - 2 * EDGE
+
+        def work(chunk: int, worker: int) -> None:
+            some = chunk * FILLED, min(rows, (chunk + 1) * FILLED)
+            fill_in(self._planes, self.shaded, self._stale, some, self._spread, color, self._filled, self._doubt)
+
+        for_each_chunk(work, -(-rows // FILLED), workers, cancel)
+        self._stale[:] = False
+        return self._filled
+
+    def give(self) -> NDArray[np.float32]:
+        """What has been filled in last; it stays as it is."""
+        self._given = True
+        return self._filled
+
+    def stretched(self, values: NDArray) -> NDArray:
+        """values (height, width, ...) of the pixels that have been shaded, those of the nearest at the others."""
+        y, x = np.argwhere(self._first == BAYER)[0]
+        known = pixels_of(self.shaded, self._width, self._height)
+        known = known.reshape(known.shape + (1,) * (values.ndim - 2))
+        return np.where(known, values, nearest(values, int(y), int(x)))
+
+
+def _with_neighbours(blocks: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Of blocks with edges, those inside that are meant, and those around them."""
+    rows = blocks[:-2] | blocks[1:-1] | blocks[2:]
+    return rows[:, :-2] | rows[:, 1:-1] | rows[:, 2:]
