@@ -47,6 +47,7 @@ from tracer.scene.model import (
     Triangles,
     empty_quadrics,
 )
+from tracer.shading.screen import to_screen
 from tracer.simd import f32_at, i32_at, load_i64
 
 _lock = threading.Lock()
@@ -150,7 +151,7 @@ def _frame(lights: int, accelerator: str) -> Iterator[str]:
         ("occlusion testing", frame.test_occlusion),
         ("surfaces", frame.see_surfaces),
         ("shading and shadow testing", frame.shade),
-        ("filling", frame.so_far),
+        ("filling", lambda: to_screen(frame.so_far().color.reshape(-1, 3), np.empty((16, 4), np.uint8))),
         ("mode setting", frame.set_modes),
     ):
         yield name

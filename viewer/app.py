@@ -63,7 +63,7 @@ class App:
             self.ui.tour.start()
         self._frame_began = time.perf_counter()
         self._capture_this_frame = False
-        self.drawn_by_processor = False
+        self.drawn_by_processor = self.iconified = False
         if problem:
             self.controller.say(problem, error=True)
 
@@ -133,8 +133,8 @@ class App:
             self.params.imgui_window_params.background_color = palette.BACKGROUND
 
     def _room_for_picture(self) -> tuple[int, int]:
-        window = glfw_utils.glfw_window_hello_imgui()
-        if glfw.get_window_attrib(window, glfw.ICONIFIED) or 0 in glfw.get_framebuffer_size(window):
+        size = imgui.get_io().display_size
+        if self.iconified or min(size.x, size.y) < 1:
             return 0, 0
         return self.ui.picture_area
 
@@ -245,6 +245,7 @@ class App:
         self.controller.wake = hello_imgui.request_refresh
         window = glfw_utils.glfw_window_hello_imgui()
         glfw.set_window_close_callback(window, self._close_wanted)
+        glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
         opener = self.controller.opener
         opener.start(self.scene_path)
@@ -255,6 +256,9 @@ class App:
         """The window's close button, or the desktop: the same as the command."""
         glfw.set_window_should_close(window, False)
         self.ui.guard.step("Quitting", self.ui.request_exit)
+
+    def _iconify(self, _window: Any, iconified: int) -> None:
+        self.iconified = bool(iconified)
 
     def _dropped(self, _window: Any, paths: list[str]) -> None:
         self.ui.dropped = [Path(p) for p in paths]

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.modes import OcclusionMode, has_shadow_mode
+from tracer.shading.screen import to_screen
 from viewer.resources import shader_source
 from viewer.views import (
     BACKGROUND,
@@ -195,7 +196,7 @@ class Display:
             self._mark_wrong(look.magnified)
         assert self._frame is not None
         if look.plain:
-            target.color_attachments[0].write(_bytes(self._frame.color), alignment=1)
+            target.color_attachments[0].write(_on_screen(self._frame.color), alignment=1)
         else:
             self._render_into(target, look)
         filtering = moderngl.LINEAR if look.smooth and look.view in _PICTURES else moderngl.NEAREST
@@ -337,12 +338,10 @@ class Display:
             raise DisplayError(f"{size[0]} x {size[1]} is too large for this GPU, which takes {most} pixels a side")
 
 
-def _bytes(color: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """Colours (height, width, 3) as a target holds them, (height, width, 4), opaque."""
-    scaled = np.clip(color, 0.0, 1.0)
-    scaled *= np.float32(255)
-    pixels = np.full((*color.shape[:2], 4), 255, np.uint8)
-    pixels[..., :3] = np.rint(scaled, out=scaled)
+def _on_screen(color: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Colours (height, width, 3) as a target holds them, (height, width, 4)."""
+    pixels = np.empty((*color.shape[:2], 4), np.uint8)
+    to_screen(np.ascontiguousarray(color, np.float32).reshape(-1, 3), pixels.reshape(-1, 4))
     return pixels
 
 

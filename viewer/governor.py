@@ -20,7 +20,7 @@ from tracer.statistics import FrameStatistics
 
 PARTS = (16, 12, 8, 6, 4, 2, 1, 0.5)  # sixteenths of the pixels that the first picture may have
 LARGEST_DIVISOR = 8
-SPARE = 0.8  # of a frame's time that a finer step may take
+SPARE = 0.95  # of a frame's time that a finer step may take
 LENIENCE = 1.25  # how much longer than it should a frame may take before the resolution falls
 SOON = 0.3  # seconds that a whole picture may take without a part of it being shown, where nothing moves
 SHOWN_AGAIN = 0.5  # seconds that it takes at least until a picture that becomes whole is shown again

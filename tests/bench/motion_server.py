@@ -200,7 +200,7 @@ def main() -> int:
     app = App(Path(path))
     app.controller.tracing.governor = WAYS[way]()
     app.controller.change(samples=1)
-    app.controller.preferences.tour = False
+    app.ui.tour.end()
     width, height = (int(side) for side in window.split("x"))
     geometry = app.params.app_window_params
     geometry.window_geometry.size, geometry.restore_previous_geometry = (width, height), False
