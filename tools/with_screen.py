@@ -106,7 +106,7 @@ def start_screen() -> tuple[subprocess.Popen, str] | None:
 
 def main() -> int:
     command = sys.argv[1:]
-    if not command:
+    if not command or command[0] in ("-h", "--help"):
         print(__doc__, file=sys.stderr)
         return 2
     environment = dict(os.environ)

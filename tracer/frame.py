@@ -22,8 +22,9 @@ class Settings:
     """How to render.  Sizes in pixels; depth is the most bounces; threads 0 means all cores.
 
     `method` is "none", "paper" or "cells", which is the paper's with cells of large triangles for primitives
-    (`tracer.culling.cells`); `symmetric` and `zoom_factor` belong to the latter two (§2.3, §2.6).
-    "auto" is whichever of "none" and "certified" it measures to be quicker (`tracer.investor`).
+    (`tracer.culling.cells`); `symmetric` and `zoom_factor` belong to the latter two (§2.3, §2.6).  "certified"
+    culls by what is proven of cells (`tracer.culling.certified`), and "auto" is whichever of "none" and "certified"
+    it measures to be quicker (`tracer.investor`).
     `verify` traces each culled answer too, counts the wrong ones, and fills Frame.reference and
     Frame.wrong.  `samples` rays a pixel are averaged; all modes and statistics are those of the
     first, through the pixel's centre.
@@ -74,7 +75,7 @@ class Settings:
             (1 <= self.samples <= 4096, "samples lie in 1 to 4096"),
             (0 <= self.threads <= 1024, "threads lie in 0 to 1024"),
             (
-                min(self.certificates, self.certificate_seconds, self.certificate_memory) >= 0,
+                all(budget >= 0 for budget in (self.certificates, self.certificate_seconds, self.certificate_memory)),
                 "budgets of certificates are 0 or more",
             ),
         )

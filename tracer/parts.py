@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.parallel import for_each_chunk
-from tracer.shading.blocks import BAYER, EDGE, TURNS, Planes, all_blocks, blocks_in, lanes_of, pixels_of
+from tracer.shading.blocks import BAYER, BLOCK, EDGE, TURNS, Planes, all_blocks, blocks_in, lanes_of, pixels_of
 from tracer.shading.filling import fill_in, nearest
 
 LEVELS = (0.5, 1, 2, 4, TURNS)  # sixteenths that are the same for all blocks
 HALVES = 2 * TURNS  # steps of half a sixteenth in a whole picture
-FILLED = 8  # rows of blocks that a thread fills in at a time
+FILLED = 4  # rows of blocks that a thread fills in at a time
 
 
 def level_of(part: float) -> float:
@@ -28,7 +28,7 @@ def level_of(part: float) -> float:
 
 
 def after(first: int, part: float) -> int:
-    """What comes first in a picture that begins with so many sixteenths, where the last one began with `first`."""
+    """What comes first in the next picture, if that begins with so many sixteenths: the last one began with `first`."""
     step = int(2 * level_of(part))
     return (first // step + 1) * step % HALVES
 
@@ -49,7 +49,7 @@ class Parts:
 
     @property
     def share(self) -> float:
-        """How much of the picture has been shaded, 0 to 1."""
+        """How much of the picture has been shaded, 0 to 1; blocks that its border cuts count as whole."""
         inside = self.shaded[EDGE:-EDGE, EDGE:-EDGE]
         return int(np.bitwise_count(inside).sum()) / (TURNS * inside.size)
 
@@ -63,7 +63,7 @@ class Parts:
         if part > level:
             more = LEVELS[LEVELS.index(level) + 1]
             fill()
-            yield self._take(self._most_in_doubt(self._left(more), (part - level) / (more - level)))
+            yield self._take(self._most_in_doubt(self._left(more), part))
 
     def _left(self, level: float) -> NDArray[np.int32]:
         """What is left to shade before this level is reached."""
@@ -73,14 +73,14 @@ class Parts:
             lanes[(rows + columns) % 2 != self._odd] = 0
         return lanes & ~self.shaded
 
-    def _most_in_doubt(self, lanes: NDArray[np.int32], share: float) -> NDArray[np.int32]:
-        """Of these pixels, those of such a share of all blocks."""
-        inside = lanes[EDGE:-EDGE, EDGE:-EDGE]
-        had = 1.0 - np.count_nonzero(inside) / inside.size
-        count = round(max(share - had, 0.0) * inside.size)
+    def _most_in_doubt(self, lanes: NDArray[np.int32], part: float) -> NDArray[np.int32]:
+        """Of these pixels, those of as many blocks as make so many sixteenths with what is shaded already."""
+        pixels, blocks = int(np.bitwise_count(lanes).sum()), np.count_nonzero(lanes)
+        missing = (part - TURNS * self.share) * lanes[EDGE:-EDGE, EDGE:-EDGE].size
+        count = min(max(round(missing * blocks / max(pixels, 1)), 0), blocks)
         doubt = np.where(lanes != 0, self._doubt, np.float32(-1)).reshape(-1)
         chosen = np.zeros_like(lanes)
-        which = np.argpartition(-doubt, count)[:count]
+        which = np.argsort(-doubt, kind="stable")[:count]
         chosen.reshape(-1)[which] = lanes.reshape(-1)[which]
         return chosen
 
@@ -95,6 +95,8 @@ class Parts:
         """(height, width, 3): of color, alike, the pixels that have been shaded, the others filled in from them.
 
         Raises Cancelled once `cancel()` turns true."""
+        if not self._stale.any():
+            return self._filled
         if self._given:
             self._filled, self._given = self._filled.copy(), False
         rows = self.shaded.shape[0] - 2 * EDGE
@@ -114,10 +116,14 @@ class Parts:
 
     def stretched(self, values: NDArray) -> NDArray:
         """values (height, width, ...) of the pixels that have been shaded, those of the nearest at the others."""
-        y, x = np.argwhere(self._first == BAYER)[0]
         known = pixels_of(self.shaded, self._width, self._height)
+        y, x = np.argwhere(self._first == BAYER)[0]
+        rows, columns = np.ix_(nearest(self._height, int(y)), nearest(self._width, int(x)))
+        if self._width > BLOCK:  # every other block may have none: then what the one beside it has
+            beside = np.where(columns + BLOCK < self._width, columns + BLOCK, columns - BLOCK)
+            columns = np.where(known[rows, columns], columns, beside)
         known = known.reshape(known.shape + (1,) * (values.ndim - 2))
-        return np.where(known, values, nearest(values, int(y), int(x)))
+        return np.where(known, values, values[rows, columns])
 
 
 def _with_neighbours(blocks: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -51,6 +51,7 @@ from tracer.shading.whitted import (
 from tracer.statistics import gather
 
 FEW = 4  # pixels of each block, at most, that are shaded in larger tiles
+EACH = 3  # larger tiles, at least, for each thread
 GOLDEN = 0.618033988749895  # steps of it visit all tiles evenly
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
@@ -561,10 +562,14 @@ class UnfinishedFrame:
     ) -> None:
         placed, look, depth = self._renderer.world.placed, self._renderer._look, self._settings.depth
         spaces, wanted = self._spaces, self._wanted
+        if not first and self._certificates is not None:  # what further samples want is forgotten
+            wanted = self._certificates.wanted(len(self._tiles))
         told = [Wanted(*(a[tile] for a in wanted)) if len(wanted.key) else wanted for tile in range(len(self._tiles))]
 
-        # Of larger tiles where few of their pixels are shaded, lest packets of rays remain half empty.
-        side = TILE if int(np.bitwise_count(lanes).sum()) > FEW * lanes.size else 2 * TILE
+        # Of larger tiles where few of their pixels are shaded, lest packets of rays remain half empty, unless there are
+        # too few for all threads.
+        few = int(np.bitwise_count(lanes).sum()) <= FEW * np.count_nonzero(lanes)
+        side = 2 * TILE if few and len(self._tiles) >= 4 * EACH * self._workers else TILE
         tried = self._tried(side) if first and not self._begun else frozenset()
 
         def work(number: int, tile: tuple[int, int, int, int], worker: int) -> None:

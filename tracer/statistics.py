@@ -50,9 +50,9 @@ class FrameStatistics:
     """Counters and times of one frame; `phases` are seconds by the names of Figure 1's steps.
 
     `by_modes` is what modes, as the last frame left them, say of the shadow rays of each light that has modes; nothing
-    where none are kept.  `certificates` is how many were made after it, with so many steps through a tree and tests of
-    triangles.  `part` is the part of the pixels that were shaded: below 1, shadow and secondary rays are those of that
-    part alone.  `decision` is what the method `auto` does now, and why, in a sentence."""
+    where none are kept.  `certificates` is how many were made before it was shaded, with so many steps through a tree
+    and tests of triangles.  `part` is the part of the pixels that were shaded: below 1, shadow and secondary rays are
+    those of that part alone.  `decision` is what the method `auto` does now, and why, in a sentence."""
 
     primary: RayCounts = field(default_factory=RayCounts)
     secondary: RayCounts = field(default_factory=RayCounts)

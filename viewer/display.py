@@ -167,7 +167,7 @@ class Display:
         What failed is not tried again, and the target keeps what it showed, until another frame or look is asked for.
         Raises ValueError for a view of verified frames, or of work that was recorded, where the frame is none, and
         DisplayError for what is too much for the GPU."""
-        wanted = (self._serial, look)
+        wanted = self._in_look(look)
         if self._frame is None or wanted in (self._drawn, self._failed):
             return
         self._failed = wanted
@@ -218,7 +218,11 @@ class Display:
 
     def drawn(self, look: Look) -> bool:
         """Whether the target shows the frame in this look."""
-        return self._drawn == (self._serial, look)
+        return self._drawn == self._in_look(look)
+
+    def _in_look(self, look: Look) -> tuple[int, Look]:
+        """The frame and all that counts of a look: little of one that shows the picture as it was traced."""
+        return self._serial, Look(smooth=look.smooth) if look.plain else look
 
     def read(self) -> NDArray[np.uint8]:
         """The drawn view, (height, width, 3) uint8, row 0 at the top."""

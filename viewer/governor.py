@@ -21,13 +21,14 @@ from tracer.statistics import FrameStatistics
 PARTS = (16, 12, 8, 6, 4, 2, 1, 0.5)  # sixteenths of the pixels that the first picture may have
 LARGEST_DIVISOR = 8
 SPARE = 0.95  # of a frame's time that a finer step may take
-LENIENCE = 1.25  # how much longer than it should a frame may take before the resolution falls
+# How much longer than it should what comes before shading may take before the resolution falls, and rises again.
+LENIENCE, REGAINED = 1.75, 1.25
 SOON = 0.3  # seconds that a whole picture may take without a part of it being shown, where nothing moves
 SHOWN_AGAIN = 0.5  # seconds that it takes at least until a picture that becomes whole is shown again
 KEPT, FORGETTING = 24, 0.8  # observations, and what each counts against the one after it
 TRUST = 0.05  # in how costs were divided before, against all that was observed
 SMOOTHING = 0.4
-RAYS, SHADING = ("primary", "surfaces", "filling"), ("shading",)
+PRIMARY, UNSHADED, SHADING = ("primary",), ("surfaces", "filling"), ("shading",)
 BESIDE = ("place", "certification")
 
 
@@ -80,7 +81,8 @@ class Governor:
 
     def forget(self) -> None:
         """Another scene costs something else."""
-        self._rays, self._shading, self._beside = Cost(4e-3, 6e-8), Cost(5e-3, 6e-7), 0.0
+        self._primary, self._unshaded, self._shading = Cost(3e-3, 3e-8), Cost(1e-3, 3e-8), Cost(5e-3, 6e-7)
+        self._beside = 0.0
         self._finest = 0.0  # pixels that the last plan shaded
         self._known, self._last_divisor = False, 1
 
@@ -89,16 +91,21 @@ class Governor:
         phases = statistics.phases
         if pixels <= 0 or "shading" not in phases:
             return
+        self._primary.observe(pixels, _sum(phases, PRIMARY))
         if "surfaces" in phases:  # else it was whole at once, without what parts need
-            self._rays.observe(pixels, sum(phases.get(name, 0.0) for name in RAYS))
-        self._shading.observe(pixels * statistics.part, sum(phases[name] for name in SHADING))
-        beside = sum(phases.get(name, 0.0) for name in BESIDE)
+            self._unshaded.observe(pixels, _sum(phases, UNSHADED))
+        self._shading.observe(pixels * statistics.part, _sum(phases, SHADING))
+        beside = _sum(phases, BESIDE)
         self._beside = self._beside + SMOOTHING * (beside - self._beside) if self._known else beside
         self._known = True
 
     def seconds(self, pixels: float, part: float) -> float:
         """What a picture of so many pixels takes until it is shown with so many sixteenths of them shaded."""
-        return self._beside + self._rays(pixels) + self._shading(pixels * part / TURNS)
+        return self._unavoidable(pixels, part) + self._shading(pixels * part / TURNS)
+
+    def _unavoidable(self, pixels: float, part: float = 0.0) -> float:
+        """What it takes before anything is shaded; nothing is filled in where all is."""
+        return self._beside + self._primary(pixels) + (self._unshaded(pixels) if part < TURNS else 0.0)
 
     def plan(self, width: int, height: int, seconds: float, coarse: bool = True, playing: bool = True) -> Plan:
         """How to begin a picture that is to be shown so many seconds later, and how to go on; at full resolution unless
@@ -118,8 +125,8 @@ class Governor:
         """The finest resolution whose primary rays fit into so many seconds."""
         for divisor in range(1, LARGEST_DIVISOR):
             w, h = divided(width, height, divisor)
-            limit = LENIENCE * seconds if divisor >= self._last_divisor else seconds
-            if self._beside + self._rays(w * h) <= limit:
+            limit = (LENIENCE if divisor >= self._last_divisor else REGAINED) * seconds
+            if self._unavoidable(w * h) <= limit:
                 break
         else:
             divisor = LARGEST_DIVISOR
@@ -134,6 +141,10 @@ class Governor:
             if more == TURNS or self._shading(pixels * (more - parts[-1]) / TURNS) > SHOWN_AGAIN:
                 parts.append(more)
         return tuple(parts)
+
+
+def _sum(phases: dict[str, float], names: tuple[str, ...]) -> float:
+    return sum(phases.get(name, 0.0) for name in names)
 
 
 def divided(width: int, height: int, divisor: int) -> tuple[int, int]:

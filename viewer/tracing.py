@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 from tracer.frame import Frame, Settings
 from tracer.method import base_of, certifies
-from tracer.shading.blocks import TURNS
 from viewer.governor import AT_ONCE, Governor, Plan, divided
 from viewer.methods import with_base
 from viewer.render_thread import RenderRequest, Traced
@@ -32,6 +31,7 @@ class Tracing:
     def __init__(self, controller: Controller, governor: Governor | None = None) -> None:
         self._c = controller
         self.traced: Traced | None = None
+        self._known: Frame | None = None  # the last that was whole and of the window's resolution
         self.governor = governor or Governor()
         self._serial = 0
         self._considered: RenderRequest | None = None  # the whole picture that was last learnt from
@@ -49,7 +49,7 @@ class Tracing:
 
     def forget(self) -> None:
         """Another scene: it has no frame yet, and its pixels cost something else."""
-        self.traced = self._asked = self._settled = self._considered = None
+        self.traced = self._known = self._asked = self._settled = self._considered = None
         self._new = True
         self.governor.forget()
 
@@ -57,7 +57,7 @@ class Tracing:
         """Trace what was traced last once more."""
         self._serial += 1
         if modes_are_lost:
-            self._settled = None
+            self._settled = self._known = None
 
     def reconsider(self) -> None:
         """What is there may teach more than was wanted of it so far."""
@@ -81,7 +81,23 @@ class Tracing:
             self._glance = False
             if not traced.request.patience:  # else it took its time for certificates, not for its pixels
                 self.governor.observe(traced.first, traced.frame.width * traced.frame.height)
-        self.traced = traced
+        self.traced = self._with_modes(traced)
+        return self.traced
+
+    def _with_modes(self, traced: Traced) -> Traced:
+        """Modes are those of a resolution: what is coarser than the window shows what its last whole picture knew."""
+        frame, known = traced.frame, self._known
+        if traced.request.divisor == 1:
+            self._known = frame if traced.whole else known
+        elif known is not None and known.settings.keeps_modes and len(known.modes) == len(frame.modes):
+            frame = replace(
+                frame,
+                modes=known.modes,
+                pixel_count=known.pixel_count,
+                highest_count=known.highest_count,
+                statistics=replace(frame.statistics, by_modes=known.statistics.by_modes),
+            )
+            return replace(traced, frame=frame)
         return traced
 
     def _settle(self) -> None:
@@ -137,10 +153,10 @@ class Tracing:
         c.render.submit(wanted)
 
     def _make_final(self, wanted: RenderRequest) -> None:
-        """What is asked for twice in a row is where a motion ended, or rests: it comes before what is on its way."""
-        asked, quick = self._asked, wanted.parts[0] < TURNS
-        if asked is not None and wanted == asked and not asked.final and not self._c.session.playing:
-            self._asked = replace(wanted, quick=quick, final=True)
+        """What was asked for in motion and is still wanted when nothing moves comes before what is on its way."""
+        asked = self._asked
+        if asked is not None and wanted == asked and not wanted.quick and not asked.final:
+            self._asked = replace(wanted, final=True)
             self._c.render.hurry(self._asked)
 
     def _plan(self, width: int, height: int, coarse: bool) -> Plan:

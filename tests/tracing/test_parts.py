@@ -15,7 +15,7 @@ from tests.tracing.worlds import quad, quadrics, scene
 from tracer.geometry.world import ACCELERATORS
 from tracer.investor import Investor
 from tracer.parts import HALVES, LEVELS, Parts, after
-from tracer.scene.model import SPHERE, Camera, Cancelled, Material
+from tracer.scene.model import SPHERE, Camera, Cancelled, Material, Texture
 from tracer.shading.blocks import BAYER, EDGE, TURNS, all_blocks, lanes_of, make_planes, pixels_of
 from tracer.shading.filling import nearest
 
@@ -166,17 +166,51 @@ def test_what_is_left_over_goes_where_it_is_in_doubt():
 def test_what_is_recorded_stretches_to_the_nearest():
     for height, width in ((9, 10), (8, 12), (5, 4)):
         numbers = np.arange(height * width).reshape(height, width)
-        found = nearest(numbers, 0, 0)
+        found = numbers[np.ix_(nearest(height, 0), nearest(width, 0))]
         assert ((found // width % 4 == 0) & (found % width % 4 == 0)).all(), "all are of pixels that are known"
         assert found[0, 0] == 0 and found[4, 3] == 4 * width
-        found = nearest(numbers, 3, 1)
-        assert (found // width == np.minimum(np.arange(height) // 4 * 4 + 3, (height - 4) // 4 * 4 + 3)[:, None]).all()
+        assert nearest(height, 3).tolist() == [min(i // 4 * 4 + 3, (height - 4) // 4 * 4 + 3) for i in range(height)]
         parts = Parts(width, height, make_planes(width, height), 0.01)
         for part in (1, TURNS):
             for _ in parts.left_up_to(part, lambda: None):
                 stretched = parts.stretched(numbers[..., None])[..., 0]
-                assert (stretched == (nearest(numbers, 0, 0) if part == 1 else numbers)).all()
+                assert (stretched == (found if part == 1 else numbers)).all()
     assert parts.share == 1.0 and (parts.shaded[EDGE:-EDGE, EDGE:-EDGE] == 0xFFFF).all()
+
+
+@pytest.mark.parametrize("first", [0, 1, 7, 30])
+def test_of_a_half_of_the_blocks_what_is_recorded_reaches_the_others(first: int):
+    parts = Parts(37, 22, make_planes(37, 22), 0.01, first)
+    lanes = next(parts.left_up_to(0.5, lambda: None))
+    known = pixels_of(lanes, 37, 22)
+    assert 0.02 < known.mean() < 0.045
+    stretched = parts.stretched(known.astype(int))
+    assert (stretched[:20, :36] == 1).all(), "of whole blocks"
+
+
+def test_a_part_between_two_levels_has_as_many_pixels_as_it_says():
+    for part in (0.75, 1.5, 3.0, 9.0):
+        parts = Parts(80, 64, make_planes(80, 64), 0.01)
+        for _ in parts.left_up_to(part, lambda: None):
+            pass
+        assert parts.share == pytest.approx(part / TURNS, abs=0.003)
+
+
+def test_what_is_black_says_nothing_of_the_light_around_it():
+    """A checkered floor in deep shadow: black texels would call themselves lit, as none of their light is missing."""
+    floor = quad((-20, -20, 0), (20, -20, 0), (20, 20, 0), (-20, 20, 0))
+    roof = quad((-40, -40, 9), (40, -40, 9), (40, 40, 9), (-40, 40, 9))
+    pixels = np.zeros((64, 64, 3), np.uint8)
+    pixels[(np.indices((64, 64)).sum(axis=0) // 2) % 2 == 0] = 255
+    camera = Camera((0.0, 0.0, 8.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0), 60.0)
+    white = Material("white", ambient=(0.1, 0.1, 0.1), diffuse=(1.0, 1.0, 1.0))
+    world = scene(
+        floor + roof, lights=[(4, 3, 30)], camera=camera, materials=(white,), textures=(Texture("checks", pixels),)
+    )
+    world.objects[0].triangles.texture[:2] = 0
+    world.objects[0].triangles.uvs[:2] = world.objects[0].triangles.corners[:2, :, :2] / 8.0
+    first, whole = tracer.Renderer(world, replace(SETTINGS, method="none", width=96, height=96)).refine(parts=(1, 16))
+    assert whole.color.max() > 0.05 and np.abs(first.color - whole.color).max() < 1e-3
 
 
 @pytest.mark.parametrize("parts", [(), (0, 16), (0.4, 16), (4, 4, 16), (4, 8), (16, 4)])

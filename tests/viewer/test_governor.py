@@ -13,7 +13,8 @@ FIXED, RAY, PIXEL = 5e-3, 1e-7, 1e-6
 
 def frame(pixels: int, part: float, beside: float = 0.0, slower: float = 1.0) -> FrameStatistics:
     """What a frame of a machine with these costs tells."""
-    phases = {"place": beside, "primary": slower * FIXED / 2, "surfaces": slower * RAY * pixels,
+    phases = {"place": beside, "primary": slower * (FIXED / 2 + RAY / 2 * pixels),
+              "surfaces": slower * RAY / 2 * pixels,
               "shading": slower * (FIXED / 2 + PIXEL * pixels * part / 16)}  # fmt: skip
     return FrameStatistics(part=part / 16, phases=phases)
 
@@ -68,6 +69,17 @@ def test_the_most_that_fits_is_shaded_and_only_then_the_resolution_falls(seconds
     plan = governor.plan(800, 500, seconds)
     assert (plan.parts[0], plan.divisor) == (part, divisor)
     assert plan.parts[-1] == 16 and list(plan.parts) == sorted(set(plan.parts))
+
+
+def test_what_was_whole_at_once_teaches_what_its_primary_rays_cost():
+    """Else a view that became dear would never be shaded in parts again."""
+    governor, dear = taught(*(frame(300_000, part, slower=0.1) for part in (1, 16) * 3)), FrameStatistics(part=1.0)
+    assert governor.plan(640, 480, 0.05).parts == (16,)
+    dear.phases = {"primary": 0.15, "shading": 0.01}
+    for _ in range(20):
+        governor.observe(dear, 640 * 480)
+    assert governor.plan(640, 480, 0.05).divisor > 1
+    assert governor.plan(640, 480, 0.05, coarse=False, playing=False).parts == (16,), "0.16 s do not take long"
 
 
 def test_steps_on_the_way_to_the_whole_are_worth_showing():

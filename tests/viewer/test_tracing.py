@@ -1,15 +1,22 @@
-"""What is asked of the render thread at rest: how many frames more, and when no more."""
+"""What is asked of the render thread, at rest and in motion: how many frames more, in which order, with which modes."""
 
 from __future__ import annotations
 
+import time
+from dataclasses import replace
+from itertools import count
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
+from tests.viewer.fakes import FakeRenderer, make_frame, make_scene
 from tracer.frame import Settings
-from tracer.scene.model import Camera
+from tracer.scene.model import Camera, Cancelled
 from tracer.statistics import FrameStatistics
+from viewer.controller import Controller
+from viewer.preferences import Preferences
 from viewer.render_thread import RenderRequest, Traced
 from viewer.tracing import LESSONS, Tracing
 from viewer.views import View
@@ -63,3 +70,61 @@ def test_at_rest_frames_follow_as_long_as_there_is_something_to_learn(method: st
     assert desk.frames(made, method=method) == 1, "nothing is learnt twice"
     elsewhere = Camera((1.0, 0.0, 0.0), CAMERA.direction, CAMERA.up)
     assert desk.frames(made, elsewhere, method=method) == frames, "another view"
+
+
+def _traced(divisor: int, modes: list[int], part: float = 1.0) -> Traced:
+    frame = make_frame(Settings(16 // divisor, 8 // divisor))
+    statistics = replace(frame.statistics, part=part)
+    frame = replace(frame, modes=np.array(modes, np.uint32), settings=replace(frame.settings, modes=True))
+    settings = replace(frame.settings, width=frame.width, height=frame.height)
+    return Traced(RenderRequest(0.0, CAMERA, settings, divisor), replace(frame, statistics=statistics), statistics)
+
+
+def test_a_coarser_picture_shows_the_modes_of_the_last_whole_one():
+    """Those of its own resolution know little of what the user has been looking at."""
+    desk = Desk()
+    for traced, shown in (
+        (_traced(2, [0, 0, 1]), [0, 0, 1]),
+        (_traced(1, [5, 6, 7]), [5, 6, 7]),
+        (_traced(1, [5, 6, 9], part=0.25), [5, 6, 9]),
+        (_traced(2, [0, 0, 1], part=0.25), [5, 6, 7]),
+        (_traced(2, [0, 0]), [0, 0]),
+    ):
+        desk._next = traced
+        assert desk.tracing.take().frame.modes.tolist() == shown
+        assert desk.tracing.frame.modes.tolist() == shown
+    desk.tracing.again(modes_are_lost=True)
+    desk._next = _traced(2, [0, 0, 1])
+    assert desk.tracing.take().frame.modes.tolist() == [0, 0, 1]
+
+
+def test_a_hand_that_falters_starves_no_picture():
+    """While something moves, each picture that has begun is shown, however often the camera stands still in between."""
+    controller, renderer = Controller(Preferences(dynamic_resolution=False, samples=1)), FakeRenderer()
+    controller.show(make_scene(), renderer, {})
+    trace, size = renderer.refine, (16, 8)
+
+    def slow(time_: float, camera: Camera | None = None, cancel: Any = None, *rest: Any) -> Any:
+        end = time.monotonic() + 0.06
+        while time.monotonic() < end:
+            if cancel():
+                raise Cancelled
+            time.sleep(0.002)
+        yield from trace(time_, camera, cancel, *rest)
+
+    renderer.refine = slow  # type: ignore[method-assign]
+    shown, end = set(), time.monotonic() + 1.0
+    try:
+        for step in count():
+            if time.monotonic() > end:
+                break
+            if step % 2:
+                x = 0.001 * step
+                controller.move(replace(controller.session.camera, position=(x, 0.0, 0.0)))
+            controller.tick(size)
+            if controller.traced is not None:
+                shown.add(controller.traced.request.camera)
+            time.sleep(0.016)
+        assert len(shown) >= 5
+    finally:
+        assert controller.close()

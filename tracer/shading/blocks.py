@@ -24,9 +24,9 @@ TURNS = BLOCK * BLOCK
 BAYER = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]])
 
 # Planes of a block, one number of each of its pixels: the surface's number, as the bits of int32 (MISS for none); its
-# normal; where it is, seen from the eye; the local light it has where nothing is in the way; what part of that
-# arrives; and what mirrors and glass send besides.
-SURFACE, NORMAL, POSITION, UNSHADOWED, ARRIVED, SENT, PLANES = 0, 1, 4, 7, 10, 13, 16
+# normal; where it is, seen from the eye; the local light it has where nothing is in the way; of those that have been
+# shaded, what arrives of that, and what mirrors and glass send besides.
+SURFACE, NORMAL, POSITION, UNSHADOWED, LOCAL, SENT, PLANES = 0, 1, 4, 7, 10, 13, 16
 PLANE = 4 * TURNS  # bytes
 
 

@@ -1,9 +1,9 @@
 """Pixels that are not shaded yet, filled in from those that are, and where that is the least to be trusted.
 
 A pixel whose turn has not come asks the shaded pixels of its block and of the eight around it which part
-of their unshadowed light arrives there and what they get by reflection and refraction, and believes those
-the most that are near and lie on the same surface: the same material and object, normals alike, in one plane
-(the guides of a joint bilateral filter, Eisemann and Durand 2004).  Its own light, texture and highlight
+of their unshadowed light, all taken together, arrives and what they get by reflection and refraction,
+and believes those the most that are near and lie on the same surface: the same material and object, normals alike, in
+one plane (the guides of a joint bilateral filter, Eisemann and Durand 2004).  Its own light, texture and highlight
 are exact; what is soft are borders of shadows, and reflections.
 
 Where those that it asks disagree, or none of them lies on its surface, a pixel is in doubt, and so is its
@@ -19,9 +19,9 @@ from tracer.geometry.memory import borrowed
 from tracer.geometry.rays import MISS
 from tracer.kernels import inlined, kernel
 from tracer.shading.blocks import (
-    ARRIVED,
     BLOCK,
     EDGE,
+    LOCAL,
     NORMAL,
     PLANE,
     POSITION,
@@ -57,6 +57,7 @@ LEAST = 2e-3  # a weight that is too small to ask for
 STRANGER = np.float32(1e-3)  # what the word of another surface is worth
 UNSEEN = np.float32(0.5)  # how much a pixel is in doubt of whose surface nothing is known
 DARKNESS = np.float32(0.3)  # light against which differences count: of darker places less is seen
+TINY = np.float32(1e-6)  # of light: less of it cannot be divided into parts
 ZERO, ONE = np.float32(0), np.float32(1)
 
 
@@ -95,15 +96,8 @@ def fill_in(
     _fill(planes, shaded, wanted, *rows, np.float32((4.0 * spread) ** 2), WEIGHTS, ASKED, color, filled, doubt)
 
 
-def nearest(values: NDArray, y: int, x: int) -> NDArray:
-    """values (height, width, ...) of which those in row y and column x of each block are known: at each pixel, what is
-    known the nearest to it."""
-    rows, columns = (_nearest(size, place) for size, place in zip(values.shape, (y, x), strict=False))
-    return values[np.ix_(rows, columns)]
-
-
-def _nearest(size: int, place: int) -> NDArray[np.intp]:
-    """For each of so many pixels in a row the nearest that has this place in its block."""
+def nearest(size: int, place: int) -> NDArray[np.intp]:
+    """For each of so many pixels in a row the nearest inside that has this place in its block."""
     if place >= size:
         return np.full(size, size - 1)
     return np.minimum(np.arange(size) // BLOCK * BLOCK + place, (size - 1 - place) // BLOCK * BLOCK + place)
@@ -137,13 +131,21 @@ def _likeness(normal, position, flatness, pixel):
 
 
 @inlined
+def _part(local, unshadowed, otherwise):
+    """Which part of the light arrives; of what is black in this colour nobody can tell."""
+    shines = unshadowed > TINY
+    return select(shines, local / select(shines, unshadowed, f32x16(ONE)), otherwise)
+
+
+@inlined
 def _filled(planes, shaded, row, column, foot, weights, asked):
     """The light of a block's sixteen pixels, and how much each is in doubt."""
     block, count = planes_at(planes, row, column), ones(np.int64(shaded[row, column]))
     surface, normal, p = as_i32(_plane(block, SURFACE)), _three(block, NORMAL), _three(block, POSITION)
     full = _three(block, UNSHADOWED)
     flatness = ONE / ((p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) * foot + np.float32(1e-30))
-    total = known = mean = square = a0 = a1 = a2 = s0 = s1 = s2 = f32x16(ZERO)
+    bright = full[0] + full[1] + full[2]
+    total = known = mean = square = l0 = l1 = l2 = u0 = u1 = u2 = s0 = s1 = s2 = f32x16(ZERO)
     for n in range(AROUND):
         r, c = row + n // 3 - 1, column + n % 3 - 1
         there = np.int64(shaded[r, c]) & asked[count, n]
@@ -158,21 +160,25 @@ def _filled(planes, shaded, row, column, foot, weights, asked):
             near = load_f32x16(weight + PLANE * lane)
             like = select(surface == number, _likeness(normal, p, flatness, pixel), ZERO) * near
             w = like + STRANGER * near
-            arrived, sent = _three_of(pixel, ARRIVED), _three_of(pixel, SENT)
-            light = full[0] * arrived[0] + full[1] * arrived[1] + full[2] * arrived[2] + (sent[0] + sent[1] + sent[2])
+            local, lit = _three_of(pixel, LOCAL), _three_of(pixel, UNSHADOWED)
+            sent, most = _three_of(pixel, SENT), lit[0] + lit[1] + lit[2]
+            arrived = (local[0] + local[1] + local[2]) / most if most > TINY else ONE
+            light = bright * arrived + (sent[0] + sent[1] + sent[2])
             total, known = total + w, known + like
             mean, square = mean + w * light, square + w * light * light
-            a0, a1, a2 = a0 + w * arrived[0], a1 + w * arrived[1], a2 + w * arrived[2]
+            l0, l1, l2 = l0 + w * local[0], l1 + w * local[1], l2 + w * local[2]
+            u0, u1, u2 = u0 + w * lit[0], u1 + w * lit[1], u2 + w * lit[2]
             s0, s1, s2 = s0 + w * sent[0], s1 + w * sent[1], s2 + w * sent[2]
     seen, told = surface > np.int32(MISS), total > ZERO
     scale = ONE / select(told, total, f32x16(ONE))
     mean, told = mean * scale, told & seen
     spread = square_root(maximum(square * scale - mean * mean, ZERO)) / (DARKNESS + mean)
     doubt = select(seen, spread + UNSEEN * (ONE - minimum(known * np.float32(4), ONE)), ZERO)
+    arrived = _part(l0 + l1 + l2, u0 + u1 + u2, f32x16(ONE))
     return (
-        select(told, (full[0] * a0 + s0) * scale, full[0]),
-        select(told, (full[1] * a1 + s1) * scale, full[1]),
-        select(told, (full[2] * a2 + s2) * scale, full[2]),
+        select(told, full[0] * _part(l0, u0, arrived) + s0 * scale, full[0]),
+        select(told, full[1] * _part(l1, u1, arrived) + s1 * scale, full[1]),
+        select(told, full[2] * _part(l2, u2, arrived) + s2 * scale, full[2]),
     ), doubt
 
 

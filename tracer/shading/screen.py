@@ -13,6 +13,6 @@ def to_screen(color, pixels):
     steps."""
     for i in range(len(color)):
         for c in range(3):
-            step = min(max(color[i, c], np.float32(0)), np.float32(1)) * np.float32(255)
-            pixels[i, c] = np.uint8(np.rint(step))
+            shown = color[i, c] if color[i, c] > np.float32(0) else np.float32(0)  # of what is no number, nothing
+            pixels[i, c] = np.uint8(np.rint(min(shown, np.float32(1)) * np.float32(255)))
         pixels[i, 3] = np.uint8(255)

@@ -18,7 +18,7 @@ from tracer.culling.certified.lookup import Wanted, find_cells, seek, want
 from tracer.culling.shadow import RAYS, SHADOW_COUNTERS, shadow_testing
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
-from tracer.shading.blocks import ARRIVED, BLOCK, PLANE, SENT, UNSHADOWED, Planes, block_of, planes_at
+from tracer.shading.blocks import BLOCK, LOCAL, PLANE, SENT, Planes, block_of, planes_at
 from tracer.shading.bounce import next_wave
 from tracer.shading.phong import add_light
 from tracer.shading.places import sorted_by_place
@@ -83,7 +83,6 @@ class Tile(NamedTuple):
 
 TILE_ROWS = 10
 NUMBERS = PLANE // 4  # of a plane
-TINY = np.float32(1e-6)  # of light: less of it cannot be divided into parts
 
 
 def workspace() -> Workspace:
@@ -219,15 +218,14 @@ def see_normals(wave, points, tile, buffers):
 
 @subkernel
 def _take_apart(tile, count, buffers):
-    """What part of the unshadowed light of the pixels' surfaces has arrived, and what these mirrors and glass sent."""
+    """What has arrived at the pixels' surfaces, and what mirrors and glass sent them besides."""
     width = buffers.primitive.shape[1]
     for i in range(count):
         x, y = tile.place[i] % width, tile.place[i] // width
         row, column = block_of(x, y)
         values = f32_at(planes_at(buffers.planes, row, column) + 4 * (y % BLOCK * BLOCK + x % BLOCK))
         for c in range(3):
-            unshadowed, local = values[NUMBERS * (UNSHADOWED + c)], np.float32(tile.local[c, i])
-            values[NUMBERS * (ARRIVED + c)] = local / unshadowed if unshadowed > TINY else np.float32(1)
+            values[NUMBERS * (LOCAL + c)] = np.float32(tile.local[c, i])
             values[NUMBERS * (SENT + c)] = np.float32(tile.light[c, i] - tile.local[c, i])
 
 

@@ -83,11 +83,11 @@ def _strip(ui: Ui, left: float, top: float, width: float) -> None:
 
 
 def _marks(done: int) -> None:
-    """A tick for each step that is done, where there is room for all."""
-    ticks = icons.ICON_FA_CHECK * done
+    """How many steps are done, where there is room for it."""
+    told = f"{icons.ICON_FA_CHECK} {done} done"
     imgui.same_line()
-    if done and imgui.calc_text_size(ticks).x <= imgui.get_content_region_avail().x:
-        imgui.text_colored(GOOD, ticks)
+    if done and imgui.calc_text_size(told).x <= imgui.get_content_region_avail().x:
+        imgui.text_colored(GOOD, told)
 
 
 def _all_steps(ui: Ui) -> None:

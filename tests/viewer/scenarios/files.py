@@ -131,6 +131,7 @@ def reopening(d: Driver) -> None:
         for key in ("8", "9", "H", "Shift+H", "0", "3", view.key):
             d.press(chord(key))
         d.press(KEY.f12)
+        d.c.say("what could not be saved has been told")
         d.c.render.take = take
         d.settle()
         assert d.c.tracing.drawn_view is view

@@ -10,5 +10,5 @@ may get wrong (`margins`), in a tree that knows how far each triangle can be mis
 - else the cell is split, where rays want it, and its children go by what is left.
 
 Rays look up the cells they end in (`lookup`), which costs no step through a tree, and say where they found
-nothing; what is wanted most is certified after the frame (`certificates`).
+nothing; what is wanted most is certified before the next frame is shaded (`certificates`).
 """
