@@ -49,6 +49,11 @@ def test_options_change_what_they_name(saved: Path, capfd: pytest.CaptureFixture
     assert not Path("saved-rendered.png").exists()
 
 
+def test_its_scene_is_told_of(saved: Path, room: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    of_picture, of_room = (run(capfd, "info", path, "--json") for path in (saved, room))
+    assert of_picture[0] == 0 and json.loads(of_picture[1]) == json.loads(of_room[1])
+
+
 def test_its_camera_is_taken_alone(saved: Path, room: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert run(capfd, "render", room, "-o", "other.png", "--size", "20x10", "--camera", saved)[0] == 0
     other = capture.read(Path("other.png"))
@@ -67,7 +72,7 @@ def test_mistakes_are_one_line(saved: Path, room: Path, capfd: pytest.CaptureFix
         (("render", room, "-o", "x.png", "--camera", "plain.png"), "--camera: plain.png"),
         (("zoom", room, "--primitive", "0", "--camera", "gone.png"), "--camera: gone.png: no such file"),
         (("bench", saved), "saved.png"),
-        (("info", saved), "saved.png"),
+        (("info", "plain.png"), "not one captured by Shadowcull"),
     ]
     for arguments, said in cases:
         code, _, errors = run(capfd, *arguments)

@@ -287,16 +287,18 @@ def _add_zoom_factor(parser: _Parser) -> None:
 def _info(arguments: list[str]) -> int:
     parser = _Parser(
         prog="shadowcull info",
-        description="Say what a scene holds: primitives, lights, materials, frames, bounds, and warnings.",
+        description="Say what a scene, or that of a saved picture, holds: primitives, lights, materials, frames, "
+        "bounds, and warnings.",
         epilog=examples.INFO,
     )
     parser.add_argument("scene", nargs="?", metavar="SCENE", help=_scene_help())
     parser.add_argument("--json", action="store_true", help="as JSON on standard output")
     options = parser.parse_args(arguments)
 
-    from viewer import headless
+    from viewer import headless, recalled
 
-    headless.info(scene_path(options.scene), options.json)
+    path = scene_path(options.scene)
+    headless.info(recalled.defaults(path)[0] if recalled.is_capture(path) else path, options.json)
     return 0
 
 
