@@ -165,16 +165,6 @@ def test_frames_of_a_kitchen_in_which_things_start_and_stop(bart: Path):
 # --- what they may take -------------------------------------------------------------------------------
 
 
-def test_further_samples_want_nothing(accelerator: str):
-    """They count nothing, and so decide nothing either of what is certified for the next frame."""
-    settings = replace(SETTINGS, accelerator=accelerator, certificates=200)
-    mirrors = replace(SAILING, materials=tuple(replace(m, specular=(0.5, 0.5, 0.5)) for m in SAILING.materials))
-    once, often = tracer.Renderer(mirrors, settings), tracer.Renderer(mirrors, replace(settings, samples=4))
-    for time in GOING[:4]:
-        counted = [renderer.render(time).statistics.to_dict() for renderer in (once, often)]
-        assert [c | {"seconds": 0, "phases": {}} for c in counted] == [counted[0] | {"seconds": 0, "phases": {}}] * 2
-
-
 def test_no_more_are_made_than_the_budget_allows_and_counters_repeat(accelerator: str):
     settings = replace(SETTINGS, accelerator=accelerator, width=130, height=70, certificates=50)
     runs = {threads: _pair(LIT_SQUARES, replace(settings, threads=threads)) for threads in (1, 2, 4)}
