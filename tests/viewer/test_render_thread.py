@@ -43,6 +43,22 @@ def idle(thread: RenderThread, timeout: float = 5.0) -> None:
     assert not thread.busy
 
 
+def held_at(thread: RenderThread, first: RenderRequest) -> FakeRenderer:
+    """A renderer that is at work on this, and goes on when it is let go."""
+    renderer = FakeRenderer()
+    renderer.go.clear()
+    thread.use(renderer)
+    thread.submit(first)
+    assert renderer.started.wait(5.0)
+    return renderer
+
+
+def wait_until_cancelled(renderer: FakeRenderer) -> None:
+    end = time.monotonic() + 5.0
+    while not renderer.cancelled and time.monotonic() < end:
+        time.sleep(0.002)
+
+
 def test_a_request_becomes_a_frame_once(thread):
     thread.use(FakeRenderer())
     thread.submit(request(1.0))
@@ -51,11 +67,7 @@ def test_a_request_becomes_a_frame_once(thread):
 
 
 def test_of_those_that_wait_only_the_newest_is_traced(thread):
-    renderer = FakeRenderer()
-    renderer.go.clear()
-    thread.use(renderer)
-    thread.submit(request(0.0, quick=True))
-    assert renderer.started.wait(5.0)
+    renderer = held_at(thread, request(0.0, quick=True))
     for at in (1.0, 2.0, 3.0):
         thread.submit(request(at, quick=True))
     renderer.go.set()
@@ -64,26 +76,16 @@ def test_of_those_that_wait_only_the_newest_is_traced(thread):
 
 
 def test_a_fine_frame_is_cut_short_by_a_newer_request(thread):
-    renderer = FakeRenderer()
-    renderer.go.clear()
-    thread.use(renderer)
-    thread.submit(request(0.0))
-    assert renderer.started.wait(5.0)
+    renderer = held_at(thread, request(0.0))
     thread.submit(request(1.0, quick=True))
-    end = time.monotonic() + 5.0
-    while not renderer.cancelled and time.monotonic() < end:
-        time.sleep(0.002)
+    wait_until_cancelled(renderer)
     renderer.go.set()
     assert taken(thread).frame.time == 1.0
     assert renderer.cancelled == [0.0]
 
 
 def test_a_coarse_frame_in_motion_is_let_finish(thread):
-    renderer = FakeRenderer()
-    renderer.go.clear()
-    thread.use(renderer)
-    thread.submit(request(0.0, quick=True))
-    assert renderer.started.wait(5.0)
+    renderer = held_at(thread, request(0.0, quick=True))
     thread.submit(request(1.0, quick=True))
     time.sleep(0.05)
     assert renderer.cancelled == []
@@ -93,18 +95,12 @@ def test_a_coarse_frame_in_motion_is_let_finish(thread):
 
 
 def test_where_a_motion_ended_comes_before_what_is_under_way_and_once(thread):
-    renderer = FakeRenderer()
-    renderer.go.clear()
-    thread.use(renderer)
-    thread.submit(request(0.0, quick=True))
-    assert renderer.started.wait(5.0)
+    renderer = held_at(thread, request(0.0, quick=True))
     thread.submit(request(1.0, quick=True))
     thread.hurry(request(2.0, final=True))
     assert renderer.cancelled == [], "it is not what waits"
     thread.hurry(request(1.0, final=True))
-    end = time.monotonic() + 5.0
-    while not renderer.cancelled and time.monotonic() < end:
-        time.sleep(0.002)
+    wait_until_cancelled(renderer)
     renderer.go.set()
     assert taken(thread).frame.time == 1.0
     thread.hurry(request(1.0, final=True))
