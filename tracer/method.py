@@ -1,39 +1,233 @@
-"""Names of methods: what culls shadow rays, and what it takes along, joined by "+"."""
+"""What methods are called and what they can do: a table with one line for each.
+
+A method says which shadow rays need not be traced.  Its name is that of a base, followed by additions, each joined by
+a "+": "certified+cache".  The code of a method is one file in `tracer.methods`; nothing else names it.  Everything
+that depends on what a method can do asks the capabilities given here, so that settings can be read, and menus and
+help texts made, before any kernel is loaded.
+"""
 
 from __future__ import annotations
 
-BASES = ("none", "paper", "cells", "certified", "auto")
-EXTRAS = ("cache", "rest")
-_BY_MODES = ("paper", "cells")
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from typing import Any
 
 
-def base_of(method: str) -> str:
-    """What culls: "paper" of "paper+cache"."""
-    return method.split("+")[0]
+@dataclass(frozen=True)
+class Kind:
+    """A base or an addition: its name, one sentence for menus and help texts, the class that implements it, and its
+    capabilities.
+
+    `implementation` is a subclass of `tracer.methods.interface.ShadowMethod`, or where one is: "module:Class".
+    `culls`: it answers shadow rays without tracing them.  `exact`: its pictures are those of "none", bit for bit.
+    `uses_modes`: it culls by the modes of the paper, and keeps
+    them in any case.  `uses_cells`: its modes belong to cells of large primitives.  `has_certificates`: it makes
+    certificates, or may make some.  `adaptive`: it chooses by itself whether to cull.  `measures`: it serves
+    measurements only and is not offered in the window.
+    """
+
+    name: str
+    summary: str
+    implementation: Any
+    culls: bool = True
+    exact: bool = True
+    uses_modes: bool = False
+    uses_cells: bool = False
+    has_certificates: bool = False
+    adaptive: bool = False
+    measures: bool = False
+    addition: bool = False
+
+    def load(self) -> Any:
+        """The class that implements it."""
+        if not isinstance(self.implementation, str):
+            return self.implementation
+        module, name = self.implementation.split(":")
+        return getattr(import_module(module), name)
 
 
-def takes(method: str, extra: str) -> bool:
-    """Whether a method takes an extra along."""
-    return extra in method.split("+")[1:]
+_KINDS: dict[str, Kind] = {}
 
 
-def culls_by_modes(method: str) -> bool:
-    """Whether a method culls by the modes of the paper: it keeps them in any case, and may be wrong.  All others are
-    exact: their pictures are the same, bit for bit."""
-    return base_of(method) in _BY_MODES
+def register(kind: Kind) -> Kind:
+    """Make a method, or an addition, known by its name.  Raises ValueError where the name is taken."""
+    if kind.name in _KINDS:
+        raise ValueError(f"there is a method {kind.name!r} already")
+    _KINDS[kind.name] = kind
+    Method.parse.cache_clear()
+    return kind
 
 
-def certifies(method: str) -> bool:
-    """Whether a method makes certificates, or may make some."""
-    return base_of(method) not in ("none", *_BY_MODES)
+def unregister(name: str) -> None:
+    """Forget a method that was registered."""
+    del _KINDS[name]
+    Method.parse.cache_clear()
 
 
-def is_method(name: str) -> bool:
-    """Whether there is such a method: a base, then any extras, each once."""
-    base, *extras = name.split("+")
-    return base in BASES and all(extra in EXTRAS for extra in extras) and len(set(extras)) == len(extras)
+def bases(measures: bool = False) -> tuple[Kind, ...]:
+    """All bases, in the order of menus; with those that only measure, where asked for."""
+    return tuple(kind for kind in _KINDS.values() if not kind.addition and (measures or not kind.measures))
+
+
+def additions() -> tuple[Kind, ...]:
+    """All that can be added to a base."""
+    return tuple(kind for kind in _KINDS.values() if kind.addition)
 
 
 def choice() -> str:
     """What there is to choose from, in words."""
-    return f"one of {', '.join(BASES)}, which may be followed by {' and '.join('+' + extra for extra in EXTRAS)}"
+    names = ", ".join(kind.name for kind in bases(measures=True))
+    return f"one of {names}, which may be followed by {' and '.join('+' + kind.name for kind in additions())}"
+
+
+@dataclass(frozen=True)
+class Method:
+    """A base with its additions, in the order in which they were named."""
+
+    kind: Kind
+    added: tuple[Kind, ...] = ()
+
+    @staticmethod
+    @cache
+    def parse(name: str) -> Method:
+        """The method of a name.  Raises ValueError, in one line, where there is none."""
+        base, *extras = name.split("+")
+        kind, added = _KINDS.get(base), tuple(_KINDS.get(extra) for extra in extras)
+        known = kind is not None and not kind.addition
+        if not known or len(set(extras)) < len(extras) or not all(extra and extra.addition for extra in added):
+            raise ValueError(f"method is {choice()}, not {name!r}")
+        return Method(_KINDS[base], tuple(_KINDS[extra] for extra in extras))
+
+    def __str__(self) -> str:
+        return "+".join(kind.name for kind in self.kinds)
+
+    @property
+    def kinds(self) -> tuple[Kind, ...]:
+        """The base, then its additions."""
+        return (self.kind, *self.added)
+
+    @property
+    def base(self) -> str:
+        """The name of the base."""
+        return self.kind.name
+
+    @property
+    def additions(self) -> tuple[str, ...]:
+        """The names of the additions."""
+        return tuple(kind.name for kind in self.added)
+
+    def has(self, addition: str) -> bool:
+        """Whether an addition is part of the method."""
+        return addition in self.additions
+
+    @property
+    def exact(self) -> bool:
+        """Whether its pictures are those of "none", bit for bit."""
+        return all(kind.exact for kind in self.kinds)
+
+    @property
+    def culls(self) -> bool:
+        """Whether it answers shadow rays without tracing them."""
+        return any(kind.culls for kind in self.kinds)
+
+    @property
+    def uses_modes(self) -> bool:
+        """Whether it culls by the modes of the paper."""
+        return any(kind.uses_modes for kind in self.kinds)
+
+    @property
+    def uses_cells(self) -> bool:
+        """Whether its modes belong to cells of large primitives."""
+        return any(kind.uses_cells for kind in self.kinds)
+
+    @property
+    def has_certificates(self) -> bool:
+        """Whether it makes certificates, or may make some."""
+        return any(kind.has_certificates for kind in self.kinds)
+
+    @property
+    def adaptive(self) -> bool:
+        """Whether it chooses by itself whether to cull."""
+        return any(kind.adaptive for kind in self.kinds)
+
+
+register(
+    Kind(
+        "none",
+        "Traces every shadow ray: the truth that others are compared with.",
+        "tracer.methods.none:NoCulling",
+        culls=False,
+    )
+)
+register(
+    Kind(
+        "paper",
+        "Culls by the paper's shadow modes of whole primitives; wrong now and then.",
+        "tracer.methods.paper:Paper",
+        exact=False,
+        uses_modes=True,
+    )
+)
+register(
+    Kind(
+        "cells",
+        "The paper's modes, kept for the cells of large triangles; wrong now and then.",
+        "tracer.methods.cells:Cells",
+        exact=False,
+        uses_modes=True,
+        uses_cells=True,
+    )
+)
+register(
+    Kind(
+        "certified",
+        "Culls by what is proven of the cells of triangles; never wrong.",
+        "tracer.methods.certified:CertifiedCells",
+        has_certificates=True,
+    )
+)
+register(
+    Kind(
+        "auto",
+        "Culls by certificates where that is measured to be quicker; never wrong.",
+        "tracer.methods.auto:Auto",
+        has_certificates=True,
+        adaptive=True,
+    )
+)
+register(Kind("cache", "Tests what blocked a light before first.", "tracer.methods.cache:OccluderCache", addition=True))
+register(Kind("rest", "Counts objects that rest as static.", "tracer.methods.rest:Resting", culls=False, addition=True))
+
+# What the rest of the program asked before there was `Method`.
+BASES = tuple(kind.name for kind in bases())
+EXTRAS = tuple(kind.name for kind in additions())
+
+
+def base_of(method: str) -> str:
+    """What culls: "paper" of "paper+cache"."""
+    return Method.parse(method).base
+
+
+def takes(method: str, extra: str) -> bool:
+    """Whether a method takes an extra along."""
+    return Method.parse(method).has(extra)
+
+
+def culls_by_modes(method: str) -> bool:
+    """Whether a method culls by the modes of the paper."""
+    return Method.parse(method).uses_modes
+
+
+def certifies(method: str) -> bool:
+    """Whether a method makes certificates, or may make some."""
+    return Method.parse(method).has_certificates
+
+
+def is_method(name: str) -> bool:
+    """Whether there is such a method."""
+    try:
+        Method.parse(name)
+    except ValueError:
+        return False
+    return True
