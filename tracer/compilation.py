@@ -24,7 +24,9 @@ import numpy as np
 from llvmlite.binding import get_host_cpu_name
 from numpy.typing import NDArray
 
-from tracer.culling.certified.certificates import Budget, Effort
+from tracer.culling.certified.cost_model import CostModel
+from tracer.culling.certified.requests import make_requests
+from tracer.culling.certified.store import Budget
 from tracer.culling.modes import word_type
 from tracer.estimate import Estimate
 from tracer.frame import Settings
@@ -169,9 +171,9 @@ def _certificates(lights: int, accelerator: str) -> Iterator[str]:
     frame.see_cells()
     certificates = renderer.certificates
     assert certificates is not None
-    wanted = certificates.wanted(1)
-    wanted.key[0, 0], wanted.u[0, 0], wanted.v[0, 0], wanted.of[0, 0] = -1, 0.25, 0.25, 1
-    certificates.certify([wanted], Budget(), Effort(1, 1, 8, 8, True, 1), None)
+    requests = make_requests(1)
+    requests.key[0, 0], requests.u[0, 0], requests.v[0, 0], requests.of[0, 0] = -1, 0.25, 0.25, 1
+    certificates.certify([requests], Budget(), CostModel(1, 1, 8, 8, True, 1), None)
     certificates.keep_within(0.0, np.zeros(1, np.int32))
 
 

@@ -17,10 +17,12 @@ import numpy as np
 
 from tracer.culling.cache import NO_CACHE, OccluderCache
 from tracer.culling.cells import first_units, primitives_are_units, units_of
-from tracer.culling.certified.certificates import Budget, Certificates, Effort
 from tracer.culling.certified.certify import CERTIFICATES, STEPS, TESTS
 from tracer.culling.certified.certify import COUNTERS as CERTIFYING
-from tracer.culling.certified.lookup import Certified, Wanted, nothing_told, nothing_wanted
+from tracer.culling.certified.cost_model import CostModel, cost_model_for
+from tracer.culling.certified.requests import Requests, make_requests, no_requests
+from tracer.culling.certified.store import Budget, CertificateStore
+from tracer.culling.certified.view import CertificateView, empty_view
 from tracer.culling.memory import Memory
 from tracer.culling.modes import MAX_CULLED_LIGHTS, merge_words, word_type
 from tracer.culling.occlusion import count_pixels, occlusion_testing, set_occlusion_modes
@@ -43,7 +45,7 @@ from tracer.shading.whitted import (
     TILE,
     Buffers,
     Workspace,
-    seek_in_tiles,
+    request_in_tiles,
     shade_tile,
     trace_primary,
     workspace,
@@ -55,11 +57,9 @@ EACH = 3  # larger tiles, at least, for each thread
 GOLDEN = 0.618033988749895  # steps of it visit all tiles evenly
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 MEMORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
-SHARES, SHARE = 8, 6  # of all tiles that each thread takes to look for what is wanted; tiles of one, at least
+SHARES, SHARE = 8, 6  # of all tiles that each thread takes to look for requests; tiles of one, at least
 SEEKING = 0.5  # of the time for certificates, at most, is spent on looking for what primary hits want
 PRICE = 2e-6, 2e-7  # seconds, about, that setting certificates up takes for each primitive, and each light besides
-# What certifying is worth, by what a shadow ray costs: some 250 ns, and 50.
-EFFORT = {"kdtree": Effort(4, 12, 6, 48, True, 4), "bvh8": Effort(8, 32, 0, 48, False, 16)}
 Cancel = Callable[[], bool] | None
 
 
@@ -86,7 +86,7 @@ class Renderer:
         self._memories: dict[tuple[int, int, bool], Memory] = {}
         self._first_units = {False: primitives_are_units()}
         self._workspaces: list[Workspace] = []
-        self.certificates: Certificates | None = None
+        self.certificates: CertificateStore | None = None
         self.certificates_hold = False  # whether they have followed what moved into the last frame
         self._investor: Investor | None = None
         self._cache: OccluderCache | None = None
@@ -208,11 +208,11 @@ class Renderer:
         self._cache.make_room(workers)
         return self._cache
 
-    def _effort(self) -> Effort:
-        """What certifying is worth in this world: where rays are cheap and nothing reflects, nobody asks candidates."""
-        effort, materials = EFFORT[self.world.accelerator], self._look.materials
+    def _cost_model(self) -> CostModel:
+        """What certifying is worth in this world."""
+        materials = self._look.materials
         bounces = (materials[:, SHINE] > 0.0).any() or (materials[:, TRANSMISSION] > 0.0).any()
-        return effort if effort.dear or bounces else effort._replace(asked=0)
+        return cost_model_for(self.world.accelerator, bool(bounces))
 
     def _invests(self, settings: Settings) -> Investor | None:
         """Who decides for the method "auto"; nobody for others."""
@@ -220,7 +220,7 @@ class Renderer:
             return None
         if self._investor is None:
             price = (PRICE[0] + PRICE[1] * len(self.scene.lights)) * len(self.world.object_of)
-            self._investor = Investor(price, self._effort().dear)
+            self._investor = Investor(price, self._cost_model().costly_rays)
         return self._investor
 
     def _first(self, settings: Settings) -> np.ndarray:
@@ -234,7 +234,7 @@ def _has_cells(settings: Settings) -> bool:
     return base_of(settings.method) == "cells"
 
 
-_NOT_CERTIFIED = {np.dtype(word_type(lights)).itemsize: nothing_told(lights) for lights in (1, MAX_CULLED_LIGHTS)}
+_NOT_CERTIFIED = {np.dtype(word_type(lights)).itemsize: empty_view(lights) for lights in (1, MAX_CULLED_LIGHTS)}
 
 
 class UnfinishedFrame:
@@ -259,9 +259,9 @@ class UnfinishedFrame:
         self._occlusion_tests = np.zeros(self._workers, np.int64)
         self._phases: dict[str, float] = {}
         self._started = clock.perf_counter()
-        self._certificates: Certificates | None = None
+        self._certificates: CertificateStore | None = None
         self._words_seen: np.ndarray | None = None
-        self._wanted = nothing_wanted()
+        self._requests = no_requests()
         self._base = base_of(settings.method)
         self._trials: list[Trial] = []
         self._investor = renderer._invests(settings)
@@ -349,12 +349,12 @@ class UnfinishedFrame:
                 self.shade(lanes)
 
     def discard(self) -> None:
-        """Learn nothing from this frame; but what its rays wanted to be certified is wanted still."""
+        """Learn nothing from this frame; but what its rays requested stays requested."""
         self.memory.discard_frame()
         if self.cache is not None:
             self.cache.discard_found()
         if self._certificates is not None and self._begun:
-            self._certificates.left = [self._wanted]
+            self._certificates.pending = [self._requests]
             self._certificates.keep_within(1e6 * self._settings.certificate_memory, self._buffers.cell)
         if self._begun:
             self._settle()
@@ -438,7 +438,7 @@ class UnfinishedFrame:
         """Drop the certificates that no longer hold; set them up, where there are none."""
         renderer = self._renderer
         if renderer.certificates is None:
-            renderer.certificates = Certificates(renderer.world, len(lights), self._workers, renderer._effort())
+            renderer.certificates = CertificateStore(renderer.world, len(lights), self._workers, renderer._cost_model())
             if self._investor is not None:
                 self._investor.made_ready()
         self._certificates = renderer.certificates
@@ -474,34 +474,34 @@ class UnfinishedFrame:
         for_each_chunk(work, -(-height // ROWS), self._workers, self._cancel)
 
     def certify_cells(self) -> None:
-        """Certify what these primary hits are about to want, and what else rays wanted in the last frame."""
+        """Certify what these primary hits are about to need, and what other rays requested in the last frame."""
         certificates = self._certificates
         if certificates is None:
             return
         if self._investor is None or self._plan.seconds > 0.0:
             with self._invested():
                 self._certify(certificates)
-        self._wanted = certificates.wanted(len(self._tiles))
+        self._requests = make_requests(len(self._tiles))
 
-    def _certify(self, certificates: Certificates) -> None:
+    def _certify(self, certificates: CertificateStore) -> None:
         start, seconds = clock.perf_counter(), self._plan.seconds
-        sought, lights = certificates.wanted(len(self._tiles)), self._renderer._look.lights
+        requests, lights = make_requests(len(self._tiles)), self._renderer._look.lights
         tiles = np.array(self._tiles)
-        certified = certificates.told(nothing_wanted(), len(tiles))
+        certified = certificates.view(no_requests(), len(tiles))
         order = (certificates.next_tile + np.arange(len(tiles))) % len(tiles)
         shares = np.array_split(order, max(1, min(SHARES * self._workers, len(tiles) // SHARE)))
         looked_at: list[int] = []
 
         def work(chunk: int, worker: int) -> None:
             if clock.perf_counter() - start < SEEKING * seconds:
-                seek_in_tiles(self._rays, tiles, shares[chunk], certified, sought, lights, self._buffers)
+                request_in_tiles(self._rays, tiles, shares[chunk], certified, requests, lights, self._buffers)
                 looked_at.append(len(shares[chunk]))
 
         for_each_chunk(work, len(shares), self._workers, self._cancel)
         certificates.next_tile += sum(looked_at)  # where time was short, others are the first in the next frame
         budget = Budget(self._settings.certificates, start + seconds)
-        wanted, certificates.left = [sought, *certificates.left], []
-        self._certifying = certificates.certify(wanted, budget, certificates.effort, self._cancel)
+        lists, certificates.pending = [requests, *certificates.pending], []
+        self._certifying = certificates.certify(lists, budget, certificates.cost_model, self._cancel)
 
     def see_surfaces(self, first: int = 0) -> None:
         """What do all primary hits look like before any shadow ray is traced?  `first` says which pixels
@@ -517,7 +517,7 @@ class UnfinishedFrame:
     def see_cells(self) -> None:
         """Which certified cells do the primary hits lie in?"""
         placed, look, rays, buffers = self._renderer.world.placed, self._renderer._look, self._rays, self._buffers
-        nothing, spaces = nothing_wanted(), self._spaces
+        nothing, spaces = no_requests(), self._spaces
 
         def work(_: int, tile: tuple[int, int, int, int], worker: int) -> None:
             knowledge = self._knowledge(worker, nothing, looks_up=True, learns=False)
@@ -533,13 +533,13 @@ class UnfinishedFrame:
         for sample in range(1, self._settings.samples):
             self.add_sample(sample)
 
-    def _certified(self, certificates: Certificates | None, wanted: Wanted) -> Certified:
+    def _certified(self, certificates: CertificateStore | None, requests: Requests) -> CertificateView:
         """What a tile knows of certified cells, and where it says what it wants."""
         if certificates is None:
             return _NOT_CERTIFIED[self.memory.words.dtype.itemsize]
-        return certificates.told(wanted, len(self._tiles))
+        return certificates.view(requests, len(self._tiles))
 
-    def _knowledge(self, worker: int, wanted: Wanted, looks_up: bool, learns: bool) -> Knowledge:
+    def _knowledge(self, worker: int, requests: Requests, looks_up: bool, learns: bool) -> Knowledge:
         """What culling goes by, certificates where it is to look them up, and where it says what it wants; the cache
         `learns` in a pixel's first sample alone."""
         memory, certificates = self.memory, self._certificates if looks_up else None
@@ -553,7 +553,7 @@ class UnfinishedFrame:
             learn=self._settings.keeps_modes,
             verify=self._settings.verify,
             certify=certificates is not None,
-            certified=self._certified(certificates, wanted),
+            certified=self._certified(certificates, requests),
             cache=NO_CACHE if self.cache is None else self.cache.of_worker(worker, learns=learns),
         )
 
@@ -561,10 +561,13 @@ class UnfinishedFrame:
         self, rays: Pinhole, buffers: Buffers, counts: np.ndarray, lanes: np.ndarray, first: bool = True
     ) -> None:
         placed, look, depth = self._renderer.world.placed, self._renderer._look, self._settings.depth
-        spaces, wanted = self._spaces, self._wanted
+        spaces, requests = self._spaces, self._requests
         if not first and self._certificates is not None:  # what further samples want is forgotten
-            wanted = self._certificates.wanted(len(self._tiles))
-        told = [Wanted(*(a[tile] for a in wanted)) if len(wanted.key) else wanted for tile in range(len(self._tiles))]
+            requests = make_requests(len(self._tiles))
+        for_tile = [
+            Requests(*(a[tile] for a in requests)) if len(requests.key) else requests
+            for tile in range(len(self._tiles))
+        ]
 
         # Of larger tiles where few of their pixels are shaded, lest packets of rays remain half empty, unless there are
         # too few for all threads.
@@ -574,7 +577,7 @@ class UnfinishedFrame:
 
         def work(number: int, tile: tuple[int, int, int, int], worker: int) -> None:
             def shade(looks_up: bool, counts: np.ndarray) -> None:
-                knowledge = self._knowledge(worker, told[number], looks_up, learns=first)
+                knowledge = self._knowledge(worker, for_tile[number], looks_up, learns=first)
                 shade_tile(placed, look, rays, tile, lanes, depth, knowledge, buffers, counts, spaces[worker])
 
             if number in tried:
@@ -653,7 +656,7 @@ class UnfinishedFrame:
             cell = self._buffers.cell
             if self._plan.looks_up:
                 self._words_seen = self._certificates.at_pixels(cell)  # cells may get other numbers now
-            self._certificates.left = [self._wanted]
+            self._certificates.pending = [self._requests]
             self._certificates.keep_within(1e6 * self._settings.certificate_memory, cell)
 
     def _cells_seen(self) -> np.ndarray | None:

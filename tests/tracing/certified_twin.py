@@ -11,11 +11,11 @@ import numpy as np
 
 import tracer
 from tests.tracing.brute import meet_all
-from tracer.culling.certified.beam import LOWEST, OFFSET
 from tracer.culling.certified.cells import CANDIDATES, FULL, HIGHEST, LIT, named_by, state_of
-from tracer.culling.certified.certificates import Certificates
-from tracer.culling.certified.margins import EPSILON
-from tracer.culling.certified.sights import verdicts
+from tracer.culling.certified.error_bounds import EPSILON
+from tracer.culling.certified.light_space import verdicts
+from tracer.culling.certified.shaft import LOWEST, OFFSET
+from tracer.culling.certified.store import CertificateStore
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import ACCELERATORS
 from tracer.kernels import kernel
@@ -28,12 +28,12 @@ NAMES = {FULL: "FULL", LIT: "LIT", CANDIDATES: "CANDIDATES"}
 class Twin:
     """Certificates of a scene in which nothing moves, and that scene for rays."""
 
-    def __init__(self, scene: tracer.Scene, certificates: Certificates, lights: np.ndarray) -> None:
+    def __init__(self, scene: tracer.Scene, certificates: CertificateStore, lights: np.ndarray) -> None:
         assert len(scene.objects) == 1
         self.worlds = {name: tracer.World(scene, accelerator=name) for name in ACCELERATORS}
         self.certificates, self.lights = certificates, np.asarray(lights, np.float32)
         self.cells, self.rows = certificates.cells, certificates.occluders.rows
-        self.sights = certificates.occluders.sights
+        self.light_space = certificates.occluders.light_space
         world = self.worlds["kdtree"]
         self.primitives = len(world.object_of)
         used = int(self.cells.used[0])
@@ -163,7 +163,7 @@ class Twin:
             return []
         hits, misses = np.empty((2, len(names), len(rays)), np.bool_)
         ends = np.ascontiguousarray(asked.ends[rays].T, np.float32)
-        _verdicts(self.sights[light], names, self.lights[light], ends, hits, misses)
+        _verdicts(self.light_space[light], names, self.lights[light], ends, hits, misses)
         hit, missed = hits.any(0), misses.all(0)
         blocked = asked.blocked[name][rays]
         assert not (hits & misses).any()
@@ -214,7 +214,7 @@ def _states(words, lights):
 
 
 @kernel
-def _verdicts(sights, names, light, ends, hits, misses):
+def _verdicts(light_space, names, light, ends, hits, misses):
     """hits and misses (names, n): of which rays to ends (3, n) each of sights (any, SIGHT) is certain."""
     numbers, padded = np.zeros(16, np.int32), np.zeros((3, 16), np.float32)
     for first in range(0, ends.shape[1], 16):
@@ -224,6 +224,6 @@ def _verdicts(sights, names, light, ends, hits, misses):
             numbers[:] = names[j]
             end = load_three(padded, 0)
             direction = end[0] - light[0], end[1] - light[1], end[2] - light[2]
-            hit, missed = verdicts(address_of(sights), address_of(numbers), light, direction, end)
+            hit, missed = verdicts(address_of(light_space), address_of(numbers), light, direction, end)
             for k in range(count):
                 hits[j, first + k], misses[j, first + k] = (hit >> k) & 1, (missed >> k) & 1

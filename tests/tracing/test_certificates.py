@@ -13,10 +13,11 @@ import tracer
 from tests.tracing.brute import meet_all
 from tests.tracing.shades import BEHIND, GOING, MIDDLES, floor, going, kite, roof
 from tests.tracing.worlds import quad, scene
-from tracer import renderer as rendering
+from tracer.culling.certified import cost_model
 from tracer.culling.certified.cells import CANDIDATES, FINAL, FULL, LIT, NOBODY, SETTLED, make_cells, named_by
-from tracer.culling.certified.certificates import Certificates, Effort
-from tracer.culling.certified.forget import copy_kept
+from tracer.culling.certified.cost_model import CostModel
+from tracer.culling.certified.invalidate import copy_kept
+from tracer.culling.certified.store import CertificateStore
 from tracer.explanation import explain
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import ACCELERATORS
@@ -39,7 +40,7 @@ SAILING = scene(
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure."""
-    monkeypatch.setattr(rendering, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 2, 8, True, 1)))
+    monkeypatch.setattr(cost_model, "COST_MODELS", dict.fromkeys(ACCELERATORS, CostModel(2, 4, 2, 8, True, 1)))
 
 
 @pytest.fixture(params=ACCELERATORS)
@@ -55,7 +56,7 @@ def _pair(made: tracer.Scene, settings: tracer.Settings) -> tuple[tracer.Rendere
     )
 
 
-def _certificates(renderer: tracer.Renderer) -> Certificates:
+def _certificates(renderer: tracer.Renderer) -> CertificateStore:
     assert renderer.certificates is not None
     return renderer.certificates
 

@@ -16,9 +16,9 @@ from tests.tracing.certified_twin import NAMES, Twin
 from tests.tracing.nasty_worlds import nasty_walk, static_part
 from tests.tracing.random_worlds import quickly
 from tests.tracing.worlds import quad, scene
-from tracer import renderer
+from tracer.culling.certified import cost_model
 from tracer.culling.certified.cells import CANDIDATES, FULL, LIT
-from tracer.culling.certified.certificates import Effort
+from tracer.culling.certified.cost_model import CostModel
 from tracer.geometry.world import ACCELERATORS
 from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera
@@ -29,7 +29,7 @@ STATES = (FULL, LIT, CANDIDATES)
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure."""
-    monkeypatch.setattr(renderer, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 0, 8, True, 1)))
+    monkeypatch.setattr(cost_model, "COST_MODELS", dict.fromkeys(ACCELERATORS, CostModel(2, 4, 0, 8, True, 1)))
 
 
 def _chosen(twin: Twin, rng: np.random.Generator, each: int) -> np.ndarray:

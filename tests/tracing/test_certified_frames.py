@@ -13,8 +13,8 @@ import pytest
 import tracer
 from tests.tracing.nasty_worlds import NastyWalk, nasty_walk
 from tests.tracing.same import contents
-from tracer import renderer
-from tracer.culling.certified.certificates import Effort
+from tracer.culling.certified import cost_model
+from tracer.culling.certified.cost_model import CostModel
 from tracer.geometry.world import ACCELERATORS
 
 SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
@@ -23,7 +23,7 @@ SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure, and to ask candidates."""
-    monkeypatch.setattr(renderer, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 3, 48, True, 1)))
+    monkeypatch.setattr(cost_model, "COST_MODELS", dict.fromkeys(ACCELERATORS, CostModel(2, 4, 3, 48, True, 1)))
 
 
 def _renderers(
@@ -83,7 +83,7 @@ def test_pictures_stay_right_while_lights_are_dragged(accelerator: str):
 
 def test_settings_of_another_structure_change_nothing_of_a_world_that_is_there():
     """As when a picture that was traced with the kd-tree is opened again: no ray asks what was not made for asking."""
-    renderer.EFFORT["bvh8"] = Effort(2, 4, 3, 0, True, 1)
+    cost_model.COST_MODELS["bvh8"] = CostModel(2, 4, 3, 0, True, 1)
     for seed in range(3):
         walk = nasty_walk(seed, lights=3)
         none, certified = _renderers(walk.scene, width=24, height=24, depth=2, accelerator="bvh8")

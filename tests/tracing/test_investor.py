@@ -12,7 +12,8 @@ import pytest
 import tracer
 from tests.tracing.nasty_worlds import nasty_walk
 from tracer import renderer
-from tracer.culling.certified.certificates import Effort
+from tracer.culling.certified import cost_model
+from tracer.culling.certified.cost_model import CostModel
 from tracer.geometry.world import ACCELERATORS
 from tracer.investor import Investor, Plan, Trial
 
@@ -141,7 +142,7 @@ class Whimsical(Investor):
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
 def test_pictures_and_modes_are_right_whatever_is_decided(monkeypatch: pytest.MonkeyPatch, accelerator: str):
-    monkeypatch.setattr(renderer, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 3, 48, True, 1)))
+    monkeypatch.setattr(cost_model, "COST_MODELS", dict.fromkeys(ACCELERATORS, CostModel(2, 4, 3, 48, True, 1)))
     monkeypatch.setattr(renderer, "Investor", Whimsical)
     plain, told, tried = 0, 0, 0
     for seed in range(20):

@@ -15,8 +15,8 @@ import tracer
 from tests.tracing.naive_frame import NaiveRenderer
 from tests.tracing.nasty_worlds import nasty_walk
 from tests.tracing.random_worlds import Walk, quickly, walks
-from tracer import renderer
-from tracer.culling.certified.certificates import Effort
+from tracer.culling.certified import cost_model
+from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.modes import FULLY_RENDERED, occlusion_mode
 from tracer.geometry.world import ACCELERATORS
 from tracer.scene.model import Camera
@@ -28,7 +28,7 @@ PAPER = "paper+rest"
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures are to have many certificates on either structure, and to ask candidates."""
-    monkeypatch.setattr(renderer, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 3, 48, True, 1)))
+    monkeypatch.setattr(cost_model, "COST_MODELS", dict.fromkeys(ACCELERATORS, CostModel(2, 4, 3, 48, True, 1)))
 
 
 def _differing(scene: tracer.Scene, frames: Iterable[tuple[float, Camera]], seen: Counter, **settings) -> list[str]:

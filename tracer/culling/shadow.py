@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.cache import Cache, occluders_in, remember, slots_of, surely_blocked
 from tracer.culling.certified.candidates import ask_candidates
-from tracer.culling.certified.lookup import Certified
+from tracer.culling.certified.view import CertificateView
 from tracer.culling.learning import consult_modes, learn, look_up, trusted, with_modes, words_of
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.geometry.bvh8.packet import segments_miss_box
@@ -79,7 +79,7 @@ class Knowledge(NamedTuple):
     learn: bool
     verify: bool
     certify: bool
-    certified: Certified
+    certified: CertificateView
     cache: Cache
 
 
@@ -96,7 +96,7 @@ def _choose_fates(points, light, number, knowledge, count, answers, counts):
     """What is due, and what of it is known: answers.lit is what is known to be lit, live what is to be asked."""
     vectors, asked = (count + 15) // 16, np.int64(0)
     certified = _is_certified(number, knowledge)
-    asks = certified and answers.asks and knowledge.certified.asked > 0
+    asks = certified and answers.asks and knowledge.certified.max_asked > 0
     culls = knowledge.cull and number < MAX_CULLED_LIGHTS
     words, units, found = knowledge.words, points.unit, answers.known
     for v in range(vectors):
@@ -119,8 +119,8 @@ def _choose_fates(points, light, number, knowledge, count, answers, counts):
                 store(address_of(answers.asked) + 4 * asked, pack(which, mask16(some)))
                 asked += ones(some)
     if asked > 0:
-        told, live, lit = knowledge.certified, answers.live, answers.lit
-        known, tests = ask_candidates(told, points, light, number, answers.asked, asked, answers.questions, live, lit)
+        view, live, lit = knowledge.certified, answers.live, answers.lit
+        known, tests = ask_candidates(view, points, light, number, answers.asked, asked, answers.questions, live, lit)
         counts[CANDIDATES_ONLY] += known
         counts[TESTS] += tests
 
@@ -128,8 +128,8 @@ def _choose_fates(points, light, number, knowledge, count, answers, counts):
 @inlined
 def _is_certified(number, knowledge):
     """Whether a light has certificates."""
-    still = knowledge.certified.still
-    return knowledge.certify and number < len(still) and bool(still[number])
+    stationary = knowledge.certified.stationary
+    return knowledge.certify and number < len(stationary) and bool(stationary[number])
 
 
 @inlined

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.cells import cells_at
-from tracer.culling.certified import beam
+from tracer.culling.certified import shaft
 from tracer.geometry.facets import ACROSS, MATERIAL, NORMALS, OBJECT, TEXTURE
 from tracer.geometry.intersect import quadric_normal
 from tracer.geometry.memory import pointer
@@ -41,7 +41,7 @@ from tracer.simd import (
     store_three,
 )
 
-OFFSET = np.float32(beam.OFFSET)  # of the largest coordinate at hand: some 300 float32 roundings
+OFFSET = np.float32(shaft.OFFSET)  # of the largest coordinate at hand: some 300 float32 roundings
 FACET_COLUMNS = 16
 ZERO, ONE = np.float32(0), np.float32(1)
 

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.answers import ANSWER_ROWS, answers_in
-from tracer.culling.certified.lookup import Wanted, find_cells, seek, want
+from tracer.culling.certified.lookup import find_cells
+from tracer.culling.certified.requests import Requests, request_at_hits, request_at_points
 from tracer.culling.shadow import RAYS, SHADOW_COUNTERS, shadow_testing
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
@@ -120,19 +121,20 @@ def trace_primary(world, camera, tile, lanes, buffers, counts, space):
 
 
 @kernel
-def seek_in_tiles(camera, tiles, numbers, certified, wanted, lights, buffers):
-    """Note which certificates the primary hits of some tiles, whose numbers (k,) are given, are about to want: their
-    hits are in the buffers, and wanted has a row for each of all tiles (n, 4)."""
-    certified, wanted, buffers = borrowed(certified), borrowed(wanted), borrowed(buffers)
+def request_in_tiles(camera, tiles, numbers, certified, requests, lights, buffers):
+    """Request the certificates that the primary hits of some tiles are about to need.
+
+    Tiles have `numbers` (k,) among all (n, 4); their hits are in the buffers; requests has a row for each tile."""
+    certified, requests, buffers = borrowed(certified), borrowed(requests), borrowed(buffers)
     width, hits = np.int32(buffers.primitive.shape[1]), (buffers.primitive, buffers.u, buffers.v)
     for number in numbers:
         tile = tiles[number]
-        here = Wanted(wanted.key[number], wanted.u[number], wanted.v[number], wanted.of[number])
-        for block in range(certified.turn, blocks_of(tile), certified.every):
+        here = Requests(requests.key[number], requests.u[number], requests.v[number], requests.of[number])
+        for block in range(certified.first_vector, blocks_of(tile), certified.stride):
             x, y, inside = block_at(tile, block)
             if any_lane(inside):
                 place = select(inside, y * width + x, i32x16(0))
-                seek(certified, here, lights, camera.origin, hits, place, inside)
+                request_at_hits(certified, here, lights, camera.origin, hits, place, inside)
 
 
 @subkernel
@@ -153,8 +155,8 @@ def _light(world, look, wave, points, knowledge, answers, counts, tile, first, b
             _record(wave, number, answers, tile, buffers)
         if len(buffers.saved) > 0:
             _record_work(wave, answers, tile, buffers)
-    if knowledge.certify and not first:  # what the first wave wanted was sought before
-        want(certified, points, wave.size, answers.untried, answers.doubtful)
+    if knowledge.certify and not first:  # the first wave's requests were made before
+        request_at_points(certified, points, wave.size, answers.untried, answers.doubtful)
     bring_home(wave, points.light, tile.light)
     if knowledge.verify:
         bring_home(wave, points.reference, tile.reference)
@@ -245,7 +247,7 @@ def shade_tile(world, look, camera, tile, lanes, depth, knowledge, buffers, coun
     wave = without_misses(wave, look.background, pixels.light, pixels.reference)
     for bounce in range(depth + 1):
         points = points_at(world, look, wave, space.points, camera.spread, knowledge)
-        asks = bounce > 0 or knowledge.certified.dear
+        asks = bounce > 0 or knowledge.certified.costly_rays
         answers = answers_in(room(space.answers, wave.size), wave.size, asks, knowledge.certify)
         _light(world, look, wave, points, knowledge, answers, counts, pixels, bounce == 0, buffers)
         if bounce == 0:

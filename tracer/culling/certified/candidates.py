@@ -1,7 +1,7 @@
 """Rays that end in a cell with few candidates: these are asked instead of the tree, sixteen rays at a time.
 
-Each candidate's answer is taken where it is certain (`sights.verdicts`).  One certain hit blocks the ray; where all
-are certain to be missed nothing static does; any other ray is traced as if nothing were known.
+Each candidate's answer is taken where it is certain (`light_space.verdicts`).  One certain hit blocks the ray.  Where
+all are certain to be missed nothing static does.  Any other ray is traced as if nothing were known.
 
 All rays ask their first candidate, then those that are still open their second, and so on: these are packed anew each
 time, so that sixteen are always asked together, however many candidates each has.  And what is asked next is known
@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.culling.certified.cells import SETTLED
-from tracer.culling.certified.sights import SIGHT, verdicts
+from tracer.culling.certified.light_space import LIGHT_ROW, verdicts
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
@@ -36,9 +36,9 @@ from tracer.simd import (
     store_three,
 )
 
-# Rows of open questions: the point's number, where in names its next candidate is, how many are left to ask, which
+# Rows of open questions: the point's number, where in names its next candidate is, how many remain to be asked, which
 # that is, and where the ray ends.
-POINT, NEXT, LEFT, NAME, END = range(5)
+POINT, NEXT, REMAINING, NAME, END = range(5)
 QUESTION_ROWS = 7
 UNSURE = 64  # added to how many are left where one that was asked did not know
 
@@ -54,7 +54,8 @@ def _prefetch_lanes(table, size, numbers):
 def _open(certified, points, number, asked, count, room, stride):
     """Open questions, at an address, of those of `count` points that have a few candidates; how many."""
     cells = certified.cells
-    lists, names, sights = address_of(cells.lists), address_of(cells.names), address_of(certified.sights[number])
+    lists, names = address_of(cells.lists), address_of(cells.names)
+    light_space = address_of(certified.light_space[number])
     lights, at, step = np.int32(cells.lists.shape[1]), address_of(points.lifted), 4 * points.lifted.shape[1]
     for k in range((count + 15) // 16):
         which = select(mask16(lanes_below(count, k)), load_i32x16(address_of(asked) + 64 * k), i32x16(0))
@@ -64,26 +65,26 @@ def _open(certified, points, number, asked, count, room, stride):
     n = 0
     for k in range((count + 15) // 16):
         first = load_i32x16(room + NEXT * stride + 64 * k)
-        left = gather_i32x16(names, first) & np.int32(SETTLED - 1)  # TOO_MANY stays more than a few
-        few = (left > np.int32(0)) & (left <= np.int32(certified.asked)) & mask16(lanes_below(count, k))
+        remaining = gather_i32x16(names, first) & np.int32(SETTLED - 1)  # TOO_MANY stays more than a few
+        few = (remaining > np.int32(0)) & (remaining <= np.int32(certified.max_asked)) & mask16(lanes_below(count, k))
         if bits_of(few) == 0:
             continue
         which = select(few, load_i32x16(address_of(asked) + 64 * k), i32x16(0))
         name = gather_i32x16(names, select(few, first + np.int32(1), i32x16(0)))
         end = gather_f32x16(at, which), gather_f32x16(at + step, which), gather_f32x16(at + 2 * step, which)
-        _keep(room + 4 * n, stride, few, which, first + np.int32(1), left, name, end)
-        _prefetch_lanes(sights, 4 * SIGHT, room + NAME * stride + 4 * n)
+        _keep(room + 4 * n, stride, few, which, first + np.int32(1), remaining, name, end)
+        _prefetch_lanes(light_space, 4 * LIGHT_ROW, room + NAME * stride + 4 * n)
         n += ones(bits_of(few))
     _fill_up(room + 4 * n, stride)
     return n
 
 
 @inlined
-def _keep(at, stride, mask, which, following, left, name, end):
+def _keep(at, stride, mask, which, following, remaining, name, end):
     """Pack questions to an address."""
     store(at + POINT * stride, pack(which, mask))
     store(at + NEXT * stride, pack(following, mask))
-    store(at + LEFT * stride, pack(left, mask))
+    store(at + REMAINING * stride, pack(remaining, mask))
     store(at + NAME * stride, pack(name, mask))
     store_three(at + END * stride, stride, pack_three(end, mask))
 
@@ -95,17 +96,17 @@ def _fill_up(at, stride):
 
 
 @subkernel
-def _ask_next(names, sights, light, count, room, stride, live, lit):
+def _ask_next(names, light_space, light, count, room, stride, live, lit):
     """Ask the next candidate of `count` open questions, and keep those that are open still.
 
     (how many, of how many the ray is known now)."""
     n, known = 0, np.int64(0)
     for k in range((count + 15) // 16):
         at, there = room + 64 * k, lanes_below(count, k)
-        which, following, left = (
+        which, following, remaining = (
             load_i32x16(at + POINT * stride),
             load_i32x16(at + NEXT * stride),
-            load_i32x16(at + LEFT * stride),
+            load_i32x16(at + REMAINING * stride),
         )
         x, y, z = (
             load_f32x16(at + END * stride),
@@ -113,20 +114,20 @@ def _ask_next(names, sights, light, count, room, stride, live, lit):
             load_f32x16(at + (END + 2) * stride),
         )
         direction = x - light[0], y - light[1], z - light[2]
-        hit, missed = verdicts(sights, at + NAME * stride, light, direction, (x, y, z))
+        hit, missed = verdicts(light_space, at + NAME * stride, light, direction, (x, y, z))
         unsure = ~(hit | missed)
-        left = select(mask16(unsure), left | np.int32(UNSURE), left) - np.int32(1)
+        remaining = select(mask16(unsure), remaining | np.int32(UNSURE), remaining) - np.int32(1)
         hit &= there
-        last = there & bits_of((left & np.int32(UNSURE - 1)) == np.int32(0))
-        free = last & ~hit & bits_of(left == np.int32(0))
+        last = there & bits_of((remaining & np.int32(UNSURE - 1)) == np.int32(0))
+        free = last & ~hit & bits_of(remaining == np.int32(0))
         known += ones(hit | free)
         _answer(at + POINT * stride, hit, free, live, lit)
         more = mask16(there & ~hit & ~last)
         if bits_of(more) != 0:
             following = following + np.int32(1)
             name = gather_i32x16(names, select(more, following, i32x16(0)))
-            _keep(room + 4 * n, stride, more, which, following, left, name, (x, y, z))
-            _prefetch_lanes(sights, 4 * SIGHT, room + NAME * stride + 4 * n)
+            _keep(room + 4 * n, stride, more, which, following, remaining, name, (x, y, z))
+            _prefetch_lanes(light_space, 4 * LIGHT_ROW, room + NAME * stride + 4 * n)
             n += ones(bits_of(more))
     _fill_up(room + 4 * n, stride)
     return n, known
@@ -153,11 +154,11 @@ def ask_candidates(certified, points, light, number, asked, count, questions, li
     Points of which these are certain are taken out of the bits `live`, and put into the bits `lit` where the light
     reaches them.  `questions` (QUESTION_ROWS, n) float32 is memory.  (how many are known, tests made)."""
     room, stride = address_of(questions), 4 * questions.shape[1]
-    names, sights = address_of(certified.cells.names), address_of(certified.sights[number])
+    names, light_space = address_of(certified.cells.names), address_of(certified.light_space[number])
     tests, known = np.int64(0), np.int64(0)
     count = _open(certified, points, number, asked, count, room, stride)
     while count > 0:
         tests += count
-        count, answered = _ask_next(names, sights, light, count, room, stride, live, lit)
+        count, answered = _ask_next(names, light_space, light, count, room, stride, live, lit)
         known += answered
     return known, tests

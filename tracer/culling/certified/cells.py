@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.beam import slack_of
-from tracer.culling.certified.margins import EPSILON, cross, length, row_of
+from tracer.culling.certified.error_bounds import EPSILON, cross, length, row_of
+from tracer.culling.certified.shaft import slack_of
 from tracer.culling.modes import FULL_SHADOW, FULLY_RENDERED, NON_SHADOW, word_type
 from tracer.geometry.memory import aligned_rows
 from tracer.kernels import kernel, subkernel
@@ -35,13 +35,19 @@ HIGHEST = 2.0  # times the scene's largest coordinate and OFFSET: rays that end 
 class Cells(NamedTuple):
     """n cells, of which `used` (1,) int64 are in use.
 
-    words (n,) uint32 or uint64; child (n,) int32, the first of four, LEAF, CONTENT or FINAL; parent (n,) int32;
-    owner (n,) int32, twice the triangle's number, plus 1 for its back; place (n, 3) float32, u, v and size;
-    wanted (n,) int32, how many points have; lists (n, lights) int32, where in names (m,) int32 the primitives are
-    listed that a certificate names, how many first; named (1,) int64, how much of names is in use. receivers
-    (primitives, RECEIVER) float32 lead rays to the roots; those of what has no cells are 0. waiting (2
-    primitives,) int32 is how many points have wanted a root that is not there yet; rooted (primitives,) int32 is
-    1 where there is one.
+    Attributes:
+        words: (n,) uint32 or uint64, a state for each light.
+        child: (n,) int32, the first of four, LEAF, CONTENT or FINAL.
+        parent: (n,) int32, 0 for a root.
+        owner: (n,) int32, twice the triangle's number, plus 1 for its back.
+        place: (n, 3) float32, u, v and size in the triangle.
+        requests: (n,) int32, points that have requested more of a leaf.
+        lists: (n, lights) int32, where in `names` the list of primitives begins that a certificate names.
+        names: (m,) int32, lists, each after its length.
+        used, named: (1,) int64, how many cells, and how much of `names`, are in use.
+        receivers: (primitives, RECEIVER) float32, rows that lead rays to the roots; 0 where there are no cells.
+        waiting: (2 primitives,) int32, points that have requested a root that has not been made, by owner.
+        rooted: (primitives,) int32, 1 where there is a root.
     """
 
     words: NDArray[np.unsignedinteger]
@@ -49,7 +55,7 @@ class Cells(NamedTuple):
     parent: NDArray[np.int32]
     owner: NDArray[np.int32]
     place: NDArray[np.float32]
-    wanted: NDArray[np.int32]
+    requests: NDArray[np.int32]
     lists: NDArray[np.int32]
     names: NDArray[np.int32]
     used: NDArray[np.int64]
@@ -150,7 +156,7 @@ def add_cell(cells, parent, owner, u, v, size):
     cells.words[number] = FULLY_RENDERED
     cells.child[number], cells.parent[number], cells.owner[number] = LEAF, parent, owner
     cells.place[number, 0], cells.place[number, 1], cells.place[number, 2] = u, v, size
-    cells.wanted[number] = 0
+    cells.requests[number] = 0
     cells.lists[number, :] = NOBODY
     return number
 

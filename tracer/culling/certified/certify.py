@@ -1,9 +1,9 @@
 """One cell and one light: LIT, FULL, CANDIDATES, or nothing yet.
 
 Primitives that may come between are taken from the cell that this one is a part of, or, where that had too
-many, from the tree.  What is certain to be missed is passed over (`margins`).  Nothing left: LIT.  One that is
+many, from the tree.  What is certain to be missed is passed over (`error_bounds`).  Nothing left: LIT.  One that is
 certain to be hit: FULL.  Several that are so together: FULL as well, and these are *fused occluders*: each
-hides the part of the cell where all its functions exceed their margins, a convex one, and cutting these
+hides the part of the cell where all its functions exceed their error bounds, a convex one, and cutting these
 parts off one after the other leaves nothing.
 """
 
@@ -14,11 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.beam import Beam, make_beam
 from tracer.culling.certified.cells import CANDIDATES, FULL, LIT, SETTLED, TOO_MANY
-from tracer.culling.certified.margins import LANES
-from tracer.culling.certified.meeting import FUNCTIONS, meet_beam, put_parts
+from tracer.culling.certified.classify import FUNCTIONS, classify_occluders, put_hidden_parts
+from tracer.culling.certified.error_bounds import LANES
 from tracer.culling.certified.occluders import BLOCK, BOXES, STACK, children_met, triangles_met
+from tracer.culling.certified.shaft import Shaft, make_shaft
 from tracer.geometry.bvh8.tree import WIDTH
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
@@ -39,19 +39,19 @@ WAITING = 4 * (LANES + WIDTH)  # bytes: one leaf more than are asked together
 MOST = 48  # candidates that a cell keeps for its parts
 FUSED = 12  # candidates that are fused at most
 PIECES, VERTICES = 24, 12  # of a cell of which parts are cut off
-SLIVER = 1e-15  # of the cell: pieces with less area are narrower by far than any margin
+SLIVER = 1e-15  # of the cell: pieces with less area are narrower by far than any error bound
 
 STEPS, TESTS, CERTIFICATES = range(3)  # counters
 COUNTERS = 3
 
 
 class Scratch(NamedTuple):
-    """What a worker certifies in: a beam; found (MOST + 16,) int32; parts (FUNCTIONS, 3, 16) float32, the functions
+    """What a worker certifies in: a shaft; found (MOST + 16,) int32; parts (FUNCTIONS, 3, 16) float32, the functions
     of fused occluders at the cell's corners, and lanes (16,) int64, which of them are; pieces (PIECES, VERTICES, 3)
     float64, polygons in barycentric coordinates, and vertices (PIECES,) int64, how many each has; spare (2,
     VERTICES, 3)."""
 
-    beam: Beam
+    shaft: Shaft
     found: NDArray[np.int32]
     parts: NDArray[np.float32]
     lanes: NDArray[np.int64]
@@ -62,7 +62,7 @@ class Scratch(NamedTuple):
 
 def scratch() -> Scratch:
     return Scratch(
-        make_beam(),
+        make_shaft(),
         np.zeros(MOST + LANES, np.int32),
         np.zeros((FUNCTIONS, 3, LANES), np.float32),
         np.zeros(LANES, np.int64),
@@ -78,7 +78,7 @@ def _meet(s, o, light, numbers, n, count, counts):
 
     How many there are then, or -1 where one hides the whole cell: all others are forgotten."""
     counts[TESTS] += n
-    hit, missed = meet_beam(o.rows, numbers, o.farthest, light, s.beam)
+    hit, missed = classify_occluders(o.rows, numbers, o.farthest, light, s.shaft)
     there = lanes_below(n, 0)
     hit &= there
     if hit != 0:
@@ -109,14 +109,14 @@ def _from_tree(s, o, number, light, counts):
     numbers, n = i32_at(waiting), 0
     for k in range(LANES + WIDTH):
         numbers[k] = 0
-    boxes, blocks, beside = address_of(o.boxes[number]), address_of(o.blocks), address_of(o.beside[number])
+    boxes, blocks, leaf_radii = address_of(o.boxes[number]), address_of(o.blocks), address_of(o.leaf_radii[number])
     for root in o.roots:
         stack[0], pending = np.int64(root), 1
         while pending > 0:
             pending -= 1
             node = stack[pending]
             counts[STEPS] += 1
-            met = np.int64(children_met(boxes + 4 * BOXES * node, s.beam))
+            met = np.int64(children_met(boxes + 4 * BOXES * node, s.shaft))
             while met != 0:
                 child = lowest_bit(met)
                 met &= met - 1
@@ -130,7 +130,7 @@ def _from_tree(s, o, number, light, counts):
                 if o.numbers[leaf, 0] >= o.first_quadric:
                     those = np.int64(1)
                 else:
-                    those = triangles_met(blocks + 4 * BLOCK * leaf, beside + 4 * WIDTH * leaf, s.beam)
+                    those = triangles_met(blocks + 4 * BLOCK * leaf, leaf_radii + 4 * WIDTH * leaf, s.shaft)
                 while those != 0:
                     numbers[n] = o.numbers[leaf, lowest_bit(those)]
                     those &= those - 1
@@ -147,7 +147,7 @@ def _from_tree(s, o, number, light, counts):
 
 @subkernel
 def certify(s, o, number, light, given, given_count, few, counts):
-    """(certificate, how many primitives it names) of the cell and light that s.beam was put to; s.found names them.
+    """(certificate, how many primitives it names) of the cell and light that s.shaft was put to; s.found names them.
 
     Candidates are those of `given` (given_count,), where there are no more than MOST, or come from the tree.
     More than MOST make CANDIDATES of TOO_MANY, which are not named; `few` that rays can ask are SETTLED besides."""
@@ -203,7 +203,7 @@ def _at(f, vertex):
 def _cut(polygon, count, f, sign, out):
     """The part of a convex polygon where sign * f >= 0; how many vertices it has, or -1 where they are too many.
 
-    Parts of no width to speak of are nothing: there is more than that to spare in the margins."""
+    Parts of no width to speak of are nothing: there is more than that to spare in the error bounds."""
     kept = 0
     for i in range(count):
         j = i + 1 if i + 1 < count else 0
@@ -270,11 +270,11 @@ def _fused(s, o, light, count):
     if count > FUSED or count < 2:
         return 0
     s.found[count:LANES] = s.found[0]  # all sixteen are looked at
-    told = put_parts(o.rows, address_of(s.found), o.farthest, light, s.beam, address_of(s.parts))
-    told &= lanes_below(count, 0)
+    certain = put_hidden_parts(o.rows, address_of(s.found), o.farthest, light, s.shaft, address_of(s.parts))
+    certain &= lanes_below(count, 0)
     parts = 0
     for k in range(count):
-        if (told >> k) & 1 and _hides_some(s.parts, k):
+        if (certain >> k) & 1 and _hides_some(s.parts, k):
             s.lanes[parts] = k
             parts += 1
     if parts < 2 or not _hide_corners(s, parts):

@@ -1,7 +1,7 @@
 """Which static primitives may come between a light and a cell: an 8-wide tree whose boxes know a light.
 
 Its shape is made once.  For each light every triangle's box is enlarged by how far from it a ray could
-still report a hit (`margins`), and the boxes above follow.  Of a triangle in whose plane the light
+still report a hit (`error_bounds`), and the boxes above follow.  Of a triangle in whose plane the light
 lies, as far as float32 can tell, that is all of the box in which the structure reports hits.
 """
 
@@ -12,9 +12,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.beam import PLANES
-from tracer.culling.certified.margins import BOX, LANES, REPORTED, TWO, ZERO, Farthest, margins, rows_at, seen_from
-from tracer.culling.certified.sights import put_sights
+from tracer.culling.certified.error_bounds import (
+    BOX,
+    LANES,
+    REPORTED,
+    TWO,
+    ZERO,
+    SureHitLength,
+    error_bounds,
+    rows_at,
+    seen_from,
+)
+from tracer.culling.certified.light_space import put_light_space
+from tracer.culling.certified.shaft import PLANES
 from tracer.geometry.bvh8.build import build_shape
 from tracer.geometry.bvh8.collapse import VACANT, Shape
 from tracer.geometry.bvh8.tree import WIDTH
@@ -47,13 +57,13 @@ ROUNDED = 1e-6  # of the largest coordinate, by which boxes are larger for plane
 class Occluders(NamedTuple):
     """All that is static, for any number of trees back to back.
 
-    rows (primitives, ROW) float32, in the world, by number (`margins`), those from first_quadric on of quadrics;
+    rows (primitives, ROW) float32, in the world, by number (`error_bounds`), those from first_quadric on of quadrics;
     children (nodes, 8) int32 as in a `Shape`; blocks (leaves, BLOCK) float32, corners and edges of a leaf's
     triangles as structure of arrays, and numbers (leaves, 8) int32, NONE for none, or that of a quadric; roots
-    (trees,) int32; boxes (lights, nodes, BOXES) float32; reaches (lights, n) float32, how far from each
-    triangle a ray from the light can report a hit, and beside (lights, leaves, 8), those of a leaf side by side,
-    negative for none; sights (lights, primitives, SIGHT) float32, what rays from the light ask (`sights`), or
-    (lights, 0, SIGHT).  `farthest` tells which rays are too long to be sure of a hit.
+    (trees,) int32; boxes (lights, nodes, BOXES) float32; error_radii (lights, n) float32, how far from each
+    triangle a ray from the light can report a hit, and leaf_radii (lights, leaves, 8), those of a leaf side by side,
+    negative for none; light_space (lights, primitives, LIGHT_ROW) float32, what rays from the light ask
+    (`light_space`), or (lights, 0, LIGHT_ROW).  `farthest` tells which rays are too long to be sure of a hit.
     """
 
     rows: NDArray[np.float32]
@@ -63,10 +73,10 @@ class Occluders(NamedTuple):
     numbers: NDArray[np.int32]
     roots: NDArray[np.int32]
     boxes: NDArray[np.float32]
-    reaches: NDArray[np.float32]
-    beside: NDArray[np.float32]
-    sights: NDArray[np.float32]
-    farthest: Farthest
+    error_radii: NDArray[np.float32]
+    leaf_radii: NDArray[np.float32]
+    light_space: NDArray[np.float32]
+    farthest: SureHitLength
 
 
 def shape_of(
@@ -93,9 +103,9 @@ def joined(shapes: list[Shape]) -> tuple[Shape, NDArray[np.int32]]:
 
 
 @subkernel
-def _find_reaches(o, number, light, farthest, rounded):
-    """How far from each triangle a ray from the light can report a hit, into o.reaches[number]."""
-    reaches, numbers = address_of(o.reaches[number]), local_memory(64)
+def _find_error_radii(o, number, light, farthest, rounded):
+    """How far from each triangle a ray from the light can report a hit, into o.error_radii[number]."""
+    error_radii, numbers = address_of(o.error_radii[number]), local_memory(64)
     light = np.float32(light[0]), np.float32(light[1]), np.float32(light[2])
     farthest, rounded = np.float32(farthest), np.float32(rounded)
     for first in range(0, len(o.rows), LANES):
@@ -103,19 +113,19 @@ def _find_reaches(o, number, light, farthest, rounded):
         store(numbers, which)
         row = rows_at(o.rows, numbers)
         t = seen_from(light, row)
-        # In the margins |D| counts by the same part of itself, whatever it is: that is added at the end.
-        m = margins(t, TWO * farthest, farthest, t.height, ZERO)
+        # In the error bounds |D| counts by the same part of itself, whatever it is: that is added at the end.
+        m = error_bounds(t, TWO * farthest, farthest, t.height, ZERO)
         depth = t.height - m.behind
         part = maximum(m.u, maximum(m.v, m.w)) / depth + np.float32(1e-5)
-        reach = part * (t.first + t.second) + (m.behind / depth + np.float32(1e-6)) * farthest + t.blur
-        reach = select(t.firm & (depth > ZERO), reach, FAR)
+        radius = part * (t.first + t.second) + (m.behind / depth + np.float32(1e-6)) * farthest + t.blur
+        radius = select(t.firm & (depth > ZERO), radius, FAR)
         room = f32x16(ZERO)  # from the triangle to anywhere in the box that hits are reported in, along an axis
         for axis in range(3):
             corner, e1, e2 = row[axis], row[3 + axis], row[6 + axis]
             low, high = corner + minimum(ZERO, minimum(e1, e2)), corner + maximum(ZERO, maximum(e1, e2))
             room = maximum(room, maximum(high - row[BOX + axis], row[BOX + 3 + axis] - low))
         room = DIAGONAL * (room + np.float32(REPORTED) * t.away)
-        store(reaches + 4 * first, minimum(minimum(reach, room) + rounded, FAR))
+        store(error_radii + 4 * first, minimum(minimum(radius, room) + rounded, FAR))
 
 
 @inlined
@@ -158,19 +168,19 @@ def _triangle_box(rows, i, more):
 
 @subkernel
 def _leaf_box(o, leaf, number, farthest):
-    """The box of a leaf's primitives for a light; their reaches are put side by side."""
+    """The box of a leaf's primitives for a light; their error_radii are put side by side."""
     low, high = _empty()
     room = np.float32(REPORTED * farthest)
-    beside = o.beside[number, leaf]
+    leaf_radii = o.leaf_radii[number, leaf]
     for k in range(WIDTH):
         i = o.numbers[leaf, k]
-        beside[k] = -FAR
+        leaf_radii[k] = -FAR
         if i >= o.first_quadric:
             b = o.rows[i]
             low, high = _around(low, high, (b[BOX], b[BOX + 1], b[BOX + 2]), (b[BOX + 3], b[BOX + 4], b[BOX + 5]))
         elif i != NONE:
-            beside[k] = o.reaches[number, i]
-            low2, high2 = _triangle_box(o.rows, i, beside[k])
+            leaf_radii[k] = o.error_radii[number, i]
+            low2, high2 = _triangle_box(o.rows, i, leaf_radii[k])
             b = o.rows[i]
             low2 = max(low2[0], b[BOX] - room), max(low2[1], b[BOX + 1] - room), max(low2[2], b[BOX + 2] - room)
             high2 = min(high2[0], b[BOX + 3] + room), min(high2[1], b[BOX + 4] + room), min(high2[2], b[BOX + 5] + room)
@@ -179,13 +189,13 @@ def _leaf_box(o, leaf, number, farthest):
 
 
 @kernel
-def know_light(o, number, light, farthest, largest):
+def enlarge_boxes(o, number, light, farthest, largest):
     """Enlarge the boxes for light `number`, now at light (3,): no ray from it is longer than `farthest`, and no
     coordinate larger than `largest`."""
     o = borrowed(o)
     boxes = o.boxes[number]
-    _find_reaches(o, number, light, farthest, ROUNDED * largest)
-    put_sights(o.rows, o.farthest, light, o.sights[number])
+    _find_error_radii(o, number, light, farthest, ROUNDED * largest)
+    put_light_space(o.rows, o.farthest, light, o.light_space[number])
     for node in range(len(o.children) - 1, -1, -1):  # children come after their parents
         for child in range(WIDTH):
             code = o.children[node, child]
@@ -204,41 +214,41 @@ def know_light(o, number, light, farthest, largest):
 
 
 @inlined
-def children_met(box, beam):
-    """Bits of the eight boxes at an address that may meet a beam."""
+def children_met(box, shaft):
+    """Bits of the eight boxes at an address that may meet a shaft."""
     x0, y0, z0 = load_f32x8(box), load_f32x8(box + 32), load_f32x8(box + 64)
     x1, y1, z1 = load_f32x8(box + 96), load_f32x8(box + 128), load_f32x8(box + 160)
-    b = beam.box
+    b = shaft.box
     met = (x0 <= np.float32(b[3])) & (y0 <= np.float32(b[4])) & (z0 <= np.float32(b[5]))
     met = met & (x1 >= np.float32(b[0])) & (y1 >= np.float32(b[1])) & (z1 >= np.float32(b[2]))
     for k in range(PLANES):
-        nx, ny, nz = np.float32(beam.planes[k, 0]), np.float32(beam.planes[k, 1]), np.float32(beam.planes[k, 2])
+        nx, ny, nz = np.float32(shaft.planes[k, 0]), np.float32(shaft.planes[k, 1]), np.float32(shaft.planes[k, 2])
         # The corner of each box that is farthest behind the plane.
         x = x0 if nx > np.float32(0) else x1
         y = y0 if ny > np.float32(0) else y1
         z = z0 if nz > np.float32(0) else z1
-        met = met & (x * nx + y * ny + z * nz <= np.float32(beam.planes[k, 3]))
+        met = met & (x * nx + y * ny + z * nz <= np.float32(shaft.planes[k, 3]))
     return bits_of(met)
 
 
 @inlined
-def triangles_met(block, beside, beam):
-    """Bits of the eight triangles of a block, at an address, that may meet a beam, made larger by their reaches,
+def triangles_met(block, leaf_radii, shaft):
+    """Bits of the eight triangles of a block, at an address, that may meet a shaft, made larger by their error_radii,
     which are `beside` each other."""
     x, y, z = load_f32x8(block), load_f32x8(block + 32), load_f32x8(block + 64)
     ax, ay, az = load_f32x8(block + 96), load_f32x8(block + 128), load_f32x8(block + 160)
     bx, by, bz = load_f32x8(block + 192), load_f32x8(block + 224), load_f32x8(block + 256)
-    reach, zero, b = load_f32x8(beside), f32x8(np.float32(0)), beam.box
-    met = reach > zero
+    radius, zero, b = load_f32x8(leaf_radii), f32x8(np.float32(0)), shaft.box
+    met = radius > zero
     for k in range(3):
         c, e1, e2 = (x, ax, bx) if k == 0 else ((y, ay, by) if k == 1 else (z, az, bz))
         low, high = minimum(zero, minimum(e1, e2)), maximum(zero, maximum(e1, e2))
-        met = met & (c + low - reach <= np.float32(b[3 + k])) & (c + high + reach >= np.float32(b[k]))
+        met = met & (c + low - radius <= np.float32(b[3 + k])) & (c + high + radius >= np.float32(b[k]))
     for k in range(PLANES):
-        nx, ny, nz = np.float32(beam.planes[k, 0]), np.float32(beam.planes[k, 1]), np.float32(beam.planes[k, 2])
+        nx, ny, nz = np.float32(shaft.planes[k, 0]), np.float32(shaft.planes[k, 1]), np.float32(shaft.planes[k, 2])
         e1, e2 = ax * nx + ay * ny + az * nz, bx * nx + by * ny + bz * nz
         least = x * nx + y * ny + z * nz + minimum(zero, minimum(e1, e2))
-        met = met & (least - reach <= np.float32(beam.planes[k, 3]))
+        met = met & (least - radius <= np.float32(shaft.planes[k, 3]))
     return bits_of(met)
 
 

@@ -1,4 +1,4 @@
-"""From what rays wanted to tasks: which cells are begun with, and what is looked at where time is short."""
+"""From requests to tasks: which cells are begun with, and what is looked at where time is short."""
 
 from __future__ import annotations
 
@@ -13,11 +13,14 @@ import tracer
 from tests.tracing.shades import BEHIND, floor, roof
 from tests.tracing.worlds import scene
 from tracer import renderer as rendering
-from tracer.culling.certified import certificates as certifying
+from tracer.culling.certified import cost_model
+from tracer.culling.certified import store as certifying
 from tracer.culling.certified.cells import ALONG_U, CANDIDATES, CORNER, FULL, LIT, NORMAL, ROOTS, TOO_MANY
-from tracer.culling.certified.certificates import Budget, Certificates, Effort
-from tracer.culling.certified.gather import Points, gather_tasks
-from tracer.culling.certified.work import KEPT, commit, make_tasks, tasks_in
+from tracer.culling.certified.cost_model import CostModel
+from tracer.culling.certified.gather_requests import RequestPoints, gather_tasks
+from tracer.culling.certified.requests import make_requests
+from tracer.culling.certified.store import Budget, CertificateStore
+from tracer.culling.certified.tasks import KEPT, commit, make_tasks, tasks_in
 from tracer.culling.modes import FULLY_RENDERED
 from tracer.geometry.world import ACCELERATORS
 
@@ -29,11 +32,11 @@ SETTINGS = tracer.Settings(96, 64, 2, "certified", threads=1)
 
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(rendering, "EFFORT", dict.fromkeys(ACCELERATORS, Effort(2, 4, 2, 8, True, 1)))
+    monkeypatch.setattr(cost_model, "COST_MODELS", dict.fromkeys(ACCELERATORS, CostModel(2, 4, 2, 8, True, 1)))
 
 
 @pytest.fixture
-def certificates() -> Certificates:
+def certificates() -> CertificateStore:
     """Of squares, with a quadtree on each that rays have asked for."""
     renderer = tracer.Renderer(SQUARES, SETTINGS)
     for _ in range(4):
@@ -42,7 +45,7 @@ def certificates() -> Certificates:
     return renderer.certificates
 
 
-def _first_untried(c: Certificates, cell: int) -> int:
+def _first_untried(c: CertificateStore, cell: int) -> int:
     """Naive twin: upwards from a cell, as long as the whole waits for a light that its part waits for."""
 
     def waits(number: int) -> set[int]:
@@ -58,7 +61,7 @@ def _first_untried(c: Certificates, cell: int) -> int:
     return cell
 
 
-def test_points_are_gathered_by_the_cell_to_begin_with(certificates: Certificates) -> None:
+def test_points_are_gathered_by_the_cell_to_begin_with(certificates: CertificateStore) -> None:
     c, rng = certificates, np.random.default_rng(5)
     cells, used = c.cells, int(c.cells.used[0])
     assert used > 100 and (cells.parent[1:used] > 0).any()
@@ -69,40 +72,40 @@ def test_points_are_gathered_by_the_cell_to_begin_with(certificates: Certificate
     cells.rooted[moved] = 0
     cells.receivers.view(np.int32)[moved, ROOTS : ROOTS + 2] = 0
     bare = [o for o in range(len(cells.waiting)) if cells.receivers.view(np.int32)[o >> 1, ROOTS + (o & 1)] == 0]
-    wanted_by_some, wanted_by_few = 2 * moved, next(o for o in bare if o >> 1 != moved)
-    cells.waiting[wanted_by_some], cells.waiting[wanted_by_few] = 4, 0
+    requested_by_some, requested_by_few = 2 * moved, next(o for o in bare if o >> 1 != moved)
+    cells.waiting[requested_by_some], cells.waiting[requested_by_few] = 4, 0
     key = rng.integers(1, used, 3000).astype(np.int32)
-    key[rng.choice(len(key), 40, replace=False)] = -1 - wanted_by_some
-    key[np.flatnonzero(key > 0)[:3]] = -1 - wanted_by_few
+    key[rng.choice(len(key), 40, replace=False)] = -1 - requested_by_some
+    key[np.flatnonzero(key > 0)[:3]] = -1 - requested_by_few
     u, v = rng.random((2, len(key)), np.float32)
     expected: dict[int, set[tuple[float, float]]] = {}
     for k, x, y in zip(key.tolist(), u.tolist(), v.tolist(), strict=True):
         if k > 0 and int(cells.owner[k]) >> 1 != moved:
             expected.setdefault(_first_untried(c, k), set()).add((x, y))
-        elif k == -1 - wanted_by_some:
+        elif k == -1 - requested_by_some:
             expected.setdefault(used, set()).add((x, y))  # the root that is made
-    points = Points(np.empty_like(u), np.empty_like(v), np.empty((2, len(u)), np.float32))
+    points = RequestPoints(np.empty_like(u), np.empty_like(v), np.empty((2, len(u)), np.float32))
     slots = np.zeros(len(cells.words) + len(cells.waiting), np.int32)
-    tasks = gather_tasks(cells, c.occluders, c._lights, c.still, key, u, v, 20, slots, points)
+    tasks = gather_tasks(cells, c.occluders, c._lights, c.stationary, key, u, v, 20, slots, points)
     found = {int(cell): set(zip(points.u[a:b].tolist(), points.v[a:b].tolist(), strict=True)) for cell, a, b in tasks}
     assert len(found) == len(tasks) and found == expected
     assert any(_first_untried(c, k) != k for k in key[key > 0].tolist()), "some are part of a whole"
     assert not slots.any()
-    assert int(cells.used[0]) == used + 1 and int(cells.owner[used]) == wanted_by_some and cells.rooted[moved]
-    assert cells.waiting[wanted_by_few] == 3 and np.any(cells.receivers[moved, ALONG_U : ALONG_U + 3])
+    assert int(cells.used[0]) == used + 1 and int(cells.owner[used]) == requested_by_some and cells.rooted[moved]
+    assert cells.waiting[requested_by_few] == 3 and np.any(cells.receivers[moved, ALONG_U : ALONG_U + 3])
 
 
 def test_what_a_frame_has_no_time_to_look_at_is_looked_at_in_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
     ticks = count()
     settings = replace(SETTINGS, width=640, height=320, certificate_seconds=1.0)
     renderer, calls = tracer.Renderer(SQUARES, settings), []
-    seek = rendering.seek_in_tiles
+    request_in_tiles = rendering.request_in_tiles
 
     def noted(rays, tiles, numbers, *rest) -> None:
         calls.append(set(numbers.tolist()))
-        seek(rays, tiles, numbers, *rest)
+        request_in_tiles(rays, tiles, numbers, *rest)
 
-    monkeypatch.setattr(rendering, "seek_in_tiles", noted)
+    monkeypatch.setattr(rendering, "request_in_tiles", noted)
     monkeypatch.setattr(rendering, "clock", SimpleNamespace(perf_counter=lambda: 0.2 * next(ticks)))
     frames = []
     for _ in range(8):
@@ -115,26 +118,26 @@ def test_what_a_frame_has_no_time_to_look_at_is_looked_at_in_the_next(monkeypatc
 
 
 def test_lists_for_which_there_is_no_time_come_first_in_the_next_frame(
-    certificates: Certificates, monkeypatch: pytest.MonkeyPatch
+    certificates: CertificateStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     c, tiles, points = certificates, 10, 100
-    wanted = c.wanted(tiles)
-    wanted.key[:, :points], wanted.v[:, :points] = 1, 0.0
-    wanted.u[:, :points] = np.arange(tiles)[:, None] / tiles
-    wanted.of[:, 0] = points
+    requests = make_requests(tiles)
+    requests.key[:, :points], requests.v[:, :points] = 1, 0.0
+    requests.u[:, :points] = np.arange(tiles)[:, None] / tiles
+    requests.of[:, 0] = points
     monkeypatch.setattr(certifying, "clock", SimpleNamespace(perf_counter=lambda: 0.0))
     gathered = []
     for _ in range(4):
         c._pace = 1.0  # seconds for each point
-        tasks, some = c._gather([wanted], Budget(until=350 / certifying.SORTING), Effort(1, 1, 2, 8, True, 1))
+        tasks, some = c._gather([requests], Budget(until=350 / certifying.SORTING), CostModel(1, 1, 2, 8, True, 1))
         assert tasks.tolist() == [[1, 0, 3 * points]]
         gathered.append(sorted(set(np.rint(some.u * tiles).astype(int).tolist())))
     assert gathered == [[0, 1, 2], [3, 4, 5], [6, 7, 8], [0, 1, 9]]
-    tasks, some = c._gather([wanted], Budget(), Effort(1, 1, 2, 8, True, 1))
+    tasks, some = c._gather([requests], Budget(), CostModel(1, 1, 2, 8, True, 1))
     assert len(some.u) == tiles * points
 
 
-def test_a_task_within_another_leaves_what_that_has_found(certificates: Certificates) -> None:
+def test_a_task_within_another_leaves_what_that_has_found(certificates: CertificateStore) -> None:
     cells = certificates.cells
     whole = next(n for n in range(1, int(cells.used[0])) if cells.child[n] >= 0)
     part = int(cells.child[whole])

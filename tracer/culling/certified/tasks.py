@@ -1,6 +1,6 @@
-"""Certifying the cells that rays wanted, and their parts: round by round, each round in parallel.
+"""Certifying the cells that rays requested, and their parts: round by round, each round in parallel.
 
-A task is a cell and the points in it that wanted more.  Working on it finds certificates for all lights
+A task is a cell and the points in it that requested more.  Working on it finds certificates for all lights
 that have none there, and sorts the points by the part of the cell they lie in; nothing is written that others
 read.  `commit` then takes results over in the order of the tasks, so that cells get the same
 numbers whoever worked on what, and says which parts are the tasks of the next round.
@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.beam import put_cell, put_light
 from tracer.culling.certified.cells import (
     CANDIDATES,
     CONTENT,
@@ -30,13 +29,14 @@ from tracer.culling.certified.cells import (
     state_of,
 )
 from tracer.culling.certified.certify import COUNTERS, MOST, certify
-from tracer.culling.certified.gather import facing_lights
-from tracer.culling.certified.margins import dot, row_of
+from tracer.culling.certified.error_bounds import dot, row_of
+from tracer.culling.certified.gather_requests import facing_lights
+from tracer.culling.certified.shaft import put_cell, put_light
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
 
 DEEPEST = 2.0**-12  # of a triangle's edges: no cell is smaller
-SMALLEST = 8.0  # times how far above a surface rays may end: shorter cells would be mostly margin
+SMALLEST = 8.0  # times how far above a surface rays may end: shorter cells would be mostly error bound
 KEPT = 0xFF  # instead of a result: the light has its certificate, or needs none
 
 
@@ -134,10 +134,10 @@ def _can_split(cells, o, cell, highest):
 
 @subkernel
 def _put_cell(cells, o, cell, reach, s):
-    """Put the worker's beam to a cell; False where that cannot be certified."""
+    """Put the worker's shaft to a cell; False where that cannot be certified."""
     owner, (highest, largest) = np.int64(cells.owner[cell]), reach
     return put_cell(
-        s.beam,
+        s.shaft,
         o.rows,
         owner >> 1,
         1.0 - 2.0 * (owner & 1),
@@ -151,8 +151,8 @@ def _put_cell(cells, o, cell, reach, s):
 
 @subkernel
 def _certify(cells, o, place, light, cell, few, s, counts):
-    """Certify the cell that the worker's beam was put to for a light at a place: (certificate, how many it names)."""
-    if not put_light(s.beam, place):
+    """Certify the cell that the worker's shaft was put to for a light at a place: (certificate, how many it names)."""
+    if not put_light(s.shaft, place):
         return np.int64(CANDIDATES), np.int64(TOO_MANY)
     parent, given, count = np.int64(cells.parent[cell]), cells.names[:0], np.int64(TOO_MANY)
     if parent != 0 and state_of(cells.words[parent], light) == CANDIDATES:
@@ -164,11 +164,11 @@ def _certify(cells, o, place, light, cell, few, s, counts):
 
 
 @subkernel
-def _work_on(cells, o, lights, still, reach, task, tasks, points, patience, few, s, counts):
+def _run_task(cells, o, lights, stationary, reach, task, tasks, points, patience, few, s, counts):
     cell = np.int64(tasks.cell[task])
     first, last = tasks.first[task], tasks.last[task]
     owner, word, highest = np.int64(cells.owner[cell]), cells.words[cell], reach[0]
-    facing = facing_lights(o, lights, still, owner)
+    facing = facing_lights(o, lights, stationary, owner)
     put, placed, doubt = False, True, False
     for light in range(len(lights)):
         tasks.state[task, light] = KEPT
@@ -197,7 +197,7 @@ def _work_on(cells, o, lights, still, reach, task, tasks, points, patience, few,
         leaf = cells.child[cell] == LEAF or cells.child[cell] == CONTENT
         if cells.child[cell] >= 0 or (
             leaf
-            and cells.wanted[cell] + last - first >= patience
+            and cells.requests[cell] + last - first >= patience
             and _can_split(cells, o, cell, highest)
             and (put or _put_cell(cells, o, cell, reach, s))
         ):
@@ -211,14 +211,14 @@ def _is_settled(cells, cell, light):
 
 
 @kernel
-def work_on(cells, o, lights, still, reach, first, last, tasks, points, patience, few, s, counts):
-    """Certify tasks first to last - 1 for lights (n, 3), those of them that stand `still` (n,) bool.
+def run_tasks(cells, o, lights, stationary, reach, first, last, tasks, points, patience, few, s, counts):
+    """Certify tasks first to last - 1 for lights (n, 3), those of them that are `stationary` (n,) bool.
 
     reach is how high above rays may end and the scene's largest coordinate; a leaf is divided once so many
-    points have wanted it, but not for lights of which rays can ask a `few` candidates."""
+    points have requested it, but not for lights of which rays can ask a `few` candidates."""
     cells, o, tasks, points, s = borrowed(cells), borrowed(o), borrowed(tasks), borrowed(points), borrowed(s)
     for task in range(first, last):
-        _work_on(cells, o, lights, still, reach, task, tasks, points, patience, few, s, counts)
+        _run_task(cells, o, lights, stationary, reach, task, tasks, points, patience, few, s, counts)
 
 
 @subkernel
@@ -270,7 +270,7 @@ def commit(cells, o, reach, tasks, following):
         parts = tasks.parts[task]
         if parts[4] == 0:
             if cells.child[cell] == LEAF or cells.child[cell] == CONTENT:
-                cells.wanted[cell] += tasks.last[task] - tasks.first[task]
+                cells.requests[cell] += tasks.last[task] - tasks.first[task]
                 cells.child[cell] = LEAF if tasks.doubt[task] else CONTENT
                 if not _can_split(cells, o, cell, highest):
                     cells.child[cell] = FINAL

@@ -1,11 +1,13 @@
-"""Sixteen primitives against a beam: which hide the whole cell from the light, and which none of it (`margins`)."""
+"""Classify sixteen primitives against a shaft: which hide the whole cell from the light, and which none of it.
+
+`error_bounds` derives the rules.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from tracer.culling.certified.beam import CORNERS, PLANES
-from tracer.culling.certified.margins import (
+from tracer.culling.certified.error_bounds import (
     BOX,
     INSIDE,
     LAMP,
@@ -13,13 +15,14 @@ from tracer.culling.certified.margins import (
     REPORTED,
     ZERO,
     dot,
-    farthest_of,
+    error_bounds,
     functions,
     length16,
-    margins,
     rows_at,
     seen_from,
+    sure_hit_length,
 )
+from tracer.culling.certified.shaft import CORNERS, PLANES
 from tracer.kernels import inlined, subkernel
 from tracer.simd import any_lane, bits_of, f32x16, maximum, minimum, select, store
 
@@ -33,9 +36,9 @@ def _short(a):
 
 
 @inlined
-def _at(beam, k):
-    """Direction to a beam's corner, and that corner."""
-    d, p = beam.directions, beam.corners
+def _at(shaft, k):
+    """Direction to a shaft's corner, and that corner."""
+    d, p = shaft.directions, shaft.corners
     return _short((d[0, k], d[1, k], d[2, k])), _short((p[0, k], p[1, k], p[2, k]))
 
 
@@ -45,23 +48,24 @@ def _both(extreme, x):
 
 
 @inlined
-def _over(t, beam):
-    """(least and greatest U, V, D - U - V, D - T and D over a beam's corners, their margins, greatest |D|)."""
+def _over(t, shaft):
+    """(least and greatest U, V, D - U - V, D - T and D over a shaft's corners, their error bounds, greatest |D|)."""
     start = f32x16(HUGE), f32x16(-HUGE)
     us, vs, ws, bs, ds, near, coordinates = start, start, start, start, start, f32x16(ZERO), ZERO
     for k in range(CORNERS):
-        direction, end = _at(beam, k)
+        direction, end = _at(shaft, k)
         u, v, w, b, d = functions(t, direction, end)
         us, vs, ws, bs, ds = _both(us, u), _both(vs, v), _both(ws, w), _both(bs, b), _both(ds, d)
         near = maximum(near, length16((end[0] - t.corner[0], end[1] - t.corner[1], end[2] - t.corner[2])))
         coordinates = max(coordinates, abs(end[0]) + abs(end[1]) + abs(end[2]))
     along = maximum(ds[1], -ds[0])
-    return us, vs, ws, bs, ds, margins(t, np.float32(beam.reach[0]), near, along, coordinates), along
+    return us, vs, ws, bs, ds, error_bounds(t, np.float32(shaft.reach[0]), near, along, coordinates), along
 
 
 @inlined
 def _parting(x, y, low, high):
-    """Between which factors of y the sum of two functions, margins added to both, stays negative at one more corner."""
+    """Between which factors of y the sum of two functions, each with its error bound added, stays negative at one more
+    corner."""
     ratio = -x / y
     low = maximum(low, select(y < ZERO, ratio, ZERO))
     high = minimum(high, select(y > ZERO, ratio, HUGE))
@@ -69,12 +73,12 @@ def _parting(x, y, low, high):
 
 
 @inlined
-def _parted_by_two(t, beam, m):
+def _parted_by_two(t, shaft, m):
     """Mask of those of which some sum of two functions with positive factors is negative at all corners."""
     start = f32x16(ZERO), f32x16(HUGE)
     ub, vb, wb, uv, uw, vw = start, start, start, start, start, start
     for k in range(CORNERS):
-        direction, end = _at(beam, k)
+        direction, end = _at(shaft, k)
         u, v, w, b, _d = functions(t, direction, end)
         u, v, w, b = u + m.u, v + m.v, w + m.w, b + m.behind
         ub, vb, wb = _parting(u, b, ub[0], ub[1]), _parting(v, b, vb[0], vb[1]), _parting(w, b, wb[0], wb[1])
@@ -84,13 +88,13 @@ def _parted_by_two(t, beam, m):
 
 
 @inlined
-def _before_planes(t, m, depth, light, beam):
-    """Mask of triangles that lie before a plane of the beam by more than a hit on them may lie beyond."""
-    # Twice the part that margins are of the depth, without our own errors.
-    part, beyond = maximum(m.u, maximum(m.v, m.w)) / depth, m.behind / depth * np.float32(beam.reach[0])
+def _before_planes(t, m, depth, light, shaft):
+    """Mask of triangles that lie before a plane of the shaft by more than a hit on them may lie beyond."""
+    # Twice the part that error bounds are of the depth, without our own errors.
+    part, beyond = maximum(m.u, maximum(m.v, m.w)) / depth, m.behind / depth * np.float32(shaft.reach[0])
     parted = depth < ZERO
     for k in range(PLANES):
-        plane = beam.planes[k]
+        plane = shaft.planes[k]
         n, offset = _short(plane), np.float32(plane[3] - dot(plane, light))
         g = -dot(t.s, n) - offset
         g1, g2 = g + dot(t.e1, n), g + dot(t.e2, n)
@@ -101,31 +105,32 @@ def _before_planes(t, m, depth, light, beam):
 
 
 @inlined
-def _beside(row, away, beam):
-    """Mask of those whose boxes, in which hits on them are reported, the beam passes by."""
+def _beside(row, away, shaft):
+    """Mask of those whose boxes, in which hits on them are reported, the shaft passes by."""
     room = np.float32(REPORTED) * away
     apart = room < ZERO
     for axis in range(3):
         low, high = row[BOX + axis] - room, row[BOX + 3 + axis] + room
-        apart = apart | (low > np.float32(beam.box[3 + axis])) | (high < np.float32(beam.box[axis]))
+        apart = apart | (low > np.float32(shaft.box[3 + axis])) | (high < np.float32(shaft.box[axis]))
     for k in range(PLANES):
         nearest = f32x16(ZERO)
         for axis in range(3):
-            n, low, high = np.float32(beam.planes[k, axis]), row[BOX + axis] - room, row[BOX + 3 + axis] + room
+            n, low, high = np.float32(shaft.planes[k, axis]), row[BOX + axis] - room, row[BOX + 3 + axis] + room
             nearest = nearest + n * (low if n > ZERO else high)
-        apart = apart | (nearest > np.float32(beam.planes[k, 3]))
+        apart = apart | (nearest > np.float32(shaft.planes[k, 3]))
     return apart
 
 
 @subkernel
-def meet_beam(rows, numbers, farthest, light, beam):
-    """Of sixteen of rows (n, ROW), whose numbers, int32, are at an address: bits of those that every ray of a beam from
-    the light (3,) is certain to hit, and of those that none is.
+def classify_occluders(rows, numbers, farthest, light, shaft):
+    """Bits of those primitives that every ray of a shaft is certain to hit, and of those that none is.
+
+    There are sixteen of rows (n, ROW), whose numbers, int32, are at an address; the rays come from the light (3,).
 
     A hit is certain only of rays shorter than `farthest`."""
     row = rows_at(rows, numbers)
     t = seen_from(_short(light), row)
-    us, vs, ws, bs, ds, m, along = _over(t, beam)
+    us, vs, ws, bs, ds, m, along = _over(t, shaft)
     hit = (
         t.firm
         & (us[0] > np.float32(INSIDE) * m.u)
@@ -141,26 +146,30 @@ def meet_beam(rows, numbers, farthest, light, beam):
     backwards = (us[0] > m.u) | (vs[0] > m.v) | (ws[0] > m.w) | (least > of_d)
     missed = missed | (t.sane & (beyond | (most < -of_d)) & backwards)
     depth = maximum(select(t.firm, t.height - m.behind, ZERO), maximum(least - m.d, -most - m.d))
-    missed = missed | (t.sane & _before_planes(t, m, depth, light, beam)) | _beside(row, t.away, beam)
+    missed = missed | (t.sane & _before_planes(t, m, depth, light, shaft)) | _beside(row, t.away, shaft)
     if any_lane(t.firm & ~missed & ~hit):
-        missed = missed | (t.firm & _parted_by_two(t, beam, m))
-    hit = hit & (farthest_of(farthest, numbers) > np.float32(beam.reach[0]))
+        missed = missed | (t.firm & _parted_by_two(t, shaft, m))
+    hit = hit & (sure_hit_length(farthest, numbers) > np.float32(shaft.reach[0]))
     return bits_of(hit), bits_of(missed)
 
 
 @subkernel
-def put_parts(rows, numbers, farthest, light, beam, parts):
-    """Functions less their margins at a cell's three corners, whatever the height above, into parts (FUNCTIONS, 3, 16);
-    bits of those rows (n, ROW), whose numbers, int32, are at an address, of which these tell what they hide."""
+def put_hidden_parts(rows, numbers, farthest, light, shaft, parts):
+    """Functions less their error bounds at a cell's three corners, whatever the height above, into parts
+    (FUNCTIONS, 3, 16), for sixteen of rows (n, ROW) whose numbers, int32, are at an address.
+
+    Bits of those that hide the points of the cell where all their functions are positive."""
     t = seen_from(_short(light), rows_at(rows, numbers))
-    _us, _vs, _ws, _bs, _ds, m, along = _over(t, beam)
+    _us, _vs, _ws, _bs, _ds, m, along = _over(t, shaft)
     for k in range(BELOW):
-        (near, low), (far, high) = _at(beam, k), _at(beam, BELOW + k)
+        (near, low), (far, high) = _at(shaft, k), _at(shaft, BELOW + k)
         below, above = functions(t, near, low), functions(t, far, high)
         store(parts + 64 * k, minimum(below[0], above[0]) - np.float32(INSIDE) * m.u)
         store(parts + 64 * (BELOW + k), minimum(below[1], above[1]) - np.float32(INSIDE) * m.v)
         store(parts + 64 * (2 * BELOW + k), minimum(below[2], above[2]) - np.float32(INSIDE) * m.w)
         store(parts + 64 * (3 * BELOW + k), minimum(below[3], above[3]) - m.behind)
     return bits_of(
-        t.firm & (t.height > np.float32(LAMP) * along) & (farthest_of(farthest, numbers) > np.float32(beam.reach[0]))
+        t.firm
+        & (t.height > np.float32(LAMP) * along)
+        & (sure_hit_length(farthest, numbers) > np.float32(shaft.reach[0]))
     )

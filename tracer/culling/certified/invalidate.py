@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.beam import meets_box, put_cell, put_light
 from tracer.culling.certified.cells import (
     CANDIDATES,
     FULL,
@@ -18,6 +17,7 @@ from tracer.culling.certified.cells import (
     set_state,
     state_of,
 )
+from tracer.culling.certified.shaft import meets_box, put_cell, put_light
 from tracer.culling.modes import FULLY_RENDERED
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
@@ -34,16 +34,16 @@ def _names_one(cells, cell, light, gone):
 
 @subkernel
 def _meets_any(s, boxes, light):
-    if not put_light(s.beam, (np.float64(light[0]), np.float64(light[1]), np.float64(light[2]))):
+    if not put_light(s.shaft, (np.float64(light[0]), np.float64(light[1]), np.float64(light[2]))):
         return True
     met = False
     for k in range(len(boxes)):
-        met |= meets_box(s.beam, boxes[k])
+        met |= meets_box(s.shaft, boxes[k])
     return met
 
 
 @kernel
-def drop_certificates(cells, o, lights, reach, gone, boxes, near, s):
+def invalidate_certificates(cells, o, lights, reach, gone, boxes, near, s):
     """Drop the certificates that name primitives which are `gone` (p,) bool, and those that nothing comes between but
     for what is in boxes (lights, k, 6) from now on.
 
@@ -68,7 +68,7 @@ def drop_certificates(cells, o, lights, reach, gone, boxes, near, s):
                 if not tried:
                     u, v, size = cells.place[cell, 0], cells.place[cell, 1], cells.place[cell, 2]
                     side, at = 1.0 - 2.0 * (owner & 1), (np.float64(u), np.float64(v), np.float64(size))
-                    placed = put_cell(s.beam, o.rows, owner >> 1, side, at[0], at[1], at[2], highest, largest)
+                    placed = put_cell(s.shaft, o.rows, owner >> 1, side, at[0], at[1], at[2], highest, largest)
                     tried = True
                 drop = not placed or _meets_any(s, boxes[light], lights[light])
             if drop:
@@ -92,7 +92,7 @@ def copy_kept(cells, kept, target):
         place[cell] = to
         target.words[to], target.child[to] = cells.words[cell], cells.child[cell]
         target.parent[to], target.owner[to] = place[cells.parent[cell]], owner
-        target.wanted[to] = cells.wanted[cell]
+        target.requests[to] = cells.requests[cell]
         for k in range(3):
             target.place[to, k] = cells.place[cell, k]
         for light in range(cells.lists.shape[1]):

@@ -1,17 +1,15 @@
-"""All certificates of a scene: kept up to date with what moves, and made, most wanted first, within a budget."""
+"""All certificates of a scene: kept up to date with what moves, and made, most requested first, within a budget."""
 
 from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracer.culling.certified import certify
-from tracer.culling.certified.beam import OFFSET
 from tracer.culling.certified.cells import (
     ALONG_U,
     ALONG_V,
@@ -29,12 +27,15 @@ from tracer.culling.certified.cells import (
     put_receivers,
     with_room,
 )
-from tracer.culling.certified.forget import all_marked, copy_kept, drop_certificates
-from tracer.culling.certified.gather import Points, gather_tasks
-from tracer.culling.certified.lookup import ROOM, Certified, Wanted
+from tracer.culling.certified.cost_model import CostModel
+from tracer.culling.certified.gather_requests import RequestPoints, gather_tasks
+from tracer.culling.certified.invalidate import all_marked, copy_kept, invalidate_certificates
 from tracer.culling.certified.occluders import Occluders
-from tracer.culling.certified.still import Still
-from tracer.culling.certified.work import KEPT, commit, counters, make_tasks, tasks_in, work_on
+from tracer.culling.certified.requests import Requests
+from tracer.culling.certified.shaft import OFFSET
+from tracer.culling.certified.static_geometry import StaticGeometry
+from tracer.culling.certified.tasks import KEPT, commit, counters, make_tasks, run_tasks, tasks_in
+from tracer.culling.certified.view import CertificateView
 from tracer.culling.dependence import drop_dependent
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.modes import NON_SHADOW as LIT
@@ -46,7 +47,7 @@ from tracer.parallel import for_each_chunk
 STATES = ("none", "full", "lit", "candidates")
 BATCH = 4096  # tasks between two looks at the budget, at most
 FIRST, FASTER = 8, 8  # tasks of a frame's first batch, where time counts, and how many times as many the next may have
-FEW_TILES = 4  # of a picture: of so many every point may say what it wants, of twice as many every other
+FEW_TILES = 4  # of a picture: of so many every point may make requests, of twice as many every other
 LEAST = 5e-4  # seconds: less time is not worth a batch
 SORTING = 0.5  # of the time that is left, at most, is spent on sorting points by their cells
 MANY = 1 << 14  # points, as which fewer are timed
@@ -61,31 +62,17 @@ class Budget:
     until: float = np.inf
 
 
-class Effort(NamedTuple):
-    """What certifying is worth where rays cost what they do: how many points must have wanted a triangle's first cell,
-    `roots`, and a part of one, `parts`; how many candidates are `few`, so that a cell need not be divided for them;
-    how many are `asked` instead of tracing, at most; whether rays are so `dear` that every look-up pays; and that one
-    in `every` so many vectors of points says what it wants."""
-
-    roots: int
-    parts: int
-    few: int
-    asked: int
-    dear: bool
-    every: int
-
-
 RARE = 1e-3  # certificates made for each shadow ray that was due, in the last frame: below that one can be EAGER
-EAGER = 8  # times less patient
+EAGER = 8  # times fewer requests needed
 
 
-class Certificates:
-    """The certified cells of what is static in a world: of what never moves and, once told, of objects that rest."""
+class CertificateStore:
+    """The certified cells of what is static in a world: of what never moves and of objects that rest."""
 
-    def __init__(self, world: World, lights: int, threads: int, usual: Effort) -> None:
+    def __init__(self, world: World, lights: int, threads: int, usual: CostModel) -> None:
         """For so many lights, of which the first MAX_CULLED_LIGHTS are certified; `usual` is the effort that rays
         through this world are worth."""
-        self._world, self._threads, self._usual = world, threads, usual
+        self._world, self._threads, self._cost_model = world, threads, usual
         self._scratch: list[certify.Scratch] = []
         self._count = min(lights, MAX_CULLED_LIGHTS)
         self._room = make_tasks(BATCH, self._count)
@@ -93,38 +80,38 @@ class Certificates:
 
     def _start(self) -> None:
         """With nothing known."""
-        self._still = Still(self._world, self._count, self._threads, self._usual.asked > 0)
+        self._static = StaticGeometry(self._world, self._count, self._threads, self._cost_model.max_asked > 0)
         self._resting = nothing_rests(len(self._world.primitives.triangle_starts) - 1)
         self._lights = np.full((self._count, 3), np.nan, np.float32)
-        self.still = np.zeros(self._count, np.bool_)
+        self.stationary = np.zeros(self._count, np.bool_)
         self.cells: Cells = make_cells(len(self._world.object_of), self._count)
         self._seen = np.zeros(len(self.cells.waiting), np.int32)  # the frame that last saw each root
         self._frame = 0
         self._pace = 5e-8  # seconds that a point took to be gathered, the slowest of late
-        self._next_list = 0  # of what tiles want, the first to be gathered where time is short
+        self._next_list = 0  # of the lists of requests, the first to be gathered where time is short
         self._rate = np.inf  # certificates that the last frame made, for each shadow ray due
-        self.left: list[Wanted] = []  # what the last frame's rays wanted and has not been looked into
+        self.pending: list[Requests] = []  # what the last frame's rays requested and has not been looked into
         self.next_tile = 0  # of a picture, the first to be asked what it wants
         self._slots = np.zeros(0, np.int32)  # in which points are gathered
         self._scale()
 
     def _scale(self) -> None:
         """Let cells be as coarse as the coordinates of all that is static ask for."""
-        self._largest = 1.5 * self._still.largest  # with room for what will come to rest
+        self._largest = 1.5 * self._static.largest  # with room for what will come to rest
         self.highest = float(np.float32(HIGHEST * OFFSET * self._largest))
         self._receive(0)
 
     @property
     def occluders(self) -> Occluders:
         """All that is static."""
-        return self._still.occluders
+        return self._static.occluders
 
     def _receive(self, index: int, cells: bool = True) -> None:
         """Let an object's triangles have cells, or none."""
         rows = self._world.primitives.triangles_of(index)
         receivers = self.cells.receivers
         if cells:
-            put_receivers(self._still.rows, rows.start, rows.stop, self._largest, receivers)
+            put_receivers(self._static.rows, rows.start, rows.stop, self._largest, receivers)
         else:
             receivers[rows] = 0
         self.cells.rooted[rows] = 0
@@ -136,7 +123,7 @@ class Certificates:
         A light is certified once it has stood still for a frame.  From now on work is done by so many threads."""
         self._threads = threads
         self._scratch += [certify.scratch() for _ in range(len(self._scratch), threads)]
-        if self._world.structure.extent > self._still.allowed:  # boxes may have grown beyond those that are known
+        if self._world.structure.extent > self._static.allowed:  # boxes may have grown beyond those that are known
             self._start()
         self._follow_rest(resting)
         lights = lights[: self._count]
@@ -146,11 +133,11 @@ class Certificates:
             words &= ~words.dtype.type(3 << (2 + 2 * int(number)))
             self.cells.lists[: len(words), number] = NOBODY
         new = np.isnan(self._lights).any(axis=1)
-        still = ~moved | new
-        settled = still & ~self.still
+        stationary = ~moved | new
+        settled = stationary & ~self.stationary
         self._lights[:] = lights
-        self.still[:] = still
-        self._still.know([int(number) for number in np.flatnonzero(settled)], self._lights, self.highest)
+        self.stationary[:] = stationary
+        self._static.update_lights([int(number) for number in np.flatnonzero(settled)], self._lights, self.highest)
 
     def _follow_rest(self, resting: Resting) -> None:
         """Drop what depends on objects that have started or stopped."""
@@ -158,11 +145,11 @@ class Certificates:
         if not len(started.which) and not len(stopped.which):
             return
         outlines = self._world.outlines()
-        self._still.follow(started.which, stopped.which, outlines)
-        if self._still.largest > self._largest:  # what is known of rays' ends no longer holds
+        self._static.follow(started.which, stopped.which, outlines)
+        if self._static.largest > self._largest:  # what is known of rays' ends no longer holds
             self._start()
             started, stopped = changes(self._resting, resting)
-            self._still.follow(started.which, stopped.which, outlines)
+            self._static.follow(started.which, stopped.which, outlines)
             self._scale()
         else:
             self._drop(started, stopped, outlines)
@@ -178,18 +165,18 @@ class Certificates:
         near = all_marked(len(gone), self.cells.words.dtype.type)
         near[self.cells.rooted[: len(near)] == 0] = 0  # of what has no cells nothing need be known
         lights = np.nan_to_num(self._lights)
-        known = [int(number) for number in np.flatnonzero(self.still)]
-        self._still.know(known, self._lights, self.highest)
+        known = [int(number) for number in np.flatnonzero(self.stationary)]
+        self._static.update_lights(known, self._lights, self.highest)
         boxes = np.zeros((self._count, len(stopped.which), 6))  # by light, of which the others have no certificates
         for k, index in enumerate(stopped.which):
-            boxes[known, k] = self._still.reported_within(int(index), known)
+            boxes[known, k] = self._static.reported_within(int(index), known)
         around = np.concatenate(
             [boxes[known, :, :3].min(0, initial=np.inf), boxes[known, :, 3:].max(0, initial=-np.inf)], 1
         )
         around += 2.0 * self.highest * OUTWARDS  # rays end above what they are asked for
         drop_dependent(near, outlines, lights, around.astype(np.float32), LIT, self._threads)
         reach = (self.highest, self._largest)
-        drop_certificates(self.cells, self.occluders, lights, reach, gone, boxes, near, self._scratch[0])
+        invalidate_certificates(self.cells, self.occluders, lights, reach, gone, boxes, near, self._scratch[0])
 
     def keep_within(self, most: float, cell: NDArray[np.int32]) -> None:
         """Drop the cells of those triangles that were seen longest ago where all take more than `most` bytes, down to
@@ -209,43 +196,40 @@ class Certificates:
         empty = with_room(empty, 0, int(self.cells.named[0]))
         empty = empty._replace(receivers=self.cells.receivers, rooted=self.cells.rooted)
         copy_kept(self.cells, kept, empty)
-        self.cells, self.left = empty, []  # which speaks of numbers that cells no longer have
+        self.cells, self.pending = empty, []  # which speaks of numbers that cells no longer have
 
     @property
-    def effort(self) -> Effort:
-        """What certifying is worth now: more than usual where rays are dear and there is little to certify."""
-        usual = self._usual
-        if self._rate >= RARE or not usual.dear:
+    def cost_model(self) -> CostModel:
+        """What certifying is worth now: more than usual where rays are costly and there is little to certify."""
+        usual = self._cost_model
+        if self._rate >= RARE or not usual.costly_rays:
             return usual
-        return usual._replace(roots=-(-usual.roots // EAGER), parts=-(-usual.parts // EAGER))
+        return usual._replace(
+            root_requests=-(-usual.root_requests // EAGER), split_requests=-(-usual.split_requests // EAGER)
+        )
 
     def finish_frame(self, made: int, due: int) -> None:
         """A frame has made so many certificates, with so many shadow rays due."""
         self._rate = made / due if due else np.inf
 
-    def told(self, wanted: Wanted, tiles: int) -> Certified:
-        """What one of so many tiles is told, which puts what it wants there.  In small pictures more of the points say
-        what they want: each stands for many of a large one."""
-        usual, sights = self._usual, self.occluders.sights
-        every = min(usual.every, max(1, tiles // FEW_TILES))
-        often = every, self._frame % every
-        return Certified(self.cells, sights, self.still, self.highest, usual.asked, usual.dear, *often, wanted)
-
-    def wanted(self, tiles: int) -> Wanted:
-        """Room for what tiles ask for: arrays with a row each."""
-        of = np.zeros((tiles, 3), np.int64)
-        of[:, 1] = 1
-        shape = (tiles, ROOM)
-        return Wanted(np.empty(shape, np.int32), np.empty(shape, np.float32), np.empty(shape, np.float32), of)
+    def view(self, requests: Requests, tiles: int) -> CertificateView:
+        """What one of so many tiles is given, which puts its requests there.  In small pictures more of the points
+        request: each stands for many of a large one."""
+        usual, light_space = self._cost_model, self.occluders.light_space
+        stride = min(usual.stride, max(1, tiles // FEW_TILES))
+        often = stride, self._frame % stride
+        return CertificateView(
+            self.cells, light_space, self.stationary, self.highest, usual.max_asked, usual.costly_rays, *often, requests
+        )
 
     def certify(
-        self, lists: list[Wanted], budget: Budget, effort: Effort, cancel: Callable[[], bool] | None
+        self, lists: list[Requests], budget: Budget, cost_model: CostModel, cancel: Callable[[], bool] | None
     ) -> NDArray:
-        """Certify what rays wanted, within a budget; counters (COUNTERS,) int64 of what that took."""
+        """Certify what rays requested, within a budget; counters (COUNTERS,) int64 of what that took."""
         counts = counters(self._threads)
         if not self._count:
             return counts.sum(0)
-        todo, points = self._gather(lists, budget, effort)
+        todo, points = self._gather(lists, budget, cost_model)
         batch = FIRST if budget.until < np.inf else BATCH
         while len(todo):
             todo = todo[np.argsort(todo[:, 1] - todo[:, 2], kind="stable")]
@@ -257,17 +241,19 @@ class Certificates:
                 if batch <= 0 or start > budget.until - LEAST:
                     return counts.sum(0)
                 those = todo[first : first + batch]
-                following.append(self._certify(those, points, effort, counts, cancel))
+                following.append(self._certify(those, points, cost_model, counts, cancel))
                 first += batch
                 pace = max(1e-6, (clock.perf_counter() - start) / len(those))  # seconds a task takes
                 batch = int(min(BATCH, FASTER * batch, 0.5 * (budget.until - clock.perf_counter()) / pace))
             todo = np.concatenate(following)
         return counts.sum(0)
 
-    def _gather(self, lists: list[Wanted], budget: Budget, effort: Effort) -> tuple[NDArray[np.int32], Points]:
-        """Tasks (n, 3), and the points that wanted them: where time is short those of some tiles, and in the next frame
-        those of others."""
-        kept = [(wanted, tile, n) for wanted in lists for tile, n in enumerate(wanted.of[:, 0].tolist()) if n]
+    def _gather(
+        self, lists: list[Requests], budget: Budget, cost_model: CostModel
+    ) -> tuple[NDArray[np.int32], RequestPoints]:
+        """Tasks (n, 3), and the points that request them: where time is short those of some tiles, and in the next
+        frame those of others."""
+        kept = [(requests, tile, n) for requests in lists for tile, n in enumerate(requests.of[:, 0].tolist()) if n]
         room = SORTING * max(LEAST, budget.until - clock.perf_counter()) / self._pace
         if sum(n for _, _, n in kept) > room:
             first = self._next_list % len(kept)
@@ -275,22 +261,24 @@ class Certificates:
             kept = kept[: max(1, int(np.searchsorted(np.cumsum([n for _, _, n in kept]), room)))]
             self._next_list = first + len(kept)
         none = [np.empty(0, np.int32), np.empty(0, np.float32), np.empty(0, np.float32)]
-        key, u, v = (np.concatenate([none[k], *(wanted[k][tile, :n] for wanted, tile, n in kept)]) for k in range(3))
-        points = Points(np.empty_like(u), np.empty_like(v), np.empty((2, len(u)), np.float32))
+        key, u, v = (
+            np.concatenate([none[k], *(requests[k][tile, :n] for requests, tile, n in kept)]) for k in range(3)
+        )
+        points = RequestPoints(np.empty_like(u), np.empty_like(v), np.empty((2, len(u)), np.float32))
         self.cells = with_room(self.cells, min(len(key), 2 * len(self.cells.receivers)), 0)
         slots = len(self.cells.words) + len(self.cells.waiting)
         if len(self._slots) < slots:
             self._slots = np.zeros(slots, np.int32)
-        known, start = (self.cells, self.occluders, self._lights, self.still), clock.perf_counter()
-        todo = gather_tasks(*known, key, u, v, effort.roots, self._slots, points)
+        known, start = (self.cells, self.occluders, self._lights, self.stationary), clock.perf_counter()
+        todo = gather_tasks(*known, key, u, v, cost_model.root_requests, self._slots, points)
         self._pace = max(0.5 * self._pace, (clock.perf_counter() - start) / max(MANY, len(key)))
         return todo, points
 
     def _certify(
         self,
         todo: NDArray[np.int32],
-        points: Points,
-        effort: Effort,
+        points: RequestPoints,
+        cost_model: CostModel,
         counts: NDArray[np.int64],
         cancel: Callable[[], bool] | None,
     ) -> NDArray[np.int32]:
@@ -299,10 +287,11 @@ class Certificates:
         size = min(max(CHUNK[0], -(-len(todo) // (SHARES * self._threads))), CHUNK[1])
 
         def work(chunk: int, worker: int) -> None:
-            work_on(
-                self.cells, self.occluders, self._lights, self.still, reach,
+            run_tasks(
+                self.cells, self.occluders, self._lights, self.stationary, reach,
                 chunk * size, min(len(todo), (chunk + 1) * size),
-                tasks, points, effort.parts, effort.few, self._scratch[worker], counts[worker],
+                tasks, points, cost_model.split_requests, cost_model.settled_candidates,
+                self._scratch[worker], counts[worker],
             )  # fmt: skip
 
         for_each_chunk(work, -(-len(todo) // size), self._threads, cancel)

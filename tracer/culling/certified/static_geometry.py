@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.margins import BLUR, BOX, LANES, LONGEST, ROW, Farthest
-from tracer.culling.certified.occluders import BOXES, ROUNDED, Occluders, blocks_of, joined, know_light, shape_of
-from tracer.culling.certified.sights import SIGHT
+from tracer.culling.certified.error_bounds import BLUR, BOX, LANES, LONGEST, ROW, SureHitLength
+from tracer.culling.certified.light_space import LIGHT_ROW
+from tracer.culling.certified.occluders import BOXES, ROUNDED, Occluders, blocks_of, enlarge_boxes, joined, shape_of
 from tracer.geometry.bvh8.collapse import Shape
 from tracer.geometry.bvh8.tree import PADDING, WIDTH
 from tracer.geometry.kdtree.place import triangle_boxes
@@ -20,7 +20,7 @@ GROWTH = 4  # times what moves may grow before all is certified anew
 QUADRIC = 4e-6  # of the coordinates: how far from a quadric rays that are carried to it may hit it
 
 
-class Still:
+class StaticGeometry:
     """rows (t, ROW) float32 of triangles as in `Occluders`, of which those of objects that rest are where they rest;
     bounds (2, 3) float64 around all that is static; largest, its largest coordinate.  Where rays ask candidates, it is
     known how each light sees them."""
@@ -32,7 +32,7 @@ class Still:
         self.rows = aligned_rows(self.first_quadric + len(world.primitives.quadrics), ROW)
         self.rows[:] = 0
         seen = len(self.rows) if asks else 0
-        self._sights = aligned_rows(lights * seen, SIGHT).reshape(lights, seen, SIGHT)
+        self._light_space = aligned_rows(lights * seen, LIGHT_ROW).reshape(lights, seen, LIGHT_ROW)
         self.allowed = np.inf  # how large what moves may be for boxes to hold, which are padded by a part of that
         self._shapes: dict[int, Shape] = {}
         self._bounds_of: dict[int, NDArray[np.float64]] = {}
@@ -71,7 +71,7 @@ class Still:
         boxes = triangle_boxes(self.rows[triangles, :BLUR]).astype(np.float64)
         fixed, result = self.rows[quadrics, BOX:], np.empty((len(lights), 6))
         for k, light in enumerate(lights):
-            every = np.concatenate([boxes + self.occluders.reaches[light, triangles, None] * OUTWARDS, fixed])
+            every = np.concatenate([boxes + self.occluders.error_radii[light, triangles, None] * OUTWARDS, fixed])
             result[k, :3], result[k, 3:] = every[:, :3].min(0, initial=np.inf), every[:, 3:].max(0, initial=-np.inf)
         return result
 
@@ -88,15 +88,15 @@ class Still:
             self._add(int(index), outlines)
         self._join()
 
-    def know(self, numbers: list[int], lights: NDArray[np.float32], highest: float) -> None:
+    def update_lights(self, numbers: list[int], lights: NDArray[np.float32], highest: float) -> None:
         """Know where lights of these numbers are, of lights (n, 3), whose rays end no higher above what is static."""
 
-        def know(chunk: int, worker: int) -> None:
+        def update(chunk: int, worker: int) -> None:
             light = lights[numbers[chunk]]
             farthest = self._farthest(light, self.bounds) + 2.0 * highest
-            know_light(self.occluders, numbers[chunk], light, farthest, self.largest)
+            enlarge_boxes(self.occluders, numbers[chunk], light, farthest, self.largest)
 
-        for_each_chunk(know, len(numbers), self._threads)
+        for_each_chunk(update, len(numbers), self._threads)
 
     def _bounds(self, index: int) -> NDArray[np.float64]:
         """Lower and upper corner (2, 3) of a box around an object."""
@@ -114,7 +114,7 @@ class Still:
         extents = [np.abs(bounds).max() for index, bounds in self._bounds_of.items() if index > 0]
         static, resting = np.abs(self._bounds_of[0]).max(), max(extents, default=0.0)
         padding = self._world.structure.padding / LONGEST  # what never moves and what may are padded apart
-        farthest = Farthest(self._primitives.triangles_of(0).stop, padding * static, padding * resting)
+        farthest = SureHitLength(self._primitives.triangles_of(0).stop, padding * static, padding * resting)
         count = self._lights
         self.occluders = Occluders(
             self.rows,
@@ -125,6 +125,6 @@ class Still:
             np.empty((count, len(shape.children), BOXES), np.float32),
             np.empty((count, -(-len(self.rows) // LANES) * LANES), np.float32),
             np.empty((count, len(shape.leaves), WIDTH), np.float32),
-            self._sights,
+            self._light_space,
             farthest,
         )

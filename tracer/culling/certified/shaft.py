@@ -1,4 +1,4 @@
-"""The beam of shadow rays from a light to a cell: its corners, and planes that bound it.
+"""The shaft of shadow rays from a light to a cell: its corners, and planes that bound it.
 
 A cell is a piece of a triangle's plane, as wide as where its rays may truly end: they end above the surface,
 by no less than a part of the usual offset and no more than a bound, and look their cell up by coordinates that
@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.margins import EPSILON, cross, dot, length, row_of
+from tracer.culling.certified.error_bounds import EPSILON, cross, dot, length, row_of
 from tracer.kernels import inlined, subkernel
 
 OFFSET = 2e-5  # of the largest coordinate at hand: how far above a surface its rays end
@@ -22,7 +22,7 @@ CORNERS = 6  # of a cell: three below and three above
 PLANES = 4  # three through the light and an edge of the cell, and the cell's own
 
 
-class Beam(NamedTuple):
+class Shaft(NamedTuple):
     """corners and directions from the light (3, CORNERS) float64, of which the first three are below and the others
     above; planes (PLANES, 4), normals and offsets, behind which it lies; box (6,) around it; reach (1,), the longest
     direction."""
@@ -34,8 +34,8 @@ class Beam(NamedTuple):
     reach: NDArray[np.float64]
 
 
-def make_beam() -> Beam:
-    return Beam(np.zeros((3, CORNERS)), np.zeros((3, CORNERS)), np.zeros((PLANES, 4)), np.zeros(6), np.zeros(1))
+def make_shaft() -> Shaft:
+    return Shaft(np.zeros((3, CORNERS)), np.zeros((3, CORNERS)), np.zeros((PLANES, 4)), np.zeros(6), np.zeros(1))
 
 
 @inlined
@@ -72,7 +72,7 @@ def _least_coordinate(corners):
 
 
 @subkernel
-def put_cell(beam, rows, i, side, u, v, size, highest, largest):
+def put_cell(shaft, rows, i, side, u, v, size, highest, largest):
     """The corners of a cell of triangle i of rows (n, ROW), on its front for side 1 and on its back for -1.
 
     Its place in the triangle is (u, v), (u + size, v) and (u, v + size); highest is how far above rays end at
@@ -92,67 +92,67 @@ def put_cell(beam, rows, i, side, u, v, size, highest, largest):
         x = u1 if k == 1 else u0
         y = v1 if k == 2 else v0
         for axis in range(3):
-            beam.corners[axis, k] = a[axis] + x * e1[axis] + y * e2[axis]
+            shaft.corners[axis, k] = a[axis] + x * e1[axis] + y * e2[axis]
     # Look-up goes by the largest coordinate of where rays end, which is not quite on the plane.
-    lowest = 0.999 * LOWEST * OFFSET * _least_coordinate(beam.corners) - wrong
+    lowest = 0.999 * LOWEST * OFFSET * _least_coordinate(shaft.corners) - wrong
     for axis in range(3):
         for k in range(3):
-            at = beam.corners[axis, k]
-            beam.corners[axis, k] = at + lowest * normal[axis]
-            beam.corners[axis, 3 + k] = at + (highest + wrong) * normal[axis]
-        beam.planes[3, axis] = -normal[axis]
-    beam.planes[3, 3] = -dot(normal, _corner(beam.corners, 0))
+            at = shaft.corners[axis, k]
+            shaft.corners[axis, k] = at + lowest * normal[axis]
+            shaft.corners[axis, 3 + k] = at + (highest + wrong) * normal[axis]
+        shaft.planes[3, axis] = -normal[axis]
+    shaft.planes[3, 3] = -dot(normal, _corner(shaft.corners, 0))
     return True
 
 
 @subkernel
-def put_light(beam, light):
-    """Directions from a light to the corners of a cell, and all that bounds the beam.
+def put_light(shaft, light):
+    """Directions from a light to the corners of a cell, and all that bounds the shaft.
 
     False where the light is not clearly before the cell's plane."""
     longest = 0.0
     for k in range(CORNERS):
         square = 0.0
         for axis in range(3):
-            d = beam.corners[axis, k] - light[axis]
-            beam.directions[axis, k] = d
+            d = shaft.corners[axis, k] - light[axis]
+            shaft.directions[axis, k] = d
             square += d * d
         longest = max(longest, square)
     for axis in range(3):
         low = high = light[axis]
         for k in range(CORNERS):
-            low, high = min(low, beam.corners[axis, k]), max(high, beam.corners[axis, k])
-        beam.box[axis], beam.box[3 + axis] = low, high
-    beam.reach[0] = math.sqrt(longest)
-    below = beam.planes[3, 0], beam.planes[3, 1], beam.planes[3, 2]
+            low, high = min(low, shaft.corners[axis, k]), max(high, shaft.corners[axis, k])
+        shaft.box[axis], shaft.box[3 + axis] = low, high
+    shaft.reach[0] = math.sqrt(longest)
+    below = shaft.planes[3, 0], shaft.planes[3, 1], shaft.planes[3, 2]
     for k in range(3, CORNERS):  # the light must see the cell's plane from above, at more than a graze
-        if not dot(below, _corner(beam.directions, k)) > 1e-4 * beam.reach[0]:
+        if not dot(below, _corner(shaft.directions, k)) > 1e-4 * shaft.reach[0]:
             return False
     for j in range(3):
-        _put_side(beam, light, j, (j + 1) % 3, (j + 2) % 3)
+        _put_side(shaft, light, j, (j + 1) % 3, (j + 2) % 3)
     return True
 
 
 @inlined
-def _put_side(beam, light, i, j, opposite):
+def _put_side(shaft, light, i, j, opposite):
     """The plane through the light and the cell's edge from corner i to j."""
-    n = cross(_corner(beam.directions, i), _corner(beam.directions, j))
+    n = cross(_corner(shaft.directions, i), _corner(shaft.directions, j))
     ln = length(n)
     scale = 1.0 / ln if ln > 0.0 else 0.0
-    if dot(n, _corner(beam.directions, opposite)) > 0.0:
+    if dot(n, _corner(shaft.directions, opposite)) > 0.0:
         scale = -scale
     n = n[0] * scale, n[1] * scale, n[2] * scale
     most = 0.0
     for k in range(CORNERS):
-        most = max(most, dot(n, _corner(beam.directions, k)))
+        most = max(most, dot(n, _corner(shaft.directions, k)))
     for axis in range(3):
-        beam.planes[i, axis] = n[axis]
-    beam.planes[i, 3] = dot(n, light) + most if ln > 0.0 else np.inf
+        shaft.planes[i, axis] = n[axis]
+    shaft.planes[i, 3] = dot(n, light) + most if ln > 0.0 else np.inf
 
 
 @subkernel
 def meets_box(b, box):
-    """Whether a box (6,) may meet a beam."""
+    """Whether a box (6,) may meet a shaft."""
     for axis in range(3):
         if box[axis] > b.box[3 + axis] or box[3 + axis] < b.box[axis]:
             return False

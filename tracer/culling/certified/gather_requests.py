@@ -1,4 +1,4 @@
-"""From what rays wanted to tasks: points sorted by the cells to begin with."""
+"""From requests to tasks: points sorted by the cells to begin with."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.certified.cells import NORMAL, ROOTS, add_cell
-from tracer.culling.certified.margins import cross, dot, row_of
+from tracer.culling.certified.error_bounds import cross, dot, row_of
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
 
 
-class Points(NamedTuple):
-    """Points (n,) that wanted more, cell by cell: u and v float32; and room to sort them, (2, n) float32."""
+class RequestPoints(NamedTuple):
+    """Points (n,) that request more, cell by cell: u and v float32; and room to sort them, (2, n) float32."""
 
     u: NDArray[np.float32]
     v: NDArray[np.float32]
@@ -27,13 +27,13 @@ def _has_cells(row):
 
 
 @inlined
-def facing_lights(o, lights, still, owner):
-    """Bits, two apart, of the lights that stand `still` (n,) on an owner's side of its triangle."""
+def facing_lights(o, lights, stationary, owner):
+    """Bits, two apart, of the `stationary` (n,) lights on an owner's side of its triangle."""
     a, e1, e2 = row_of(o.rows, owner >> 1)
     up, side, bits = cross(e1, e2), 1.0 - 2.0 * (owner & 1), np.uint64(0)
     for light in range(len(lights)):
         x, y, z = np.float64(lights[light, 0]), np.float64(lights[light, 1]), np.float64(lights[light, 2])
-        if still[light] and side * dot(up, (x - a[0], y - a[1], z - a[2])) > 0.0:
+        if stationary[light] and side * dot(up, (x - a[0], y - a[1], z - a[2])) > 0.0:
             bits |= np.uint64(1) << np.uint64(2 * light)
     return bits
 
@@ -46,10 +46,10 @@ def _untried(word, bits):
 
 
 @subkernel
-def _first_untried(cells, o, lights, still, cell):
-    """The cell to begin with where rays wanted more of this one: the whole that it is a part of, as long as that waits
+def _first_untried(cells, o, lights, stationary, cell):
+    """The cell to begin with where rays request more of this one: the whole that it is a part of, as long as that waits
     for a light like the part."""
-    waiting = _untried(cells.words[cell], facing_lights(o, lights, still, np.int64(cells.owner[cell])))
+    waiting = _untried(cells.words[cell], facing_lights(o, lights, stationary, np.int64(cells.owner[cell])))
     parent = np.int64(cells.parent[cell])
     while parent != 0 and _untried(cells.words[parent], waiting) != 0:
         cell, parent = parent, np.int64(cells.parent[parent])
@@ -58,7 +58,7 @@ def _first_untried(cells, o, lights, still, cell):
 
 @subkernel
 def _root_of(cells, owner, more, patience):
-    """The root of an owner, which is made once so many points have wanted it; 0 for none."""
+    """The root of an owner, which is made once so many points have requested it; 0 for none."""
     row, side = cells.receivers[owner >> 1], ROOTS + (owner & 1)
     if not _has_cells(row):  # it has begun to move since
         return np.int64(0)
@@ -89,12 +89,12 @@ def _group(slots, at, keys, groups, key):
 
 
 @kernel
-def gather_tasks(cells, o, lights, still, key, u, v, patience, slots, points):
+def gather_tasks(cells, o, lights, stationary, key, u, v, patience, slots, points):
     """Sort points by the cells to begin with into points, whose arrays are as long: tasks' (cell, first, last), (n, 3)
     int32.  key (n,) int32 are the cells that they lie in, or -1 - owner where that has none yet.
 
-    Roots that so many points have wanted, this time or before, are made; there must be room.  slots (cells with their
-    room and owners,) int32 are 0, and are again afterwards."""
+    Roots that so many points have requested, this time or before, are made; there must be room.  slots (cells with
+    their room and owners,) int32 are 0, and are again afterwards."""
     cells, o, points = borrowed(cells), borrowed(o), borrowed(points)
     n, rooms, groups = len(key), len(cells.words), np.int64(0)
     of, keys, size = np.empty(n, np.int32), np.empty(2 * n, np.int32), np.zeros(2 * n, np.int32)
@@ -104,7 +104,7 @@ def gather_tasks(cells, o, lights, still, key, u, v, patience, slots, points):
     first = np.zeros(groups, np.int64)  # the cell that each group begins with, 0 for none
     for g in range(groups):  # before roots are made: a cell whose owner has none is of what has moved since
         if keys[g] > 0 and cells.rooted[cells.owner[keys[g]] >> 1] != 0:
-            first[g] = _first_untried(cells, o, lights, still, np.int64(keys[g]))
+            first[g] = _first_untried(cells, o, lights, stationary, np.int64(keys[g]))
     for g in range(len(first)):
         if keys[g] < 0:
             first[g] = _root_of(cells, -1 - np.int64(keys[g]), size[g], patience)

@@ -1,4 +1,4 @@
-"""The margin rule: when is a triangle certain to be missed, or hit, by every shadow ray that ends in a cell?
+"""Error bounds: when is a triangle certain to be missed, or hit, by every shadow ray that ends in a cell?
 
 Whatever is proved here has to hold of the float32 numbers that the ray kernels compute.  Shadow rays start
 at the light L and end at P, direction d = P - L.  With a corner a, edges e1 and e2, the normal n = e1 x e2
@@ -15,13 +15,13 @@ less than 3 eps of the product of the lengths, a dot product by 3 eps of the sam
 the distance of P from a alone, D - T = (a - P) . n, and the rest by the length of n: that is how rays can end so
 close above their own triangle; s, d and the dot products add 4 eps of |n| times |s| and |d|, and t = T / D two
 roundings. D - U - V bears the errors of all three, and the reciprocal that u and v are multiplied with adds a few
-roundings of numbers no greater than D. The fast structure takes a triangle to be 2e-6 of itself larger. The margins
-m are the sum of all of that, a quarter enlarged. The functions are computed here in float32, too, which adds errors
-of our own: as much again to U, V and D; but D - T is taken from P - a, which is hardly wrong where it matters,
+roundings of numbers no greater than D. The fast structure takes a triangle to be 2e-6 of itself larger. The error
+bounds m are the sum of all of that, a quarter enlarged. The functions are computed here in float32, too, which adds
+errors of our own: as much again to U, V and D; but D - T is taken from P - a, which is hardly wrong where it matters,
 close to the triangle.
 
 - *Hit*: where all four functions are greater than m at all corners of the cell, and the light lies off the
-  triangle's plane by more than its own margin and than where rays begin, the test reports a hit for every ray.
+  triangle's plane by more than its own error bound and than where rays begin, the test reports a hit for every ray.
   The structures must let it: they ask only where the ray's t lies in a box, or passes a plane, and t is wrong by
   up to 13 eps |s| |n| / D.  Across the triangle's plane that is 13 eps |d|, which the fast structure's boxes are
   padded for if no ray is longer than `Farthest` says; along it the point must lie so far inside the triangle that
@@ -32,7 +32,7 @@ close to the triangle.
 - *Miss by a plane*: a hit has D - T of at least -m, so D of T - m at least: the *depth*.  It puts the point where
   line and plane meet at barycentric coordinates no less than -m / depth, so beyond any plane that the
   triangle lies before by no more than 2 (m / depth) of the triangle's extent across that plane, and beyond P
-  by no more than the margin of D - T allows.  A plane that all segments lie behind, and the triangle before by
+  by no more than the error bound of D - T allows.  A plane that all segments lie behind, and the triangle before by
   more than that, parts them.  The same sum for the whole scene's longest ray makes the boxes of `occluders`
   larger: no ray that misses such a box can report a hit on what is in it.  Where there is no depth,
   these say nothing: the light lies in the triangle's plane, as far as float32 can tell.
@@ -43,7 +43,7 @@ close to the triangle.
 What rests under a transform is known less well in the kd-tree: rays are carried to it, in float32.  Its
 corners are then somewhere within `blur` of where they are taken to be, and a ray that hits it passes that near
 by a point of the triangle as it is taken.  U changes by no more than |e| |d| for each unit of length between two such
-rays, five times that where the light is as near as the triangle is long; so the margins grow by 5 blur |e| |d|, and
+rays, five times that where the light is as near as the triangle is long; so the bounds grow by 5 blur |e| |d|, and
 that of D - T by 4 blur |n|.  Only which side of the plane the light is on is known worse by as much as it is far.
 """
 
@@ -60,7 +60,7 @@ from tracer.simd import address_of, load_columns, load_i32x16, maximum, select, 
 EPSILON = 2.0**-24  # the largest relative error of a float32 rounding
 ENLARGED = 2.5e-6  # of a triangle, by which the fast structure takes it to be larger, and a little
 SURPLUS = 1.25
-INSIDE = 1.75  # margins that a hit is to be inside of a triangle by: 2.5 m and our own error
+INSIDE = 1.75  # error bounds that a hit is to be inside of a triangle by: 2.5 m and our own error
 LONGEST = 13 * EPSILON  # times a ray's length: what boxes must be padded by for it to be sure of a hit
 LAMP = 2e-5  # of a segment from the light: what lies in it may be nearer than rays begin
 # Columns of a primitive's row: a corner, two edges, how far its corners may be elsewhere, and a box (6,) outside of
@@ -76,7 +76,7 @@ _LARGER = np.float32(ENLARGED + 6 * EPSILON)
 _FIRM, _FIRM_BLUR = np.float32(44 * EPSILON), np.float32(1.25)
 
 
-class Seen(NamedTuple):
+class SeenTriangles(NamedTuple):
     """Sixteen triangles as a light sees them: corner; s, from there to the light; edges e1 and e2; u, v and d, whose
     dot products with a direction are U, V and D, times the sign of T; height, |T|; lengths of s, `away`, of both edges
     and of the normal, `across`; blur; `firm`, whether the sign of T is sure, `sane`, whether float32 can tell at all.
@@ -99,7 +99,7 @@ class Seen(NamedTuple):
     sane: Any
 
 
-class Farthest(NamedTuple):
+class SureHitLength(NamedTuple):
     """How long rays are at most that can be sure to hit one of the first `fixed` triangles, which never move, and
     others, that rest."""
 
@@ -108,7 +108,7 @@ class Farthest(NamedTuple):
     resting: float
 
 
-class Margins(NamedTuple):
+class ErrorBounds(NamedTuple):
     """Of U, V, D - U - V and D - T, and of D."""
 
     u: Any
@@ -155,7 +155,7 @@ def row_of(rows, i):
 
 
 @inlined
-def farthest_of(farthest, numbers):
+def sure_hit_length(farthest, numbers):
     """How long rays are at most that can be sure to hit those of sixteen numbers, int32, at an address."""
     fixed = load_i32x16(numbers) < np.int32(farthest.fixed)
     return select(fixed, np.float32(farthest.static), np.float32(farthest.resting))
@@ -181,7 +181,7 @@ def seen_from(light, row):
     sane = maximum(away, maximum(first, second)) < LARGE
     firm = sane & (height > unsure + SMALL)
     u, v, d = _scaled(cross(e2, s), turned), _scaled(cross(s, e1), turned), _scaled(n, -turned)
-    return Seen(row[0:3], s, e1, e2, u, v, d, height, away, first, second, length16(n), blur, firm, sane)
+    return SeenTriangles(row[0:3], s, e1, e2, u, v, d, height, away, first, second, length16(n), blur, firm, sane)
 
 
 @inlined
@@ -193,18 +193,18 @@ def functions(t, direction, end):
 
 
 @inlined
-def margins(t, reach, near, along, coordinates):
+def error_bounds(t, reach, near, along, coordinates):
     """Margins, our own errors included, for directions no longer than `reach`, ends no further than `near` from the
     corner and with such a sum of absolute coordinates, and |D| no more than `along`."""
-    beside = FIVE * t.blur * maximum(t.first, t.second)
-    u = reach * (NINE * _EPSILON * t.away * t.second + beside)
-    v = reach * (NINE * _EPSILON * t.away * t.first + beside)
+    blurred = FIVE * t.blur * maximum(t.first, t.second)
+    u = reach * (NINE * _EPSILON * t.away * t.second + blurred)
+    v = reach * (NINE * _EPSILON * t.away * t.first + blurred)
     tilt = FOUR * _EPSILON * t.first * t.second
     d, enlarged = reach * (tilt + FIVE * _EPSILON * t.across), _LARGER * along
     behind = near * tilt + FOUR * t.blur * t.across + FOUR * _EPSILON * t.across * (reach + t.away)
     behind = behind + THREE * _EPSILON * t.height
     ours = TWO * near * tilt + TWO * _EPSILON * t.across * coordinates
-    return Margins(
+    return ErrorBounds(
         _TWICE * (u + enlarged) + SMALL,
         _TWICE * (v + enlarged) + SMALL,
         _TWICE * (u + v + d + enlarged) + SMALL,

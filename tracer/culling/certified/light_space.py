@@ -1,17 +1,17 @@
 """Triangles as a light sees them, found once: what a shadow ray needs to know to be certain of one.
 
-`margins` tells what is certain of a triangle and any light; here all that does not depend on the ray is gathered in a
-row of sixteen numbers, which one line of the cache holds: the coefficients of U, V and D, the corner that D - T is
-taken from, and three of the margins,
+`error_bounds` tells what is certain of a triangle and any light; here all that does not depend on the ray is gathered
+in a row of sixteen numbers, which one line of the cache holds: the coefficients of U, V and D, the corner that D - T is
+taken from, and three of the error bounds,
 
     U:            of_u |d| + 2.5 (enlarged) |D|
     V:            of_v |d| + 2.5 (enlarged) |D|
     D - U - V:    (of_u + of_v) |d| + 2.5 (enlarged) |D|
     D - T:        behind (19 |P - a| + 11 |d| + 2 |P|)
 
-These are no narrower than those of `margins`.  What D - U - V has for D, beyond what it has for U and for V, is split
-between of_u and of_v.  For D - T, |e1| |e2| stands for the normal's length, which is never more, |n| |s| for |T|, and
-|d| + |P - a| for |s|.
+These are no narrower than those of `error_bounds`.  What D - U - V has for D, beyond what it has for U and for V, is
+split between of_u and of_v.  For D - T, |e1| |e2| stands for the normal's length, which is never more, |n| |s| for
+|T|, and |d| + |P - a| for |s|.
 
 A row whose `FARTHEST` is negative is that of a primitive that hides no light for certain: of a quadric, or of a
 triangle that is not `firm`.  It begins with the box outside of which no hit is reported.
@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.culling.certified.margins import (
+from tracer.culling.certified.error_bounds import (
     BOX,
     ENLARGED,
     EPSILON,
@@ -35,10 +35,10 @@ from tracer.culling.certified.margins import (
     ROW,
     SMALL,
     ZERO,
-    farthest_of,
     length16,
     rows_at,
     seen_from,
+    sure_hit_length,
 )
 from tracer.geometry.bvh8.packet import segments_miss_box
 from tracer.kernels import inlined, subkernel
@@ -58,8 +58,8 @@ from tracer.simd import (
 )
 
 U, V, D, CORNER, OF_U, OF_V, BEHIND, FARTHEST = 0, 3, 6, 9, 12, 13, 14, 15
-SIGHT = 16
-COLUMNS = 64 * SIGHT  # bytes of sixteen
+LIGHT_ROW = 16
+COLUMNS = 64 * LIGHT_ROW  # bytes of sixteen
 _ENLARGED = np.float32(2.5 * (ENLARGED + 7 * EPSILON))
 _NINE, _HALF_D, _BEHIND = np.float32(2.5 * 9.01 * EPSILON), np.float32(1.251 * EPSILON), np.float32(1.26 * EPSILON)
 _BLURRED, _BLURRED_BEHIND = np.float32(2.5 * 5.01), np.float32(5.01 / 11)
@@ -70,19 +70,19 @@ _WIDE, _ROUNDING = np.float32(2 * REPORTED), np.float32(1e-6)
 
 
 @subkernel
-def put_sights(rows, farthest, light, sights):
-    """Rows (n, ROW) as a light at (3,) float32 sees them, into sights (n, SIGHT), or (0, SIGHT) where nobody asks; rays
-    that are sure of a hit are no longer than `farthest`."""
+def put_light_space(rows, farthest, light, light_space):
+    """Rows (n, ROW) as a light at (3,) float32 sees them, into light_space (n, LIGHT_ROW), or (0, LIGHT_ROW) where no
+    ray tests candidates; rays that are sure of a hit are no longer than `farthest`."""
     numbers, columns = local_memory(64), local_memory(COLUMNS)
     made = f32_at(columns)
-    for first in range(0, len(sights), LANES):
+    for first in range(0, len(light_space), LANES):
         store(numbers, minimum(lane_numbers_x16() + np.int32(first), i32x16(np.int32(len(rows) - 1))))
         row = rows_at(rows, numbers)
         t = seen_from(light, row)
         edges = t.first * t.second
         half_d = _HALF_D * (FOUR * edges + FIVE * t.across)
         blurred = _BLURRED * t.blur * maximum(t.first, t.second)
-        sure = minimum(farthest_of(farthest, numbers), minimum(t.height / t.across * _PAST, LARGE))
+        sure = minimum(sure_hit_length(farthest, numbers), minimum(t.height / t.across * _PAST, LARGE))
         box, room = row[BOX:ROW], _WIDE * t.away
         for axis in range(3):
             room = room + _ROUNDING * (box[3 + axis] - box[axis])
@@ -97,17 +97,17 @@ def put_sights(rows, farthest, light, sights):
         store(columns + 64 * BEHIND, _BEHIND * edges + _BLURRED_BEHIND * t.blur * t.across / t.away)
         store(columns + 64 * FARTHEST, select(t.firm, sure, _NONE))
         for k in range(min(LANES, len(rows) - first)):
-            for column in range(SIGHT):
-                sights[first + k, column] = made[LANES * column + k]
+            for column in range(LIGHT_ROW):
+                light_space[first + k, column] = made[LANES * column + k]
 
 
 @inlined
-def verdicts(sights, numbers, light, direction, end):
+def verdicts(light_space, numbers, light, direction, end):
     """What sixteen shadow rays, from a light (3,) to their ends, are certain to find.
 
-    Each of one of the rows (n, SIGHT) at the address `sights`, whose numbers, int32, are at an address: bits of those
-    that hit, of those that miss."""
-    t = load_columns(sights, numbers, SIGHT)
+    Each of one of the rows (n, LIGHT_ROW) at the address `light_space`, whose numbers, int32, are at an address: bits
+    of those that hit, of those that miss."""
+    t = load_columns(light_space, numbers, LIGHT_ROW)
     x, y, z = direction
     ax, ay, az = end[0] - t[CORNER], end[1] - t[CORNER + 1], end[2] - t[CORNER + 2]
     reach, near = size_of(direction), length16((ax, ay, az))

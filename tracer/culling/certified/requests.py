@@ -1,0 +1,163 @@
+"""Requests for certificates: points whose shadow rays found none, or too little."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.certified.cells import (
+    CANDIDATES,
+    CORNER,
+    LEAF,
+    NORMAL,
+    RECEIVER,
+    ROOTS,
+    UNTRIED,
+)
+from tracer.culling.certified.lookup import NOWHERE, affine, descend
+from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.kernels import inlined, subkernel
+from tracer.simd import (
+    address_of,
+    any_lane,
+    as_i32,
+    bits_of,
+    gather_f32x16,
+    gather_i32x16,
+    i32x16,
+    lane_of,
+    lanes_below,
+    load_columns,
+    load_f32x16,
+    load_i32x16,
+    local_memory,
+    lowest_bit,
+    select,
+    store,
+)
+
+ZERO, HALF, ONE, TWO = np.float32(0), np.float32(0.5), np.float32(1), np.float32(2)
+ROOM = 4096  # requests that a tile can make
+FACING = 64 * MAX_CULLED_LIGHTS  # bytes
+
+
+class Requests(NamedTuple):
+    """Points whose rays found no certificate: key (ROOM,) int32, the cell or, where there is none yet, -1 less the
+    owner; u and v (ROOM,) float32.  of (3,) int64: how many there are, of how many one is kept, and how many were
+    seen."""
+
+    key: NDArray[np.int32]
+    u: NDArray[np.float32]
+    v: NDArray[np.float32]
+    of: NDArray[np.int64]
+
+
+def make_requests(tiles: int) -> Requests:
+    """Room for the requests of so many tiles: arrays with a row for each."""
+    of = np.zeros((tiles, 3), np.int64)
+    of[:, 1] = 1
+    shape = (tiles, ROOM)
+    return Requests(np.empty(shape, np.int32), np.empty(shape, np.float32), np.empty(shape, np.float32), of)
+
+
+def no_requests() -> Requests:
+    """Room for nothing."""
+    return Requests(np.empty(0, np.int32), np.empty(0, np.float32), np.empty(0, np.float32), np.zeros(3, np.int64))
+
+
+@subkernel
+def request_at_points(certified, points, count, untried, doubtful):
+    """Note the points of which something could be certified: bits, 16 to an int32, of those with a light of
+    which nothing is known yet (`untried`), and of those with one of which a part of the cell may tell more."""
+    cells, requests, spots = certified.cells, certified.requests, points.spots
+    for k in range(certified.first_vector, (count + 15) // 16, certified.stride):
+        bits = np.int64(untried[k] | doubtful[k])
+        if bits == 0:
+            continue
+        cell = load_i32x16(address_of(points.unit) + 64 * k)
+        leaf = bits_of(gather_i32x16(address_of(cells.child), cell) == np.int32(LEAF))
+        somewhere = bits_of(as_i32(load_f32x16(address_of(spots) + 8 * spots.shape[1] + 64 * k)) > np.int32(NOWHERE))
+        bits = (np.int64(untried[k]) | (np.int64(doubtful[k]) & leaf)) & somewhere & lanes_below(count, k)
+        while bits != 0:
+            i = 16 * k + lowest_bit(bits)
+            bits &= bits - 1
+            _add_request(requests, _key(points.unit[i], spots[2].view(np.int32)[i]), spots[0, i], spots[1, i])
+
+
+@inlined
+def _key(cell, owner):
+    return cell if cell > 0 else -1 - owner
+
+
+@inlined
+def _add_request(requests, key, u, v):
+    """Keep a point: all at first and, each time there is no more room, every other one."""
+    requests.of[2] += 1
+    if requests.of[2] % requests.of[1] != 0:
+        return
+    if requests.of[0] == len(requests.key):
+        kept = 0
+        for k in range(1, len(requests.key), 2):
+            requests.key[kept], requests.u[kept], requests.v[kept] = requests.key[k], requests.u[k], requests.v[k]
+            kept += 1
+        requests.of[0], requests.of[1] = kept, 2 * requests.of[1]
+        if requests.of[2] % requests.of[1] != 0:
+            return
+    n = requests.of[0]
+    requests.key[n], requests.u[n], requests.v[n] = key, u, v
+    requests.of[0] = n + 1
+
+
+@subkernel
+def _with_requests(cells, stationary, cell, facing):
+    """Bits of the cells of sixteen points in which a light of which more could be known faces them; facing
+    (lights, 16) are more than 0 where it does."""
+    words, size = address_of(cells.words), cells.words.itemsize
+    low = gather_i32x16(words, cell if size == 4 else cell << np.int32(1))
+    high = low if size == 4 else gather_i32x16(words + 4, cell << np.int32(1))
+    leaf = bits_of(gather_i32x16(address_of(cells.child), cell) == np.int32(LEAF))
+    bits = np.int64(0)
+    for number in range(len(stationary)):
+        if not stationary[number]:
+            continue
+        faces = bits_of(load_f32x16(facing + 64 * number) > ZERO)
+        field, shift = (low if 2 + 2 * number < 32 else high), (2 + 2 * number) % 32
+        field = (field >> np.int32(shift)) & np.int32(3)
+        bits |= faces & (bits_of(field == np.int32(UNTRIED)) | (bits_of(field == np.int32(CANDIDATES)) & leaf))
+    return bits
+
+
+@subkernel
+def request_at_hits(certified, requests, lights, origin, hits, place, there):
+    """Request what sixteen primary hits are about to need, found by their coordinates in the triangle.
+
+    Rays come from origin (3,) and, where they are `there`, have hit what pixels at `place` of pictures say: primitive,
+    u and v (height, width)."""
+    cells, receivers, child = certified.cells, address_of(certified.cells.receivers), address_of(certified.cells.child)
+    facing, numbers = local_memory(FACING), local_memory(64)
+    primitive = gather_i32x16(address_of(hits[0]), place)
+    u, v = gather_f32x16(address_of(hits[1]), place), gather_f32x16(address_of(hits[2]), place)
+    hit = there & (primitive > np.int32(NOWHERE))
+    primitive = select(hit, primitive, i32x16(0))
+    store(numbers, primitive)
+    row = load_columns(receivers, numbers, RECEIVER)
+    back = affine(row, NORMAL, origin[0] - row[CORNER], origin[1] - row[CORNER + 1], origin[2] - row[CORNER + 2]) < ZERO
+    way = select(back, -ONE, ONE)
+    with_cells = hit & (affine(row, NORMAL, row[NORMAL], row[NORMAL + 1], row[NORMAL + 2]) > HALF)
+    if not any_lane(with_cells):
+        return
+    for number in range(len(certified.stationary)):
+        x, y, z = lights[number, 0], lights[number, 1], lights[number, 2]
+        above = affine(row, NORMAL, x - row[CORNER], y - row[CORNER + 1], z - row[CORNER + 2])
+        store(facing + 64 * number, way * above)
+    root = select(back, as_i32(row[ROOTS + 1]), as_i32(row[ROOTS]))
+    cell = descend(child, select(with_cells, root, i32x16(0)), u, v)
+    # A root that is not there yet is cell 0, of which nothing is known: requested where any light faces it.
+    bits = _with_requests(cells, certified.stationary, cell, facing) & bits_of(with_cells)
+    while bits != 0:
+        lane = lowest_bit(bits)
+        bits &= bits - 1
+        owner = 2 * lane_of(primitive, lane) + ((bits_of(back) >> lane) & 1)
+        _add_request(requests, _key(lane_of(cell, lane), owner), lane_of(u, lane), lane_of(v, lane))
