@@ -10,7 +10,8 @@ PYTHON ?=
 ARGS ?=
 RUN := .venv/bin/python
 PARALLEL := -n auto --maxprocesses 4 --dist worksteal
-QUICK := tests/test_house.py tests/test_golden.py tests/test_cli.py tests/scene tests/viewer \
+QUICK := tests/test_house.py tests/test_golden.py tests/scene \
+    $(addprefix tests/viewer/,cli/test_cli.py output/test_legend.py state services window) \
     $(addprefix tests/tracing/test_,culling.py modes.py pictures.py intersect.py traversal.py waves.py zoom.py) \
     -m "not slow"
 

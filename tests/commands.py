@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from viewer import cli
+from viewer.__main__ import main
 
 ROOM = """\
 b 0.2 0.3 0.4
@@ -28,7 +28,7 @@ CAMERA = {"position": [0, 2, 3], "direction": [0, -0.5, -1], "up": [0, 1, 0], "a
 def run(capfd: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:
     """Exit code, standard output and standard error of a command line."""
     try:
-        code = cli.main([str(a) for a in arguments])
+        code = main([str(a) for a in arguments])
     except SystemExit as end:
         code = int(end.code or 0)
     out, err = capfd.readouterr()

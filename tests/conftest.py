@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from viewer.screen import has_display, no_display_reason
+from viewer.util.screen import has_display, no_display_reason
 
 BART = Path(__file__).resolve().parents[1].parent / "shared" / "bart"
 

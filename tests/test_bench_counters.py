@@ -10,7 +10,7 @@ import pytest
 from tests.bench.counters import EDITS, ROOT, WITH, WITHOUT, copy_without_counters, faults, measure
 from tracer.frame import Settings
 from tracer.kernels import cache_folder
-from viewer.resources import embedded_scenes
+from viewer.util.resources import embedded_scenes
 
 TRAVERSE, TREE = "tracer/geometry/kdtree/traverse.py", "tracer/geometry/kdtree/tree.py"
 PACKET, SINGLE = "tracer/geometry/bvh8/packet_tree.py", "tracer/geometry/bvh8/single.py"

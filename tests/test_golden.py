@@ -15,7 +15,7 @@ from tracer.frame import Frame
 from tracer.geometry.world import World
 from tracer.scene.load import load_scene
 from tracer.scene.model import Scene
-from viewer.resources import embedded_scenes
+from viewer.util.resources import embedded_scenes
 
 FAULTY = Path(__file__).resolve().parent.parent / ".cache" / "golden"
 STUDY, FIGURE3, BEFORE, FIGURE4 = GOLDEN

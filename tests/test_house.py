@@ -50,7 +50,7 @@ def test_no_test_imports_another() -> None:
 def test_commands_without_a_window_load_no_gl() -> None:
     """Not even on the way: a machine without libGL can render, and `--help` is quick."""
     code = (
-        "import sys, viewer.cli, viewer.headless, viewer.pictures, tracer\n"
+        "import sys, viewer.__main__, viewer.cli.headless, viewer.services.controller, tracer\n"
         "print([m for m in ('moderngl', 'glfw', 'imgui_bundle', 'OpenGL', 'glcontext') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
@@ -88,7 +88,7 @@ def test_every_dependency_has_a_range() -> None:
 
 
 def test_a_wheel_carries_shaders_and_assets(tmp_path: Path) -> None:
-    """Where `viewer.resources` looks for them once installed."""
+    """Where `viewer.util.resources` looks for them once installed."""
     pytest.importorskip("hatchling", reason="hatchling builds the wheel; 'make test' brings it along")
     command = [sys.executable, "-m", "hatchling", "build", "--target", "wheel", "--directory", str(tmp_path)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
@@ -98,7 +98,7 @@ def test_a_wheel_carries_shaders_and_assets(tmp_path: Path) -> None:
     for folder in ("shaders", "assets/scenes"):
         files = [p.relative_to(ROOT).as_posix() for p in (ROOT / folder).rglob("*") if p.is_file()]
         assert files and {f"viewer/data/{name}" for name in files} <= inside
-    assert {"tracer/__init__.py", "viewer/cli.py", "viewer/data/assets/icon.png"} <= inside
+    assert {"tracer/__init__.py", "viewer/cli/main.py", "viewer/data/assets/icon.png"} <= inside
     assert not any(name.startswith(("tests", "tools")) for name in inside)
 
 

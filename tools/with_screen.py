@@ -19,7 +19,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from viewer.screen import has_x_display
+from viewer.util.screen import has_x_display
 
 SCREEN = "1600x1000x24"
 # What imgui-bundle links to (X11, Xext), what GLFW opens by itself (the other X libraries, GL, EGL), and

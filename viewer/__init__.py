@@ -1,6 +1,10 @@
-"""The window, and the commands that need none: everything a person touches.
+"""The viewer: everything a person touches, over the `tracer`.
 
-The viewer stands on `tracer` and is the only part that knows of GL, of a window and of
-widgets.  `viewer.cli` and what it imports for `render` and `info` know none of them, so that
-pictures and numbers can be had on machines without a screen or a GL library.
+    cli | window     the command line; the window, which alone knows GL and widgets
+    services         threads, files, runs, and the controller that wires them
+    output           pictures, figures, legends, reports
+    state            what the user looks at and has chosen
+    util             files, messages, numbers
+
+Each knows only what is below it.  `viewer.__main__` starts the command line, and hands it the window to open.
 """

@@ -1,8 +1,32 @@
-"""`python -m viewer` is the `shadowcull` command."""
+"""The `shadowcull` command, and `python -m viewer`: the command line, and the window that it opens.
+
+This is the one place that knows both.  The window and all that it brings along (GL, ImGui) are imported only when it is
+opened, so that pictures and numbers can be had on machines without a screen or a GL library.
+"""
+
+from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
+from pathlib import Path
 
-from viewer.cli import main
+from viewer.cli import main as command_line
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command line, that of the process by default; returns the exit code."""
+    return command_line.main(sys.argv[1:] if arguments is None else arguments, _open_window)
+
+
+def _open_window(scene: Path | None) -> int:
+    """Open the viewer; raises OSError, in one line, where a library that it needs is missing."""
+    try:
+        from viewer.window import app
+    except ImportError as error:
+        why = f"no window can be opened, as a library is missing ({error}); 'shadowcull render' needs none"
+        raise OSError(why) from error
+    return app.run(scene)
+
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -42,8 +42,8 @@ from tracer.frame import Settings
 from tracer.geometry.world import ACCELERATORS, World
 from tracer.scene.load import load_scene
 from tracer.scene.model import Scene, SceneError
-from viewer.cli import scene_path
-from viewer.console import print_table, say
+from viewer.cli.console import print_table, say
+from viewer.cli.main import scene_path
 
 ROBOT = KITCHEN.parents[1] / "robot" / "Robot.aff"
 VIEWS = {KITCHEN: 10, ROBOT: 5}

@@ -33,8 +33,8 @@ from tests.bench.frame_times import KITCHEN, in_words, machine
 from tracer.frame import Settings
 from tracer.kernels import cache_folder
 from tracer.parallel import thread_count
-from viewer.cli import scene_path
-from viewer.console import print_table, say
+from viewer.cli.console import print_table, say
+from viewer.cli.main import scene_path
 
 ROOT = Path(__file__).resolve().parents[2]
 WITH, WITHOUT = "with counters", "without"

@@ -37,9 +37,9 @@ from tracer.geometry.queries import STEPS, TESTS, batch_of
 from tracer.geometry.rays import Hits, Rays
 from tracer.geometry.world import World
 from tracer.scene.model import Camera
-from viewer.console import print_table
-from viewer.figures import COLORS, SIZE, save, styled
-from viewer.lines import say
+from viewer.cli.console import print_table
+from viewer.output.figures import COLORS, SIZE, save, styled
+from viewer.util.messages import say
 
 KINDS = ("primary", "shadow", "incoherent")
 CAMERA = Camera((0.6, 0.9, 2.6), (-0.2, -0.3, -0.93), angle=40.0)

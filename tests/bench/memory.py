@@ -25,9 +25,9 @@ from rich.table import Table
 
 from tests.bench.frame_times import KITCHEN, machine
 from tests.bench.meshes import bumpy_sphere, frequency_for
-from viewer.cli import scene_path
-from viewer.console import print_table
-from viewer.lines import say
+from viewer.cli.console import print_table
+from viewer.cli.main import scene_path
+from viewer.util.messages import say
 
 ROOT = Path(__file__).resolve().parents[2]
 MB = 1e6

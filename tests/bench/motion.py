@@ -26,10 +26,10 @@ from rich.table import Table
 
 from tests.bench.frame_times import KITCHEN, in_words, machine
 from tests.bench.motion_server import WAYS
-from viewer.cli import scene_path
-from viewer.console import print_table
-from viewer.lines import say
-from viewer.screen import has_display, no_display_reason
+from viewer.cli.console import print_table
+from viewer.cli.main import scene_path
+from viewer.util.messages import say
+from viewer.util.screen import has_display, no_display_reason
 
 ROOT = Path(__file__).resolve().parents[2]
 GOALS = "goals: SSIM 0.92 or better at 15 frames a second, settled after 1.15 full frames"

@@ -24,10 +24,10 @@ from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
 from tracer.frame import Frame
 from tracer.renderer import Renderer
-from viewer import navigation
-from viewer.app import App
-from viewer.governor import AT_ONCE, LARGEST_DIVISOR, SPARE, Governor, Plan, divided
-from viewer.pictures import picture
+from viewer.output.pictures import picture
+from viewer.services.governor import AT_ONCE, LARGEST_DIVISOR, SPARE, Governor, Plan, divided
+from viewer.state import navigation
+from viewer.window.app import App
 
 BURST = 2.0  # seconds of motion
 KEPT = 8  # pictures of a burst that are compared, evenly spread

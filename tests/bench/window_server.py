@@ -20,8 +20,8 @@ from typing import Any
 
 from imgui_bundle import hello_imgui
 
-from viewer import navigation
-from viewer.app import App
+from viewer.state import navigation
+from viewer.window.app import App
 
 TURN = 0.01  # radians a frame
 STATES = ("starting", "compiling", "opening", "first picture", "tracing", "moving", "at rest", "closing")

@@ -27,9 +27,9 @@ from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Scene
-from viewer.pictures import picture
-from viewer.resources import embedded_scenes
-from viewer.views import View
+from viewer.output.pictures import picture
+from viewer.state.views import View
+from viewer.util.resources import embedded_scenes
 
 FOLDER = Path(__file__).resolve().parent
 SETTINGS = Settings(width=160, height=120)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from viewer import views
+from viewer.state import views
 
 
 def luminance(color: views.Color) -> float:

@@ -9,7 +9,7 @@ import pytest
 
 from tests.viewer.desk import Desk
 from tests.viewer.fakes import TINY_SCENE
-from viewer.resources import embedded_scenes
+from viewer.util.resources import embedded_scenes
 
 
 @pytest.fixture(autouse=True)

@@ -13,9 +13,9 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, scene_info
 from tracer.scene.model import Camera
-from viewer.controller import Controller
-from viewer.preferences import Preferences
-from viewer.runs import ExperimentPlan
+from viewer.services.controller import Controller
+from viewer.services.runs import ExperimentPlan
+from viewer.state.preferences import Preferences
 
 SIZE = (64, 48)
 ELSEWHERE = Camera((0.0, 2.0, 8.0), (0.0, -0.2, -1.0))

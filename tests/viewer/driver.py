@@ -13,7 +13,7 @@ from imgui_bundle import glfw_utils, imgui
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
 from tests.viewer.fakes import with_certificates
-from viewer.app import App
+from viewer.window.app import App
 
 PATIENCE = 240.0  # a first run compiles the kernels
 SIZES = ((1280, 800), (1600, 1000))  # of windows that people have

@@ -64,7 +64,7 @@ class Player:
     def _start(self) -> subprocess.Popen:
         environment = os.environ | {"DISPLAY": self._display, "LIBGL_ALWAYS_SOFTWARE": "1"}
         return subprocess.Popen(
-            [sys.executable, "-m", "tests.viewer.window"],
+            [sys.executable, "-m", "tests.viewer.real_window"],
             cwd=ROOT,
             env=environment,
             stdin=subprocess.PIPE,

@@ -10,11 +10,11 @@ from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
 from tracer.renderer import Renderer
-from viewer.commands import chord
-from viewer.explaining import Part
-from viewer.legends import occlusion_legend
-from viewer.pictures import picture
-from viewer.views import View
+from viewer.output.legends import occlusion_legend
+from viewer.output.pictures import picture
+from viewer.services.shadow_inspector import Part
+from viewer.state.views import View
+from viewer.window.commands import chord
 
 KEY = imgui.Key
 

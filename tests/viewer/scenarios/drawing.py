@@ -9,9 +9,9 @@ from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.steps import figure4
-from viewer.commands import chord
-from viewer.pictures import picture
-from viewer.views import WRONG, View, wipe_column
+from viewer.output.pictures import picture
+from viewer.state.views import WRONG, View, wipe_column
+from viewer.window.commands import chord
 
 KEY = imgui.Key
 

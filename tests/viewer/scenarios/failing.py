@@ -10,12 +10,13 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
-from viewer import commands, opening
-from viewer.faults import QUIET_AFTER
-from viewer.panels import browser, plots, statistics, status
-from viewer.pictures import picture
-from viewer.resources import embedded_scenes
-from viewer.views import View
+from viewer.output.pictures import picture
+from viewer.services import scene_files
+from viewer.state.faults import QUIET_AFTER
+from viewer.state.views import View
+from viewer.util.resources import embedded_scenes
+from viewer.window import commands
+from viewer.window.panels import browser, plots, statistics, status
 
 KEY = imgui.Key
 
@@ -115,10 +116,10 @@ def failing(d: Driver) -> None:
     renderer.refine = refine
     d.press(KEY.t)
     d.settle()
-    read, opening.load_visible_scene = opening.load_visible_scene, fail
+    read, scene_files.load_visible_scene = scene_files.load_visible_scene, fail
     d.drop(embedded_scenes()["figure4"])
     told("Loading figure4.aff failed")
-    opening.load_visible_scene = read
+    scene_files.load_visible_scene = read
 
     # All of it is in the log, with what the status bar has said.
     d.ui.show_panel("Log")

@@ -11,11 +11,11 @@ from imgui_bundle import glfw_utils, imgui
 from PIL import Image
 
 from tests.viewer.driver import Driver
-from viewer.commands import chord
-from viewer.panels import browser
-from viewer.pictures import picture
-from viewer.resources import embedded_scenes
-from viewer.views import View
+from viewer.output.pictures import picture
+from viewer.state.views import View
+from viewer.util.resources import embedded_scenes
+from viewer.window.commands import chord
+from viewer.window.panels import browser
 
 KEY = imgui.Key
 

@@ -8,8 +8,8 @@ from PIL import Image
 
 from tests.viewer.driver import Driver
 from tracer import zoom
-from viewer.resources import embedded_scenes
-from viewer.views import View
+from viewer.state.views import View
+from viewer.util.resources import embedded_scenes
 
 KEY = imgui.Key
 

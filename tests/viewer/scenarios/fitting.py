@@ -9,7 +9,7 @@ import numpy as np
 from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
-from viewer.panels.catalogue import PANELS, PICTURE
+from viewer.window.panels.catalogue import PANELS, PICTURE
 
 KEY = imgui.Key
 SIDES = [label for label in PANELS if label != PICTURE]

@@ -7,9 +7,9 @@ from imgui_bundle import imgui
 from PIL import Image
 
 from tests.viewer.driver import Driver
-from viewer import capture
-from viewer.preferences import load_preferences
-from viewer.views import View
+from viewer.output import capture
+from viewer.state.preferences import load_preferences
+from viewer.state.views import View
 
 KEY = imgui.Key
 

@@ -6,8 +6,8 @@ import glfw
 from imgui_bundle import glfw_utils, imgui
 
 from tests.viewer.driver import Driver
-from viewer.panels.catalogue import PANELS, PICTURE
-from viewer.views import View
+from viewer.state.views import View
+from viewer.window.panels.catalogue import PANELS, PICTURE
 
 KEY = imgui.Key
 SIDES = [label for label in PANELS if label != PICTURE]

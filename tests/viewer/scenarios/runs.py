@@ -11,8 +11,8 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.steps import saved_results
-from viewer.resources import embedded_scenes
-from viewer.views import View
+from viewer.state.views import View
+from viewer.util.resources import embedded_scenes
 
 KEY = imgui.Key
 

@@ -9,7 +9,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from PIL import Image
 
 from tests.viewer.driver import Driver
-from viewer.resources import embedded_scenes
+from viewer.util.resources import embedded_scenes
 
 KEY = imgui.Key
 

@@ -6,10 +6,10 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
-from viewer.panels.status import doing
-from viewer.preferences import load_preferences
-from viewer.tour import STEPS
-from viewer.views import View
+from viewer.services.tour import STEPS
+from viewer.state.preferences import load_preferences
+from viewer.state.views import View
+from viewer.window.panels.status import doing
 
 KEY = imgui.Key
 

@@ -1,0 +1,229 @@
+"""The command `bench`, from its words to its files."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.terminal import Terminal
+from viewer.__main__ import main
+from viewer.cli.bench import frame_range
+from viewer.cli.console import Work
+from viewer.cli.main import MISUSED
+from viewer.output import figures
+from viewer.util.version import program_version
+
+ROOT = Path(__file__).resolve().parents[3]
+SMALL = ["bench", "figure4", "--path-frames", "6", "--size", "48x32"]
+
+
+def bench(folder: Path, *options: str) -> dict:
+    """The JSON of a small run."""
+    path = folder / "figures.json"
+    assert main([*SMALL, *options, "--json", str(path)]) == 0
+    return json.loads(path.read_text())
+
+
+def test_bench_writes_an_entry_per_frame_and_prints_the_table(tmp_path: Path, capsys):
+    lines, plot = tmp_path / "table.csv", tmp_path / "plot.svg"
+    more = ["--frames", "1:5", "--verify", "--methods", "none, paper"]
+    results = bench(tmp_path, *more, "--csv", str(lines), "--plot", str(plot))
+    assert list(results)[:4] == ["scene", "size", "frames", "methods"]
+    whole = bench(tmp_path)
+    assert results["times"] == whole["times"][1:5] and results["path_frames"] == 6
+    assert (results["planned_frames"], results["stopped"]) == (4, False)
+    shared = {"depth": 10, "zoom_factor": 4.0, "symmetric": False, "accelerator": "kdtree", "threads": 0}
+    assert results["settings"] == {**shared, "verify": True} and whole["settings"] == {**shared, "verify": False}
+    assert results["version"] == program_version()
+    assert results["size"] == [48, 32]
+    assert results["frames"] == [1, 2, 3, 4]
+    assert list(results["methods"]) == ["none", "paper"]
+    assert all(len(values) == 4 for method in results["methods"].values() for values in method.values())
+    none, paper = results["methods"]["none"], results["methods"]["paper"]
+    for method in (none, paper):
+        assert list(method) == [
+            "shadow_rays_due",
+            "shadow_rays_culled",
+            "shadow_rays_dynamic_only",
+            "shadow_traversal_steps",
+            "shadow_intersection_tests",
+            "occlusion_tests",
+            "certificate_steps",
+            "certificate_tests",
+            "wrong",
+            "frame_seconds",
+        ]
+    assert sum(paper["shadow_traversal_steps"]) < sum(none["shadow_traversal_steps"])
+    rows = list(csv.DictReader(lines.open()))
+    assert [row["method"] for row in rows] == ["none", "paper"]
+    out = capsys.readouterr().out
+    for work, name in (("steps", "traversal_steps"), ("tests", "intersection_tests")):
+        saved = [1 - p / n for n, p in zip(none[f"shadow_{name}"], paper[f"shadow_{name}"], strict=True)]
+        frame = 1 + saved.index(max(saved))
+        assert float(rows[1][f"average_{work}"]) == pytest.approx(sum(saved) / 4)
+        assert float(rows[1][f"most_{work}"]) == pytest.approx(max(saved))
+        assert int(rows[1][f"most_{work}_frame"]) == frame
+        assert re.search(rf"{name.replace('_', ' ')} saved, average .* {sum(saved) / 4:.1%} ", out)
+        assert f" {max(saved):.1%} ({frame}) " in out
+    extra = sum(paper["occlusion_tests"]) / (4 * 48 * 32)
+    assert re.search(rf"extra occlusion tests per pixel .* 0\.000 .* {extra:.3f} ", out)
+    wrong, due = sum(paper["wrong"]), sum(paper["shadow_rays_due"])
+    assert f" {wrong:,} ({wrong / due:.3%}) " in out
+    assert re.search(r"time of a frame, median .* ms .* ms ", out)
+    assert "figure4.aff, 48 × 32, frames 1 to 4 of 6" in out
+    assert "figure4.aff, 48 × 32, 6 frames over the whole path" in out
+    assert plot.read_text().startswith("<?xml")
+
+
+def test_wrong_answers_are_told_only_where_they_were_counted(tmp_path: Path, capsys):
+    bench(tmp_path)
+    out = capsys.readouterr().out
+    assert "wrong answers (of rays due)" not in out and "--verify counts wrong answers" in out
+
+
+def test_options_of_the_paper_reach_it(tmp_path: Path):
+    """Tests in both directions are more of them; modes that are soon learnt anew save less than those kept."""
+    usual, symmetric = (bench(tmp_path, *more)["methods"] for more in ([], ["--symmetric"]))
+    assert sum(symmetric["paper"]["occlusion_tests"]) > sum(usual["paper"]["occlusion_tests"])
+    assert not any(symmetric["none"]["occlusion_tests"])
+    soon, never = (bench(tmp_path, "--zoom-factor", factor)["methods"]["paper"] for factor in ("1", "1e9"))
+    assert sum(soon["shadow_traversal_steps"]) > sum(never["shadow_traversal_steps"])
+
+
+@pytest.mark.parametrize(
+    "text, numbers", [(None, range(10)), ("2:5", range(2, 5)), (":3", range(3)), ("7:", range(7, 10))]
+)
+def test_frames_are_a_range_of_the_path(text, numbers):
+    assert frame_range(text, 10) == numbers
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (["--frames", "5:2"], "give A:B"),
+        (["--frames", "0:99"], "of the 6 there are"),
+        (["--frames", "three"], "give A:B"),
+        (["--methods", "telepathy"], "there is no method 'telepathy'"),
+        (["--methods", ""], "there is no method ''"),
+    ],
+)
+def test_mistakes_are_one_line(wrong, said, capsys):
+    assert main([*SMALL, *wrong]) == 1
+    _mistake(capsys, said)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (["--zoom-factor", "0"], "argument --zoom-factor: 0 is not in 1 to 1,000,000,000"),
+        (["--method", "none"], "unrecognized arguments: --method none"),
+    ],
+)
+def test_options_that_are_none_end_as_misuse(wrong, said, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([*SMALL, *wrong])
+    assert ended.value.code == MISUSED
+    _mistake(capsys, said)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (["--plot", "OUT/plot.gif"], "plot.gif: unknown kind of plot; give one of .png .svg .pdf"),
+        (["--plot", "OUT/plot"], "unknown kind of plot"),
+        (["--plot", "OUT/none/plot.png"], "there is no folder"),
+        (["--json", "OUT"], "a folder"),
+        (["--csv", "OUT/same", "--json", "OUT/same"], "a file of its own"),
+        (["--methods", "none", "--plot", "OUT/plot.png"], "nothing to compare with none"),
+    ],
+)
+def test_files_that_cannot_be_are_known_before_any_work(wrong, said, tmp_path: Path, capsys, monkeypatch):
+    def work(*_: object) -> None:
+        raise AssertionError("nothing may be read or traced")
+
+    monkeypatch.setattr("viewer.cli.bench.load_visible_scene", work)
+    assert main([*SMALL, *(word.replace("OUT", str(tmp_path)) for word in wrong)]) == 1
+    _mistake(capsys, said)
+    assert not list(tmp_path.iterdir())
+
+
+def _mistake(capsys, said: str) -> None:
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("shadowcull: error: ") and err.count("\n") == 1 and said in err
+
+
+def test_a_file_that_fails_takes_nothing_else_along(tmp_path: Path, capsys, monkeypatch):
+    def full(*_: object) -> None:
+        raise OSError("plot.png: not written: No space left on device")
+
+    monkeypatch.setattr(figures, "save", full)
+    paths = [tmp_path / name for name in ("plot.png", "figures.json", "table.csv")]
+    assert main([*SMALL, "--plot", str(paths[0]), "--json", str(paths[1]), "--csv", str(paths[2])]) == 1
+    out, err = capsys.readouterr()
+    assert "traversal steps saved" in out
+    assert err == "shadowcull: error: plot.png: not written: No space left on device\n"
+    assert [path.exists() for path in paths] == [False, True, True]
+
+
+@pytest.mark.parametrize("steps", [4, 5])
+def test_a_cancelled_run_keeps_its_whole_frames(steps: int, tmp_path: Path, capsys, monkeypatch):
+    """Also where Ctrl-C comes just as a frame is done; the part of the next one that was traced is left out."""
+
+    def press(work: Work, label: str, done: int, total: int) -> None:
+        work.stopped = done >= steps
+
+    monkeypatch.setattr(Work, "count", press)
+    paths = [tmp_path / name for name in ("figures.json", "table.csv", "plot.pdf")]
+    assert main([*SMALL, "--json", str(paths[0]), "--csv", str(paths[1]), "--plot", str(paths[2])]) == 130
+    out, err = capsys.readouterr()
+    assert "figure4.aff, 48 × 32, 2 of 6 frames, stopped" in out
+    assert err == "shadowcull: cancelled after 2 of 6 frames; the table is of these\n"
+    results = json.loads(paths[0].read_text())
+    assert (results["frames"], results["planned_frames"], results["stopped"]) == ([0, 1], 6, True)
+    assert all(path.stat().st_size > 0 for path in paths)
+
+
+def test_cancelled_before_any_frame_is_done_there_is_nothing_to_keep(tmp_path: Path, capsys, monkeypatch):
+    monkeypatch.setattr(Work, "count", lambda work, *_: setattr(work, "stopped", True))
+    assert main([*SMALL, "--json", str(tmp_path / "figures.json")]) == 130
+    assert capsys.readouterr() == ("", "shadowcull: cancelled\n")
+    assert not list(tmp_path.iterdir())
+
+
+# --- on a terminal ---------------------------------------------------------------------------------
+
+
+def test_progress_shows_frame_methods_time_gone_and_time_left():
+    terminal = Terminal("bench", "default", "--frames", "0:8", "--size", "96x96")
+    *_, said = terminal.lines()
+    assert terminal.end() == 0
+    shown = re.findall(r"frame (\d) of 8, none, paper \S+ (\d:\d\d:\d\d) (\d:\d\d:\d\d) left", said)
+    assert len({frame for frame, _, _ in shown}) > 2
+    assert [frame for frame, _, _ in shown] == sorted(frame for frame, _, _ in shown)
+    assert shown[-1][1] > "0:00:00"
+    assert "average" in said[said.rindex(" left") :]
+
+
+def test_ctrl_c_keeps_what_is_done(tmp_path: Path):
+    path = tmp_path / "figures.json"
+    terminal = Terminal("bench", "default", "--path-frames", "100000", "--size", "64x64", "--json", str(path))
+    terminal.interrupt_once(r"frame ([3-9]|\d{2,}) of 100000")
+    assert terminal.end() == 130
+    told = re.search(r"cancelled after (\d+) of 100000 frames; the table is of these", terminal.said)
+    assert told and len(json.loads(path.read_text())["frames"]) == int(told[1]) >= 2
+    assert f"default.aff, 64 × 64, {told[1]} of 100000 frames, stopped" in terminal.said
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_matplotlib_is_loaded_only_for_a_plot():
+    """So that the window and the other commands start no slower."""
+    code = "import sys, viewer.__main__, viewer.cli.bench, viewer.cli.headless; print('matplotlib' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert done.stdout == "False\n", done.stderr

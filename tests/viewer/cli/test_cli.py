@@ -1,0 +1,398 @@
+"""The command line: what it prints and writes, and that every mistake ends in one line."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.commands import CAMERA, ROOM, complaint, render, run
+from tests.terminal import Terminal
+from viewer.output import capture
+from viewer.state.views import BENEATH
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture
+def room(tmp_path: Path) -> Path:
+    path = tmp_path / "room.aff"
+    path.write_text(ROOM)
+    return path
+
+
+# --- info ------------------------------------------------------------------------------------------
+
+
+def test_info_json_holds_the_promised_keys(capfd: pytest.CaptureFixture[str], room: Path) -> None:
+    code, out, _ = run(capfd, "info", room, "--json")
+    facts = json.loads(out)
+    assert code == 0
+    assert list(facts) == [
+        "triangles", "static_triangles", "dynamic_triangles", "spheres", "cones", "lights", "materials",
+        "textures", "frames", "time", "bounds", "warnings",
+    ]  # fmt: skip
+    assert (facts["triangles"], facts["dynamic_triangles"], facts["spheres"]) == (3, 1, 1)
+    assert (facts["lights"], facts["frames"], facts["time"]) == (2, 10, [0.0, 9.0])
+
+
+def test_info_as_a_table(capfd: pytest.CaptureFixture[str], room: Path) -> None:
+    code, out, _ = run(capfd, "info", room)
+    assert code == 0
+    assert "dynamic triangles" in out and "0 to 9 s" in out
+
+
+@pytest.mark.parametrize(
+    ("scene", "triangles", "dynamic", "lights", "frames"),
+    [
+        ("kitchen/kitchen.aff", 110_561, 7_218, 6, 800),
+        ("robot/Robot.aff", 71_708, 62_490, 1, 800),
+        ("museum/museum5.aff", 11_308, 1_024, 2, 300),
+    ],
+)
+def test_info_of_bart(
+    capfd: pytest.CaptureFixture[str], bart: Path, scene: str, triangles: int, dynamic: int, lights: int, frames: int
+) -> None:
+    code, out, _ = run(capfd, "info", bart / scene, "--json")
+    facts = json.loads(out)
+    assert code == 0
+    assert (facts["triangles"], facts["dynamic_triangles"]) == (triangles, dynamic)
+    assert (facts["lights"], facts["frames"]) == (lights, frames)
+
+
+# --- render ----------------------------------------------------------------------------------------
+
+
+def test_render_writes_a_picture_that_remembers(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
+    output = tmp_path / "room.png"
+    code, out, _ = render(capfd, room, "-o", output, "--frame", 3, "--warmup", 2, "--camera", json.dumps(CAMERA))
+    assert code == 0
+    assert out.rstrip().endswith(str(output))
+    assert "traversal steps" in out and "shadow rays due" in out
+    with Image.open(output) as image:
+        assert (image.size, image.mode) == ((48, 32), "RGB")
+    kept = capture.read(output)
+    assert Path(kept.scene) == room
+    assert kept.time == 3.0
+    assert kept.camera.to_json() == CAMERA
+    assert not kept.follow
+    assert not [p for p in tmp_path.iterdir() if p.name.startswith(".")]
+
+
+def test_buffers_have_the_promised_names_shapes_and_types(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path
+) -> None:
+    output = tmp_path / "room.npz"
+    assert render(capfd, room, "--buffers", output, "--warmup", 0)[0] == 0
+    with np.load(output) as npz:
+        arrays = dict(npz)
+    assert {name: (a.shape, a.dtype.name) for name, a in arrays.items()} == {
+        "color": ((32, 48, 3), "float32"),
+        "depth": ((32, 48), "float32"),
+        "primitive": ((32, 48), "int32"),
+        "cell": ((32, 48), "int32"),
+        "occlusion_mode": ((32, 48), "uint8"),
+        "shadow_mode": ((32, 48, 2), "uint8"),
+        "lit": ((32, 48, 2), "bool"),
+        "due": ((32, 48, 2), "bool"),
+    }
+    hit = arrays["primitive"] >= 0
+    assert hit.any() and not hit.all()
+    np.testing.assert_array_equal(np.isfinite(arrays["depth"]), hit)
+    np.testing.assert_array_equal(arrays["occlusion_mode"] == 255, ~hit)
+    assert not (arrays["lit"] & ~arrays["due"]).any()
+
+
+def test_modes_are_the_same_beside_any_exact_method(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path
+) -> None:
+    pictures, arrays = {}, {}
+    for method in ("paper+rest", "none", "certified", "none+cache"):
+        for view in ("occlusion", "shadow:1", "pixel-count"):
+            png, npz = tmp_path / "view.png", tmp_path / "room.npz"
+            given = ("--view", view, "--method", method, "--frame", 4, "--warmup", 4, "-o", png, "--buffers", npz)
+            assert render(capfd, room, *given)[0] == 0
+            with Image.open(png) as image, np.load(npz) as found:
+                pictures[method, view] = np.asarray(image)
+                arrays[method] = {name: found[name] for name in ("occlusion_mode", "shadow_mode")}
+            assert np.array_equal(pictures[method, view], pictures["paper+rest", view]), (method, view)
+        for name, expected in arrays["paper+rest"].items():
+            assert np.array_equal(arrays[method][name], expected), (method, name)
+    assert {2, 3} <= set(np.unique(arrays["none"]["shadow_mode"])) and 2 in arrays["none"]["occlusion_mode"]
+
+
+def test_verified_buffers_say_what_is_wrong(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """Figure 4 in frame 20, where culling misses a shadow."""
+    output, unculled = tmp_path / "paper.npz", tmp_path / "none.npz"
+    where = ("--size", "128x128", "--threads", 1, "--frame", 20)
+    given = ("--buffers", output, "--warmup", 20, "--verify", "--method", "paper")
+    code, out, _ = run(capfd, "render", "figure4", *given, *where)
+    assert code == 0
+    assert run(capfd, "render", "figure4", "--buffers", unculled, "--method", "none", *where)[0] == 0
+    with np.load(output) as npz, np.load(unculled) as none:
+        arrays = dict(npz)
+        np.testing.assert_array_equal(arrays["reference"], none["color"])
+        assert "reference" not in none and "wrong" not in none
+    assert (arrays["wrong"].shape, arrays["wrong"].dtype.name) == ((128, 128), "int32")
+    differs = (arrays["color"] != arrays["reference"]).any(axis=-1)
+    np.testing.assert_array_equal(arrays["wrong"] > 0, differs)
+    row = next(line for line in out.splitlines() if "wrong answers" in line)
+    assert int(row.split()[-2].replace(",", "")) == arrays["wrong"].sum() > 0
+
+
+def test_views_of_what_is_wrong_verify_by_themselves(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    drawn = {}
+    output = tmp_path / "view.png"
+    where = ("figure4", "-o", output, "--size", "128x128", "--threads", 1, "--frame", 20, "--warmup", 20)
+    for view in ("difference", "wipe:0", "wipe:1", "wipe:.25", "color"):
+        method = ("--method", "paper") if view == "color" else ()  # which views of what is wrong choose by themselves
+        code, out, _ = run(capfd, "render", *where, "--view", view, *method)
+        assert code == 0 and ("wrong answers" in out) == (view != "color")
+        with Image.open(output) as image:
+            drawn[view] = np.asarray(image)
+            kept = json.loads(image.text[capture.CHUNK])["state"]
+        assert kept["settings"]["verify"] is False
+        assert kept["view"] == view.partition(":")[0]
+    assert kept["wipe"] == 0.5
+    wrong = (drawn["difference"] == (255, 0, 255)).all(axis=-1)
+    ring = (drawn["wipe:1"] == (255, 0, 255)).all(axis=-1)
+    beneath = np.abs(drawn["difference"] - BENEATH * drawn["color"])[~(ring | wrong)]
+    assert wrong.any() and len(beneath) and beneath.max() <= 1
+    np.testing.assert_array_equal(drawn["wipe:1"][~ring], drawn["color"][~ring])
+    assert (drawn["wipe:0"][wrong] != drawn["color"][wrong]).any(axis=-1).all()
+    np.testing.assert_array_equal(drawn["wipe:.25"][:, :32], drawn["wipe:1"][:, :32])
+    np.testing.assert_array_equal(drawn["wipe:.25"][:, 33:], drawn["wipe:0"][:, 33:])
+    assert run(capfd, "render", *where, "--view", "wipe:1", "--no-marks")[0] == 0
+    with Image.open(output) as image:
+        np.testing.assert_array_equal(np.asarray(image), drawn["color"])
+
+
+def test_warm_up_makes_culling_act(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
+    """The first frame has no history; the third culls."""
+    culled = []
+    for warm_up in (0, 2):
+        output = tmp_path / f"{warm_up}.png"
+        given = ("-o", output, "--frame", 4, "--warmup", warm_up, "--method", "paper")
+        assert render(capfd, room, *given)[0] == 0
+        with Image.open(output) as image:
+            image.load()
+            culled.append(json.loads(image.text[capture.CHUNK])["statistics"]["shadow"])
+    assert culled[0]["culled"] + culled[0]["dynamic_only"] == 0
+    assert culled[1]["culled"] + culled[1]["dynamic_only"] > 0
+
+
+def test_warm_up_is_shorter_where_the_animation_starts(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path
+) -> None:
+    code, _, err = render(capfd, room, "-o", tmp_path / "x.png", "--frame", 1, "--warmup", 5)
+    assert code == 0
+    assert "only 1 frames come before" in err
+
+
+@pytest.mark.parametrize(
+    "view",
+    ["color", "colour", "occlusion", "shadow:1", "primitives", "primitive", "depth", "normals", "count", "pixel-count"],
+)
+def test_every_view_makes_a_picture(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path, view: str) -> None:
+    output = tmp_path / "view.png"
+    assert render(capfd, room, "-o", output, "--frame", 2, "--warmup", 2, "--view", view)[0] == 0
+    with Image.open(output) as image:
+        assert len(image.getcolors(48 * 32) or []) > 3
+
+
+def test_time_and_frame_are_the_same_moment(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
+    pixels = []
+    for name, moment in (("f", ("--frame", 4)), ("t", ("--time", 4.0))):
+        output = tmp_path / f"{name}.png"
+        assert render(capfd, room, "-o", output, *moment, "--warmup", 3)[0] == 0
+        with Image.open(output) as image:
+            pixels.append(np.asarray(image))
+    np.testing.assert_array_equal(*pixels)
+
+
+def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = run(capfd, "info", "default", "--json")
+    facts = json.loads(out)
+    assert code == 0
+    assert facts["triangles"] >= 20_000 and facts["lights"] >= 4 and facts["frames"] == 200
+    assert run(capfd, "info", "--json") == (0, out, "")
+
+
+# --- mistakes --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["-o", "OUT/x.gif"], "unknown kind of picture"),
+        (["-o", "OUT/none/x.png"], "there is no folder"),
+        (["-o", "OUT"], "unknown kind of picture"),
+        (["--buffers", "OUT/x.zip"], "--buffers writes a .npz"),
+        ([], "nothing to write"),
+        (["-o", "OUT/x.png", "--frame", "10"], "frame numbers are 0 to 9"),
+        (["-o", "OUT/x.png", "--frame", "-1"], "frame numbers are 0 to 9"),
+        (["-o", "OUT/x.png", "--frame", "two"], "invalid int value: 'two'"),
+        (["-o", "OUT/x.png", "--time", "nan"], "time runs from 0 to 9"),
+        (["-o", "OUT/x.png", "--time", "9.5"], "time runs from 0 to 9"),
+        (["-o", "OUT/x.png", "--frame", "1", "--time", "1"], "not allowed with"),
+        (["-o", "OUT/x.png", "--size", "big"], "is not a size"),
+        (["-o", "OUT/x.png", "--size", "0x10"], "is not a size"),
+        (["-o", "OUT/x.png", "--size", "999999x999999"], "more than"),
+        (["-o", "OUT/x.png", "--samples", "0"], "0 is not in 1 to 4096"),
+        (["-o", "OUT/x.png", "--method", "magic"], "invalid choice: 'magic'"),
+        (["-o", "OUT/x.png", "--view", "heat"], "'heat' is not a view"),
+        (["-o", "OUT/x.png", "--view", "shadow:7"], "lights are 0 to 1"),
+        (["-o", "OUT/x.png", "--view", "depth:1"], "is not a view"),
+        (["-o", "OUT/x.png", "--view", "difference:1"], "is not a view"),
+        (["-o", "OUT/x.png", "--view", "wipe:half"], "is not a view; the views are color, occlusion, shadow:LIGHT"),
+        (["-o", "OUT/x.png", "--view", "wipe:1.5"], "the line of a wipe lies at 0 to 1"),
+        (["-o", "OUT/x.png", "--camera", "{bad"], '--camera: {bad is not JSON; give a camera like {"position"'),
+        (["-o", "OUT/x.png", "--camera", "{}"], "--camera: a camera's position"),
+        (["-o", "OUT/x.png", "--camera", "nowhere.json"], "neither JSON nor a file"),
+        (["-o", "OUT/x.png", "--camera", "[1, 2]"], "neither JSON nor a file"),
+        (["-o", "OUT/x.png", "--zoom-factor", "0.5"], "argument --zoom-factor: 0.5 is not in 1 to 1,000,000,000"),
+        (["-o", "OUT/x.png", "--zoom-factor", "nan"], "argument --zoom-factor: nan is not in"),
+        (["-o", "OUT/x.png", "--zoom-factor", "much"], "argument --zoom-factor: 'much' is not a number"),
+        (["-o", "OUT/x.png", "--warm", "3"], "unrecognized arguments"),
+        (["-o", "OUT/x.png", "--warmup", "-3"], "-3 is not in"),
+        (["-o", "OUT/x.png", "--wurmup", "3"], "unrecognized arguments"),
+    ],
+)
+def test_mistakes_end_in_one_line(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path, arguments: list[str], said: str
+) -> None:
+    result = run(capfd, "render", room, *(a.replace("OUT", str(tmp_path)) for a in arguments))
+    assert said in complaint(result)
+    assert [p.name for p in tmp_path.iterdir()] == ["room.aff"]
+
+
+def test_errors_in_a_scene_name_file_and_line(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "bad.aff"
+    path.write_text("b 0 0 0\ns 0 0 zero 1\n")
+    for command in (["info"], ["render", "-o", tmp_path / "x.png"]):
+        assert f"{path}:2" in complaint(run(capfd, *command, path))
+
+
+@pytest.mark.parametrize("command", ["info", "render", "bench", "zoom"])
+def test_a_missing_file_is_missed_first(capfd: pytest.CaptureFixture[str], tmp_path: Path, command: str) -> None:
+    """Before what else is not given, such as -o."""
+    assert "no.aff: no such file" in complaint(run(capfd, command, tmp_path / "no.aff"))
+    assert "unknown kind of scene" in complaint(run(capfd, command, ROOT / "README.md"))
+
+
+def test_a_long_name_is_not_broken(capfd: pytest.CaptureFixture[str], room: Path) -> None:
+    path = room.parent / f"{'long-' * 20}name.aff"
+    room.rename(path)
+    code, out, _ = run(capfd, "info", path)
+    assert code == 0 and out.splitlines()[0] == str(path)
+
+
+def test_a_scene_with_nothing_in_it(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "empty.aff"
+    path.write_text("v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 hither 1 resolution 8 8\nl 0 1 0\n")
+    assert "nothing to see" in complaint(run(capfd, "render", path, "-o", tmp_path / "x.png"))
+    assert run(capfd, "info", path, "--json")[0] == 0
+
+
+def test_an_output_that_cannot_be_written_is_known_before_tracing(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    def trace(*_: object) -> None:
+        raise AssertionError("nothing may be traced")
+
+    monkeypatch.setattr(Path, "touch", refuse)
+    monkeypatch.setattr("viewer.cli.headless.Renderer", trace)
+    assert "cannot be written to: Permission denied" in complaint(render(capfd, room, "-o", tmp_path / "x.png"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["rendr", "x.aff"], "did you mean 'render'?"),
+        (["inof"], "did you mean 'info'?"),
+        (["frobnicate"], "the commands are render, bench, zoom, info"),
+        (["--frame", "3"], "unrecognized arguments"),
+    ],
+)
+def test_a_mistyped_command(capfd: pytest.CaptureFixture[str], arguments: list[str], said: str) -> None:
+    assert said in complaint(run(capfd, *arguments))
+
+
+def test_help_shows_examples(capfd: pytest.CaptureFixture[str]) -> None:
+    for arguments in (["--help"], ["render", "--help"], ["bench", "--help"], ["zoom", "--help"], ["info", "-h"]):
+        code, out, err = run(capfd, *arguments)
+        assert (code, err) == (0, "")
+        assert "examples:\n  shadowcull" in out
+
+
+# --- without a display, and stopping ---------------------------------------------------------------
+
+
+def without_display() -> dict[str, str]:
+    return {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+
+
+def shadowcull(*arguments: object) -> list[str]:
+    return [sys.executable, "-m", "viewer", *map(str, arguments)]
+
+
+@pytest.mark.parametrize("stale", [False, True])
+def test_the_window_without_a_display(room: Path, stale: bool) -> None:
+    environment = without_display() | ({"DISPLAY": ":4711"} if stale else {})
+    done = subprocess.run(shadowcull(room), cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "no display" in done.stderr and f"shadowcull render {room}" in done.stderr
+
+
+def test_a_picture_instead_of_the_window(room: Path, tmp_path: Path) -> None:
+    """What `make run` does where there is no display."""
+    environment = without_display() | {"PYTHONPATH": str(ROOT)}
+    command = shadowcull("--or-picture", room)
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.splitlines()[0] == "shadowcull: no display; rendering to a file instead"
+    assert "traversal steps" in done.stdout
+    with Image.open(done.stdout.splitlines()[-1]) as image:
+        assert image.size == (640, 480)
+
+
+def test_ctrl_c_ends_a_rendering(room: Path, tmp_path: Path) -> None:
+    output = tmp_path / "never.png"
+    terminal = Terminal("render", str(room), "-o", str(output), "--size", "4000x4000", "--frame", "9", "--warmup", "9")
+    terminal.interrupt_once("warming up, frame 1 of 9")
+    assert (terminal.end(), terminal.said.splitlines()[-1]) == (130, "shadowcull: cancelled")
+    assert not output.exists()
+
+
+def test_output_that_nobody_reads(room: Path) -> None:
+    """`shadowcull info ... | true` is no fault to complain of."""
+    command = f"{sys.executable} -m viewer info {room} | true"
+    done = subprocess.run(["bash", "-c", command], cwd=ROOT, capture_output=True, text=True)
+    assert done.stderr == ""
+
+
+def test_a_legend_is_drawn_where_it_is_wanted(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
+    drawn = {}
+    for name, options in (("plain", []), ("legend", ["--legend"])):
+        output = tmp_path / f"{name}.png"
+        where = ("-o", output, "--size", "320x240", "--view", "occlusion")
+        code, _, error = run(capfd, "render", room, *where, *options)
+        assert code == 0 and "legend" not in error
+        with Image.open(output) as image:
+            drawn[name] = np.asarray(image)
+    rows, columns = np.nonzero((drawn["plain"] != drawn["legend"]).any(axis=-1))
+    assert len(rows) and rows.min() > 60 and columns.max() < 300, "it lies in the lower left corner"
+    for size, view, why in (("40x30", "occlusion", "too small"), ("320x240", "color", "needs none")):
+        options = ("--size", size, "--view", view, "--legend")
+        code, _, error = run(capfd, "render", room, "-o", tmp_path / "none.png", *options)
+        assert code == 0 and why in error

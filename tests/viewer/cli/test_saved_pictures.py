@@ -1,0 +1,82 @@
+"""A saved picture on the command line, in the place of a scene or of a camera."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.commands import CAMERA, ROOM, run
+from viewer.output import capture
+
+
+@pytest.fixture
+def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The room of `tests.commands` in a folder of its own, which is the current one."""
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "room.aff"
+    path.write_text(ROOM)
+    return path
+
+
+@pytest.fixture
+def saved(room: Path, capfd: pytest.CaptureFixture[str]) -> Path:
+    options = ("--frame", 3, "--size", "48x32", "--camera", json.dumps(CAMERA), "--method", "none", "--view", "normal")
+    assert run(capfd, "render", room, "-o", "saved.png", "--depth", 2, *options)[0] == 0
+    return Path("saved.png")
+
+
+def test_a_saved_picture_is_rendered_anew(saved: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    for name in ("saved-rendered.png", "saved-rendered-2.png"):  # nothing is written over
+        code, out, _ = run(capfd, "render", saved)
+        assert code == 0 and out.rstrip().endswith(name)
+        with Image.open(saved) as before, Image.open(name) as again:
+            assert np.array_equal(np.asarray(before), np.asarray(again))
+        assert capture.read(Path(name)) == capture.read(saved)
+
+
+def test_options_change_what_they_name(saved: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    options = ("--frame", 7, "--view", "depth", "--size", "20x10", "--method", "paper")
+    assert run(capfd, "render", saved, "-o", "other.png", *options)[0] == 0
+    was, now = capture.read_with_size(saved)[0], capture.read_with_size(Path("other.png"))
+    assert now[1] == (20, 10) and now[0].time == 7.0 and now[0].view == "depth"
+    assert now[0].settings["method"] == "paper" and now[0].settings["depth"] == was.settings["depth"] == 2
+    assert now[0].camera == was.camera and not now[0].follow
+    assert run(capfd, "render", saved, "--buffers", "b.npz")[0] == 0
+    assert not Path("saved-rendered.png").exists()
+
+
+def test_its_scene_is_told_of(saved: Path, room: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    of_picture, of_room = (run(capfd, "info", path, "--json") for path in (saved, room))
+    assert of_picture[0] == 0 and json.loads(of_picture[1]) == json.loads(of_room[1])
+
+
+def test_its_camera_is_taken_alone(saved: Path, room: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert run(capfd, "render", room, "-o", "other.png", "--size", "20x10", "--camera", saved)[0] == 0
+    other = capture.read(Path("other.png"))
+    assert other.camera.to_json() == CAMERA and other.time == 0.0 and other.view == "color"
+    tests = ("--primitive", 0, "--size", "32x32", "--steps", 2, "--camera", saved)
+    assert run(capfd, "zoom", room, *tests)[0] == 0
+
+
+def test_mistakes_are_one_line(saved: Path, room: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    Image.new("RGB", (4, 4)).save("plain.png")
+    Path("broken.png").write_bytes(b"no picture")
+    cases = [
+        (("render", "plain.png"), "not one captured by Shadowcull"),
+        (("render", "broken.png"), "cannot be read as a picture"),
+        (("render", "gone.png"), "no such file"),
+        (("render", room, "-o", "x.png", "--camera", "plain.png"), "--camera: plain.png"),
+        (("zoom", room, "--primitive", "0", "--camera", "gone.png"), "--camera: gone.png: no such file"),
+        (("bench", saved), "saved.png"),
+        (("info", "plain.png"), "not one captured by Shadowcull"),
+    ]
+    for arguments, said in cases:
+        code, _, errors = run(capfd, *arguments)
+        assert code == 1 and said in errors and errors.count("\n") == 1, errors
+    room.unlink()
+    code, _, errors = run(capfd, "render", saved)
+    assert code == 1 and "its scene is gone" in errors and errors.count("\n") == 1

@@ -1,0 +1,125 @@
+"""A captured picture carries what it needs, never overwrites, and fails in one line."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image, PngImagePlugin
+
+from tests.viewer.fakes import make_frame
+from tracer.scene.model import Camera
+from viewer.output import capture
+from viewer.state.session import Snapshot
+from viewer.state.views import View
+
+NOW = datetime(2024, 5, 31, 14, 5, 9)
+VALUES = {"scene": "kitchen", "view": "shadow", "frame": 7, "seconds": 1.25, "method": "paper", "light": 2,
+          "width": 640, "height": 480}  # fmt: skip
+PIXELS = np.arange(4 * 6 * 3, dtype=np.uint8).reshape(4, 6, 3)
+
+
+def snapshot() -> Snapshot:
+    camera = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
+    return Snapshot("/scenes/kitchen.aff", 1.25, camera, False, {"method": "none"}, View.SHADOW, 2)
+
+
+def text() -> str:
+    return capture.metadata(snapshot(), 7, (6, 4), make_frame().statistics.to_dict())
+
+
+def test_a_picture_brings_back_its_state_and_its_pixels(tmp_path: Path):
+    path = capture.save(PIXELS, tmp_path / "new" / "folder", "a.png", text())
+    assert capture.read(path) == snapshot()
+    with Image.open(path) as image:
+        assert np.array_equal(np.asarray(image), PIXELS)
+        assert '"statistics"' in image.text["shadowcull"]
+
+
+def test_nothing_is_overwritten(tmp_path: Path):
+    first, second, third = (capture.save(PIXELS + i, tmp_path, "a.png", text()) for i in range(3))
+    assert [p.name for p in (first, second, third)] == ["a.png", "a-2.png", "a-3.png"]
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a-2.png", "a-3.png", "a.png"]
+
+
+@pytest.mark.parametrize(
+    ("template", "name"),
+    [
+        ("{scene}-{view}-{frame:04d}-{date}-{time}.png", "kitchen-shadow-0007-2024-05-31-14-05-09.png"),
+        ("{scene}", "kitchen.png"),
+        ("t={seconds:.2f} {width}x{height}.PNG", "t=1.25 640x480.png"),
+        ("../{scene}/..\\x:y", "..-kitchen-..-x-y.png"),
+        ("x" * 400, "x" * 200 + ".png"),
+    ],
+)
+def test_templates_become_file_names(template: str, name: str):
+    assert capture.file_name(template, VALUES, NOW) == name
+
+
+@pytest.mark.parametrize(
+    "template",
+    [
+        "{sceen}",
+        "{frame:zz}",
+        "{",
+        "}",
+        "{frame!q}",
+        "",
+        " .png",
+        "{scene.__class__}",
+        "{frame:99999999d}",
+        "{0}",
+        "{}",
+    ],
+)
+def test_wrong_templates_are_one_line(template: str):
+    with pytest.raises(capture.CaptureError) as caught:
+        capture.file_name(template, VALUES, NOW)
+    assert "template" in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_read_only_folder_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    def denied(*_args, **_kwargs):  # a folder's mode would not keep root out
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "open", denied)
+    with pytest.raises(capture.CaptureError, match=r"cannot write to .*Permission denied") as caught:
+        capture.save(PIXELS, tmp_path, "a.png", text())
+    assert "\n" not in str(caught.value)
+
+
+def test_a_folder_that_cannot_be_made_is_one_line(tmp_path: Path):
+    (tmp_path / "file").write_text("not a folder")
+    with pytest.raises(capture.CaptureError, match="cannot write to") as caught:
+        capture.save(PIXELS, tmp_path / "file" / "below", "a.png", text())
+    assert "\n" not in str(caught.value)
+
+
+def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    def full(*_args, **_kwargs):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Image.Image, "save", full)
+    with pytest.raises(capture.CaptureError, match="No space left"):
+        capture.save(PIXELS, tmp_path, "a.png", text())
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_other_files_are_refused_in_one_line(tmp_path: Path):
+    plain = tmp_path / "plain.png"
+    Image.fromarray(PIXELS).save(plain)
+    damaged = tmp_path / "damaged.png"
+    damaged.write_bytes(plain.read_bytes()[:40])
+    noise = tmp_path / "noise.png"
+    noise.write_bytes(b"not a picture")
+    info = PngImagePlugin.PngInfo()
+    info.add_itxt("shadowcull", '{"state": [1, 2]}')
+    wrong = tmp_path / "wrong.png"
+    Image.fromarray(PIXELS).save(wrong, pnginfo=info)
+    for path, told in [(plain, "not one captured"), (damaged, "cannot be read"), (noise, "cannot be read"),
+                       (wrong, "cannot be restored"), (tmp_path / "none.png", "no such file")]:  # fmt: skip
+        with pytest.raises(capture.CaptureError, match=told) as caught:
+            capture.read(path)
+        assert str(path) in str(caught.value) and "\n" not in str(caught.value)

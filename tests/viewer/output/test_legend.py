@@ -1,0 +1,173 @@
+"""Legends say what the colours of a view stand for, keep inside their room, and can be read over any picture."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.viewer.colors import luminance
+from tests.viewer.fakes import in_cells, make_frame, with_certificates
+from tracer.frame import Frame, Settings
+from tracer.statistics import SaidByModes
+from viewer.output.legend import Chosen, Legend, Tone, legend_of, light_in_words
+from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, QUIET, TEXT, TONES, fitting, lay_out, wrapped
+from viewer.output.legend_picture import with_legend
+from viewer.state.views import OCCLUSION_COLORS, WRONG, View, color_map
+
+SETTINGS = Settings(width=160, height=96, verify=True, record_work=True)
+LINE = 10.0
+
+
+def measure(text: str) -> float:
+    return 5.0 * len(text)
+
+
+@pytest.fixture
+def frame() -> Frame:
+    return with_certificates(make_frame(SETTINGS))
+
+
+def of(frame: Frame, view: View, **chosen) -> Legend:
+    legend = legend_of(frame, view, Chosen(**chosen))
+    assert legend is not None
+    return legend
+
+
+def test_every_view_but_the_picture_has_a_legend(frame: Frame):
+    assert legend_of(frame, View.COLOR) is None
+    for view in View:
+        if view is not View.COLOR:
+            legend = of(frame, view)
+            assert legend.title and (legend.entries or legend.scale or legend.facts or legend.notes), view
+    assert legend_of(make_frame(), View.DIFFERENCE) is legend_of(make_frame(), View.SAVED) is None
+
+
+def test_modes_come_with_shares_and_counts(frame: Frame):
+    legend = of(frame, View.OCCLUSION)
+    assert legend.columns == ("pixels", "primitives")
+    assert [entry.color for entry in legend.entries] == list(OCCLUSION_COLORS.values())
+    by_name = {entry.name: entry.values for entry in legend.entries}
+    assert by_name["fully rendered"] == ("42.9 %", "3") and by_name["dynamic"] == ("28.6 %", "2")
+    assert of(in_cells(make_frame(SETTINGS)), View.OCCLUSION).columns == ("pixels", "cells")
+
+
+def test_a_light_is_called_by_its_number_and_by_a_name_that_says_more(frame: Frame):
+    assert light_in_words(2, "light 2") == light_in_words(2, "") == "light 2"
+    assert of(frame, View.SHADOW, light=1, light_name="lamp").title == "Shadow mode, light 1 (lamp)"
+    uncovered = of(frame, View.SHADOW, light=20)
+    assert not uncovered.entries and uncovered.notes[0].tone is Tone.WARNING
+
+
+def test_heat_maps_say_whether_they_count_or_share(frame: Frame):
+    counts, shares = of(frame, View.SAVED), of(frame, View.SAVED, shares=True)
+    assert (counts.scale.low, counts.scale.high) == ("0", "7 and more")
+    assert (shares.scale.low, shares.scale.high) == ("0 %", "100 %") and "Share" in shares.title
+    assert counts.facts == shares.facts
+    total = f"{100 * frame.saved.sum() / frame.due_rays.sum():.1f} % of those due"
+    assert total in counts.facts[0].values[0]
+    assert "without culling" in of(frame, View.COST, shares=True).title
+
+
+def test_the_depths_ends_are_those_of_the_colours():
+    depth = np.linspace(1.0, 9.0, 160 * 96, dtype=np.float32).reshape(96, 160)
+    scale = of(replace(make_frame(SETTINGS), depth=depth), View.DEPTH).scale
+    assert scale.reverse and float(scale.low) == pytest.approx(1.08, abs=0.01) and float(scale.high) > 8.9
+
+
+def test_the_difference_counts_what_is_wrong_or_says_why_nothing_is(frame: Frame):
+    wrong = of(frame, View.DIFFERENCE)
+    assert wrong.entries[0].color == WRONG and wrong.entries[0].values == ("2 (0.013 %)",)
+    assert wrong.facts[0].values[0].startswith("3 (")
+    assert of(frame, View.WIPE, marked=False).entries[0].color is None
+    right = replace(frame, wrong=np.zeros_like(frame.wrong))
+    assert of(right, View.DIFFERENCE).notes[0].tone is Tone.GOOD
+    off = replace(right, settings=replace(SETTINGS, method="none"))
+    assert "Culling is off" in of(off, View.DIFFERENCE).notes[0].text
+    right.statistics.shadow.culled = 0
+    assert "No shadow ray" in of(right, View.DIFFERENCE).notes[0].text
+
+
+@pytest.mark.parametrize("view", [view for view in View if view is not View.COLOR])
+def test_all_parts_lie_inside_and_no_two_texts_touch(frame: Frame, view: View):
+    layout = lay_out(of(frame, view), measure, LINE)
+    boxes = [(w.x, w.y, w.x + measure(w.text), w.y + LINE) for w in layout.words if w.text]
+    for left, top, right, bottom in [*boxes, *((s.x, s.y, s.x + s.width, s.y + s.height) for s in layout.swatches)]:
+        assert left >= 0.4 * LINE and right <= layout.width - 0.4 * LINE + 1e-6
+        assert top >= 0.4 * LINE and bottom <= layout.height - 0.4 * LINE + 1e-6
+    for i, one in enumerate(boxes):
+        for other in boxes[i + 1 :]:
+            assert one[2] <= other[0] or other[2] <= one[0] or one[3] <= other[1] or other[3] <= one[1]
+
+
+def test_in_little_room_less_is_said_and_in_none_nothing(frame: Frame):
+    legend = of(frame, View.SHADOW)
+    whole = lay_out(legend, measure, LINE)
+    assert fitting(legend, measure, LINE, whole.width, whole.height) == whole
+    narrower = fitting(legend, measure, LINE, whole.width - 1.0, whole.height)
+    texts = {words.text for words in narrower.words}
+    assert "pixels" in texts and "primitives" not in texts and "full shadow" in texts
+    bare = fitting(legend, measure, LINE, 125.0, whole.height)
+    assert {words.text for words in bare.words} >= {"full shadow"} and len(bare.words) < len(narrower.words)
+    assert fitting(legend, measure, LINE, 50.0, whole.height) is None
+    assert fitting(legend, measure, LINE, whole.width, 30.0) is None
+
+
+def test_words_wrap_at_the_edge():
+    lines = wrapped("one two three four five", measure, 45.0)
+    assert lines == ["one two", "three", "four five"] and max(map(measure, lines)) <= 45.0
+    assert wrapped("unbreakable", measure, 5.0) == ["unbreakable"]
+
+
+@pytest.mark.parametrize("picture", [0.0, 0.5, 1.0])
+def test_texts_can_be_read_over_any_picture(picture: float):
+    """Contrast of 4.5 to 1 (WCAG 2), against the backdrop over black, grey and white."""
+    backdrop = tuple(BACKDROP_OPACITY * channel + (1.0 - BACKDROP_OPACITY) * picture for channel in BACKDROP)
+    for color in (TEXT, QUIET, *TONES.values()):
+        assert (luminance(color) + 0.05) / (luminance(backdrop) + 0.05) > 4.5
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (1.0, 1.0), (0.3, 0.9)])
+@pytest.mark.parametrize("size", [(240, 160), (512, 512), (1280, 720)])
+def test_a_legend_in_a_picture_has_its_colours_and_changes_nothing_around_it(
+    frame: Frame, place: tuple[float, float], size: tuple[int, int]
+):
+    white = np.full((size[1], size[0], 3), 255, np.uint8)
+    drawn = with_legend(white, of(frame, View.OCCLUSION), place)
+    rows, columns = np.nonzero((drawn != white).any(axis=-1))
+    top, bottom, left, right = rows.min(), rows.max(), columns.min(), columns.max()
+    assert left > 0 and right < size[0] - 1 and top > 0 and bottom < size[1] - 1, "inside, with a margin"
+    near = 3 + 0.05 * max(size)
+    for part, first, last, side in ((place[0], left, right, size[0]), (place[1], top, bottom, size[1])):
+        assert part > 0.0 or first < near
+        assert part < 1.0 or last > side - 1 - near
+    for color in OCCLUSION_COLORS.values():
+        assert (drawn == np.round(255.0 * np.asarray(color))).all(axis=-1).sum() >= 25
+    assert (white == 255).all(), "the picture itself stays as it is"
+
+
+def test_a_bar_in_a_picture_goes_through_the_colour_map(frame: Frame):
+    black = np.zeros((200, 300, 3), np.uint8)
+    depth, work = (with_legend(black, of(frame, view), (0.0, 0.0)) for view in (View.DEPTH, View.COST))
+    first, last = (np.round(255.0 * color) for color in color_map()[[0, -1]])
+
+    def column(drawn: np.ndarray, color: np.ndarray) -> int:
+        return int(np.nonzero((drawn == color).all(axis=-1).any(axis=0))[0][0])
+
+    assert column(work, first) < column(work, last) and column(depth, last) < column(depth, first)
+
+
+def test_a_picture_too_small_for_its_legend_has_none(frame: Frame):
+    assert with_legend(np.zeros((40, 60, 3), np.uint8), of(frame, View.OCCLUSION), (0.0, 0.0)) is None
+
+
+def test_modes_say_what_the_papers_method_would_cull(frame: Frame):
+    frame.statistics.by_modes = [SaidByModes(100, 25, 10), SaidByModes(300, 15, 0)]
+    of_light = of(
+        replace(frame, settings=replace(SETTINGS, method="certified", modes=True)), View.SHADOW, light=1
+    ).facts
+    assert [fact.values for fact in of_light] == [("light 1", "all lights"), ("5.0 %", "10.0 %"), ("0.0 %", "2.5 %")]
+    assert of_light[0].quiet and of_light[1].name == "culled"
+    assert [fact.values for fact in of(frame, View.OCCLUSION).facts] == [("all lights",), ("10.0 %",), ("2.5 %",)]
+    assert of(frame, View.OCCLUSION).facts[1].name == "culled"

@@ -1,0 +1,293 @@
+"""Views without a GPU: the colours mean what the legends say, and the shaders draw the same."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.viewer.fakes import in_cells, with_certificates
+from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.frame import Frame, Settings
+from tracer.renderer import Renderer
+from tracer.scene.load import load_scene
+from viewer.output.legends import difference_legend
+from viewer.output.pictures import SHADING, picture
+from viewer.state.views import (
+    BACKGROUND,
+    BENEATH,
+    CELL_LINE,
+    CERTIFICATE_COLORS,
+    GREY,
+    OCCLUSION_COLORS,
+    RING_DIMMING,
+    SHADOW_COLORS,
+    WIPE_LINE,
+    WRONG,
+    Certificate,
+    View,
+    color_map,
+    work_top,
+)
+from viewer.util.resources import embedded_scenes
+
+SCENE = """\
+b 0.2 0.3 0.4
+v from 0 1 4 at 0 0 0 up 0 1 0 angle 50 hither 1 resolution 32 32
+a 0 9 10
+l 2 4 3 1 1 1
+l -3 4 2 0.5 0.5 0.5
+f 0.8 0.6 0.4 0.9 0.1 10 0 1
+p 4 -1 -0.5 -1 -1 -0.5 1 1 -0.5 1 1 -0.5 -1
+f 0.3 0.5 0.8 0.9 0.1 10 0 1
+s 0 0 0 0.5
+x flyer { p 3 -0.2 0.8 0 0.2 0.8 0 0 1.1 0 }
+k flyer { transl 4 -1 0 0 0 0 0 0  0 0 0 0 0 0 0  9 1 0 0 0 0 0  10 1 0 0 0 0 0 }
+"""
+
+
+@pytest.fixture(scope="module")
+def frame(tmp_path_factory: pytest.TempPathFactory) -> Frame:
+    """The third frame of a small scene, with a sphere that hides a part of the floor and a triangle that moves."""
+    path = tmp_path_factory.mktemp("pictures") / "scene.aff"
+    path.write_text(SCENE)
+    renderer = Renderer(load_scene(path), Settings(width=96, height=64, threads=1))
+    return [renderer.render(time) for time in (1.0, 2.0, 3.0)][-1]
+
+
+@pytest.fixture(scope="module")
+def wrong_frame(frame: Frame) -> Frame:
+    """The same with wrong answers put into it: a pixel alone, two in corners, and a block; their colours differ."""
+    wrong = np.zeros((frame.height, frame.width), np.int32)
+    wrong[20, 30] = 1
+    wrong[0, 0] = wrong[-1, -1] = 2
+    wrong[40:46, 60:75] = 3
+    reference = frame.color.copy()
+    reference[wrong > 0] = 1.0 - reference[wrong > 0]
+    return replace(frame, settings=replace(frame.settings, verify=True), wrong=wrong, reference=reference)
+
+
+@pytest.fixture(scope="module")
+def certified_frame(wrong_frame: Frame) -> Frame:
+    """The same with cells and their certificates, and with the work at each pixel."""
+    return with_certificates(wrong_frame)
+
+
+@pytest.fixture(scope="module")
+def figure4() -> list[Frame]:
+    """The paper's Figure 4 as it goes wrong and mends itself: frames 0, 10, 20 and 27, verified."""
+    scene = load_scene(embedded_scenes()["figure4"])
+    renderer = Renderer(scene, Settings(width=128, height=128, threads=1))
+    frames = []
+    for number in range(28):
+        verify = number in (0, 10, 20, 27)
+        renderer.settings = replace(renderer.settings, verify=verify)
+        frame = renderer.render(scene.frame_time(number))
+        frames += [frame] if verify else []
+    return frames
+
+
+def to_bytes(color: tuple[float, ...]) -> np.ndarray:
+    return np.round(np.asarray(color) * 255.0).astype(np.uint8)
+
+
+def test_colours_are_clamped_and_otherwise_untouched(frame: Frame) -> None:
+    expected = np.round(np.clip(frame.color, 0, 1) * 255).astype(np.uint8)
+    np.testing.assert_array_equal(picture(frame), expected)
+
+
+@pytest.mark.parametrize("view", [v for v in View if v is not View.COLOR and not v.needs_verify])
+def test_what_is_missed_has_the_background(certified_frame: Frame, view: View) -> None:
+    missed = certified_frame.primitive < 0
+    assert missed.any()
+    assert (picture(certified_frame, view)[missed] == to_bytes(BACKGROUND)).all()
+
+
+def test_occlusion_modes_have_their_colours(frame: Frame) -> None:
+    drawn = picture(frame, View.OCCLUSION, shading=0.0)
+    seen = set()
+    for mode in OcclusionMode:
+        there = frame.occlusion_mode == mode
+        assert (drawn[there] == to_bytes(OCCLUSION_COLORS[mode])).all()
+        seen |= {mode} if there.any() else set()
+    assert {OcclusionMode.PARTIALLY_OCCLUDED, OcclusionMode.FULLY_RENDERED, OcclusionMode.DYNAMIC} <= seen
+
+
+@pytest.mark.parametrize("light", [0, 1])
+def test_shadow_modes_have_their_colours(frame: Frame, light: int) -> None:
+    drawn = picture(frame, View.SHADOW, light, shading=0.0)
+    moving = frame.occlusion_mode == OcclusionMode.DYNAMIC
+    assert (drawn[moving] == to_bytes(OCCLUSION_COLORS[OcclusionMode.DYNAMIC])).all()
+    for mode in ShadowMode:
+        there = (frame.shadow_mode[..., light] == mode) & ~moving
+        assert (drawn[there] == to_bytes(SHADOW_COLORS[mode])).all()
+
+
+def test_modes_of_cells_are_those_that_are_drawn(frame: Frame) -> None:
+    cells = in_cells(frame)
+    drawn = picture(cells, View.SHADOW, 0, shading=0.0)
+    still = (cells.primitive >= 0) & (frame.occlusion_mode != OcclusionMode.DYNAMIC)
+    mode = (cells.modes[cells.cells] >> 2) & 3
+    for one in ShadowMode:
+        assert (drawn[still & (mode == one)] == to_bytes(SHADOW_COLORS[one])).all()
+    assert (drawn[:, ::2] != picture(frame, View.SHADOW, 0, shading=0.0)[:, 1::2]).any()
+
+
+def test_every_primitive_has_a_colour_of_its_own(frame: Frame) -> None:
+    drawn = picture(frame, View.PRIMITIVE, shading=0.0)
+    hit = frame.primitive >= 0
+    colors = {tuple(c) for c in drawn[hit]}
+    assert len(colors) == len(np.unique(frame.primitive[hit]))
+
+
+def test_a_light_past_the_culled_ones_is_drawn_as_unknown(frame: Frame) -> None:
+    many = replace(frame, lights=40)
+    drawn = picture(many, View.SHADOW, 35, shading=0.0)
+    still = (frame.primitive >= 0) & (frame.occlusion_mode != OcclusionMode.DYNAMIC)
+    assert (drawn[still] == to_bytes(GREY)).all()
+
+
+@pytest.mark.parametrize("light", [0, 1])
+def test_certificates_have_their_colours_and_cells_their_lines(certified_frame: Frame, light: int) -> None:
+    f = certified_frame
+    drawn = picture(f, View.CERTIFICATE, light, shading=0.0)
+    moving = f.occlusion_mode == OcclusionMode.DYNAMIC
+    line = np.zeros_like(moving)
+    for y, x in np.argwhere(f.primitive >= 0):
+        right, below = f.cells[y, min(x + 1, f.width - 1)], f.cells[min(y + 1, f.height - 1), x]
+        line[y, x] = right != f.cells[y, x] or below != f.cells[y, x]
+    assert 0.1 < line[f.cells >= 0].mean() < 0.6
+    for certificate in Certificate:
+        there = (f.primitive >= 0) & ~moving & ((f.certificates >> (2 + 2 * light)) & 3 == certificate)
+        color = np.asarray(CERTIFICATE_COLORS[certificate])
+        assert there.any() and (drawn[there & ~line] == to_bytes(color)).all()
+        assert (drawn[there & line] == to_bytes(np.float32(CELL_LINE) * color.astype(np.float32))).all()
+    assert (drawn[moving & ~line] == to_bytes(OCCLUSION_COLORS[OcclusionMode.DYNAMIC])).all()
+
+
+def test_a_frame_without_certificates_is_grey(frame: Frame) -> None:
+    drawn = picture(frame, View.CERTIFICATE, 0, shading=0.0)
+    still = (frame.primitive >= 0) & (frame.occlusion_mode != OcclusionMode.DYNAMIC)
+    greys = np.stack([to_bytes(GREY), to_bytes(np.float32(CELL_LINE) * np.asarray(GREY, np.float32))])
+    assert (drawn[still][:, None] == greys).all(axis=-1).any(axis=-1).all()
+
+
+@pytest.mark.parametrize("view", [View.SAVED, View.COST])
+def test_work_is_mapped_up_to_nearly_the_most(certified_frame: Frame, view: View) -> None:
+    work = certified_frame.saved if view is View.SAVED else certified_frame.cost
+    drawn, top = picture(certified_frame, view), work_top(certified_frame, view)
+    hit = certified_frame.primitive >= 0
+    assert np.mean(work[hit] > top) <= 0.01 and (work[hit] >= 0.9 * top).any()
+    colors = np.round(color_map() * 255).astype(int)
+    assert np.abs(drawn[hit & (work >= top)].astype(int) - colors[-1]).max() <= 1
+    for rays in np.unique(work[hit]):
+        shown = drawn[hit & (work == rays)].astype(int)
+        entry = min(max(rays / top * 256.0 - 0.5, 0.0), 255.0)
+        assert (shown == shown[0]).all() and np.abs(shown[0] - colors[round(entry)]).max() <= 2
+
+
+@pytest.mark.parametrize("view", [View.SAVED, View.COST])
+def test_shares_of_work_are_mapped_from_none_to_all(certified_frame: Frame, view: View) -> None:
+    f = certified_frame
+    work, whole = (f.saved, f.due_rays) if view is View.SAVED else (f.cost, f.saved + f.cost)
+    drawn, hit = picture(f, view, shares=True), f.primitive >= 0
+    none, all_of_it = hit & (whole == 0), hit & (whole > 0) & (work == whole)
+    colors = np.round(color_map() * 255).astype(int)
+    assert (drawn[none] == to_bytes(GREY)).all() and all_of_it.any() and none.any() == (view is View.SAVED)
+    assert np.abs(drawn[all_of_it].astype(int) - colors[-1]).max() <= 1
+    part = hit & (whole > 0)
+    entry = np.clip(work[part] / whole[part] * 256.0 - 0.5, 0.0, 255.0).round().astype(int)
+    assert np.abs(drawn[part].astype(int) - colors[entry]).max() <= 2
+
+
+@pytest.mark.parametrize("shares", [False, True])
+@pytest.mark.parametrize("view", [View.SAVED, View.COST])
+def test_a_frame_that_recorded_no_work_is_refused(frame: Frame, view: View, shares: bool) -> None:
+    with pytest.raises(ValueError, match="did not record the work"):
+        picture(frame, view, shares=shares)
+
+
+def test_a_light_that_is_not_there(frame: Frame) -> None:
+    for view in (View.SHADOW, View.CERTIFICATE):
+        with pytest.raises(ValueError, match="no light 2: the scene's lights are 0 to 1"):
+            picture(frame, view, 2)
+
+
+@pytest.mark.parametrize("beneath", [0.0, BENEATH, 0.6])
+def test_what_is_wrong_has_the_one_colour_over_the_dimmed_picture(wrong_frame: Frame, beneath: float) -> None:
+    drawn = picture(wrong_frame, View.DIFFERENCE, marked=False, beneath=beneath)
+    wrong = wrong_frame.wrong > 0
+    assert (drawn[wrong] == to_bytes(WRONG)).all()
+    expected = beneath * picture(wrong_frame)[~wrong].astype(float)
+    assert np.abs(drawn[~wrong] - expected).max() <= 1 and drawn[~wrong].any() == (beneath > 0.0)
+
+
+def test_a_lone_wrong_pixel_is_ringed(wrong_frame: Frame) -> None:
+    drawn = picture(wrong_frame, View.DIFFERENCE)
+    ring = (drawn == to_bytes(tuple(RING_DIMMING * channel for channel in WRONG))).all(axis=-1)
+    wrong = (drawn == to_bytes(WRONG)).all(axis=-1)
+    np.testing.assert_array_equal(wrong, wrong_frame.wrong > 0)
+    unmarked = picture(wrong_frame, View.DIFFERENCE, marked=False)
+    np.testing.assert_array_equal(drawn[~ring], unmarked[~ring])
+    for across in (ring[20, :30], ring[20, 31:50], ring[:20, 30], ring[21:40, 30]):
+        assert across.sum() == 1, "one ring on every side"
+    assert not ring[38:48, 58:77].any() and ring[36, 60:75].all(), "one ring around the block, none in it"
+
+
+def test_where_all_is_right_nothing_is_marked(frame: Frame) -> None:
+    right = replace(frame, wrong=np.zeros_like(frame.primitive), reference=frame.color)
+    assert np.abs(picture(right, View.DIFFERENCE) - BENEATH * picture(frame)).max() <= 1
+    pixels = picture(right, View.WIPE)
+    column = frame.width // 2
+    assert (pixels[:, column] == to_bytes(WIPE_LINE)).all()
+    np.testing.assert_array_equal(np.delete(pixels, column, 1), np.delete(picture(frame), column, 1))
+
+
+@pytest.mark.parametrize(("wipe", "column"), [(0.0, 0), (0.3, 28), (1.0, 96)])
+def test_a_wipe_shows_both_pictures(wrong_frame: Frame, wipe: float, column: int) -> None:
+    pixels = picture(wrong_frame, View.WIPE, marked=False, wipe=wipe)
+    right = picture(replace(wrong_frame, color=wrong_frame.reference))
+    np.testing.assert_array_equal(pixels[:, :column], picture(wrong_frame)[:, :column])
+    np.testing.assert_array_equal(pixels[:, column + 1 :], right[:, column + 1 :])
+    marked = picture(wrong_frame, View.WIPE, wipe=wipe)
+    ring = (marked == to_bytes(WRONG)).all(axis=-1)
+    assert ring.any() and not (ring & (wrong_frame.wrong > 0)).any()
+    np.testing.assert_array_equal(marked[~ring], pixels[~ring])
+
+
+@pytest.mark.parametrize("view", [View.DIFFERENCE, View.WIPE])
+def test_a_frame_that_was_not_verified_is_refused(frame: Frame, view: View) -> None:
+    with pytest.raises(ValueError, match="not verified"):
+        picture(frame, view)
+
+
+def test_a_shadow_that_culling_misses_is_drawn(figure4: list[Frame]) -> None:
+    """Figure 4: right, then a missing shadow in frame 20, right again once the triangle has been judged anew."""
+    drawn = [(picture(frame, View.DIFFERENCE, marked=False) == to_bytes(WRONG)).all(axis=-1) for frame in figure4]
+    assert [bool(pixels.any()) for pixels in drawn] == [False, False, True, False]
+    wrong = figure4[2]
+    np.testing.assert_array_equal(drawn[2], (wrong.color != wrong.reference).any(axis=-1))
+    legend = difference_legend(wrong)
+    assert legend.pixels == drawn[2].sum() == legend.answers == wrong.statistics.shadow.wrong
+    assert legend.due == wrong.statistics.shadow.due and legend.largest > 0.1
+
+
+@pytest.mark.gui
+@pytest.mark.parametrize("view", list(View))
+@pytest.mark.parametrize(("marked", "cells"), [(True, False), (False, False), (True, True)])
+def test_shaders_draw_the_same(certified_frame: Frame, view: View, marked: bool, cells: bool) -> None:
+    moderngl = pytest.importorskip("moderngl")
+    from viewer.window.display import Display, Look
+
+    shown = in_cells(replace(certified_frame, certificates=None)) if cells else certified_frame
+    context = moderngl.create_context(standalone=True, require=330)
+    with context:
+        display = Display()
+        display.show(shown)
+        display.draw(Look(view=view, light=1, shading=SHADING, marked=marked, wipe=0.4, shares=marked, beneath=0.4))
+        on_gpu = display.read()[..., :3].astype(int)
+        display.release()
+    context.release()
+    here = picture(shown, view, 1, marked=marked, wipe=0.4, shares=marked, beneath=0.4).astype(int)
+    assert np.abs(on_gpu - here).max() <= 1

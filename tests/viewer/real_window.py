@@ -1,0 +1,82 @@
+"""Runs scenarios in the real window, one after another, each in a window of its own.
+
+    python -m tests.viewer.real_window
+
+Reads lines of JSON, `{"name", "size", "scene", "folder", "settings"}`, and answers each by a line with the scenario's
+exit code.  ImGui's test engine drives the keyboard and the pointer; a scenario is a function of a `Driver` in
+`tests.viewer.scenarios`.  One process opens many windows, as most of the time that a window takes goes into starting
+Python, loading kernels and compiling shaders.  What is said meanwhile goes to standard error.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import sys
+import traceback
+from pathlib import Path
+
+from imgui_bundle import hello_imgui, imgui, immapp
+from imgui_bundle.immapp import testing
+from PIL import Image
+
+from tests.viewer.driver import PATIENCE, Driver
+from tests.viewer.scenarios import SCENARIOS
+from viewer.window import app as viewer_app
+from viewer.window import style
+from viewer.window.app import App
+
+DOZING = ("explaining",)  # there the window rests when nothing moves: what threads find out must wake it
+
+
+def run(name: str, size: list[int], scene: str, folder: str) -> int:
+    """The exit code of the window that the scenario was played in."""
+    viewer_app.WINDOW_SIZE = tuple(size)
+    style._applied = (0.0, "")  # a new window has no style yet
+    app = App(Path(scene))
+    if name != "touring":
+        app.ui.tour.end()  # it comes by itself on the first start
+    app.controller.preferences.screenshot_folder = str(Path(folder) / "pictures")
+    app.controller.preferences.dynamic_resolution = True
+    app.controller.change(samples=1)  # else pictures at rest go on changing
+    failed: list[BaseException] = []
+
+    def test(context) -> None:
+        engine = imgui.test_engine.get_io(hello_imgui.get_imgui_test_engine())
+        engine.config_watchdog_warning = engine.config_watchdog_kill_test = 2.0 * PATIENCE
+        driver = Driver(app, context, Path(folder), dozes=name in DOZING)
+        try:
+            SCENARIOS[name](driver)
+        except BaseException as error:
+            failed.append(error)
+            traceback.print_exc()
+            seen = Path(folder) / "failed.png"
+            print(f"the window is shown in {seen}", file=sys.stderr)
+            Image.fromarray(driver.window()).save(seen)
+
+    def runner(params, add_ons: immapp.AddOnsParams) -> None:
+        # The scenario says itself what went wrong; the engine only notices that a window closed meanwhile.
+        testing.run(test_function=test, runner_params=params, add_ons_params=add_ons, raise_on_error=False)
+
+    code = app.run(runner)
+    stuck = app.controller.render._thread.is_alive()
+    if stuck:
+        print("the render thread outlived the window", file=sys.stderr)
+    return 1 if failed or stuck else code
+
+
+def main() -> None:
+    with os.fdopen(os.dup(1), "w") as answers:
+        os.dup2(2, 1)  # what ImGui prints is no answer
+        for line in sys.stdin:
+            asked = json.loads(line)
+            os.environ["SHADOWCULL_CONFIG_DIR"] = asked.pop("settings")
+            code = run(**asked)
+            sys.stderr.flush()
+            ctypes.CDLL(None).fflush(None)
+            print(code, file=answers, flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,118 @@
+"""How much of a picture is traced before it is shown, by what frames have cost."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tracer.statistics import FrameStatistics
+from viewer.services.governor import PARTS, Cost, Governor, divided
+
+FIXED, RAY, PIXEL = 5e-3, 1e-7, 1e-6
+
+
+def frame(pixels: int, part: float, beside: float = 0.0, slower: float = 1.0) -> FrameStatistics:
+    """What a frame of a machine with these costs tells."""
+    phases = {"place": beside, "primary": slower * (FIXED / 2 + RAY / 2 * pixels),
+              "surfaces": slower * RAY / 2 * pixels,
+              "shading": slower * (FIXED / 2 + PIXEL * pixels * part / 16)}  # fmt: skip
+    return FrameStatistics(part=part / 16, phases=phases)
+
+
+def taught(*seen: FrameStatistics, pixels: int = 400_000) -> Governor:
+    governor = Governor()
+    for statistics in seen:
+        governor.observe(statistics, pixels)
+    return governor
+
+
+def test_fixed_and_growing_costs_are_learnt_apart():
+    cost, noise = Cost(1e-3, 1e-9), np.random.default_rng(1)
+    for number in (1e5, 4e5, 2e5, 3e5) * 6:
+        cost.observe(number, (5e-3 + 1e-7 * number) * noise.uniform(0.95, 1.05))
+    assert cost.fixed == pytest.approx(5e-3, rel=0.4)
+    assert cost(1e5) == pytest.approx(1.5e-2, rel=0.1) and cost(1e6) == pytest.approx(1.05e-1, rel=0.1)
+
+
+def test_where_all_frames_are_alike_the_cost_is_theirs_and_keeps_its_proportions():
+    cost = Cost(1e-3, 1e-8)
+    for _ in range(10):
+        cost.observe(1e5, 2e-2)
+    assert cost(1e5) == pytest.approx(2e-2, rel=0.01)
+    assert cost.fixed == pytest.approx(1e-2, rel=0.05)
+
+
+def test_old_costs_are_forgotten():
+    cost = Cost(1e-3, 1e-8)
+    for seconds in [1e-2] * 30 + [5e-2] * 15:
+        cost.observe(1e5, seconds)
+    assert cost(1e5) == pytest.approx(5e-2, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "part", "divisor"),
+    [
+        (1.0, 16, 1),
+        (0.32, 8, 1),
+        (0.2, 4, 1),
+        (0.13, 2, 1),
+        (0.1, 1, 1),
+        (0.055, 0.5, 1),
+        (0.04, 0.5, 1),
+        (0.02, 0.5, 2),
+        (1e-4, 0.5, 8),
+    ],
+)
+def test_the_most_that_fits_is_shaded_and_only_then_the_resolution_falls(seconds: float, part: float, divisor: int):
+    governor = taught(*(frame(400_000, part) for part in (1, 4, 16, 2, 8) * 3))
+    assert governor.seconds(400_000, 4) == pytest.approx(FIXED + RAY * 4e5 + PIXEL * 1e5, rel=0.1)
+    plan = governor.plan(800, 500, seconds)
+    assert (plan.parts[0], plan.divisor) == (part, divisor)
+    assert plan.parts[-1] == 16 and list(plan.parts) == sorted(set(plan.parts))
+
+
+def test_what_was_whole_at_once_teaches_what_its_primary_rays_cost():
+    """Else a view that became dear would never be shaded in parts again."""
+    governor, dear = taught(*(frame(300_000, part, slower=0.1) for part in (1, 16) * 3)), FrameStatistics(part=1.0)
+    assert governor.plan(640, 480, 0.05).parts == (16,)
+    dear.phases = {"primary": 0.15, "shading": 0.01}
+    for _ in range(20):
+        governor.observe(dear, 640 * 480)
+    assert governor.plan(640, 480, 0.05).divisor > 1
+    assert governor.plan(640, 480, 0.05, coarse=False, playing=False).parts == (16,), "0.16 s do not take long"
+
+
+def test_steps_on_the_way_to_the_whole_are_worth_showing():
+    slow = taught(*(frame(400_000, part, slower=8.0) for part in (1, 4, 16) * 3)).plan(800, 500, 0.5)
+    quick = taught(*(frame(400_000, part, slower=0.2) for part in (1, 4, 16) * 3)).plan(800, 500, 0.02)
+    assert len(slow.parts) > len(quick.parts) == 2
+
+
+def test_what_does_not_take_long_is_whole_at_once_where_nothing_moves():
+    quick = taught(*(frame(400_000, part, slower=0.5) for part in (1, 4, 16) * 3))
+    assert quick.plan(800, 500, 0.1).parts[0] < 16, "in motion as much as fits"
+    assert quick.plan(800, 500, 0.1, coarse=False, playing=False).parts == (16,)
+    slow = taught(*(frame(400_000, part) for part in (1, 4, 16) * 3))
+    assert slow.plan(800, 500, 0.1, coarse=False, playing=False).parts[0] < 16, "something is seen soon"
+
+
+def test_a_finer_step_needs_time_to_spare_and_a_coarser_one_none():
+    governor = taught(*(frame(400_000, part) for part in (1, 4, 16, 2, 8) * 3))
+    quarter = governor.seconds(400_000, 4)
+    assert governor.plan(800, 500, 0.9 * quarter).parts[0] == 2
+    assert governor.plan(800, 500, 1.05 * quarter).parts[0] == 2, "a quarter would fit, but with nothing to spare"
+    assert governor.plan(800, 500, 1.4 * quarter).parts[0] == 4
+    assert governor.plan(800, 500, 1.05 * quarter).parts[0] == 4
+
+
+def test_what_else_is_in_a_frame_leaves_less_time():
+    alone = taught(*(frame(400_000, part) for part in PARTS * 3))
+    beside = taught(*(frame(400_000, part, beside=0.1) for part in PARTS * 3))
+    assert beside.seconds(400_000, 1) == pytest.approx(alone.seconds(400_000, 1) + 0.1, rel=0.01)
+    beside.forget()
+    assert beside.seconds(400_000, 1) == Governor().seconds(400_000, 1), "another scene"
+
+
+def test_divided_sizes_are_never_empty():
+    assert divided(3, 1, 8) == (1, 1)
+    assert divided(1000, 500, 3) == (333, 167)

@@ -1,0 +1,377 @@
+"""The newest request wins, what is worthless is cancelled, and nothing blocks or dies."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from threading import Event
+
+import pytest
+
+from tests.viewer.fakes import FakeRenderer
+from tracer.frame import Settings
+from tracer.scene.model import Camera
+from viewer.services.render_thread import RenderRequest, RenderThread, Traced
+
+CAMERA = Camera((0, 0, 5), (0, 0, -1))
+
+
+def request(at: float, **kinds) -> RenderRequest:
+    return RenderRequest(at, CAMERA, Settings(width=8, height=8), **kinds)
+
+
+@pytest.fixture
+def thread():
+    thread = RenderThread()
+    yield thread
+    assert thread.close(5.0)
+
+
+def taken(thread: RenderThread, timeout: float = 5.0) -> Traced:
+    end = time.monotonic() + timeout
+    while time.monotonic() < end:
+        if (traced := thread.take()) is not None:
+            return traced
+        time.sleep(0.002)
+    raise AssertionError("no frame came")
+
+
+def idle(thread: RenderThread, timeout: float = 5.0) -> None:
+    end = time.monotonic() + timeout
+    while thread.busy and time.monotonic() < end:
+        time.sleep(0.002)
+    assert not thread.busy
+
+
+def held_at(thread: RenderThread, first: RenderRequest) -> FakeRenderer:
+    """A renderer that is at work on this, and goes on when it is let go."""
+    renderer = FakeRenderer()
+    renderer.go.clear()
+    thread.use(renderer)
+    thread.submit(first)
+    assert renderer.started.wait(5.0)
+    return renderer
+
+
+def wait_until_cancelled(renderer: FakeRenderer) -> None:
+    end = time.monotonic() + 5.0
+    while not renderer.cancelled and time.monotonic() < end:
+        time.sleep(0.002)
+
+
+def test_a_request_becomes_a_frame_once(thread):
+    thread.use(FakeRenderer())
+    thread.submit(request(1.0))
+    assert taken(thread).frame.time == 1.0
+    assert thread.take() is None
+
+
+def test_of_those_that_wait_only_the_newest_is_traced(thread):
+    renderer = held_at(thread, request(0.0, quick=True))
+    for at in (1.0, 2.0, 3.0):
+        thread.submit(request(at, quick=True))
+    renderer.go.set()
+    idle(thread)
+    assert [at for at, _ in renderer.asked] == [0.0, 3.0]
+
+
+def test_a_fine_frame_is_cut_short_by_a_newer_request(thread):
+    renderer = held_at(thread, request(0.0))
+    thread.submit(request(1.0, quick=True))
+    wait_until_cancelled(renderer)
+    renderer.go.set()
+    assert taken(thread).frame.time == 1.0
+    assert renderer.cancelled == [0.0]
+
+
+def test_a_coarse_frame_in_motion_is_let_finish(thread):
+    renderer = held_at(thread, request(0.0, quick=True))
+    thread.submit(request(1.0, quick=True))
+    time.sleep(0.05)
+    assert renderer.cancelled == []
+    renderer.go.set()
+    idle(thread)
+    assert [at for at, _ in renderer.asked] == [0.0, 1.0]
+
+
+def test_where_a_motion_ended_comes_before_what_is_under_way_and_once(thread):
+    renderer = held_at(thread, request(0.0, quick=True))
+    thread.submit(request(1.0, quick=True))
+    thread.hurry(request(2.0, final=True))
+    assert renderer.cancelled == [], "it is not what waits"
+    thread.hurry(request(1.0, final=True))
+    wait_until_cancelled(renderer)
+    renderer.go.set()
+    assert taken(thread).frame.time == 1.0
+    thread.hurry(request(1.0, final=True))
+    idle(thread)
+    assert [at for at, _ in renderer.asked] == [0.0, 1.0]
+
+
+def test_the_same_request_again_does_not_cancel_itself():
+    running = request(0.0)
+    assert not request(0.0).supersedes(running)
+    coarse = request(0.0, quick=True)
+    assert request(1.0, quick=True, final=True).supersedes(coarse), "what was before the end of a motion"
+    assert not request(1.0, quick=True).supersedes(replace(coarse, final=True))
+    assert not request(1.0, quick=True, final=True).supersedes(replace(coarse, final=True)), "one of them is shown"
+    assert not replace(coarse, settings=Settings(width=4, height=4)).supersedes(coarse)
+    assert replace(coarse, settings=replace(coarse.settings, method="none")).supersedes(coarse)
+
+
+def test_errors_are_one_line_and_the_thread_lives_on(thread):
+    renderer = FakeRenderer()
+    renderer.failing = RuntimeError("first line\nsecond line")
+    thread.use(renderer)
+    thread.submit(request(0.0))
+    idle(thread)
+    failed = thread.take_failure()
+    assert failed is not None and "first line second line" in failed.text and "\n" not in failed.text
+    assert not failed.expected and "Traceback" in failed.details
+    assert thread.take_failure() is None
+    renderer.failing = None
+    thread.submit(request(1.0))
+    assert taken(thread).frame.time == 1.0
+
+
+def test_a_frame_of_a_scene_that_was_left_is_not_delivered(thread):
+    old, new = FakeRenderer(), FakeRenderer()
+    old.go.clear()
+    thread.use(old)
+    thread.submit(request(0.0))
+    assert old.started.wait(5.0)
+    thread.use(new)
+    old.go.set()
+    idle(thread)
+    assert thread.take() is None
+    thread.submit(request(5.0))
+    assert taken(thread).frame.time == 5.0
+
+
+def test_modes_are_reset_on_the_threads_own_time(thread):
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    thread.reset_modes()
+    assert renderer.resets == 0
+    thread.submit(request(0.0))
+    taken(thread)
+    assert renderer.resets == 1
+
+
+class FakeTask:
+    """Works until `go` is set or it is cancelled."""
+
+    def __init__(self) -> None:
+        self.started, self.go = Event(), Event()
+        self.renderer: object = None
+        self.cancelled = False
+
+    def work(self, renderer, cancelled) -> None:
+        self.renderer = renderer
+        self.started.set()
+        while not self.go.wait(0.002):
+            if cancelled():
+                self.cancelled = True
+                return
+
+
+def test_a_task_has_the_thread_to_itself_and_the_newest_request_waits(thread):
+    renderer, task = FakeRenderer(), FakeTask()
+    renderer.go.clear()
+    thread.use(renderer)
+    thread.submit(request(0.0))
+    assert renderer.started.wait(5.0)
+    thread.perform(task)
+    assert task.started.wait(5.0)
+    assert renderer.cancelled == [0.0], "what was under way is cut short"
+    renderer.go.set()
+    for at in (1.0, 2.0):
+        thread.submit(request(at))
+    thread.reset_modes()
+    time.sleep(0.05)
+    assert thread.busy and not task.cancelled and len(renderer.asked) == 1
+    task.go.set()
+    assert taken(thread).frame.time == 2.0
+    assert task.renderer is renderer and renderer.resets == 1
+    idle(thread)
+
+
+def test_another_renderer_ends_a_task(thread):
+    task = FakeTask()
+    thread.use(FakeRenderer())
+    thread.perform(task)
+    assert task.started.wait(5.0)
+    thread.use(FakeRenderer())
+    idle(thread)
+    assert task.cancelled
+
+
+def test_a_task_that_waits_while_the_scene_changes_gets_its_own_renderer_and_ends(thread):
+    old, new, first, task = FakeRenderer(), FakeRenderer(), FakeTask(), FakeTask()
+    held = Event()
+    first.work = lambda renderer, cancelled: (first.started.set(), held.wait(5.0))
+    thread.use(old)
+    thread.perform(first)
+    assert first.started.wait(5.0)
+    thread.perform(task)
+    thread.use(new)
+    held.set()
+    assert task.started.wait(5.0)
+    idle(thread)
+    assert task.renderer is old and task.cancelled, "what was asked of the old scene is over"
+    thread.submit(request(1.0))
+    assert taken(thread).frame.time == 1.0 and [at for at, _ in new.asked] == [1.0]
+
+
+def test_closing_ends_a_task():
+    thread, task = RenderThread(), FakeTask()
+    thread.use(FakeRenderer())
+    thread.perform(task)
+    assert task.started.wait(5.0)
+    assert thread.close(5.0)
+    assert task.cancelled
+
+
+def test_nothing_is_traced_without_a_scene_and_nothing_waits_for_it(thread):
+    thread.submit(request(0.0))
+    assert not thread.busy
+    thread.use(FakeRenderer())
+    assert thread.take() is None
+
+
+def test_closing_cuts_a_trace_short():
+    thread, renderer = RenderThread(), FakeRenderer()
+    renderer.go.clear()
+    thread.use(renderer)
+    thread.submit(request(0.0))
+    assert renderer.started.wait(5.0)
+    began = time.monotonic()
+    assert thread.close(5.0)
+    assert time.monotonic() - began < 1.0
+    assert renderer.cancelled == [0.0]
+    thread.submit(request(1.0))
+    assert not thread.busy
+
+
+class Asked:
+    """A question that says when, and by which renderer, it was answered."""
+
+    def __init__(self, at: float, failing: Exception | None = None) -> None:
+        self.time, self.failing = at, failing
+        self.by: list = []
+        self.answered = Event()
+
+    def answer(self, renderer) -> None:
+        self.by.append((renderer, len(renderer.asked)))
+        self.answered.set()
+        if self.failing is not None:
+            raise self.failing
+
+
+def test_a_question_is_answered_between_frames_and_cuts_none_short(thread):
+    renderer, question = FakeRenderer(), Asked(0.0)
+    renderer.go.clear()
+    thread.use(renderer)
+    thread.submit(request(0.0))
+    assert renderer.started.wait(5.0)
+    thread.ask(question)
+    thread.submit(request(0.0, quick=True, serial=1))
+    thread.submit(request(0.0, serial=2))
+    renderer.go.set()
+    idle(thread)
+    assert question.by == [(renderer, 1)], "not before the next frame"
+    assert len(renderer.asked) == 2
+
+
+def test_of_questions_only_the_newest_is_answered_and_none_about_a_time_that_was_left(thread):
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    thread.submit(request(1.0))
+    idle(thread)
+    left = Asked(0.0)
+    thread.ask(left)
+    renderer.go.clear()
+    renderer.started.clear()
+    thread.submit(request(2.0))
+    assert renderer.started.wait(5.0)
+    older, newer = Asked(2.0), Asked(2.0)
+    thread.ask(older)
+    thread.ask(newer)
+    renderer.go.set()
+    assert newer.answered.wait(5.0)
+    idle(thread)
+    assert not left.by and not older.by and len(newer.by) == 1
+
+
+def test_a_question_about_another_scene_is_dropped_and_one_that_fails_is_told_of(thread):
+    first, second = FakeRenderer(), FakeRenderer()
+    thread.use(first)
+    thread.submit(request(1.0))
+    idle(thread)
+    thread.use(second)
+    lost = Asked(1.0)
+    thread.ask(lost)
+    thread.submit(request(1.0))
+    assert taken(thread).frame.time == 1.0
+    assert not lost.by
+    failing = Asked(1.0, ValueError("no such light"))
+    thread.ask(failing)
+    assert failing.answered.wait(5.0)
+    end = time.monotonic() + 5.0
+    while (failed := thread.take_failure()) is None:
+        assert time.monotonic() < end
+    assert failed.text == "no answer: no such light"
+    thread.submit(request(3.0))
+    assert taken(thread).frame.time == 3.0, "it goes on"
+
+
+def test_a_picture_becomes_whole_and_gets_samples_as_long_as_nothing_else_is_wanted(thread):
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    thread.submit(request(1.0, parts=(4, 8, 16), samples=3))
+    came = []
+    while not came or came[-1].frame.settings.samples < 3:
+        came.append(taken(thread))
+    idle(thread)
+    assert len(renderer.asked) == 5 and came[-1].whole
+    assert came[-1].first.part == 0.25, "what the first part cost is told with each"
+
+
+def test_a_picture_of_which_a_part_was_shown_is_left_for_a_newer_one(thread):
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    whole = renderer.render
+
+    def with_news(time, camera, cancel):  # while the first part is traced the camera moves on
+        if time == 1.0:
+            thread.submit(request(2.0, quick=True, parts=(4, 16)))
+        return whole(time, camera, cancel)
+
+    renderer.render = with_news  # type: ignore[method-assign]
+    thread.submit(request(1.0, quick=True, parts=(4, 16)))
+    end = time.monotonic() + 5.0
+    while not (traced := taken(thread)).whole:
+        assert time.monotonic() < end
+    idle(thread)
+    assert [at for at, _ in renderer.asked] == [1.0, 2.0, 2.0]
+    assert traced.request.time == 2.0
+
+
+def test_what_is_asked_about_a_picture_is_answered_before_its_next_sample(thread):
+    renderer, question = FakeRenderer(), Asked(1.0)
+    thread.use(renderer)
+    sampled, render = Event(), renderer.render
+
+    def slowly(time, camera, cancel):
+        if len(renderer.asked) == 3:
+            sampled.set()
+            question.answered.wait(0.2)
+        return render(time, camera, cancel)
+
+    renderer.render = slowly  # type: ignore[method-assign]
+    thread.submit(request(1.0, samples=50))
+    assert sampled.wait(5.0)
+    assert not thread.busy, "more samples are nothing to wait for"
+    thread.ask(question)
+    assert question.answered.wait(5.0)
+    assert question.by[0][1] < 50

@@ -1,0 +1,168 @@
+"""What the inspector shows is explained on the render thread, for as long as it is what the picture shows."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tracer.explanation import explain
+from tracer.renderer import Renderer
+from tracer.scene.load import load_scene, scene_info
+from viewer.services.controller import Controller
+from viewer.services.shadow_inspector import MOST_OCCLUDERS, Answer, Part, drawn_lines
+from viewer.state import navigation
+from viewer.state.preferences import Preferences
+from viewer.window.panels.explanation import sentences
+from viewer.window.ui import Ui
+
+SIZE = (64, 48)
+
+
+class Desk:
+    """A controller at work on a scene in a file, without a window."""
+
+    def __init__(self, path: Path) -> None:
+        self.c = Controller(Preferences(dynamic_resolution=False, samples=1, threads=1))
+        scene = load_scene(path)
+        self.renderer = Renderer(scene, self.c.session.settings)
+        self.c.show(scene, self.renderer, scene_info(scene))
+        self.until(lambda: self.c.frame is not None and not self.c.active)
+        self.shadow, self.lit = self._place(False), self._place(True)
+
+    def until(self, holds: Callable[[], bool], ticks: int = 5) -> None:
+        """Tick until it holds, and has for some ticks."""
+        end, held = time.monotonic() + 120.0, 0  # kernels may be compiled first
+        while held < ticks:
+            assert time.monotonic() < end, "in vain"
+            self.c.tick(SIZE)
+            held = held + 1 if holds() else 0
+            time.sleep(0.001)
+
+    def answered(self) -> Answer:
+        frame = self.c.frame
+        self.until(lambda: self.answer is not None and self.answer.frame is frame)
+        return self.answer
+
+    @property
+    def answer(self) -> Answer | None:
+        return self.c.explaining.answer
+
+    def _place(self, lit: bool) -> tuple[float, float]:
+        """Where the square is seen and lit by all lights, or not by one."""
+        settings = replace(self.c.frame.settings, method="none", record_lights=True)
+        frame = Renderer(self.renderer.scene, settings).render()
+        here = (frame.primitive >= 0) & (frame.primitive < 2)
+        here &= frame.lit.all(-1) if lit else (frame.due & ~frame.lit).any(-1)
+        here &= np.roll(here, 2, 0) & np.roll(here, -2, 0) & np.roll(here, 2, 1) & np.roll(here, -2, 1)
+        y, x = np.argwhere(here)[here.sum() // 2]
+        return (x + 0.5) / frame.width, (y + 0.5) / frame.height
+
+
+@pytest.fixture
+def desk(tiny_scene_file: Path):
+    desk = Desk(tiny_scene_file)
+    yield desk
+    assert desk.c.close()
+
+
+def blocked(answer: Answer) -> bool:
+    return any(one.blocked_at is not None for one in answer.lights)
+
+
+def test_the_pointer_is_followed_and_nothing_is_traced_for_it(desk: Desk):
+    assert desk.answer is None
+    traced = desk.c.history.frames
+    desk.c.hovered = desk.shadow
+    answer = desk.answered()
+    assert blocked(answer) and answer.lights == explain(desk.renderer, desk.c.frame, answer.x, answer.y)
+    desk.c.hovered = desk.lit
+    desk.until(lambda: not blocked(desk.answer))
+    desk.c.hovered = (0.5, 0.01)  # background
+    desk.until(lambda: desk.answer is None)
+    desk.c.hovered = desk.lit
+    desk.answered()
+    desk.c.hovered = None
+    desk.until(lambda: desk.answer is None)
+    assert desk.c.history.frames == traced
+
+
+def test_what_is_kept_stays_wherever_the_pointer_and_the_camera_go(desk: Desk):
+    desk.c.hovered = desk.lit
+    desk.answered()
+    desk.c.select(desk.shadow)
+    assert blocked(desk.answered())
+    first = desk.answer
+    desk.c.move(navigation.look(desk.c.session.camera, 0.05, 0.03, desk.c.world_up))
+    desk.until(lambda: not desk.c.active)
+    again = desk.answered()
+    assert again is not first
+    assert np.allclose(again.lights[0].point, first.lights[0].point, atol=0.3), "a pixel's breadth"
+    desk.c.move(navigation.look(desk.c.session.camera, 2.5, 0.0, desk.c.world_up))
+    desk.until(lambda: not desk.c.active)
+    assert desk.answer is again, "out of sight it is what it was"
+    desk.c.selected = None
+    desk.until(lambda: desk.answer is None or desk.answer.x != again.x)
+
+
+def test_another_time_is_another_answer(desk: Desk):
+    desk.c.select(desk.shadow)
+    first = desk.answered()
+    desk.c.step(3)
+    desk.until(lambda: not desk.c.active and desk.c.frame.time > first.frame.time)
+    assert desk.answered().frame.time == desk.c.frame.time
+    desk.c.move(navigation.look(desk.c.session.camera, 2.5, 0.0, desk.c.world_up))
+    desk.until(lambda: not desk.c.active)
+    desk.c.step(3)
+    desk.until(lambda: not desk.c.active and desk.answer is None)
+
+
+def test_a_run_has_the_world_to_itself(desk: Desk):
+    desk.c.select(desk.shadow)
+    desk.answered()
+    desk.c.runner.experiment_plan = replace(desk.c.runner.experiment_plan, frames=400, size=(32, 24), depth=1)
+    desk.c.runner.start_experiment()
+    desk.until(lambda: desk.answer is None)
+    desk.c.runner.stop()
+    desk.until(lambda: desk.c.runner.current is None and not desk.c.active)
+    assert blocked(desk.answered())
+
+
+def test_every_named_occluder_is_drawn_up_to_a_number_and_what_blocks_stands_out(desk: Desk):
+    class Certificates:
+        def describe(self, primitive: int, point: np.ndarray, light: int) -> tuple[str, tuple[int, ...]]:
+            return "CANDIDATES", (0, 1) * 10
+
+    desk.renderer.certificates = Certificates()
+    desk.c.select(desk.shadow)
+    answer = desk.answered()
+    stopped = next(one for one in answer.lights if one.blocked_at is not None)
+    assert stopped.certificate == "CANDIDATES" and stopped.named == (0, 1)
+    lines = [line for line in drawn_lines(answer, desk.c.frame) if line.light == stopped.light]
+    parts = [line.part for line in lines]
+    assert parts == [*[Part.BLOCKER] * 3, Part.OCCLUDER, Part.OCCLUDER, Part.REACHING, Part.STOPPED]
+    many = replace(answer, lights=(replace(stopped, blocker=2, named=tuple([2] + [0] * 30)),))
+    drawn = [line.part for line in drawn_lines(many, desk.c.frame)]
+    assert drawn.count(Part.OCCLUDER) == MOST_OCCLUDERS - 1
+
+
+def test_what_blocks_is_named_once_and_as_what_it_is(desk: Desk):
+    ui = Ui(desk.c)
+    desk.c.select(desk.shadow)
+    answer = desk.answered()
+    found = next(one for one in answer.lights if one.blocked_at is not None)
+    stopped = replace(found, certificate="none", named=())
+    receiver = int(answer.frame.primitive[answer.y, answer.x])
+    by = f"blocked by sphere {stopped.blocker} of tiny"
+    assert sentences(ui, stopped, receiver)[0].startswith(by) and len(sentences(ui, stopped, receiver)) == 1
+    among = replace(stopped, certificate="candidates", named=(stopped.blocker, 0, receiver))
+    first, others = sentences(ui, among, receiver)
+    assert first.startswith(by) and first.endswith("one of its candidates")
+    assert others.startswith("other candidates: ") and f"sphere {stopped.blocker}" not in others
+    assert "its own surface" in others
+    (own,) = sentences(ui, replace(stopped, blocker=receiver), receiver)
+    assert own.startswith("blocked by its own surface: this triangle shadows itself")

@@ -1,0 +1,173 @@
+"""Views of what is wrong have frames verified for as long as they are chosen, and change no setting of the user's."""
+
+from __future__ import annotations
+
+import json
+import time
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.viewer.fakes import FakeRenderer, make_frame, make_scene
+from tracer import experiment
+from tracer.scene.model import Camera
+from viewer.services.controller import Controller
+from viewer.services.render_thread import RenderRequest, Traced
+from viewer.state.preferences import Preferences
+from viewer.state.session import Snapshot
+from viewer.state.views import View
+
+SIZE = (16, 8)
+
+
+class Desk:
+    """A controller at work on a renderer that traces nothing."""
+
+    def __init__(self, controller: Controller) -> None:
+        self.c, self.renderer = controller, FakeRenderer()
+        controller.show(make_scene(), self.renderer, {})
+        assert self.rest() == [False, False]  # one that teaches the modes, and one that shows what they save
+
+    def rest(self) -> list[bool]:
+        """Tick until all has been traced; for each frame asked for meanwhile, whether it was to be verified."""
+        before, quiet, end = len(self.renderer.asked), 0, time.monotonic() + 20.0
+        while quiet < 10:
+            assert time.monotonic() < end, "it does not come to rest"
+            self.c.tick(SIZE)
+            quiet = 0 if self.c.active else quiet + 1
+            time.sleep(0.002)
+        return [settings.verify for _, settings in self.renderer.asked[before:]]
+
+
+@pytest.fixture
+def desk():
+    controller = Controller(Preferences(dynamic_resolution=False, samples=1))
+    yield Desk(controller)
+    assert controller.close()
+
+
+@pytest.mark.parametrize("view", [View.SAVED, View.COST])
+def test_a_view_of_work_has_it_counted_once_and_other_views_trace_nothing(desk: Desk, view: View):
+    desk.c.set_view(view)
+    assert desk.c.tracing.drawn_view is View.COLOR and desk.c.tracing.outdated, "nothing has been counted yet"
+    assert "counting" in desk.c.tracing.title
+    assert desk.rest() == [False]
+    assert desk.c.frame.settings.record_work and desk.c.tracing.drawn_view is view and not desk.c.tracing.outdated
+    for other in (View.COLOR, View.COST, View.SAVED, View.CERTIFICATE):
+        desk.c.set_view(other)
+        assert not desk.c.tracing.outdated
+        assert desk.rest() == []
+    desk.c.step(1)
+    desk.rest()
+    assert not desk.c.frame.settings.record_work, "only frames of such a view"
+    assert not desk.c.session.settings.record_work
+
+
+def test_what_was_verified_is_counted_and_verified_again_when_both_are_wanted(desk: Desk):
+    desk.c.change(verify=True)
+    assert desk.rest() == [True]
+    desk.c.set_view(View.SAVED)
+    assert desk.rest() == [True] and desk.c.frame.settings.record_work
+    desk.c.set_view(View.DIFFERENCE)
+    assert desk.rest() == []
+
+
+@pytest.mark.parametrize("view", [View.DIFFERENCE, View.WIPE])
+def test_a_view_of_what_is_wrong_verifies_once_and_other_views_trace_nothing(desk: Desk, view: View):
+    desk.c.set_view(view)
+    assert desk.c.tracing.drawn_view is View.COLOR and desk.c.tracing.outdated, "nothing has been verified yet"
+    assert "verifying" in desk.c.tracing.title
+    assert desk.rest() == [True]
+    assert desk.c.frame.wrong is not None and desk.c.tracing.drawn_view is view and not desk.c.tracing.outdated
+    for other in (View.COLOR, View.WIPE, View.DIFFERENCE, View.DEPTH):
+        desk.c.set_view(other)
+        assert not desk.c.tracing.outdated
+        assert desk.rest() == []
+    assert not desk.c.session.settings.verify and not desk.c.preferences.verify
+
+
+def test_only_frames_of_such_a_view_are_verified(desk: Desk):
+    desk.c.set_view(View.DIFFERENCE)
+    assert set(desk.rest()) == {True}
+    desk.c.step(1)
+    assert set(desk.rest()) == {True}
+    desk.c.set_view(View.COLOR)
+    assert desk.rest() == []
+    desk.c.step(1)
+    assert set(desk.rest()) == {False}
+
+
+def test_the_users_own_setting_counts_in_every_view(desk: Desk):
+    desk.c.change(verify=True)
+    assert desk.rest() == [True]
+    desk.c.set_view(View.DIFFERENCE)
+    desk.c.change(verify=False)
+    assert desk.rest() == [], "verified it is already"
+    desk.c.set_view(View.COLOR)
+    desk.c.change(verify=True)
+    desk.c.change(verify=False)
+    desk.c.trace_again()
+    assert desk.rest() == [False]
+
+
+def test_switched_off_by_the_user_it_is_traced_without(desk: Desk):
+    desk.c.change(verify=True)
+    desk.rest()
+    desk.c.change(verify=False)
+    assert desk.rest() == [False]
+
+
+def test_what_a_run_cut_short_is_traced_after_it_though_it_showed_no_frame(desk: Desk, monkeypatch):
+    def fail(*arguments, **options):
+        raise AttributeError("no world")
+
+    monkeypatch.setattr(experiment, "run", fail)
+    desk.renderer.go.clear()
+    desk.renderer.started.clear()
+    desk.c.trace_again()
+    desk.c.tick(SIZE)
+    assert desk.renderer.started.wait(10.0)
+    desk.c.runner.start_experiment()
+    end = time.monotonic() + 10.0
+    while desk.c.runner.current is not None:
+        assert time.monotonic() < end
+        desk.c.tick(SIZE)
+    assert desk.c.faults.notice is not None, "the run fails at once"
+    assert desk.renderer.cancelled, "the run came before the frame"
+    desk.renderer.go.set()
+    assert desk.rest() == [False], "the frame that was cut short has not come"
+
+
+def test_a_capture_of_a_runs_frame_is_named_and_restored_as_what_it_shows(desk: Desk, tmp_path):
+    own = desk.c.session.scene.camera
+    elsewhere = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
+    assert desk.c.session.follow and desk.c.session.frame == 0
+    desk.c.preferences.screenshot_folder, desk.c.preferences.screenshot_template = str(tmp_path), "{frame:04d}.png"
+    for camera, follow in ((elsewhere, False), (own, True)):
+        frame = make_frame(time=7.0, camera=camera)
+        desk.c.tracing.show(Traced(RenderRequest(7.0, camera, frame.settings), frame, frame.statistics))
+        desk.c.keeper.capture(np.zeros((8, 16, 3), np.uint8))
+        name = "0007.png" if camera == elsewhere else "0007-2.png"
+        assert desk.c.keeper.saving.pop().join(10.0)
+        with Image.open(tmp_path / name) as image:
+            kept = json.loads(image.text["shadowcull"])
+        snapshot = Snapshot.from_json(kept["state"])
+        assert (kept["frame"], snapshot.time, snapshot.follow) == (7, 7.0, follow)
+        desk.c.restore(snapshot)
+        assert (desk.c.session.camera, desk.c.session.frame) == (camera, 7)
+        desk.c.reset_camera()
+
+
+def test_a_capture_keeps_the_users_setting_and_the_line(desk: Desk, tmp_path):
+    desk.c.set_view(View.WIPE)
+    desk.c.session.wipe = 0.25
+    desk.rest()
+    desk.c.preferences.screenshot_folder, desk.c.preferences.screenshot_template = str(tmp_path), "wipe.png"
+    desk.c.keeper.capture(np.zeros((8, 16, 3), np.uint8))
+    assert desk.c.keeper.saving[0].join(10.0)
+    with Image.open(tmp_path / "wipe.png") as image:
+        kept = json.loads(image.text["shadowcull"])
+    assert kept["statistics"]["shadow"]["wrong"] == 3
+    snapshot = Snapshot.from_json(kept["state"])
+    assert (snapshot.view, snapshot.wipe, snapshot.settings["verify"]) == (View.WIPE, 0.25, False)

@@ -1,0 +1,62 @@
+"""What is said over a picture in a view that its method has nothing to show in."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.viewer.fakes import make_frame, with_certificates
+from tracer.frame import Settings
+from viewer.state.methods import BASES_TOLD
+from viewer.state.missing import missing
+from viewer.state.views import View
+
+
+@pytest.mark.parametrize("method", [*BASES_TOLD, "certified+cache", "paper+rest", "none+cache"])
+@pytest.mark.parametrize("view", list(View))
+def test_a_view_that_a_method_has_nothing_for_names_a_method_that_has(view: View, method: str):
+    frame = make_frame(Settings(16, 8, method=method, modes=True, verify=True))
+    if method.startswith("certified"):
+        frame = with_certificates(frame)
+    found = missing(view, frame)
+    shows = {View.CERTIFICATE: ("certified",), View.DIFFERENCE: ("paper", "cells"), View.WIPE: ("paper", "cells")}
+    if view not in shows or method.split("+")[0] in shows[view]:
+        assert found is None
+    else:
+        assert found is not None and found.base in shows[view] and method.split("+")[0] in found.text
+
+
+def test_modes_that_were_not_kept_are_missing():
+    frame = make_frame(Settings(16, 8, method="none"))
+    for view in (View.OCCLUSION, View.SHADOW, View.PIXEL_COUNT):
+        assert not view.can_draw(frame) and "no modes" in missing(view, frame).text
+        kept = replace(frame, settings=replace(frame.settings, modes=True))
+        assert view.can_draw(kept) and missing(view, kept) is None
+
+
+@pytest.mark.parametrize("view, shares", [(View.SAVED, False), (View.SAVED, True), (View.COST, True)])
+def test_a_map_of_one_colour_is_explained(view: View, shares: bool):
+    frame = make_frame(Settings(16, 8, method="auto", record_work=True, verify=True))
+    frame.due_rays = np.full_like(frame.cost, 3)
+    assert frame.saved.any() and missing(view, frame, shares) is None
+    flat = replace(frame, saved=np.zeros_like(frame.saved))
+    flat.statistics.decision = "Every shadow ray is traced."
+    assert missing(view, flat, shares).base == "certified"
+    assert missing(view, flat, shares).text.startswith("Every shadow ray is traced. So ")
+    flat.statistics.decision = ""
+    for method, base in (("none", "certified"), ("paper+rest", "certified"), ("certified", "")):
+        found = missing(view, replace(flat, settings=replace(flat.settings, method=method)), shares)
+        assert found.base == base and method.split("+")[0] in found.text
+    assert missing(View.COST, flat, shares=False) is None, "counts of traced rays differ from pixel to pixel"
+    assert missing(view, replace(flat, due_rays=np.zeros_like(flat.cost)), shares) is None, "no ray could be saved"
+
+
+def test_certificates_that_may_still_come_are_promised():
+    frame = make_frame(Settings(16, 8, method="auto"))
+    frame.statistics.decision = "Every shadow ray is traced, for a reason."
+    assert missing(View.CERTIFICATE, frame).text == "Every shadow ray is traced, for a reason."
+    frame.statistics.certificates = 12
+    assert "More are made" in missing(View.CERTIFICATE, frame, more=True).text
+    assert "More are made" not in missing(View.CERTIFICATE, frame).text, "it has come to rest"

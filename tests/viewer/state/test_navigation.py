@@ -1,0 +1,111 @@
+"""Moving a camera leaves it a camera, and moves it as a hand would expect."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tracer.scene.model import Camera
+from viewer.state import navigation as nav
+
+UP = np.array([0.0, 1.0, 0.0])
+HOME = Camera((0.0, 1.0, 5.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0), 60.0)
+angles = st.floats(-10.0, 10.0)
+pivots = st.tuples(st.floats(-5, 5), st.floats(-5, 5), st.floats(-5, 4))
+
+
+def test_flying_goes_along_the_view_the_hand_and_the_worlds_up():
+    moved = nav.fly(HOME, right=1.0, up=2.0, forward=3.0, world=UP)
+    assert moved.position == pytest.approx((1.0, 3.0, 2.0))
+    assert moved.direction == HOME.direction
+
+
+def test_looking_right_turns_right_and_looking_up_turns_up():
+    assert nav.look(HOME, math.pi / 2, 0.0, UP).direction == pytest.approx((1.0, 0.0, 0.0), abs=1e-12)
+    assert nav.look(HOME, 0.0, 0.5, UP).direction[1] == pytest.approx(math.sin(0.5))
+
+
+@given(angles, angles)
+def test_looking_never_passes_straight_up_or_down(right, up):
+    camera = nav.look(nav.look(HOME, right, up, UP), right, up, UP)
+    steepness = math.degrees(math.asin(min(1.0, abs(camera.basis()[2] @ UP))))
+    assert steepness < 89.1
+    assert camera.basis() @ camera.basis().T == pytest.approx(np.eye(3), abs=1e-9)
+
+
+def test_from_straight_down_the_way_back_is_open():
+    down = Camera((0.0, 5.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0))
+    assert nav.look(down, 0.0, 0.3, UP).basis()[2][1] > -0.97
+    assert nav.look(down, 0.0, -0.3, UP).direction == pytest.approx((0.0, -1.0, 0.0))
+
+
+@given(pivots, angles, angles)
+def test_orbiting_keeps_the_distance_and_the_pivots_place_in_the_picture(pivot, right, up):
+    camera = nav.orbit(HOME, pivot, right, up, UP)
+    assert math.dist(camera.position, pivot) == pytest.approx(math.dist(HOME.position, pivot))
+    before = HOME.basis() @ np.subtract(pivot, HOME.position)
+    after = camera.basis() @ np.subtract(pivot, camera.position)
+    assert after == pytest.approx(before, abs=1e-6)
+
+
+def test_orbiting_to_the_right_carries_the_camera_left():
+    assert nav.orbit(HOME, (0.0, 1.0, 0.0), 0.1, 0.0, UP).position[0] < 0.0
+
+
+def test_panning_moves_what_is_at_that_distance_with_the_hand():
+    camera = nav.pan(HOME, right=0.25, up=0.5, distance=5.0)
+    target = np.array([0.0, 1.0, 0.0]) - np.asarray(camera.position)
+    height = 2.0 * 5.0 * math.tan(math.radians(30.0))
+    assert target[0] / height == pytest.approx(0.25)
+    assert target[1] / height == pytest.approx(0.5)
+
+
+@given(st.floats(-30.0, 60.0))
+def test_a_dolly_never_reaches_its_pivot(notches):
+    camera = nav.dolly(HOME, (0.0, 1.0, 0.0), notches)
+    assert camera.position[2] > 0.0
+
+
+def test_focus_looks_at_the_point_from_a_distance_that_fits():
+    camera = nav.focus(HOME, (2.0, 1.0, 0.0), 0.2, UP)
+    to_point = np.subtract((2.0, 1.0, 0.0), camera.position)
+    assert to_point / np.linalg.norm(to_point) == pytest.approx(camera.basis()[2])
+    assert np.linalg.norm(to_point) == pytest.approx(3.0 * 0.2 / math.tan(math.radians(30.0)))
+
+
+def test_focus_on_the_cameras_own_place_changes_nothing():
+    assert nav.focus(HOME, HOME.position, 1.0, UP) == HOME
+
+
+def test_rays_run_through_the_pictures_corners_and_centre():
+    _, middle = nav.ray(HOME, 0.5, 0.5, 2.0)
+    assert middle == pytest.approx((0.0, 0.0, -1.0))
+    _, corner = nav.ray(HOME, 0.0, 0.0, 2.0)
+    half = math.tan(math.radians(30.0))
+    assert corner / -corner[2] == pytest.approx((-2.0 * half, half, -1.0))
+
+
+def test_a_glide_begins_and_ends_where_it_should():
+    there = nav.orbit(HOME, (0.0, 0.0, 0.0), 1.0, 0.3, UP)
+    assert nav.blend(HOME, there, 0.0).position == pytest.approx(HOME.position)
+    assert nav.blend(HOME, there, 1.0) == there
+    behind = Camera((0.0, 1.0, 5.0), (0.0, 0.0, 1.0))
+    assert np.isfinite(nav.blend(HOME, behind, 0.5).basis()).all()
+
+
+def test_the_worlds_up_is_an_axis_where_the_camera_is_nearly_upright():
+    assert nav.world_up(Camera((0, 0, 0), (1, 0, 0), (0.05, 0.1, 1.0))) == pytest.approx((0, 0, 1))
+    tilted = nav.world_up(Camera((0, 0, 0), (1, 0, 0), (0.0, 1.0, 1.0)))
+    assert tilted == pytest.approx((0, math.sqrt(0.5), math.sqrt(0.5)))
+
+
+def test_the_pace_follows_the_scenes_size():
+    small, large = nav.pace((0, 0, 0), (1, 1, 1)), nav.pace((0, 0, 0), (100, 100, 100))
+    assert large == pytest.approx(100 * small)
+    assert nav.pace((0, 0, 0), (0, 0, 0)) == 1.0
+    room_in_a_plain = nav.pace((-1000, 0, -1000), (1000, 5, 1000), seen=4.0)
+    assert room_in_a_plain == pytest.approx(1.0)

@@ -1,0 +1,249 @@
+"""Legends count what the frame holds; colours can be told apart; picks tell what is there."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.viewer.colors import luminance
+from tests.viewer.fakes import in_cells, make_frame, make_scene, with_certificates
+from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.frame import Settings
+from viewer.output import legends
+from viewer.state import views
+from viewer.state.history import SERIES, History
+from viewer.state.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
+from viewer.window.panels.widgets import in_window_style, percent
+
+
+def test_the_occlusion_legend_counts_primitives_and_pixels():
+    rows = {r.name: r for r in legends.occlusion_legend(make_frame())}
+    assert {name: r.units for name, r in rows.items()} == {
+        "INIT": 1, "PARTIALLY_OCCLUDED": 1, "FULLY_RENDERED": 3, "DYNAMIC": 2,
+    }  # fmt: skip
+    assert rows["FULLY_RENDERED"].pixels == 3 * 16
+    assert sum(r.pixel_share for r in rows.values()) == pytest.approx(1.0)
+    assert sum(r.unit_share for r in rows.values()) == pytest.approx(1.0)
+
+
+def test_the_shadow_legend_counts_what_moves_apart():
+    rows = {r.name: r.units for r in legends.shadow_legend(make_frame(), 0)}
+    assert rows == {"INIT": 2, "FULL_SHADOW": 1, "NON_SHADOW": 1, "PARTIAL_SHADOW": 1, "DYNAMIC": 2}
+    assert legends.shadow_legend(make_frame(), 31) == []
+    assert legends.shadow_legend(make_frame(), 15) == []
+
+
+def test_the_certificate_legend_counts_the_cells_that_are_seen():
+    frame = with_certificates(make_frame())
+    rows = {r.name: r for r in legends.certificate_legend(frame, 1)}
+    dynamic = np.isin(frame.primitive, (4, 5))
+    for number, name in enumerate(("NONE", "FULL", "LIT", "CANDIDATES")):
+        there = (frame.primitive >= 0) & ~dynamic & ((frame.certificates >> 4) & 3 == number)
+        assert rows[name].pixels == there.sum()
+        assert rows[name].units == len(np.unique(frame.cells[there & (frame.cells >= 0)]))
+    assert (rows["DYNAMIC"].pixels, rows["DYNAMIC"].units) == (dynamic.sum(), 0)
+    assert sum(r.pixel_share for r in rows.values()) == pytest.approx(1.0)
+    assert sum(r.units for r in rows.values()) == frame.cells.max() + 1
+    assert legends.certificate_legend(make_frame(), 1) == legends.certificate_legend(frame, 15) == []
+
+
+@pytest.mark.parametrize("view", [views.View.SAVED, views.View.COST])
+def test_the_legend_of_work_sums_it_up(view):
+    frame = with_certificates(make_frame(Settings(width=160, height=80)))
+    found = legends.work_legend(frame, view)
+    work = frame.saved if view is views.View.SAVED else frame.cost
+    assert (found.total, found.most) == (work.sum(), work.max())
+    assert found.whole == (frame.due_rays if view is views.View.SAVED else frame.saved + frame.cost).sum()
+    assert found.total < found.whole
+    assert found.per_pixel == pytest.approx(work.mean())
+    assert np.percentile(work[frame.primitive >= 0], 98) <= found.top <= work.max()
+    for empty in (replace(frame, saved=work * 0, cost=work * 0), replace(frame, primitive=work * 0 - 1)):
+        assert legends.work_legend(empty, view).top == 1.0
+    with pytest.raises(ValueError, match="did not record"):
+        legends.work_legend(make_frame(), view)
+
+
+def test_wide_words_reach_light_30():
+    frame = make_frame()
+    words = frame.modes.astype(np.uint64) | (np.uint64(2) << np.uint64(62))
+    frame = replace(frame, modes=words)
+    rows = {r.name: r.units for r in legends.shadow_legend(frame, 30)}
+    assert rows["NON_SHADOW"] == 5
+    assert shadow_mode_of(frame, 0, 30) is ShadowMode.NON_SHADOW
+    assert shadow_mode_of(frame, 0, 31) is None
+
+
+def dichromat(color: views.Color) -> np.ndarray:
+    """What is left of a colour without red-green vision (Vienot et al. 1999, deuteranopia, roughly linear)."""
+    linear = np.power(color, 2.2)
+    lms = np.array([[17.88, 43.52, 4.12], [3.46, 27.16, 3.87], [0.03, 0.18, 1.47]]) @ linear
+    lms[1] = 0.4942 * lms[0] + 1.2483 * lms[2]
+    back = np.linalg.inv([[17.88, 43.52, 4.12], [3.46, 27.16, 3.87], [0.03, 0.18, 1.47]]) @ lms
+    return np.power(np.clip(back, 0.0, 1.0), 1 / 2.2)
+
+
+def test_the_colour_of_wrong_answers_is_unmistakable():
+    """Bright on black, and far from every colour of every other view, for the colour-blind too."""
+    assert (luminance(views.WRONG) + 0.05) / 0.05 > 4.5
+    assert np.linalg.norm(dichromat(views.WRONG)) > 0.8
+    others = [*views.OCCLUSION_COLORS.values(), *views.SHADOW_COLORS.values(), views.BACKGROUND, views.GREY]
+    for other in [*others, views.WIPE_LINE, *views.color_map()]:
+        assert np.linalg.norm(np.subtract(views.WRONG, other)) > 0.5
+        assert np.linalg.norm(dichromat(views.WRONG) - dichromat(other)) > 0.15
+
+
+def test_the_difference_legend_counts_what_is_wrong():
+    legend = legends.difference_legend(make_frame(Settings(width=16, height=8, verify=True)))
+    assert (legend.answers, legend.due, legend.pixels) == (3, 4 * 128, 2)
+    assert legend.pixel_share == pytest.approx(2 / 128) and legend.largest == pytest.approx(0.1)
+    with pytest.raises(ValueError, match="not verified"):
+        legends.difference_legend(make_frame())
+
+
+@pytest.mark.parametrize(
+    ("size", "magnified", "radius", "thickness"),
+    [((64, 48), 1, 3, 1), ((1500, 40), 1, 8, 1), ((30, 4000), 1, 20, 3), ((1500, 40), 2, 4, 1), ((64, 48), 12, 1, 1)],
+)
+def test_rings_lie_at_one_distance_grow_with_the_picture_and_stay_small_on_screen(size, magnified, radius, thickness):
+    frame = make_frame(Settings(width=size[0], height=size[1], verify=True))
+    marks = views.wrong_marks(frame, magnified)
+    points = np.argwhere(frame.wrong > 0)
+    rows, columns = np.indices(marks.shape)
+    distance = np.min([np.hypot(rows - y, columns - x) for y, x in points], axis=0)
+    np.testing.assert_array_equal(marks == views.Mark.WRONG, distance == 0)
+    ring = marks == views.Mark.RING
+    assert ring.any() and (distance[ring] > radius).all()
+    np.testing.assert_array_equal(ring, (distance > radius + 0.5) & (distance < radius + thickness + 0.5))
+
+
+@pytest.mark.parametrize(
+    ("part", "whole", "said"),
+    [(0, 5, "0.0 %"), (5, 0, "-"), (1, 8, "12.5 %"), (1, 2000, "0.1 %"), (1, 9000, "0.011 %"), (3, 317e6, "9.5e-07 %")],
+)
+def test_a_small_share_does_not_look_like_none(part, whole, said):
+    assert percent(part, whole) == said
+
+
+def test_numbers_of_other_places_are_written_as_in_the_window():
+    assert in_window_style("1,234,570 (0.499%), lights 0, 2: 12") == "1 234 570 (0.499 %), lights 0, 2: 12"
+
+
+def test_no_rings_where_nothing_is_wrong():
+    frame = make_frame(Settings(width=16, height=8, verify=True))
+    assert not views.wrong_marks(replace(frame, wrong=np.zeros_like(frame.wrong))).any()
+
+
+def test_the_line_of_a_wipe_reaches_both_edges():
+    assert [views.wipe_column(10, wipe) for wipe in (-1.0, 0.0, 0.05, 0.5, 0.99, 1.0, 2.0)] == [0, 0, 0, 5, 9, 10, 10]
+
+
+@pytest.mark.parametrize("palette", [views.OCCLUSION_COLORS, views.SHADOW_COLORS, views.CERTIFICATE_COLORS])
+def test_mode_colours_can_be_told_apart_without_red_green_vision(palette):
+    for a, b in itertools.combinations(palette.values(), 2):
+        assert np.linalg.norm(dichromat(a) - dichromat(b)) > 0.15
+
+
+def test_the_colour_map_grows_lighter_all_the_way():
+    grey = views.color_map() @ np.array([0.2126, 0.7152, 0.0722])
+    assert (np.diff(grey) > -1e-3).all() and grey[-1] - grey[0] > 0.6
+
+
+def test_the_depth_range_ignores_misses():
+    assert views.depth_range(make_frame())[0] == pytest.approx(2.0)
+    empty = replace(make_frame(), depth=np.full((8, 16), np.inf, np.float32))
+    assert views.depth_range(empty) == (0.0, 1.0)
+
+
+def test_a_pick_tells_what_the_pixel_shows():
+    frame, scene = make_frame(), make_scene()
+    at = ((2 * 3 + 0.5) / 16, 0.5)  # the fourth primitive
+    found = pick(frame, scene, *at)
+    assert (found.primitive, found.kind, found.object_name, found.dynamic) == (3, "triangle", "static", False)
+    assert found.material is not None and found.material.name == "brick"
+    assert found.occlusion is OcclusionMode.FULLY_RENDERED
+    assert found.shadows == (ShadowMode.NON_SHADOW, ShadowMode.PARTIAL_SHADOW, ShadowMode.FULL_SHADOW)
+    assert (found.pixels, found.highest) == (16, 32)
+    assert math.dist(found.point, frame.camera.position) == pytest.approx(2.0)
+    assert pick(frame, scene, (2 * 4 + 0.5) / 16, 0.5).object_name == "train"
+    assert pick(frame, scene, (2 * 6 + 0.5) / 16, 0.5).kind == "sphere"
+    assert pick(frame, scene, 0.99, 0.5).primitive == -1
+
+
+def test_a_kept_pick_follows_its_primitives_modes():
+    frame = make_frame()
+    found = pick(frame, make_scene(), (2 * 3 + 0.5) / 16, 0.5)
+    later = make_frame()
+    later.modes[3] = 1
+    assert refreshed(found, later).occlusion is OcclusionMode.PARTIALLY_OCCLUDED
+    assert refreshed(found, later).point == found.point
+
+
+def test_a_kept_pick_goes_by_cells_where_those_carry_the_modes():
+    frame, cells = make_frame(), in_cells(make_frame())
+    at = ((2 * 3 + 1.5) / 16, 0.5)  # the fourth primitive's second column
+    found = pick(cells, make_scene(), *at)
+    assert (found.primitive, found.unit, found.in_cells, found.pixels) == (3, 7, True, 8)
+    assert found.shadows != pick(frame, make_scene(), *at).shadows
+    assert refreshed(found, frame) == replace(pick(frame, make_scene(), *at), in_cells=False)
+    assert refreshed(pick(frame, make_scene(), *at), cells) == found
+    elsewhere = in_cells(make_frame(time=1.0))
+    assert refreshed(pick(frame, make_scene(), *at), elsewhere).unit == 3, "which cell it is cannot be known"
+    certified = with_certificates(frame)
+    assert pick(certified, make_scene(), *at).unit == 3, "certificates are no modes"
+
+
+def test_a_pick_counts_the_pixels_wrong_answers_as_long_as_it_shows_the_same():
+    verified = make_frame(Settings(width=16, height=8, verify=True))
+    found = pick(verified, make_scene(), 5.5 / 16, 6.5 / 8)
+    assert found.wrong == 2
+    assert pick(verified, make_scene(), 0.5 / 16, 6.5 / 8).wrong == 0
+    unverified = refreshed(found, make_frame())
+    assert unverified.wrong is None
+    assert refreshed(unverified, verified).wrong == 2
+    assert refreshed(found, make_frame(Settings(width=32, height=8, verify=True))).wrong is None
+    assert refreshed(found, make_frame(verified.settings, time=1.0)).wrong is None
+
+
+def test_points_outside_the_picture_are_clamped_and_misses_have_none():
+    frame = make_frame()
+    assert pixel_at(frame, -1.0, 7.0) == (0, 7)
+    assert point_at(frame, 0.99, 0.5) is None and extent_at(frame, 0.99, 0.5) is None
+    assert extent_at(frame, 0.1, 0.5) > 0.0
+
+
+def test_history_keeps_the_newest_in_order_and_contiguous():
+    history, frame = History(capacity=5), make_frame()
+    for i in range(13):
+        frame.statistics.shadow.due = i
+        history.add(frame, 0.001)
+        due = history.values("due")
+        assert list(due) == list(range(max(0, i - 4), i + 1))
+        assert due.flags.c_contiguous and due.dtype == np.float64
+    assert history.first == 8 and all(len(history.values(name)) == 5 for name in SERIES)
+    history.clear()
+    assert len(history) == 0 and len(history.values("due")) == 0
+
+
+def test_fates_of_shadow_rays_add_up_to_those_due():
+    history, frame = History(), make_frame()
+    shadow = frame.statistics.shadow
+    shadow.due, shadow.culled, shadow.candidates_only, shadow.dynamic_only, shadow.cache_hits = 100, 40, 25, 20, 10
+    frame.statistics.certificate_steps, frame.statistics.certificate_tests = 7, 3
+    history.add(frame, 0.0)
+    fates = ("culled", "candidates_only", "dynamic_only", "cache_hits", "traced")
+    assert [history.values(name)[0] for name in fates] == [40, 25, 20, 10, 5]
+    assert history.values("steps")[0] == history.values("shadow_steps")[0] == 7, "certificates count against it"
+    assert history.values("tests")[0] == history.values("shadow_tests")[0] == 3
+
+
+def test_a_picture_that_becomes_whole_is_one_frame_of_the_history():
+    history = History()
+    for part, again in ((0.25, False), (0.5, True), (1.0, True), (0.25, False)):
+        frame = make_frame()
+        frame.statistics.shadow.due = round(100 * part)
+        history.add(frame, 0.0, again)
+    assert history.frames == 2 and list(history.values("due")) == [100, 25]

@@ -1,0 +1,155 @@
+"""Files that commands and the window write, several at once too."""
+
+from __future__ import annotations
+
+import os
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from datetime import datetime
+from pathlib import Path
+
+import pytest
+
+from viewer.output import exports
+from viewer.util.files import check_outputs, check_writable, write_each, write_text, write_whole
+
+
+def test_two_writers_of_one_file_do_not_disturb_each_other(tmp_path: Path) -> None:
+    path, both = tmp_path / "out.bin", threading.Barrier(2, timeout=30.0)
+
+    def write(content: bytes) -> None:
+        def fill(file) -> None:
+            file.write(content[:1000])
+            both.wait()  # each has its file open while the other begins
+            file.write(content[1000:])
+
+        write_whole(path, fill)
+
+    contents = [bytes([byte]) * 5000 for byte in b"ab"]
+    with ThreadPoolExecutor(2) as threads:
+        list(threads.map(write, contents))
+    assert path.read_bytes() in contents
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
+    path = tmp_path / "out.txt"
+    write_text(path, "old")
+
+    def fail(file) -> None:
+        file.write(b"half")
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError, match=r"out\.txt: not written: No space left on device"):
+        write_whole(path, fail)
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_others_may_read_what_was_written_as_any_file(tmp_path: Path) -> None:
+    (tmp_path / "any").touch()
+    write_text(tmp_path / "written", "")
+    assert (tmp_path / "written").stat().st_mode == (tmp_path / "any").stat().st_mode
+
+
+def test_files_saved_in_one_second_each_have_a_name(tmp_path: Path) -> None:
+    """Each is written only after all have chosen their names."""
+    now, many = datetime(2024, 5, 31, 14, 5, 9), 4
+    chosen = threading.Barrier(many, timeout=30.0)
+
+    def save(number: int) -> Path:
+        def write(path: Path) -> None:
+            chosen.wait()
+            write_text(path, str(number))
+
+        return exports.save(tmp_path, "room", ".csv", write, now)
+
+    with ThreadPoolExecutor(many) as threads:
+        paths = list(threads.map(save, range(many)))
+    assert [path.read_text() for path in paths] == [str(number) for number in range(many)]
+    assert sorted(tmp_path.iterdir()) == sorted(paths)
+
+
+@pytest.mark.parametrize("error", [OSError("full"), ValueError("nothing to plot"), RuntimeError("a fault")])
+def test_a_name_is_given_back_where_nothing_was_written(tmp_path: Path, error: Exception) -> None:
+    def fail(path: Path) -> None:
+        raise error
+
+    with pytest.raises(type(error), match=str(error)):
+        exports.save(tmp_path, "room", ".csv", fail)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_takes_no_files_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def denied(*_args, **_kwargs):  # a folder's mode would not keep root out
+        raise PermissionError(13, os.strerror(13))
+
+    monkeypatch.setattr(Path, "open", denied)
+    with pytest.raises(OSError, match=r"^nothing saved: cannot write to .*: Permission denied$"):
+        exports.save(tmp_path, "room", ".csv", lambda path: write_text(path, ""))
+
+
+def test_no_file_takes_the_others_along() -> None:
+    done = []
+
+    def fail(error: Exception) -> None:
+        raise error
+
+    writers = [lambda: fail(ValueError("nothing to plot")), lambda: fail(OSError("full")), lambda: done.append(1)]
+    assert write_each(writers) == ["nothing to plot", "full"]
+    assert done == [1]
+
+
+def test_a_link_is_followed(tmp_path: Path) -> None:
+    (tmp_path / "results").mkdir()
+    target, link, dangling = tmp_path / "results" / "a.json", tmp_path / "link.json", tmp_path / "dangling.json"
+    target.write_text("old")
+    link.symlink_to(target)
+    dangling.symlink_to("results/b.json")
+    for path in (link, dangling):
+        check_writable(path)
+        write_text(path, "new")
+        assert path.is_symlink() and path.resolve().parent == target.parent
+    assert sorted(p.name for p in target.parent.iterdir()) == ["a.json", "b.json"]
+    assert target.read_text() == (target.parent / "b.json").read_text() == "new"
+
+
+def test_two_names_of_one_file_are_not_two_files(tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to("file")
+    with pytest.raises(ValueError, match="--json, --csv: give each a file of its own"):
+        check_outputs({"--json": tmp_path / "file", "--csv": tmp_path / "link"})
+
+
+@pytest.mark.parametrize("linked", [False, True])
+def test_what_is_no_regular_file_is_refused_and_stays(tmp_path: Path, linked: bool) -> None:
+    path = pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    if linked:
+        path = tmp_path / "link"
+        path.symlink_to(pipe)
+    for write in (check_writable, lambda path: write_text(path, "new")):
+        with pytest.raises(OSError, match="a device, a pipe or a socket"):
+            write(path)
+    assert pipe.is_fifo() and path.is_symlink() == linked
+
+
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        ("-", "not written to standard output"),
+        ("/dev/full", "a device"),
+        ("/proc/x", "no file can be made in the folder /proc|/proc cannot be written to"),
+        ("loop", "cannot be written: "),
+        ("away", "there is no folder .*gone"),
+        ("a" * 300, "cannot be written: File name too long"),
+    ],
+)
+def test_what_cannot_be_written_is_said_in_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, path: str, said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("loop").symlink_to("loop")
+    Path("away").symlink_to("gone/file")
+    with pytest.raises(OSError, match=said) as error:
+        check_writable(Path(path))
+    assert "\n" not in str(error.value)

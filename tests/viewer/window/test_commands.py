@@ -1,0 +1,79 @@
+"""Every action once, each key once, and every key exists."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+from imgui_bundle import imgui
+
+from viewer.services.controller import Controller
+from viewer.state.methods import DEFAULT
+from viewer.state.preferences import Preferences
+from viewer.state.views import View
+from viewer.window import commands
+from viewer.window.ui import Ui
+
+
+@pytest.fixture
+def ui():
+    ui = Ui(Controller(Preferences()))
+    ui.commands = commands.build(ui)
+    yield ui
+    ui.controller.close()
+
+
+def test_keys_and_names_are_unique(ui):
+    keys = Counter(commands.chord(c.key) for c in ui.commands if c.key)
+    assert [k for k, n in keys.items() if n > 1] == []
+    names = Counter(c.name for c in ui.commands)
+    assert [n for n, count in names.items() if count > 1] == []
+
+
+def test_no_command_takes_a_key_that_flies(ui):
+    flying = {int(getattr(imgui.Key, k)) for k in "wasdqe"}
+    assert flying.isdisjoint(commands.chord(c.key) for c in ui.commands if c.key)
+
+
+def test_every_command_is_in_a_menu(ui):
+    assert {c.menu for c in ui.commands} == set(commands.MENUS)
+
+
+def test_unknown_keys_are_refused():
+    with pytest.raises(ValueError, match="Hyper"):
+        commands.chord("HyperKey")
+
+
+def test_every_command_can_be_asked_for_its_state_without_a_scene(ui):
+    for command in ui.commands:
+        command.enabled()
+        if command.checked is not None:
+            command.checked()
+
+
+def test_views_are_chosen_and_ticked(ui):
+    by_name = {c.name: c for c in ui.commands}
+    by_name[View.SHADOW.label].run()
+    assert ui.controller.session.view is View.SHADOW
+    assert by_name[View.SHADOW.label].checked() and not by_name[View.COLOR.label].checked()
+    assert by_name[View.SHADOW.label].key == "3"
+
+
+def test_culling_is_switched(ui):
+    culling = next(c for c in ui.commands if c.name == "Shadow culling")
+    assert culling.checked()
+    culling.run()
+    assert ui.controller.session.settings.method == "none" and not ui.controller.preferences.culling
+    culling.run()
+    assert ui.controller.session.settings.method == DEFAULT
+    ui.controller.change(method="cells+cache")
+    culling.run()
+    assert ui.controller.session.settings.method == "none"
+    assert ui.controller.preferences.settings().method == "none"
+    culling.run()
+    assert ui.controller.session.settings.method == "cells+cache" == ui.controller.preferences.settings().method
+
+
+def test_the_keys_of_views_are_those_of_their_commands(ui):
+    by_name = {c.name: c for c in ui.commands}
+    assert [by_name[view.label].key for view in View] == [view.key for view in View]

@@ -1,0 +1,107 @@
+"""Words that people type as values; on other words, each raises argparse.ArgumentTypeError, in one line."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+from viewer.state.plans import parse_factors
+
+if TYPE_CHECKING:
+    from viewer.state.views import View
+
+_VIEW_NAMES = {
+    "colour": "color",
+    "primitives": "primitive",
+    "normals": "normal",
+    "count": "pixel-count",
+    "certificates": "certificate",
+}
+
+
+def size(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d{1,6})[xX×](\d{1,6})", text.strip())
+    if not match or not int(match[1]) or not int(match[2]):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size; give one like 640x480")
+    return int(match[1]), int(match[2])
+
+
+def count(least: int, most: int) -> Callable[[str], int]:
+    def parse(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number") from None
+        if not least <= value <= most:
+            raise argparse.ArgumentTypeError(f"{value} is not in {least} to {most}")
+        return value
+
+    return parse
+
+
+def number(least: float, most: float) -> Callable[[str], float]:
+    def parse(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+        if not least <= value <= most:
+            raise argparse.ArgumentTypeError(f"{text} is not in {least:,.12g} to {most:,.12g}")
+        return value
+
+    return parse
+
+
+def pixel(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d{1,6}) *, *(\d{1,6})", text.strip(), re.ASCII)
+    if not match:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a pixel; give one like 320,200, counted from the upper left")
+    return int(match[1]), int(match[2])
+
+
+def factors(text: str) -> list[float]:
+    try:
+        return parse_factors(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+class ChosenView(NamedTuple):
+    """A view, the light it speaks of, the place of a wipe's line, and whether a map of work shows shares."""
+
+    view: View
+    light: int = 0
+    wipe: float = 0.5
+    shares: bool = False
+
+
+def view(text: str) -> ChosenView:
+    """A view with what it takes: occlusion, shadow:2, wipe:0.3, saved:share."""
+    from viewer.state.views import View
+
+    name, colon, detail = text.partition(":")
+    name = _VIEW_NAMES.get(name, name)
+    details = {View.WIPE: r"0|1|[01]?\.\d{1,9}"} | {v: r"\d{1,9}" for v in View if v.of_light}
+    details |= {v: "share" for v in View if v.needs_work}
+    shown = {View.WIPE: ":PART"} | {
+        v: ":LIGHT" if v.of_light else "[:share]" for v in View if v.of_light or v.needs_work
+    }
+    known = ", ".join(v.value + shown.get(v, "") for v in View)
+    if name not in set(View) or (colon and not re.fullmatch(details.get(View(name), r"(?!)"), detail, re.ASCII)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a view; the views are {known}")
+    view = View(name)
+    wipe = float(detail) if view is View.WIPE and detail else 0.5
+    if wipe > 1.0:
+        raise argparse.ArgumentTypeError(f"{text!r}: the line of a wipe lies at 0 to 1 of the width")
+    return ChosenView(view, int(detail) if view.of_light and detail else 0, wipe, view.needs_work and bool(detail))
+
+
+def method(text: str) -> str:
+    """A method, with what it takes along."""
+    from tracer.method import choice, is_method
+
+    if not is_method(text):
+        raise argparse.ArgumentTypeError(f"invalid choice: {text!r}; it is {choice()}")
+    return text

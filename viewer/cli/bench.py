@@ -1,0 +1,108 @@
+"""The command `bench`: a path of frames by several methods, as the paper's Table 1.
+
+Ctrl-C ends it after the last whole frame: what is done is shown, and written where it was to go.
+"""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from pathlib import Path
+
+from rich.table import Table
+
+from tracer import experiment
+from tracer.experiment import REFERENCE, Results
+from tracer.frame import Frame, Settings
+from tracer.geometry.world import World
+from tracer.scene.load import check_scene_file, load_visible_scene
+from tracer.scene.model import Cancelled, Scene
+from viewer.cli.console import Work, print_table, working
+from viewer.cli.headless import prepare_kernels, tracing_settings
+from viewer.output import exports
+from viewer.output.reports import LINES, WRONG, frames_in_words
+
+
+def bench(path: Path, options: Namespace) -> bool:
+    """Run an experiment, print its table and write its files; returns whether it was not stopped before its end.
+
+    Raises SceneError, ValueError and OSError, each in one line, or Cancelled where no frame was finished.
+    """
+    check_scene_file(path)
+    settings = tracing_settings(options)
+    methods = experiment.with_reference(options.methods)
+    wanted = exports.wanted_files(options)
+    if "plot" in wanted and methods == [REFERENCE]:
+        raise ValueError(f"--plot: nothing to compare with {REFERENCE}; give another of --methods")
+    with working() as work:
+        scene = load_visible_scene(path, work.progress)
+        for warning in scene.warnings:
+            work.note(f"warning: {warning}")
+        times = experiment.path_times(scene, options.path_frames)
+        numbers = frame_range(options.frames, len(times))
+        prepare_kernels(work, len(scene.lights), options.accelerator)
+        results = _run(scene, settings, methods, times, numbers, work)
+        finished = len(results.frames) == len(numbers)
+        if not finished:
+            work.note(f"cancelled after {len(results.frames)} of {len(numbers)} frames; the table is of these")
+        failures = exports.write_files(exports.experiment_writers(options.verify), results, wanted)
+    print_table(_table(results, options.verify))
+    if failures:
+        raise OSError("; ".join(failures))
+    return finished
+
+
+def _run(
+    scene: Scene, settings: Settings, methods: list[str], times: list[float], numbers: range, work: Work
+) -> Results:
+    """The results of all frames, or of those done when `work` was cancelled; raises Cancelled where there are none."""
+    world = World(scene, times[0], settings.accelerator, work.progress)
+    total, done = len(numbers) * len(methods), 0
+
+    def show() -> None:
+        frame = min(done // len(methods), len(numbers) - 1) + 1
+        work.count(f"frame {frame} of {len(numbers)}, {', '.join(methods)}", done, total)
+
+    def on_frame(number: int, method: str, frame: Frame) -> None:
+        nonlocal done
+        done += 1
+        show()
+
+    show()
+    results = None
+    for grown in experiment.run(
+        scene, settings, methods, times, numbers, cancel=work.cancelled, world=world, on_frame=on_frame
+    ):
+        results = grown
+    if results is None:
+        raise Cancelled("cancelled")
+    return results
+
+
+def frame_range(text: str | None, count: int) -> range:
+    """`A:B`, the frames A to B - 1 of a path of `count`; either may be left out."""
+    if text is None:
+        return range(count)
+    first, colon, last = text.partition(":")
+    try:
+        numbers = range(int(first or 0), int(last or count))
+    except ValueError:
+        numbers = range(0)
+    if not colon or not numbers or not 0 <= numbers.start < numbers.stop <= count:
+        raise ValueError(f"--frames {text}: give A:B, the frames A to B - 1 of the {count} there are")
+    return numbers
+
+
+def _table(results: Results, verified: bool) -> Table:
+    """A column per method, so that it fits terminals of 80 columns."""
+    width, height = results.size
+    title = f"Work of shadow rays\n{Path(results.scene).name}, {width} × {height}, {frames_in_words(results)}"
+    table = Table(title=title, title_justify="left", title_style="bold", caption_justify="left")
+    rows = experiment.table(results)
+    table.add_column("")
+    for row in rows:
+        table.add_column(row.method.replace("+", "\n+"), justify="right")
+    for heading, cell in LINES:
+        if verified or heading != WRONG:
+            table.add_row(heading, *(cell(row) for row in rows))
+    table.caption = "times include verifying" if verified else "--verify counts wrong answers"
+    return table

@@ -1,0 +1,61 @@
+"""A saved picture in the place of a scene or of a camera on the command line: what it carries, as options."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from pathlib import Path
+from typing import Any
+
+from tracer.scene.model import Camera
+from viewer.cli.argument_types import ChosenView
+from viewer.cli.headless import camera_option
+from viewer.output import capture
+from viewer.services.scene_files import find_scene, is_capture
+
+_SETTINGS = ("method", "samples", "depth", "symmetric", "zoom_factor", "verify")
+
+
+def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
+    """The scene of a saved picture, and what it carries, by the names of the options of `render`.
+
+    Raises CaptureError, in one line, for any other picture, and where the scene is gone."""
+    snapshot, size = capture.read_with_size(path)
+    scene = find_scene(snapshot.scene, path)
+    if scene is None:
+        raise capture.CaptureError(f"{path}: its scene is gone: {snapshot.scene}")
+    kept: dict[str, Any] = {name: snapshot.settings[name] for name in _SETTINGS if name in snapshot.settings}
+    if size is not None:
+        kept["size"] = size
+    if not snapshot.follow:
+        kept["camera"] = snapshot.camera
+    kept["view"] = ChosenView(snapshot.view, snapshot.light, snapshot.wipe)
+    kept["moment"] = snapshot.time
+    return scene, kept
+
+
+def settle(options: Namespace, kept: dict[str, Any], picture: Path) -> None:
+    """What options mean together: a frame or a time that was given wins over the picture's, as does a file's name."""
+    if options.frame is None and options.time is None:
+        options.time = kept["moment"]
+    if options.output is None and options.buffers is None:
+        options.output = _free_name(f"{picture.stem}-rendered")
+
+
+def camera(given: str | Camera | None) -> Camera | None:
+    """`--camera`: a camera, JSON, a file that holds it, or a saved picture; raises ValueError in one line."""
+    if given is None or isinstance(given, Camera):
+        return given
+    if is_capture(Path(given)):
+        try:
+            return capture.read(Path(given)).camera
+        except capture.CaptureError as error:
+            raise ValueError(f"--camera: {error}") from None
+    return camera_option(given)
+
+
+def _free_name(stem: str) -> Path:
+    """A name of a PNG in this folder that is not taken."""
+    path, number = Path(f"{stem}.png"), 2
+    while path.exists():
+        path, number = Path(f"{stem}-{number}.png"), number + 1
+    return path

@@ -1,0 +1,150 @@
+"""Pictures that remember how they were made.
+
+A capture is a PNG whose text chunk `shadowcull` holds, as JSON, the scene's path, the camera, the
+time, the settings, the view and the frame's statistics; opening it brings all that back.  It is
+named from a template, never overwrites, and every failure is one line.
+"""
+
+from __future__ import annotations
+
+import json
+import string
+import struct
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, PngImagePlugin
+
+from viewer.state.session import Snapshot
+from viewer.util.files import reserve, write_whole
+
+CHUNK = "shadowcull"
+FORMAT = 1
+FIELDS = {
+    "scene": "the scene's file name",
+    "view": "the view's name",
+    "frame": "number of the frame, e.g. {frame:04d}",
+    "seconds": "the scene's time, e.g. {seconds:.2f}",
+    "method": "how shadows were traced, e.g. paper or certified+cache",
+    "light": "number of the chosen light",
+    "width": "width in pixels",
+    "height": "height in pixels",
+    "date": "today, e.g. 2024-05-31",
+    "time": "now, e.g. 14-05-09",
+}
+_FORBIDDEN = '<>:"/\\|?*\0'
+_LONGEST_NAME = 200
+
+
+class CaptureError(ValueError):
+    """A picture cannot be saved or restored; the message is one line."""
+
+
+def file_name(template: str, values: dict[str, Any], now: datetime | None = None) -> str:
+    """The template filled in; raises CaptureError, naming what is wrong with it."""
+    now = now or datetime.now()
+    known = values | {"date": now.strftime("%Y-%m-%d"), "time": now.strftime("%H-%M-%S")}
+    try:
+        for _, name, layout, _ in string.Formatter().parse(template):
+            if name is not None and name not in FIELDS:
+                raise CaptureError(f"the name template has no field {{{name}}}; it knows {', '.join(FIELDS)}")
+            if len(layout or "") > 6 or "{" in (layout or ""):
+                raise CaptureError(f"the name template lays {{{name}}} out too wide")
+        name = template.format(**known).strip()
+    except (ValueError, IndexError, KeyError, AttributeError, TypeError) as error:
+        raise CaptureError(f"the name template {template!r} is wrong: {error}") from None
+    name = "".join("-" if c in _FORBIDDEN or ord(c) < 32 else c for c in name)
+    stem = name[:-4] if name.lower().endswith(".png") else name
+    if not stem.strip(" ."):
+        raise CaptureError(f"the name template {template!r} gives no file name")
+    return stem[:_LONGEST_NAME] + ".png"
+
+
+def metadata(snapshot: Snapshot, frame_number: int, size: tuple[int, int], statistics: dict[str, Any]) -> str:
+    """The JSON text that a capture carries."""
+    data = {
+        "format": FORMAT,
+        "state": snapshot.to_json(),
+        "frame": frame_number,
+        "size": list(size),
+        "statistics": statistics,
+    }
+    return json.dumps(data, default=_plain)
+
+
+def save(pixels: NDArray[np.uint8], folder: Path, name: str, text: str) -> Path:
+    """Write (height, width, 3) uint8 pixels, row 0 at the top, as a new PNG; returns its path.
+
+    A name that is taken gets a number.  Raises CaptureError; then no half-written file is left."""
+    info = PngImagePlugin.PngInfo()
+    info.add_itxt(CHUNK, text)
+    info.add_text("Software", "Shadowcull")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        path = reserve(folder, name.removesuffix(".png"), ".png")
+    except OSError as error:
+        raise CaptureError(f"no picture saved: cannot write to {folder}: {error.strerror or error}") from None
+    image = Image.fromarray(np.ascontiguousarray(pixels))
+    try:
+        write_whole(path, lambda file: image.save(file, "PNG", pnginfo=info, compress_level=4))
+    except (OSError, ValueError) as error:
+        path.unlink(missing_ok=True)
+        raise CaptureError(f"no picture saved: {error}") from None
+    return path
+
+
+def carries_state(path: Path) -> bool:
+    """Whether a file is a PNG with a text chunk of ours; its pixels are passed over.  Raises OSError."""
+    key = CHUNK.encode() + b"\0"
+    with path.open("rb") as file:
+        if file.read(8) != b"\x89PNG\r\n\x1a\n":
+            return False
+        while len(head := file.read(8)) == 8:
+            length, kind = struct.unpack(">I4s", head)
+            after = file.tell() + length + 4  # a checksum follows
+            if kind in (b"tEXt", b"zTXt", b"iTXt") and file.read(min(length, len(key))) == key:
+                return True
+            file.seek(after)
+    return False
+
+
+def read(path: Path) -> Snapshot:
+    """The state that a capture carries; raises CaptureError."""
+    return read_with_size(path)[0]
+
+
+def read_with_size(path: Path) -> tuple[Snapshot, tuple[int, int] | None]:
+    """The same, and the frame's width and height if they are known; raises CaptureError."""
+    try:
+        with Image.open(path) as image:
+            image.load()  # text chunks may follow the pixels
+            text = getattr(image, "text", {}).get(CHUNK)
+    except FileNotFoundError:
+        raise CaptureError(f"{path}: no such file") from None
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+        raise CaptureError(f"{path}: cannot be read as a picture: {' '.join(str(error).split())}") from None
+    if text is None:
+        raise CaptureError(f"{path}: a picture, but not one captured by Shadowcull")
+    try:
+        data = json.loads(text)
+        return Snapshot.from_json(data.get("state")), _size(data.get("size"))
+    except (ValueError, AttributeError, RecursionError) as error:
+        raise CaptureError(f"{path}: cannot be restored: {error}") from None
+
+
+def _size(value: Any) -> tuple[int, int] | None:
+    if isinstance(value, list) and len(value) == 2 and all(type(side) is int and 0 < side < 1 << 16 for side in value):
+        return value[0], value[1]
+    return None
+
+
+def _plain(value: Any) -> Any:
+    """Numbers of numpy as JSON."""
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return str(value)

@@ -1,0 +1,247 @@
+"""What the legend of a view says: its colours, what each stands for, and how much of the frame has it.
+
+The window draws it into the picture, or beside it, and a saved picture may carry it; `legend_layout` says where its
+parts lie.  Nothing here needs GL.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from tracer.frame import Frame
+from tracer.method import culls_by_modes
+from viewer.output.legends import (
+    LegendRow,
+    certificate_legend,
+    difference_legend,
+    occlusion_legend,
+    shadow_legend,
+    work_legend,
+)
+from viewer.state import terms
+from viewer.state.views import GREY, WRONG, Color, View, depth_range, has_modes_of_cells
+from viewer.util.numbers import count, percent
+
+
+class Tone(Enum):
+    """How a note is meant."""
+
+    PLAIN = "a fact"
+    GOOD = "all is well"
+    WARNING = "take care"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A line: a colour, or none, what it stands for, a value for each of the legend's columns, and more in words.
+
+    Where it is `quiet`, its values name what is below them."""
+
+    name: str
+    color: Color | None = None
+    values: tuple[str, ...] = ()
+    meaning: str = ""
+    quiet: bool = False
+
+
+@dataclass(frozen=True)
+class Scale:
+    """The colour map as a bar, and what its ends and its middle stand for; `reverse` begins with its last colour."""
+
+    low: str
+    high: str
+    middle: str = ""
+    reverse: bool = False
+
+
+@dataclass(frozen=True)
+class Note:
+    """A sentence below the rest."""
+
+    text: str
+    tone: Tone = Tone.PLAIN
+
+
+@dataclass(frozen=True)
+class Legend:
+    """A title, names of the columns of values, and the rest as far as there is any; `facts` come after the colours."""
+
+    title: str
+    columns: tuple[str, ...] = ()
+    entries: tuple[Entry, ...] = ()
+    scale: Scale | None = None
+    facts: tuple[Entry, ...] = ()
+    notes: tuple[Note, ...] = ()
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """What else is chosen of a view: its light, with a name, whether wrong pixels are marked, and shares of rays."""
+
+    light: int = 0
+    light_name: str = ""
+    marked: bool = True
+    shares: bool = False
+
+
+def legend_of(frame: Frame, view: View, chosen: Chosen = Chosen()) -> Legend | None:
+    """The legend of a frame in a view that can be drawn of it; None for colours that speak for themselves."""
+    makers: dict[View, Callable[[Frame, View, Chosen], Legend]] = {
+        View.OCCLUSION: _occlusion,
+        View.SHADOW: _of_light,
+        View.CERTIFICATE: _of_light,
+        View.PRIMITIVE: _primitives,
+        View.DEPTH: _depth,
+        View.NORMAL: _normals,
+        View.PIXEL_COUNT: _pixel_counts,
+        View.DIFFERENCE: _difference,
+        View.WIPE: _difference,
+        View.SAVED: _work,
+        View.COST: _work,
+    }
+    return makers[view](frame, view, chosen) if view in makers and view.can_draw(frame) else None
+
+
+def light_in_words(number: int, name: str) -> str:
+    """A light by the number that keys and views go by, and its name where that says more: light 2 (lamp)."""
+    said = f"light {number}"
+    return said if name in ("", said) else f"{said} ({name})"
+
+
+def _classes(rows: list[LegendRow], units: str) -> tuple[Entry, ...]:
+    return tuple(
+        Entry(
+            row.name.replace("_", " ").lower(),
+            row.color,
+            (f"{100.0 * row.pixel_share:.1f} %", count(row.units)),
+            f"{row.name}: {row.meaning}. {count(row.pixels)} pixels; {100.0 * row.unit_share:.2f} % of all {units}.",
+        )
+        for row in rows
+    )
+
+
+def _units(frame: Frame) -> str:
+    return "cells" if has_modes_of_cells(frame) else "primitives"
+
+
+def _by_modes(frame: Frame, light: int | None = None) -> tuple[Entry, ...]:
+    """What the paper's method would cull of this frame's shadow rays: of one light, and of all."""
+    said, columns = frame.statistics.by_modes, {"all lights": frame.statistics.by_modes_in_all}
+    if not said:
+        return ()
+    if light is not None and light < len(said) > 1:
+        columns = {f"light {light}": said[light]} | columns
+    culls = culls_by_modes(frame.settings.method)
+    parts = columns.values()
+    return (
+        Entry(f"shadow rays{'' if culls else ', if by modes'}", None, tuple(columns), _BY_MODES, quiet=True),
+        Entry(
+            terms.CULLED,
+            None,
+            tuple(percent(one.full_shadow, one.due) for one in parts),
+            "of the rays due: those of fully rendered primitives in full shadow",
+        ),
+        Entry(
+            terms.DYNAMIC_ONLY,
+            None,
+            tuple(percent(one.non_shadow, one.due) for one in parts),
+            "of the rays due: those of fully rendered primitives in non-shadow, tested against dynamic objects only",
+        ),
+    )
+
+
+def _occlusion(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    units = _units(frame)
+    entries = _classes(occlusion_legend(frame), units)
+    return Legend(view.label, ("pixels", units), entries, facts=_by_modes(frame))
+
+
+def _of_light(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    title = f"{view.label}, {light_in_words(chosen.light, chosen.light_name)}"
+    if view is View.SHADOW:
+        rows, units, facts = shadow_legend(frame, chosen.light), _units(frame), _by_modes(frame, chosen.light)
+    else:
+        rows, units, facts = certificate_legend(frame, chosen.light), "cells", ()
+    if not rows:
+        return Legend(
+            title,
+            notes=(Note("This light is not culled, as there are too many: all its rays are traced.", Tone.WARNING),),
+        )
+    return Legend(title, ("pixels", units), _classes(rows, units), facts=facts)
+
+
+def _primitives(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    seen = int(np.count_nonzero(np.bincount(frame.primitive[frame.primitive >= 0])))
+    return Legend(view.label, facts=(Entry("in view, each in a colour of its own", values=(count(seen),)),))
+
+
+def _depth(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    near, far = depth_range(frame)
+    return Legend(f"{view.label}, in units of the scene", scale=Scale(f"{near:.4g}", f"{far:.4g}", "", reverse=True))
+
+
+def _normals(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    ways = (("x", (1.0, 0.5, 0.5)), ("y", (0.5, 1.0, 0.5)), ("z", (0.5, 0.5, 1.0)))
+    return Legend(view.label, entries=tuple(Entry(f"towards +{axis}", color) for axis, color in ways))
+
+
+def _pixel_counts(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    zoom = frame.settings.zoom_factor
+    scale = Scale(f"1/{zoom:.3g}", f"{zoom:.3g} x", "as many")
+    entries = (Entry("never fully rendered", GREY),)
+    return Legend("Pixels now, against the highest count", (), entries, scale, _by_modes(frame))
+
+
+def _work(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    found, saved = work_legend(frame, view), view is View.SAVED
+    part = f"{percent(found.total, found.whole)}{' of those due' if saved else ''}"
+    facts = [Entry("in all", values=(f"{count(found.total)} ({part})",), meaning=_IN_ALL_SAVED if saved else _IN_ALL)]
+    facts.append(Entry("per pixel", values=(f"{found.per_pixel:.2f}, at most {count(found.most)}",)))
+    if not chosen.shares:
+        return Legend(
+            view.label, (), (), Scale("0", f"{found.top:.4g} and more", f"{found.top / 2.0:.3g}"), tuple(facts)
+        )
+    title = (
+        "Share of the shadow rays due that is saved" if saved else "Share of the rays without culling that is traced"
+    )
+    entries = (Entry("no shadow ray is due", GREY),) if saved else ()
+    return Legend(title, (), entries, Scale("0 %", "100 %", "50 %"), tuple(facts))
+
+
+def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    """What is wrong in the frame, or why nothing is."""
+    found, shadow = difference_legend(frame), frame.statistics.shadow
+    pixels = f"{count(found.pixels)} ({percent(found.pixel_share, 1.0)})"
+    name = "wrong pixels" if view is View.DIFFERENCE else "around wrong pixels"
+    colored = view is View.DIFFERENCE or chosen.marked
+    entries = (Entry(name if colored else "wrong pixels", WRONG if colored else None, (pixels,), _WRONG_PIXELS),)
+    facts = (
+        Entry(
+            "wrong answers",
+            None,
+            (f"{count(found.answers)} ({percent(found.answers, found.due)} of those due)",),
+            _ANSWERS,
+        ),
+        Entry("largest difference", None, (f"{255.0 * found.largest:.0f} of 255",), _LARGEST),
+    )
+    if frame.settings.method == "none":
+        note = Note("Culling is off (C): every shadow ray is traced, so nothing can be wrong.", Tone.WARNING)
+    elif not shadow.culled + shadow.candidates_only + shadow.dynamic_only + shadow.cache_hits:
+        note = Note("No shadow ray of this frame was culled, so none can be wrong.", Tone.WARNING)
+    elif not found.pixels:
+        note = Note("Nothing is wrong: every culled shadow ray was answered as tracing answers it.", Tone.GOOD)
+    else:
+        return Legend(view.label, (), entries, facts=facts)
+    return Legend(view.label, (), entries, notes=(note,))
+
+
+_BY_MODES = "of this frame, at all bounces, by the modes as the frame before left them: what the paper's method saves"
+_IN_ALL_SAVED = "of the first sample of each pixel; the share is of the shadow rays due"
+_IN_ALL = "of the first sample of each pixel; the share is of the rays traced without culling"
+_WRONG_PIXELS = "with a wrong answer for any light, at any bounce, in any sample"
+_ANSWERS = "shadow rays that culling answered otherwise than tracing does; of the first sample of each pixel"
+_LARGEST = "between a wrong pixel's colour and the right one; a wrong answer deep in reflections may change nothing"

@@ -1,0 +1,154 @@
+"""What the colours of a view stand for, and how much of a frame has each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling import modes
+from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.frame import Frame
+from viewer.state.views import (
+    CERTIFICATE_COLORS,
+    CERTIFICATE_MEANING,
+    OCCLUSION_COLORS,
+    OCCLUSION_MEANING,
+    SHADOW_COLORS,
+    SHADOW_MEANING,
+    Certificate,
+    Color,
+    View,
+    units_of,
+    verified,
+    whole_of,
+    work_of,
+    work_top,
+)
+
+
+@dataclass(frozen=True)
+class LegendRow:
+    """One colour of a legend: what it means, and how much of the frame it is (counts, and fractions of all).
+
+    Units are what carries modes, primitives or cells, or the cells that are seen."""
+
+    name: str
+    color: Color
+    meaning: str
+    units: int
+    pixels: int
+    unit_share: float
+    pixel_share: float
+
+
+def occlusion_legend(frame: Frame) -> list[LegendRow]:
+    """Units and primary pixels in each occlusion mode."""
+    classes = modes.occlusion_mode(frame.modes)
+    rows = [(mode.name, OCCLUSION_COLORS[mode], OCCLUSION_MEANING[mode]) for mode in OcclusionMode]
+    return _rows(frame, classes, rows)
+
+
+def shadow_legend(frame: Frame, light: int) -> list[LegendRow]:
+    """Units and primary pixels in each shadow mode of a light; those that move are counted apart.
+
+    Empty for a light that culling does not cover."""
+    if not modes.has_shadow_mode(frame.modes, light):
+        return []
+    classes = modes.shadow_mode(frame.modes, light)
+    classes[modes.occlusion_mode(frame.modes) == OcclusionMode.DYNAMIC] = len(ShadowMode)
+    rows = [(mode.name, SHADOW_COLORS[mode], SHADOW_MEANING[mode]) for mode in ShadowMode]
+    rows.append(("DYNAMIC", OCCLUSION_COLORS[OcclusionMode.DYNAMIC], OCCLUSION_MEANING[OcclusionMode.DYNAMIC]))
+    return _rows(frame, classes, rows)
+
+
+def certificate_legend(frame: Frame, light: int) -> list[LegendRow]:
+    """Cells that are seen, and primary pixels, with each certificate of a light; what moves is counted apart.
+
+    Empty for a light that culling does not cover, and for a frame without certificates."""
+    if frame.certificates is None or not modes.has_shadow_mode(frame.certificates, light):
+        return []
+    classes = certificates_of(frame, light)
+    rows = [(one.name, CERTIFICATE_COLORS[one], CERTIFICATE_MEANING[one]) for one in Certificate]
+    rows.append(("DYNAMIC", OCCLUSION_COLORS[OcclusionMode.DYNAMIC], "it moves: never certified"))
+    hit = frame.primitive >= 0
+    pixels = np.bincount(classes[hit], minlength=len(rows))
+    cells = np.zeros(len(rows), np.int64)
+    if frame.cells is not None:
+        there = hit & (frame.cells >= 0)
+        class_of = np.full(int(frame.cells.max(initial=-1)) + 1, len(rows), np.uint8)
+        class_of[frame.cells[there]] = classes[there]
+        cells = np.bincount(class_of, minlength=len(rows))[: len(rows)]
+    return _with_shares(rows, cells, pixels)
+
+
+def certificates_of(frame: Frame, light: int) -> NDArray[np.uint8]:
+    """(h, w) Certificate of a light at each pixel, and one more than there are where a dynamic object is seen."""
+    if frame.certificates is not None and modes.has_shadow_mode(frame.certificates, light):
+        classes = modes.shadow_mode(frame.certificates, light)
+    else:
+        classes = np.zeros(frame.primitive.shape, np.uint8)
+    if len(frame.modes):
+        dynamic = modes.occlusion_mode(frame.modes) == OcclusionMode.DYNAMIC
+        classes[dynamic[np.maximum(units_of(frame), 0)] & (frame.primitive >= 0)] = len(Certificate)
+    return classes
+
+
+def _rows(frame: Frame, classes: NDArray[np.uint8], rows: list[tuple[str, Color, str]]) -> list[LegendRow]:
+    units = np.bincount(classes, minlength=len(rows))
+    pixels = np.bincount(classes, weights=frame.pixel_count, minlength=len(rows)).astype(np.int64)
+    return _with_shares(rows, units, pixels)
+
+
+def _with_shares(
+    rows: list[tuple[str, Color, str]], units: NDArray[np.int64], pixels: NDArray[np.int64]
+) -> list[LegendRow]:
+    total, seen = max(int(units.sum()), 1), max(int(pixels.sum()), 1)
+    return [
+        LegendRow(name, color, meaning, int(u), int(p), int(u) / total, int(p) / seen)
+        for (name, color, meaning), u, p in zip(rows, units, pixels)
+    ]
+
+
+@dataclass(frozen=True)
+class WorkLegend:
+    """What a heat map shows, summed over the frame and at its most expensive pixel; `top` has the last colour.
+
+    `whole` is what the total is a part of (`views.whole_of`)."""
+
+    total: int
+    whole: int
+    per_pixel: float
+    most: int
+    top: float
+
+
+def work_legend(frame: Frame, view: View) -> WorkLegend:
+    """Of a frame that recorded the work at its pixels; raises ValueError for another."""
+    top, work = work_top(frame, view), work_of(frame, view)
+    assert work is not None
+    total = int(work.sum(dtype=np.int64))
+    whole = int(whole_of(frame, view).sum(dtype=np.int64))
+    return WorkLegend(total, whole, total / work.size, int(work.max(initial=0)), top)
+
+
+@dataclass(frozen=True)
+class DifferenceLegend:
+    """How wrong a verified frame is: wrong answers of the rays that `due` counts, pixels with any, and the largest
+    difference of a channel of the colour shown, from 0 to 1."""
+
+    answers: int
+    due: int
+    pixels: int
+    pixel_share: float
+    largest: float
+
+
+def difference_legend(frame: Frame) -> DifferenceLegend:
+    """Counts of a verified frame."""
+    wrong, reference = verified(frame.wrong), verified(frame.reference)
+    pixels = int(np.count_nonzero(wrong))
+    apart = np.abs(np.clip(frame.color[wrong > 0], 0.0, 1.0) - np.clip(reference[wrong > 0], 0.0, 1.0))
+    shadow = frame.statistics.shadow
+    return DifferenceLegend(shadow.wrong, shadow.due, pixels, pixels / wrong.size, float(apart.max(initial=0.0)))

@@ -1,0 +1,215 @@
+"""The views as pictures without a GPU: what the shaders do, in numpy.
+
+For `shadowcull render`, which must run where there is no GL.  Each function here is the twin of the
+shader of the same name under `shaders/` and takes its colours from the same table
+(`viewer.state.views`), so that a picture made by a command and one captured from the window agree.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling import modes
+from tracer.culling.modes import OcclusionMode
+from tracer.frame import Frame
+from viewer.output.legends import certificates_of
+from viewer.state.views import (
+    BACKGROUND,
+    BENEATH,
+    CELL_LINE,
+    CERTIFICATE_COLORS,
+    GREY,
+    OCCLUSION_COLORS,
+    RING_DIMMING,
+    SHADOW_COLORS,
+    WIPE_LINE,
+    WRONG,
+    Mark,
+    View,
+    color_map,
+    depth_range,
+    units_of,
+    whole_of,
+    wipe_column,
+    work_of,
+    work_top,
+    wrong_marks,
+)
+
+SHADING = 0.35
+"""How much of the picture's light and shade shows under flat colours, as in the window."""
+
+_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
+
+
+def picture(
+    frame: Frame,
+    view: View = View.COLOR,
+    light: int = 0,
+    shading: float = SHADING,
+    marked: bool = True,
+    wipe: float = 0.5,
+    shares: bool = False,
+    beneath: float = BENEATH,
+) -> NDArray[np.uint8]:
+    """(height, width, 3) uint8, row 0 at the top: a frame in one of its views.
+
+    `light` is the light that the views of shadows and certificates speak of, `marked` draws rings around wrong
+    pixels, and `wipe` is the place of the wipe's line, 0 to 1 from the left.  Maps of work show counts of rays, or
+    `shares`; `beneath` is the brightness of the picture beneath the difference.  Raises ValueError where there is no
+    such light, or where the view is one of verified frames, or of work that was recorded, and the frame is not.
+    """
+    if view.of_light and not 0 <= light < frame.lights:
+        raise ValueError(f"no light {light}: {lights_in_words(frame.lights)}")
+    if view is View.COLOR:
+        colors = np.clip(frame.color, 0.0, 1.0)
+    elif view is View.DIFFERENCE:
+        colors = _difference(frame, marked, beneath)
+    elif view is View.WIPE:
+        colors = _wipe(frame, marked, wipe)
+    elif view.needs_work:
+        colors = _on_background(frame, _work(frame, view, shares))
+    elif view is View.CERTIFICATE:
+        colors = _on_background(frame, _certificate(frame, light, shading))
+    elif view is View.DEPTH:
+        colors = _on_background(frame, _depth(frame))
+    elif view is View.NORMAL:
+        colors = _on_background(frame, frame.normal * 0.5 + 0.5)
+    else:
+        table = {View.OCCLUSION: _occlusion, View.PRIMITIVE: _primitive, View.PIXEL_COUNT: _pixel_count}
+        entries = _shadow(frame, light) if view is View.SHADOW else table[view](frame)
+        numbers = frame.primitive if view is View.PRIMITIVE else units_of(frame)
+        colors = _on_background(frame, _shaded(frame, _per_pixel(numbers, entries), shading))
+    return np.round(np.clip(colors, 0.0, 1.0) * 255.0).astype(np.uint8)
+
+
+def lights_in_words(count: int) -> str:
+    """What numbers the lights of a scene have."""
+    if count == 0:
+        return "the scene has no lights"
+    return "the scene has one light, number 0" if count == 1 else f"the scene's lights are 0 to {count - 1}"
+
+
+def ringed(frame: Frame) -> NDArray[np.uint8]:
+    """(height, width, 3) uint8: the traced picture of a verified frame with rings around wrong pixels.
+
+    Raises ValueError where the frame was not verified."""
+    colors = np.clip(frame.color, 0.0, 1.0)
+    colors[wrong_marks(frame) == Mark.RING] = WRONG
+    return np.round(colors * 255.0).astype(np.uint8)
+
+
+def _on_background(frame: Frame, colors: NDArray) -> NDArray:
+    return np.where((frame.primitive >= 0)[..., None], colors, np.asarray(BACKGROUND, np.float32))
+
+
+def _shaded(frame: Frame, flat: NDArray, shading: float) -> NDArray:
+    """Flat colours with some of the traced picture's light and shade, so that shapes stay readable."""
+    light = 0.25 + 0.95 * np.sqrt(np.clip(frame.color, 0.0, 1.0) @ _LUMINANCE)
+    return np.clip(flat * (1.0 + shading * (light[..., None] - 1.0)), 0.0, 1.0)
+
+
+def _per_pixel(numbers: NDArray[np.int32], table: NDArray) -> NDArray:
+    """Look a colour up by the number at each pixel; misses get some colour, to be overwritten."""
+    if len(table) == 0:
+        return np.zeros((*numbers.shape, 3), np.float32)
+    return table[np.maximum(numbers, 0)]
+
+
+def _occlusion(frame: Frame) -> NDArray:
+    palette = np.asarray([OCCLUSION_COLORS[mode] for mode in OcclusionMode], np.float32)
+    return palette[modes.occlusion_mode(frame.modes)]
+
+
+def _shadow(frame: Frame, light: int) -> NDArray:
+    """By shadow mode; what moves has none and is shown as moving, a light that culling does not cover as unknown."""
+    palette = np.asarray([*SHADOW_COLORS.values(), OCCLUSION_COLORS[OcclusionMode.DYNAMIC]], np.float32)
+    if modes.has_shadow_mode(frame.modes, light):
+        mode = modes.shadow_mode(frame.modes, light)
+    else:
+        mode = np.zeros(len(frame.modes), np.uint8)
+    mode[modes.occlusion_mode(frame.modes) == OcclusionMode.DYNAMIC] = len(palette) - 1
+    return palette[mode]
+
+
+def _certificate(frame: Frame, light: int, shading: float) -> NDArray:
+    """By the certificate of each pixel's cell, what moves as moving, and darker lines between cells."""
+    palette = np.asarray([*CERTIFICATE_COLORS.values(), OCCLUSION_COLORS[OcclusionMode.DYNAMIC]], np.float32)
+    colors = _shaded(frame, palette[certificates_of(frame, light)], shading)
+    colors[_on_line(frame.cell)] *= CELL_LINE
+    return colors
+
+
+def _on_line(cells: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Pixels whose neighbour to the right, or below, lies in another cell."""
+    line = np.zeros(cells.shape, np.bool_)
+    line[:, :-1] |= cells[:, 1:] != cells[:, :-1]
+    line[:-1] |= cells[1:] != cells[:-1]
+    return line
+
+
+def _work(frame: Frame, view: View, shares: bool) -> NDArray:
+    """Rays at each pixel, from none to the view's top, or which share they are; grey where they are a share of none."""
+    work = work_of(frame, view)
+    if not shares or work is None:
+        top = work_top(frame, view)
+        assert work is not None
+        return _mapped(work / top)
+    whole = whole_of(frame, view)
+    return np.where((whole > 0)[..., None], _mapped(work / np.maximum(whole, 1)), np.asarray(GREY, np.float32))
+
+
+def _primitive(frame: Frame) -> NDArray:
+    """A colour of its own for every primitive: its number, well mixed, picks hue, strength and brightness."""
+    n = np.arange(1, int(frame.primitive.max(initial=-1)) + 2, dtype=np.uint32)
+    n = (n ^ (n >> np.uint32(16))) * np.uint32(0x7FEB352D)  # lowbias32, as in the shader
+    n = (n ^ (n >> np.uint32(15))) * np.uint32(0x846CA68B)
+    n ^= n >> np.uint32(16)
+    third = np.array([0.0, 2.0, 1.0], np.float32) / 3.0
+    turn = ((n & 65535) / 65536.0)[:, None] + third
+    hue = np.clip(np.abs((turn % 1.0) * 6.0 - 3.0) - 1.0, 0.0, 1.0)
+    strength = (0.35 + 0.5 * ((n >> 16) & 255) / 255.0)[:, None]
+    brightness = (0.6 + 0.4 * ((n >> 24) & 255) / 255.0)[:, None]
+    return ((1.0 + strength * (hue - 1.0)) * brightness).astype(np.float32)
+
+
+def _pixel_count(frame: Frame) -> NDArray:
+    """Pixels now against the highest count, logarithmic from 1 / zoom_factor to zoom_factor."""
+    ratio = np.maximum(frame.pixel_count, 1) / np.maximum(frame.highest_count, 1)
+    t = 0.5 + 0.5 * np.log(ratio) / np.log(max(frame.settings.zoom_factor, 1.01))
+    return np.where((frame.highest_count > 0)[:, None], _mapped(t), np.asarray(GREY, np.float32))
+
+
+def _depth(frame: Frame) -> NDArray:
+    """Near is bright; the range is that of the frame."""
+    near, far = depth_range(frame)
+    depth = np.where(np.isfinite(frame.depth), frame.depth, far)
+    return _mapped(1.0 - np.clip((depth - near) / (far - near), 0.0, 1.0))
+
+
+def _difference(frame: Frame, marked: bool, beneath: float) -> NDArray:
+    """Wrong pixels in their colour over the dimmed picture, and rings around them."""
+    marks, colors = wrong_marks(frame), beneath * np.clip(frame.color, 0.0, 1.0)
+    if marked:
+        colors[marks == Mark.RING] = np.float32(RING_DIMMING) * np.asarray(WRONG, np.float32)
+    colors[marks == Mark.WRONG] = WRONG
+    return colors
+
+
+def _wipe(frame: Frame, marked: bool, wipe: float) -> NDArray:
+    """Left of a line the traced picture, right of it the one in which every shadow answer is right."""
+    marks, column = wrong_marks(frame), wipe_column(frame.width, wipe)
+    assert frame.reference is not None
+    colors = np.concatenate([frame.color[:, :column], frame.reference[:, column:]], axis=1)
+    if marked:
+        colors[marks == Mark.RING] = WRONG
+    colors[:, column : column + 1] = WIPE_LINE
+    return colors
+
+
+def _mapped(t: NDArray) -> NDArray:
+    """Values from 0 to 1 on the colour map, between its entries as a GPU's linear filter."""
+    entries = color_map()
+    place = np.clip(np.clip(t, 0.0, 1.0) * len(entries) - 0.5, 0.0, len(entries) - 1.0)
+    return np.stack([np.interp(place, np.arange(len(entries)), entries[:, c]) for c in range(3)], axis=-1)

@@ -1,0 +1,138 @@
+"""Results of experiments and zoom tests in words and as CSV, for tables, panels, plots and files alike."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Sequence
+from dataclasses import astuple, fields
+from pathlib import Path
+
+from tracer import experiment, zoom
+from tracer.experiment import REFERENCE, Row
+from tracer.zoom import Approach, Change, Step
+from viewer.state import terms
+
+# --- experiments -----------------------------------------------------------------------------------
+
+
+def _saved(text: str) -> Callable[[Row], str]:
+    """A cell of what a method saves, for the reference empty."""
+    return lambda row: text.format(row) if row.method != REFERENCE else ""
+
+
+WRONG = "wrong answers (of rays due)"
+LINES: tuple[tuple[str, Callable[[Row], str]], ...] = (
+    ("traversal steps saved, average", _saved("{0.average_steps:.1%}")),
+    ("  most (frame)", _saved("{0.most_steps:.1%} ({0.most_steps_frame})")),
+    ("intersection tests saved, average", _saved("{0.average_tests:.1%}")),
+    ("  most (frame)", _saved("{0.most_tests:.1%} ({0.most_tests_frame})")),
+    ("extra occlusion tests per pixel", lambda row: f"{row.extra_tests_per_pixel:.3f}"),
+    (WRONG, lambda row: f"{row.wrong:,} ({row.wrong_part:.3%})"),
+    ("time of a frame, median", lambda row: f"{1000.0 * row.frame_seconds:,.0f} ms"),
+)
+"""The table's lines: what each is called, and what it says of a method; WRONG means nothing unless verified."""
+
+
+def frames_in_words(results: experiment.Results) -> str:
+    """Which frames of which path there are, e.g. "frames 0 to 19 of 200" or "70 of 100 frames, stopped"."""
+    done, path = len(results.frames), results.path_frames
+    if results.planned < path:
+        first, last = results.frames[0], results.frames[-1]
+        told = f"frames {first} to {last} of {path}" if done > 1 else f"frame {first} of {path}"
+    elif done < path:
+        told = f"{done} of {path} frames"
+    else:
+        told = f"{done} frames over the whole path" if done > 1 else "1 frame"
+    return told + ", stopped" * results.stopped
+
+
+def experiment_csv(results: experiment.Results) -> str:
+    """The table as CSV, parts of 1 and seconds as they are."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([f.name for f in fields(Row)])
+    writer.writerows(astuple(row) for row in experiment.table(results))
+    return text.getvalue()
+
+
+# --- zoom tests ------------------------------------------------------------------------------------
+
+
+def happenings(approach: Approach) -> list[Step]:
+    """The steps where something happens: a mode changes, or the primitive's wrong pixels become more or fewer."""
+    wrong_before = [0, *(step.wrong_of_primitive for step in approach.steps)]
+    return [s for s, wrong in zip(approach.steps, wrong_before) if s.changes or s.wrong_of_primitive != wrong]
+
+
+def changes_in_words(changes: Sequence[Change]) -> list[str]:
+    """What changes in a step, e.g. "lights 0, 2: init → non shadow"; lights that change alike are told together."""
+    return [f"{who}{_spoken(before)} → {_spoken(after)}" for who, before, after in _gathered(changes)]
+
+
+def modes_in_words(changes: Sequence[Change]) -> str:
+    """The modes that are new in a step, shorter: "fully rendered, lights 0, 2: non shadow"."""
+    return ", ".join(f"{who}{_spoken(after)}" for who, _, after in _gathered(changes))
+
+
+def _gathered(changes: Sequence[Change]) -> list[tuple[str, str, str]]:
+    """(whose mode, before, after), the occlusion mode first."""
+    lights: dict[tuple[str, str], list[str]] = {}
+    for change in changes:
+        if change.light is not None:
+            lights.setdefault((change.before, change.after), []).append(str(change.light))
+    own = [("", change.before, change.after) for change in changes if change.light is None]
+    return own + [(f"light{'s' * (len(n) > 1)} {', '.join(n)}: ", *modes) for modes, n in lights.items()]
+
+
+def _spoken(mode: str) -> str:
+    return mode.replace("_", " ").lower()
+
+
+def zoom_title(results: zoom.Results) -> str:
+    """Which test this is, in one line."""
+    name, (width, height) = Path(results.scene).name, results.size
+    return f"{name}, {results.time:.3f} s, towards primitive {results.primitive}, {width} × {height}"
+
+
+NEVER_WHOLE = "never seen whole, so that it is never culled and the zoom factor does not matter"
+
+
+def never_whole(results: zoom.Results) -> bool:
+    """Whether NEVER_WHOLE is to be said of the primitive: nothing was tested then."""
+    return any(a.steps for a in results.approaches) and not any(a.seen_whole for a in results.approaches)
+
+
+WRONG_PIXELS = "wrong pixels of this primitive"
+SUMMARY = ("factor", "judged anew", "wrong pixels", "most", "at the end", terms.CULLED, terms.DYNAMIC_ONLY)
+
+
+def summary(approach: Approach) -> tuple[str, ...]:
+    """What came of one factor, a cell for each heading of SUMMARY."""
+    anew, wrong = approach.examined_anew, approach.wrong_steps
+    due = max(1, sum(step.due for step in approach.steps))
+    culled, alone = (sum(getattr(step, name) for step in approach.steps) / due for name in ("culled", "dynamic_only"))
+    return (
+        f"{approach.factor:g}",
+        f"step {', '.join(map(str, anew))}" if anew else "never",
+        f"step {wrong[0]} to {wrong[-1]}" if wrong else "none",
+        f"{approach.most_wrong:,}",
+        f"{approach.steps[-1].wrong_of_primitive:,}" if approach.steps else "",
+        f"{culled:.1%}",
+        f"{alone:.1%}",
+    )
+
+
+def zoom_csv(results: zoom.Results) -> str:
+    """A line for each step of each factor, as CSV."""
+    plain = [f.name for f in fields(Step) if f.name not in ("camera", "shadows", "changes")]
+    lights = max((len(step.shadows) for approach in results.approaches for step in approach.steps), default=0)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["factor", *plain, *(f"shadow_{light}" for light in range(lights)), "changes"])
+    for approach in results.approaches:
+        for step in approach.steps:
+            values = [getattr(step, name) for name in plain]
+            changes = "; ".join(changes_in_words(step.changes))
+            writer.writerow([approach.factor, *values, *(mode or "" for mode in step.shadows), changes])
+    return text.getvalue()

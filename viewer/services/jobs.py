@@ -1,0 +1,90 @@
+"""Long work beside the window: a thread with progress, a cancel button and one result.
+
+The tracer reports what it does through a `Progress` callable and stops when that raises
+`Cancelled`; a `Job` is the other end of it.  The window asks it each frame what to show and
+never waits.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Generic, TypeVar
+
+from tracer.scene.model import Cancelled, Progress
+from viewer.util.failures import KNOWN, Failure, failure
+
+Result = TypeVar("Result")
+
+JOB, TRACER = 2, 5  # niceness: what a window waits for, and what takes all cores for as long as it is open
+
+
+class Job(Generic[Result]):
+    """Runs `work(progress)` on a thread of its own.
+
+    `label` and `fraction` tell how far it is; after `done`, `result` is set, or `failure` says what
+    went wrong, or `cancelled` is true.  The end wakes the window; progress is seen often enough as it dozes.
+    """
+
+    def __init__(self, title: str, work: Callable[[Progress], Result], wake: Callable[[], None] = lambda: None) -> None:
+        self.title = title
+        self.label = ""
+        self.fraction = 0.0
+        self.result: Result | None = None
+        self.failure: Failure | None = None
+        self.cancelled = False
+        self.started = time.monotonic()
+        self._work = work
+        self._wake = wake
+        self._stop = threading.Event()
+        self._finished = threading.Event()
+        self._thread = threading.Thread(target=self._run, name=f"shadowcull {title}", daemon=True)
+        self._thread.start()
+
+    @property
+    def done(self) -> bool:
+        return self._finished.is_set()
+
+    def cancel(self) -> None:
+        """Ask the work to stop; it does at its next report of progress."""
+        self._stop.set()
+
+    @property
+    def stopping(self) -> bool:
+        return self._stop.is_set()
+
+    def join(self, timeout: float) -> bool:
+        """Wait for the end; false if it did not come in time."""
+        self._thread.join(timeout)
+        return self.done
+
+    def _progress(self, label: str, fraction: float) -> None:
+        if self._stop.is_set():
+            raise Cancelled(self.title)
+        self.label, self.fraction = label, min(max(float(fraction), 0.0), 1.0)
+
+    def _run(self) -> None:
+        step_back(JOB)
+        try:
+            result = self._work(self._progress)
+            if self._stop.is_set():
+                raise Cancelled(self.title)
+            self.result = result
+        except Cancelled:
+            self.cancelled = True
+        except Exception as error:
+            self.failure = failure(error, "" if isinstance(error, KNOWN) else f"{self.title} failed")
+        finally:
+            self._finished.set()
+            self._wake()
+
+
+def step_back(niceness: int) -> None:
+    """Let the window go before this thread, and the threads it starts, where cores are short (Linux only)."""
+    if sys.platform.startswith("linux"):
+        with suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), niceness)

@@ -1,0 +1,131 @@
+"""Questions that come before something is lost: opening a scene, or quitting, while a run is under way.
+
+A question is shown by the window until one of its answers is chosen; what is done of a run is kept in any case."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from viewer.output.exports import ENDINGS
+from viewer.services.runs import Run
+
+if TYPE_CHECKING:
+    from viewer.services.controller import Controller
+    from viewer.services.jobs import Job
+
+
+@dataclass(frozen=True)
+class Question:
+    """`answers` are names and what they do; the first changes nothing, and Escape chooses it.  `options` may be
+    ticked beside, which puts their names into `ticked`."""
+
+    title: str
+    text: str
+    answers: tuple[tuple[str, Callable[[], None]], ...]
+    options: tuple[str, ...] = ()
+    ticked: set[str] = field(default_factory=set)
+
+
+class Asking:
+    """`question` is the one to be answered now; a newer one takes its place."""
+
+    def __init__(self, controller: Controller) -> None:
+        self._c = controller
+        self.question: Question | None = None
+        self._leave: Callable[[], None] | None = None  # how to quit once the run's results are written
+        self._run: Run | None = None
+        self._files: list[Job] | None = None
+
+    def answer(self, name: str) -> None:
+        """Choose an answer of the question, by its name."""
+        question, self.question = self.question, None
+        if question is not None:
+            dict(question.answers)[name]()
+
+    def drop(self) -> None:
+        """Let the question go without an answer."""
+        self.question = None
+
+    def before_opening(self, name: str, go_on: Callable[[], None]) -> None:
+        """Open something, at once or, while a run is under way, when the user agrees."""
+        run = self._under_way()
+        if run is None:
+            go_on()
+            return
+
+        def stop() -> None:
+            self._c.runner.stop()
+            go_on()
+
+        self.question = Question(
+            f"Stop the {run.name} and open {name}?",
+            f"{_so_far(run)} What is done is kept, and can still be saved from its panel.",
+            (("Keep running", _nothing), ("Stop and open", stop)),
+        )
+        self._c.wake()
+
+    def before_quitting(self, leave: Callable[[], None]) -> None:
+        """Quit, at once or, while a run is under way, when the user agrees."""
+        run = self._under_way()
+        if run is None:
+            leave()
+            return
+
+        def save() -> None:
+            self._c.runner.stop()
+            self._leave, self._run, self._files = leave, run, None
+
+        self.question = Question(
+            f"Stop the {run.name} and quit?",
+            f"{_so_far(run)} What is done can be saved with the pictures: figures, table and plot.",
+            (("Keep running", _nothing), ("Save and quit", save), ("Quit", leave)),
+        )
+        self._c.wake()
+
+    def before_resetting(self) -> None:
+        """Reset all settings when the user agrees, and what was collected as well where that is ticked."""
+        fields = {"Forget bookmarks as well": "bookmarks", "Forget recent scenes as well": "recent"}
+        ticked: set[str] = set()
+
+        def reset() -> None:
+            kept = [name for told, name in fields.items() if told not in ticked]
+            self._c.reset_preferences([*kept, "tour", "last"])
+
+        self.question = Question(
+            "Reset all settings?",
+            "View, culling, quality, theme, sizes and the folder of pictures become what they were at first.",
+            (("Keep them", _nothing), ("Reset", reset)),
+            tuple(fields),
+            ticked,
+        )
+
+    def follow(self) -> None:
+        """Quit when the results have been written that were to be saved; stay if they could not be."""
+        run = self._run
+        if self._leave is None or run is None or not run.done:
+            return
+        if self._files is None:
+            before = len(self._c.keeper.saving)
+            for ending in ENDINGS if run.results is not None else ():
+                self._c.runner.export(run, ending)
+            self._files = self._c.keeper.saving[before:]
+        elif all(job.done for job in self._files):
+            leave, failed = self._leave, any(job.failure is not None for job in self._files)
+            self._leave = self._run = self._files = None
+            if not failed:
+                leave()
+
+    def _under_way(self) -> Run | None:
+        run = self._c.runner.current
+        return run if run is not None and not run.stopping else None
+
+
+def _so_far(run: Run) -> str:
+    done, frames = run.done_of
+    return f"{done} of {frames} frames are done."
+
+
+def _nothing() -> None:
+    pass

@@ -1,0 +1,314 @@
+"""Tracing beside the window: one thread, and the newest request wins.
+
+The window submits what it wants to see and looks, frame after frame, whether a picture has come.
+Requests are not queued: one waits at most, and a newer one takes its place.  A picture is shown with
+a part of its pixels shaded, and becomes whole as long as nothing newer is wanted, then gets more samples
+a pixel.  A trace that is under way is cut short when it has become worthless (another scene, other
+settings, a picture that has been shown), but the first part of one is let finish: while the camera
+moves, the next request comes before the last picture is ready, and cancelling each would show none at all.
+
+An experiment is a `Task`: it has the thread, and with it the scene's world, to itself until it is
+done; the newest request of that time waits for its end.  A `Question` takes a moment: it is answered
+between two frames, while the world still stands as it did in the frame that it is about.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Protocol
+
+from tracer.renderer import Frame, Settings
+from tracer.scene.model import Camera, Cancelled
+from tracer.statistics import FrameStatistics
+from viewer.services.jobs import TRACER, step_back
+from viewer.util.failures import Failure, failure
+
+_KNOWN = (MemoryError, OSError)  # what may go wrong here without a mistake of the program's
+
+
+class Traces(Protocol):
+    """The part of `tracer.Renderer` that is used here."""
+
+    settings: Settings
+
+    def refine(
+        self,
+        time: float,
+        camera: Camera | None = None,
+        cancel: Callable[[], bool] | None = None,
+        parts: Sequence[float] = ...,
+        samples: int = ...,
+        focus: tuple[float, float] | None = None,
+    ) -> Generator[Frame, None, None]: ...
+
+    def reset_modes(self) -> None: ...
+
+
+@dataclass(frozen=True)
+class RenderRequest:
+    """What to trace: a picture, with so many samples a pixel in the end.  `divisor` is how much coarser than the window
+    it is; `serial` tells requests apart that are otherwise alike; `patience` is for how many seconds, at least,
+    certificates may be made, where nobody waits for the picture.  How it comes about does not tell requests apart:
+    `parts` of it, in sixteenths, around a `focus`; a `quick` one is not cut short before some of it has been shown, but
+    by one that is `final`: nothing moves any more."""
+
+    time: float
+    camera: Camera
+    settings: Settings
+    divisor: int = 1
+    serial: int = 0
+    patience: float = 0.0
+    samples: int = 1
+    parts: tuple[float, ...] = field(default=(16,), compare=False)
+    quick: bool = field(default=False, compare=False)
+    final: bool = field(default=False, compare=False)
+    focus: tuple[float, float] | None = field(default=None, compare=False)
+
+    def supersedes(self, running: RenderRequest, shown: bool = False) -> bool:
+        """Whether a trace of `running`, part of which has been shown or not, is no longer worth going on with now that
+        this is wanted."""
+        if running == self:
+            return False
+        same_kind = replace(running.settings, width=1, height=1) == replace(self.settings, width=1, height=1)
+        return shown or not running.quick or not same_kind or (self.final and not running.final)
+
+
+@dataclass(frozen=True)
+class Traced:
+    """A frame and the request it answers, and what the first part of this cost."""
+
+    request: RenderRequest
+    frame: Frame
+    first: FrameStatistics
+
+    @property
+    def whole(self) -> bool:
+        """Whether all of its pixels have been shaded."""
+        return self.frame.statistics.part >= 1.0
+
+
+class Task(Protocol):
+    """Long work with the renderer's world.  It ends soon after `cancelled()` turns true, and raises nothing."""
+
+    def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None: ...
+
+
+class Question(Protocol):
+    """A moment's work with the renderer as the frame of this time left it."""
+
+    @property
+    def time(self) -> float: ...
+
+    def answer(self, renderer: Traces) -> None: ...
+
+
+class RenderThread:
+    """Owns the renderer: nobody else calls it while this lives."""
+
+    def __init__(self, wake: Callable[[], None] = lambda: None) -> None:
+        self._wake = wake
+        self._changed = threading.Condition()
+        self._renderer: Traces | None = None
+        self._waiting: RenderRequest | None = None
+        self._running: RenderRequest | None = None
+        self._shown = self._whole = False  # whether a part of what is running, or all of it, has been
+        self._task: tuple[Traces, Task] | None = None
+        self._question: Question | None = None
+        self._placed_at: float | None = None  # the time of what was traced last
+        self._performing = False
+        self._cancel = False
+        self._reset = False
+        self._closing = False
+        self._finished: Traced | None = None
+        self._failure: Failure | None = None
+        self._thread = threading.Thread(target=self._run, name="shadowcull render", daemon=True)
+        self._thread.start()
+
+    def use(self, renderer: Traces | None) -> None:
+        """Trace this renderer's scene from now on; whatever was asked of the old one is dropped, and a task ended."""
+        with self._changed:
+            self._renderer = renderer
+            self._waiting = self._finished = self._failure = self._question = self._placed_at = None
+            self._cancel = True
+            self._changed.notify_all()
+
+    def submit(self, request: RenderRequest) -> None:
+        """Ask for a frame; an older request that still waits is forgotten."""
+        with self._changed:
+            if self._closing:
+                return
+            if request == self._running and not self._cancel:  # it is under way
+                self._waiting = None
+                return
+            self._waiting = request
+            if self._running is not None and request.supersedes(self._running, self._shown):
+                self._cancel = True
+            self._changed.notify_all()
+
+    def hurry(self, request: RenderRequest) -> None:
+        """If this is what waits, let it wait no longer than it must, and come about as it says now."""
+        with self._changed:
+            if self._waiting == request:
+                self.submit(request)
+
+    def perform(self, task: Task) -> None:
+        """Do this instead of frames, from now on until it is done; what is under way is cut short, or dropped.
+
+        The task gets the renderer that is in use now.  Raises RuntimeError if none is."""
+        with self._changed:
+            if self._closing:
+                return
+            if self._renderer is None:
+                raise RuntimeError("there is no scene to work on")
+            self._task, self._waiting = (self._renderer, task), None
+            self._cancel = True
+            self._changed.notify_all()
+
+    def ask(self, question: Question) -> None:
+        """Answer this before the next frame; the newest question only, and none about a time that was left."""
+        with self._changed:
+            self._question = question
+            self._changed.notify_all()
+
+    def reset_modes(self) -> None:
+        """Forget all modes before the next frame."""
+        with self._changed:
+            self._reset = True
+            self._cancel = self._cancel or not self._performing  # a task has modes of its own
+
+    def take(self) -> Traced | None:
+        """The newest finished frame, once."""
+        with self._changed:
+            traced, self._finished = self._finished, None
+            return traced
+
+    def take_failure(self) -> Failure | None:
+        """Why a frame, or an answer, did not come, once."""
+        with self._changed:
+            failed, self._failure = self._failure, None
+            return failed
+
+    @property
+    def busy(self) -> bool:
+        """Whether anything is to come but more samples of a whole picture."""
+        with self._changed:
+            if (self._running is not None and not self._whole) or self._performing:
+                return True
+            return self._task is not None or (self._renderer is not None and self._waiting is not None)
+
+    @property
+    def running(self) -> RenderRequest | None:
+        return self._running
+
+    def close(self, timeout: float = 10.0) -> bool:
+        """Cancel and end the thread; false if it did not end in time (it is a daemon and dies with the program)."""
+        with self._changed:
+            self._closing = True
+            self._cancel = True
+            self._waiting = None
+            self._changed.notify_all()
+        self._thread.join(timeout)
+        return not self._thread.is_alive()
+
+    def _run(self) -> None:
+        step_back(TRACER)
+        while (turn := self._next()) is not None:
+            try:
+                turn()
+            except Exception as problem:  # a task that raises though it must not
+                with self._changed:
+                    self._failure = failure(problem, "work beside the window failed", _KNOWN)
+                self._wake()
+
+    def _next(self) -> Callable[[], None] | None:
+        """What to do now, once there is something: a task before all, then a question, then a frame."""
+        with self._changed:
+            while not self._closing:
+                if self._task is not None:
+                    (renderer, task), self._task = self._task, None
+                    self._performing, self._cancel = True, renderer is not self._renderer
+                    self._placed_at = None
+                    return partial(self._perform, renderer, task)
+                if self._renderer is not None and self._question is not None:
+                    question, self._question = self._question, None
+                    if question.time == self._placed_at:
+                        return partial(self._answer, self._renderer, question)
+                elif self._renderer is not None and self._waiting is not None:
+                    request, reset = self._waiting, self._reset
+                    self._cancel = False
+                    self._running, self._waiting, self._reset = request, None, False
+                    self._shown = self._whole = False
+                    self._placed_at = request.time
+                    return partial(self._trace, self._renderer, request, reset)
+                else:
+                    self._changed.wait()
+            return None
+
+    def _perform(self, renderer: Traces, task: Task) -> None:
+        try:
+            task.work(renderer, lambda: self._cancel)
+        finally:
+            with self._changed:
+                self._performing = False
+            self._wake()
+
+    def _answer(self, renderer: Traces, question: Question) -> None:
+        try:
+            question.answer(renderer)
+        except Exception as problem:
+            with self._changed:
+                self._failure = failure(problem, "no answer", _KNOWN)
+        self._wake()
+
+    def _answer_meanwhile(self, renderer: Traces, time: float) -> None:
+        """Answer what was asked about the picture that is being refined."""
+        with self._changed:
+            question = self._question
+            if question is None or renderer is not self._renderer:
+                return
+            self._question = None
+        if question.time == time:
+            self._answer(renderer, question)
+
+    def _trace(self, renderer: Traces, request: RenderRequest, reset: bool) -> None:
+        failed = None
+        try:
+            if reset:
+                renderer.reset_modes()
+            seconds = max(request.settings.certificate_seconds, request.patience)
+            patient = request.patience > 0.0
+            renderer.settings = replace(request.settings, certificate_seconds=seconds, patient=patient)
+            refining = renderer.refine(
+                request.time, request.camera, lambda: self._cancel, request.parts, request.samples, request.focus
+            )
+            with closing(refining):
+                first = None
+                for frame in refining:
+                    first = first or frame.statistics
+                    if not self._deliver(renderer, Traced(request, frame, first)):
+                        break
+                    self._answer_meanwhile(renderer, request.time)
+        except Cancelled:
+            pass
+        except Exception as problem:
+            failed = failure(problem, "frame not traced", _KNOWN)
+        with self._changed:
+            self._running = None
+            if renderer is self._renderer:
+                self._failure = failed or self._failure
+        self._wake()
+
+    def _deliver(self, renderer: Traces, traced: Traced) -> bool:
+        """Hand out a frame, unless it is of a scene that was left meanwhile; whether more of it is wanted."""
+        with self._changed:
+            if renderer is self._renderer:
+                self._finished = traced
+                self._shown, self._whole = True, traced.whole
+            newer = self._waiting is not None and self._waiting.supersedes(traced.request, shown=True)
+            on = not (self._cancel or newer)
+        self._wake()
+        return on

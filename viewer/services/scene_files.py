@@ -1,0 +1,72 @@
+"""What becomes of a path that is opened or dropped: a scene, a capture to restore, or one clear line."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tracer.compilation import can_draw, warm_up
+from tracer.renderer import Renderer, Settings
+from tracer.scene.load import load_visible_scene, scene_info
+from tracer.scene.model import Progress, Scene
+from viewer.util import resources
+
+SCENE_SUFFIXES = (".aff", ".nff", ".obj", ".ply", ".stl", ".gltf", ".glb")
+CAPTURE_SUFFIXES = (".png",)
+
+
+@dataclass(frozen=True)
+class Opened:
+    """A scene, the renderer that holds its trees, and what `scene_info` tells of it."""
+
+    scene: Scene
+    renderer: Renderer
+    info: dict[str, Any]
+    seconds: float
+
+
+def is_scene(path: Path) -> bool:
+    return path.suffix.lower() in SCENE_SUFFIXES
+
+
+def is_capture(path: Path) -> bool:
+    return path.suffix.lower() in CAPTURE_SUFFIXES
+
+
+def refusal(path: Path) -> str | None:
+    """Why a path cannot be opened, in one line; None if it is worth trying."""
+    if path.is_dir():
+        return f"{path}: a folder; open a scene ({' '.join(SCENE_SUFFIXES)}) or a captured picture (.png)"
+    if not (is_scene(path) or is_capture(path)):
+        return f"{path.name}: not a scene ({' '.join(SCENE_SUFFIXES)}) nor a captured picture (.png)"
+    if not path.exists():
+        return f"{path}: no such file"
+    return None
+
+
+def open_scene(path: Path, settings: Settings, ready: Callable[[], bool], progress: Progress) -> Opened:
+    """Read a scene and build its trees; waits for the tracer to be `ready` in between.
+
+    Raises SceneError or Cancelled; runs on a thread of its own."""
+    started = time.perf_counter()
+    scene = load_visible_scene(path, progress)
+    while not ready():
+        progress(f"{path.name} is read; waiting for the tracer", 1.0)
+        time.sleep(0.02)
+    if not can_draw(len(scene.lights), settings.accelerator):  # many lights need wider words, and kernels for them
+        warm_up(progress, len(scene.lights), settings.accelerator)
+    renderer = Renderer(scene, settings, progress)
+    return Opened(scene, renderer, scene_info(scene), time.perf_counter() - started)
+
+
+def find_scene(stored: str, picture: Path) -> Path | None:
+    """Where a captured picture's scene is now: at its old path, beside the picture, or among our own scenes."""
+    path = Path(stored)
+    candidates = [path, picture.parent / path.name]
+    embedded = resources.embedded_scenes().get(path.stem)
+    if embedded is not None and path.parent.name == embedded.parent.name:
+        candidates.append(embedded)
+    return next((c for c in candidates if c.is_file()), None)

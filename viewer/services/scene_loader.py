@@ -1,0 +1,179 @@
+"""Opening scenes and captures beside the window, and preparing the kernels.
+
+While a scene is read the one that is open stays usable, and it stays open if the reading fails or
+is cancelled.  A second request to open takes the place of the first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tracer.compilation import can_draw, compiled_before, warm_up
+from tracer.scene.model import Scene
+from viewer.output import capture
+from viewer.services import scene_files
+from viewer.services.jobs import Job
+from viewer.state.session import Snapshot
+from viewer.util.messages import ERROR, say
+
+if TYPE_CHECKING:
+    from viewer.services.controller import Controller
+
+
+class Opener:
+    """Runs `viewer.services.scene_files` on threads and hands its results to the controller."""
+
+    def __init__(self, controller: Controller) -> None:
+        self._c = controller
+        self.warm_up_job: Job[None] | None = None
+        self.load_job: Job[scene_files.Opened] | None = None
+        self._abandoned: list[Job] = []
+        self._restore_after_load: Snapshot | None = None
+        self._from_shell = False  # whether what is being opened was named on the command line
+
+    @property
+    def busy(self) -> bool:
+        return self.load_job is not None or self.warm_up_job is not None
+
+    @property
+    def certifies(self) -> bool:
+        """Whether methods that make certificates can be traced with; pictures come sooner, by a method that makes
+        none, and look the same."""
+        return self.warm_up_job is None
+
+    def start(self, path: Path | None) -> None:
+        """Compile or load the kernels in the background, and open a first scene meanwhile."""
+        title = "Loading the tracer" if compiled_before() else "Compiling the tracer (first start only)"
+        self.warm_up_job = Job(title, warm_up, lambda: self._c.wake())
+        if path is not None:
+            self._from_shell = True
+            self._open(path)
+
+    def follow(self) -> None:
+        """Take up what the jobs have finished."""
+        if self.warm_up_job is not None and self.warm_up_job.done:
+            job, self.warm_up_job = self.warm_up_job, None
+            if job.failure is not None:
+                self._c.report(replace(job.failure, text=f"the tracer could not be compiled: {job.failure.text}"))
+        if self.load_job is not None and self.load_job.done:
+            load, self.load_job = self.load_job, None
+            self._loaded(load)
+        self._abandoned = [job for job in self._abandoned if not job.done]
+
+    def open(self, path: Path) -> None:
+        """Open a scene, or restore what a captured picture shows; anything else is one line."""
+        self._from_shell = False
+        self._open(path)
+
+    def _open(self, path: Path) -> None:
+        refused = scene_files.refusal(path)
+        if refused:
+            self._refuse(refused)
+        elif scene_files.is_capture(path):
+            self._c.asking.before_opening(path.name, lambda: self._restore_capture(path))
+        else:
+            self._c.asking.before_opening(path.name, lambda: self._load(path, None))
+
+    def go_on(self) -> bool:
+        """Open what was open when the window was last closed, as it was seen; where it has gone, only say so."""
+        last = self._c.preferences.last
+        if not last:
+            return False
+        try:
+            snapshot = Snapshot.from_json(last)
+        except ValueError as error:
+            self._c.say(f"cannot start where you left off: {error}", error=True)
+            return False
+        found = scene_files.find_scene(snapshot.scene, Path(snapshot.scene))
+        if found is None:
+            self._c.say(f"cannot start where you left off: the scene is gone: {snapshot.scene}", error=True)
+            return False
+        self._load(found, snapshot)
+        return True
+
+    def reload(self) -> None:
+        """Read the scene's file again and keep the place."""
+        session = self._c.session
+        if session.scene is not None:
+            path, here = Path(session.scene.path), session.snapshot()
+            self._c.asking.before_opening(f"{path.name} again", lambda: self._load(path, here))
+
+    def cancel(self) -> None:
+        """Give up the load that is under way; the scene that is open stays."""
+        if self.load_job is not None:
+            self.load_job.cancel()
+
+    def cancel_all(self) -> list[Job]:
+        """Ask every job to stop; returns them, to be waited for."""
+        jobs = [job for job in (self.warm_up_job, self.load_job, *self._abandoned) if job is not None]
+        for job in jobs:
+            job.cancel()
+        return jobs
+
+    def _restore_capture(self, path: Path) -> None:
+        """Bring back scene, camera, time, settings and view of a captured picture."""
+        try:
+            snapshot = capture.read(path)
+        except capture.CaptureError as error:
+            self._refuse(str(error))
+            return
+        found = scene_files.find_scene(snapshot.scene, path)
+        scene = self._c.session.scene
+        if found is None:
+            self._refuse(f"{path.name}: its scene was not found: {snapshot.scene}")
+        elif scene is not None and self.load_job is None and _same_file(found, scene):
+            self._c.restore(snapshot)
+            self._c.say(f"restored {path.name}")
+        else:
+            self._load(found, snapshot)
+
+    def _refuse(self, why: str) -> None:
+        self._tell_shell(why)
+        self._c.say(why, error=True)
+
+    def _tell_shell(self, why: str) -> None:
+        """What was named on the command line is missed there too: the window stays open, and empty."""
+        if self._from_shell:
+            say(why, ERROR)
+
+    def _load(self, path: Path, then: Snapshot | None) -> None:
+        if self.load_job is not None:
+            self.load_job.cancel()
+            self._abandoned.append(self.load_job)
+        self._restore_after_load = then
+        settings = self._c.session.settings
+        self.load_job = Job(
+            f"Loading {path.name}",
+            lambda progress: scene_files.open_scene(path, settings, self._kernels_ready, progress),
+            lambda: self._c.wake(),
+        )
+
+    def _kernels_ready(self) -> bool:
+        job = self.warm_up_job
+        return job is None or job.done or can_draw()
+
+    def _loaded(self, job: Job[scene_files.Opened]) -> None:
+        if job.cancelled:
+            stays = ": the scene that was open stays" if self._c.session.scene is not None else ""
+            self._c.say(f"loading cancelled{stays}")
+        elif job.failure is not None:
+            self._tell_shell(job.failure.text)
+            self._c.report(job.failure)
+        elif job.result is not None:
+            opened = job.result
+            self._c.show(opened.scene, opened.renderer, opened.info)
+            if self._restore_after_load is not None:
+                self._c.restore(self._restore_after_load)
+            count = len(opened.scene.warnings)
+            warned = f", {count} warning{'s' * (count > 1)}" if count else ""
+            self._c.say(f"{opened.scene.path.name} opened in {opened.seconds:.1f} s{warned}")
+        self._restore_after_load = None
+
+
+def _same_file(path: Path, scene: Scene) -> bool:
+    try:
+        return path.samefile(scene.path)
+    except OSError:
+        return False

@@ -1,0 +1,168 @@
+"""Why is it in shadow there?  Asked about what was clicked, or, until something is, what the pointer is on.
+
+The question goes to the render thread, which alone may touch the world, and is answered between two frames; the
+window never waits.  What has come speaks of one moment of the scene, in world space, and so it stays right when
+the camera moves on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, NamedTuple, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.explanation import Explanation, explain, outline
+from tracer.frame import Frame
+from tracer.renderer import Renderer
+from viewer.services.render_thread import Traces
+from viewer.state.picking import pixel_at
+from viewer.state.projection import Stroke, place, strokes
+
+if TYPE_CHECKING:
+    from viewer.services.controller import Controller
+    from viewer.state.picking import Pick
+
+MOST_OCCLUDERS = 8  # of one light that are named and drawn
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What was found for a pixel of a frame: an explanation for each light, and outlines of what they name."""
+
+    frame: Frame
+    x: int
+    y: int
+    lights: tuple[Explanation, ...]
+    outlines: dict[int, tuple[NDArray[np.float64], ...]]
+
+
+class Part(Enum):
+    """What a line on the picture stands for."""
+
+    REACHING = "the light's way as far as it gets"
+    STOPPED = "the rest of its way, in shadow"
+    BLOCKER = "what blocks it first"
+    OCCLUDER = "what its certificate rests on"
+
+
+class DrawnLine(NamedTuple):
+    """A line of one light's explanation, in pieces on the picture."""
+
+    part: Part
+    light: int
+    strokes: list[Stroke]
+
+
+class PixelQuestion:
+    """One pixel of a frame, asked about on the render thread; `found` is set once there is an answer."""
+
+    def __init__(self, frame: Frame, x: int, y: int) -> None:
+        self.frame, self.x, self.y = frame, x, y
+        self.found: Answer | None = None
+
+    @property
+    def time(self) -> float:
+        return self.frame.time
+
+    def answer(self, renderer: Traces) -> None:
+        real = cast(Renderer, renderer)
+        lights = explain(real, self.frame, self.x, self.y)
+        numbers = {number for one in lights for number in drawn_primitives(one)}
+        outlines = {number: outline(real.world, number) for number in numbers}
+        self.found = Answer(self.frame, self.x, self.y, lights, outlines)
+
+
+class Explaining:
+    """`answer` is what is known of the pixel that the inspector shows, None while nothing is."""
+
+    def __init__(self, controller: Controller) -> None:
+        self._c = controller
+        self.answer: Answer | None = None
+        self._subject: object = None
+        self._asked: PixelQuestion | None = None
+        self._drawn: tuple[Answer, Frame, list[DrawnLine]] | None = None
+
+    def follow(self) -> None:
+        """Take up an answer, and ask about what the inspector shows now if that is another pixel, or frame."""
+        c, frame = self._c, self._c.frame
+        if frame is None or c.runner.current is not None:
+            self._forget()
+            return
+        kept = c.selected
+        subject = (kept.primitive, kept.x, kept.y, kept.seen) if kept is not None else "pointer"
+        if subject != self._subject:
+            self._forget()
+            self._subject = subject
+        if self._asked is not None and self._asked.found is not None:
+            self.answer = self._asked.found
+        at = _pixel_of(kept, frame) if kept is not None else self._pointed_at(frame)
+        if at is None and kept is None:
+            self._forget()
+        if self.answer is not None and self.answer.frame.time != frame.time:
+            self.answer = None
+        if at is not None and not self._has_asked(frame, *at):
+            self._asked = PixelQuestion(frame, *at)
+            c.render.ask(self._asked)
+
+    def lines(self, frame: Frame) -> list[DrawnLine]:
+        """What is to be drawn of the answer on a frame."""
+        answer = self.answer
+        if answer is None:
+            return []
+        if self._drawn is None or self._drawn[0] is not answer or self._drawn[1] is not frame:
+            self._drawn = answer, frame, drawn_lines(answer, frame)
+        return self._drawn[2]
+
+    def _forget(self) -> None:
+        self.answer = self._asked = self._drawn = None
+
+    def _has_asked(self, frame: Frame, x: int, y: int) -> bool:
+        asked = self._asked
+        return asked is not None and asked.frame is frame and (asked.x, asked.y) == (x, y)
+
+    def _pointed_at(self, frame: Frame) -> tuple[int, int] | None:
+        """The pixel under the pointer, while the picture rests there and it shows something."""
+        c = self._c
+        if c.hovered is None or c.lively:
+            return None
+        x, y = pixel_at(frame, *c.hovered)
+        return (x, y) if frame.primitive[y, x] >= 0 else None
+
+
+def _pixel_of(kept: Pick, frame: Frame) -> tuple[int, int] | None:
+    """Where a frame shows the point that was clicked; None where it does not."""
+    at = place(frame, kept.point) if kept.point is not None else None
+    if at is None or not (0.0 <= at[0] < 1.0 and 0.0 <= at[1] < 1.0):
+        return None
+    x, y = pixel_at(frame, *at)
+    return (x, y) if frame.primitive[y, x] == kept.primitive else None
+
+
+def drawn_primitives(one: Explanation) -> list[int]:
+    """What blocks a light, then what its certificate rests on, each once and no more than are drawn."""
+    blocker = [] if one.blocker is None else [one.blocker]
+    return [*blocker, *others_named(one)][:MOST_OCCLUDERS]
+
+
+def others_named(one: Explanation) -> list[int]:
+    """What a light's certificate rests on, but for what blocks the light."""
+    return [number for number in one.named if number != one.blocker]
+
+
+def drawn_lines(answer: Answer, frame: Frame) -> list[DrawnLine]:
+    """Outlines of what is named, then, for each light that is due, its way to the point: as far as it gets, and on."""
+    lines = []
+    for one in answer.lights:
+        for number in drawn_primitives(one):
+            part = Part.BLOCKER if number == one.blocker else Part.OCCLUDER
+            lines += [DrawnLine(part, one.light, strokes(frame, line)) for line in answer.outlines[number]]
+    for one in answer.lights:
+        if one.due:
+            end = one.point if one.blocked_at is None else one.blocked_at
+            lines.append(DrawnLine(Part.REACHING, one.light, strokes(frame, [one.light_position, end])))
+            if one.blocked_at is not None:
+                lines.append(DrawnLine(Part.STOPPED, one.light, strokes(frame, [one.blocked_at, one.point])))
+    return lines

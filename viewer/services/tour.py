@@ -1,0 +1,248 @@
+"""Five short steps through the program: each says what to do, and is done when it has been done.
+
+A step watches: a generator that is resumed once per frame, and ends when the user has done it, in whatever order.  It
+can be shown as well: a generator that does it, and yields how many seconds to wait before it goes on.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from tracer.method import base_of
+from viewer.services.controller import Controller
+from viewer.state import navigation
+from viewer.state.history import fully_traced
+from viewer.state.methods import with_base
+from viewer.state.views import View
+
+SECONDS = 2.0  # that a picture stays when it is shown
+_PLACES = sorted(  # where a shadow is looked for, in parts of the picture's width and height: from its middle on
+    ((x / 14.0, y / 14.0) for x in range(1, 14) for y in range(1, 14)),
+    key=lambda at: (at[0] - 0.5) ** 2 + (at[1] - 0.5) ** 2,
+)
+
+
+@dataclass(frozen=True)
+class Step:
+    """`watch` ends when the step is done, `show` does it; `text` says what to do as things are."""
+
+    title: str
+    text: Callable[[Controller], str]
+    watch: Callable[[Controller], Iterator[None]]
+    show: Callable[[Controller, Callable[[str], None]], Iterator[float]]
+
+
+class Tour:
+    """`at` is the number of the step that is next, or None while no tour is being taken; `done` are those done so far,
+    the others are watched for."""
+
+    def __init__(self, controller: Controller, show_panel: Callable[[str], None]) -> None:
+        self._c = controller
+        self._show_panel = show_panel
+        self.at: int | None = None
+        self.done: set[int] = set()
+        self._watches: list[Iterator[None]] = []
+        self._script: Iterator[float] | None = None
+        self._resumes_at = 0.0
+
+    @property
+    def step(self) -> Step | None:
+        return STEPS[self.at] if self.at is not None else None
+
+    @property
+    def showing(self) -> bool:
+        """Whether the step is being done for the user."""
+        return self._script is not None
+
+    def start(self) -> None:
+        self.done, self._watches = set(), [step.watch(self._c) for step in STEPS]
+        self._c.selected = None  # what was clicked before was not clicked for the tour
+        self._go_to(0)
+
+    def end(self) -> None:
+        self.at = self._script = None
+
+    def skip(self) -> None:
+        """On to the next step that is not done; after the last the tour is over."""
+        if self.at is not None:
+            self._go_to(self.at + 1)
+
+    def show(self) -> None:
+        """Do the step for the user."""
+        if self.step is not None:
+            self._script, self._resumes_at = self.step.show(self._c, self._show_panel), 0.0
+
+    def follow(self) -> None:
+        """Once per frame: see whether the step is done, and go on with what is being shown."""
+        if self.at is None or self._c.frame is None:
+            return
+        if self._script is not None and time.monotonic() >= self._resumes_at:
+            seconds = next(self._script, None)
+            if seconds is None:
+                self._script = None
+            else:
+                self._resumes_at = time.monotonic() + seconds
+        self.done |= {n for n, watch in enumerate(self._watches) if next(watch, _DONE) is _DONE}
+        if self.at in self.done and self._script is None:
+            self.skip()
+
+    def _go_to(self, first: int) -> None:
+        self._script = None
+        self.at = next((n for n in range(first, len(STEPS)) if n not in self.done), None)
+
+
+_DONE = object()
+
+
+def _has_flown(c: Controller) -> Iterator[None]:
+    scene, start = c.session.scene, c.session.camera
+    while c.session.follow or c.session.camera == start:
+        if c.session.scene is not scene:  # another one was opened: nobody has flown there
+            scene, start = c.session.scene, c.session.camera
+        yield
+
+
+def _fly(c: Controller, _: Callable[[str], None]) -> Iterator[float]:
+    camera = c.session.camera
+    c.glide(navigation.fly(camera, 0.0, 0.0, 0.5 * c.pace, c.world_up))
+    yield SECONDS
+
+
+def _has_toggled_culling(c: Controller) -> Iterator[None]:
+    """Off, and then seen again what culling saves."""
+    for off in (True, False):
+        while (c.session.settings.method == "none") is not off or _culls(c) is off:
+            yield
+
+
+def _culls(c: Controller) -> bool:
+    """Whether culling has saved something in the newest frame."""
+    return c.frame is not None and fully_traced(c.frame.statistics.shadow) < c.frame.statistics.shadow.due
+
+
+def _toggle_culling(c: Controller, show_panel: Callable[[str], None]) -> Iterator[float]:
+    before = c.session.settings.method
+    show_panel("Statistics")
+    if not _culls(c):
+        c.change(method=with_base(before, "paper"))
+    for _ in range(50):  # it learns from a whole picture first
+        yield 0.1
+        if _culls(c):
+            break
+    for _ in range(2):
+        yield SECONDS
+        c.toggle_culling()
+    yield SECONDS
+    if before != "none":
+        c.change(method=before)
+
+
+def _how_to_toggle(c: Controller) -> str:
+    method = c.session.settings.method
+    if method == "none" or _culls(c):
+        return (
+            "Press C twice. The picture looks the same, but without culling every shadow ray is traced: compare the "
+            "row Traced in the Statistics panel."
+        )
+    if base_of(method) == "auto":
+        return (
+            "The method auto culls nothing here, as that would not be quicker. Choose paper, the published method, in "
+            "the Culling panel first."
+        )
+    return f"The method {base_of(method)} has culled nothing here yet. Press T to trace the picture once more."
+
+
+def _has_seen_modes(c: Controller) -> Iterator[None]:
+    wanted = {View.OCCLUSION, View.SHADOW}
+    while wanted:
+        yield
+        wanted.discard(c.session.view)
+
+
+def _show_modes(c: Controller, show_panel: Callable[[str], None]) -> Iterator[float]:
+    show_panel("View")
+    for view in (View.OCCLUSION, View.SHADOW, View.COLOR):
+        c.set_view(view)
+        yield SECONDS
+
+
+def _has_clicked_a_shadow(c: Controller) -> Iterator[None]:
+    while not _in_shadow(c):
+        yield
+
+
+def _in_shadow(c: Controller) -> bool:
+    """Whether the pixel that was clicked is in the shadow of some light."""
+    answer = c.explaining.answer
+    return c.selected is not None and answer is not None and any(one.blocked_at is not None for one in answer.lights)
+
+
+def _click_a_shadow(c: Controller, show_panel: Callable[[str], None]) -> Iterator[float]:
+    show_panel("Inspector")
+    c.set_view(View.COLOR)
+    for at in _PLACES:
+        c.select(at)
+        if c.selected is None or c.selected.dynamic:
+            continue
+        for _ in range(50):  # an answer takes a moment
+            yield 0.02
+            if c.explaining.answer is not None:
+                break
+        if _in_shadow(c):
+            yield SECONDS
+            return
+
+
+def _has_run_a_zoom_test(c: Controller) -> Iterator[None]:
+    last = c.runner.zoom_test
+    while c.runner.zoom_test is last or c.runner.zoom_test is None or c.runner.current is c.runner.zoom_test:
+        yield
+
+
+def _run_a_zoom_test(c: Controller, show_panel: Callable[[str], None]) -> Iterator[float]:
+    if c.selected is None or c.selected.dynamic:
+        yield from _click_a_shadow(c, show_panel)
+    show_panel("Zoom test")
+    c.runner.start_zoom_test()
+    while c.runner.current is not None:
+        yield 0.1
+
+
+STEPS = (
+    Step(
+        "Fly",
+        lambda c: "Hold W, A, S or D to move, and drag the picture with the mouse to look around. R takes you back.",
+        _has_flown,
+        _fly,
+    ),
+    Step("Turn culling off and on", _how_to_toggle, _has_toggled_culling, _toggle_culling),
+    Step(
+        "See the modes",
+        lambda c: (
+            "Press 2: green surfaces were seen whole, orange ones are partly hidden. Press 3: what is in the shadow "
+            "of one light, lit by it, or both. L chooses the next light, 1 shows the picture again."
+        ),
+        _has_seen_modes,
+        _show_modes,
+    ),
+    Step(
+        "Click a shadow",
+        lambda c: (
+            "Click a dark spot in the picture. The Inspector says which light is blocked there and by what, and "
+            "lines show the shadow rays."
+        ),
+        _has_clicked_a_shadow,
+        _click_a_shadow,
+    ),
+    Step(
+        "Run a zoom test",
+        lambda c: (
+            "Open the panel Zoom test and press Start. The camera moves towards the surface that you clicked, and "
+            "the plot shows whether culling misses a shadow that can only be seen from near."
+        ),
+        _has_run_a_zoom_test,
+        _run_a_zoom_test,
+    ),
+)

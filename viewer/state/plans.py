@@ -1,0 +1,43 @@
+"""What the user plans to measure: an experiment over a path, a zoom test towards a primitive."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+MOST_FACTORS = 6  # that are compared in one zoom test
+
+
+@dataclass
+class ExperimentPlan:
+    """What to measure: `frames` over the whole path, by each of `methods`, the reference always among them."""
+
+    methods: set[str]
+    frames: int = 100
+    size: tuple[int, int] = (512, 512)
+    depth: int = 10
+    verify: bool = False
+
+
+@dataclass
+class ZoomPlan:
+    """How to go towards a primitive: in `steps`, each to `ratio` of the distance, once with each of `factors`, which
+    are as they were typed; with `same_start` from where the last test began, if that is known."""
+
+    factors: str = "4, 16"
+    steps: int = 30
+    ratio: float = 0.94
+    size: tuple[int, int] = (256, 256)
+    same_start: bool = False
+
+
+def parse_factors(text: str) -> list[float]:
+    """Zoom factors, from words like "4, 16", each once, MOST_FACTORS at most; raises ValueError in one line."""
+    try:
+        factors = list(dict.fromkeys(float(word) for word in text.replace(",", " ").split()))
+    except ValueError:
+        factors = []
+    if not factors or not all(1.0 <= factor <= 1e6 for factor in factors):
+        raise ValueError(f"{text!r} are not zoom factors; give numbers from 1 up, like 4,16")
+    if len(factors) > MOST_FACTORS:
+        raise ValueError(f"these are {len(factors)} zoom factors; give {MOST_FACTORS} at most")
+    return factors

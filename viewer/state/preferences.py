@@ -1,0 +1,212 @@
+"""What the user set and expects to find again: one small JSON file, never half-written.
+
+The file lies in the user's configuration folder (`SHADOWCULL_CONFIG_DIR` names another).  It is
+written to a temporary file beside it that then takes its name, so a crash or a full disk leaves
+the old one whole.  Reading forgives: a value that is missing, of the wrong kind or out of range
+keeps its default, and a file that is no JSON is kept under another name and reported.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Collection, Mapping
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+import platformdirs
+
+from tracer.frame import Settings
+from tracer.method import is_method
+from viewer.state.methods import DEFAULT
+from viewer.state.views import BENEATH, View
+from viewer.util.files import write_text
+
+SETTINGS_FILE = "settings.json"
+RECENT_SCENES = 10
+THEMES = ("dark", "light")
+SCALES = (0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0)
+"""Sizes of the interface that are offered."""
+MOST_CERTIFYING = 0.9
+"""Part of a frame's time that may go into certificates."""
+LONGEST_SIDE = 8192
+"""Pixels of a picture of fixed size."""
+DEFAULT_TEMPLATE = "{scene}-{view}-{frame:04d}-{date}-{time}.png"
+
+# Limits of the numbers; whatever lies outside is not from this program.
+_RANGES: dict[str, tuple[float, float]] = {
+    "target_fps": (1.0, 240.0),
+    "ui_scale": (0.75, 2.0),
+    "speed": (0.001, 1000.0),
+    "playback_rate": (0.01, 100.0),
+    "fixed_width": (1, LONGEST_SIDE),
+    "fixed_height": (1, LONGEST_SIDE),
+    "zoom_factor": (1.0, 1e6),
+    "certificate_share": (0.0, MOST_CERTIFYING),
+    "depth": (0, 100),
+    "samples": (1, 64),
+    "threads": (0, 1024),
+    "shading": (0.0, 1.0),
+    "beneath": (0.0, 0.6),
+    "legend_x": (0.0, 1.0),
+    "legend_y": (0.0, 1.0),
+}
+
+
+@dataclass
+class Preferences:
+    """Everything that outlives the window.  `speed` is relative to the scene's own pace, 1 by default; `method` is
+    the one to cull by while `culling` is on, `certificate_share` the part of a frame's time in motion that may go into
+    certificates; `samples` is how many a pixel gets at rest; `legend_x` and `legend_y` say where in the room that the
+    picture leaves to its legend this lies, 0 to 1 from left and top; `tour` says that the tour has not been shown yet,
+    `last` is the snapshot, as JSON, to start from where that is asked for."""
+
+    target_fps: float = 15.0
+    dynamic_resolution: bool = True
+    fixed_resolution: bool = False
+    fixed_width: int = 512
+    fixed_height: int = 512
+    smooth_upscaling: bool = True
+    navigation: str = "fly"
+    speed: float = 1.0
+    loop: bool = True
+    every_frame: bool = False
+    playback_rate: float = 1.0
+    keep_tracing: bool = False
+    culling: bool = True
+    method: str = DEFAULT
+    certificate_share: float = 0.15
+    symmetric: bool = False
+    zoom_factor: float = 4.0
+    depth: int = 10
+    samples: int = 16
+    threads: int = 0
+    verify: bool = False
+    view: str = "color"
+    shading: float = 0.35
+    outlines: bool = False
+    mark_wrong: bool = True
+    beneath: float = BENEATH
+    work_shares: bool = False
+    legend: bool = True
+    legend_x: float = 0.0
+    legend_y: float = 1.0
+    legend_in_pictures: bool = False
+    draw_explanation: bool = True
+    screenshot_folder: str = ""
+    screenshot_template: str = DEFAULT_TEMPLATE
+    tour: bool = True
+    theme: str = "dark"
+    ui_scale: float = 1.0
+    start_where_left: bool = False
+    last: dict = field(default_factory=dict)
+    recent: list[str] = field(default_factory=list)
+    bookmarks: dict[str, list[dict]] = field(default_factory=dict)
+
+    def settings(self) -> Settings:
+        """Settings to trace with; the defaults where these do not go together."""
+        method = self.method if self.culling else "none"
+        names = ("symmetric", "zoom_factor", "depth", "samples", "threads", "verify")
+        try:
+            values = {name: getattr(self, name) for name in names}
+            return Settings(method=method, **values).validated()
+        except ValueError:
+            return Settings(method=DEFAULT)
+
+    def keep(self, settings: Settings) -> None:
+        """Remember what was chosen to trace with."""
+        s = settings
+        self.culling, self.method = s.method != "none", s.method if s.method != "none" else self.method
+        self.symmetric, self.zoom_factor = s.symmetric, s.zoom_factor
+        self.depth, self.samples, self.threads, self.verify = s.depth, s.samples, s.threads, s.verify
+
+    def chosen_view(self) -> View:
+        return View(self.view) if self.view in set(View) else View.COLOR
+
+    def reset(self, kept: Collection[str]) -> None:
+        """Everything as it was at first, but for these fields."""
+        for item in fields(self):
+            if item.name not in kept:
+                setattr(self, item.name, getattr(Preferences(), item.name))
+
+    def remember_scene(self, path: Path) -> None:
+        """Put a scene at the head of the recent ones."""
+        name = str(path)
+        self.recent = [name, *(r for r in self.recent if r != name)][:RECENT_SCENES]
+
+
+def config_folder() -> Path:
+    """Where settings live; not created here."""
+    override = os.environ.get("SHADOWCULL_CONFIG_DIR")
+    return Path(override) if override else Path(platformdirs.user_config_dir("shadowcull", appauthor=False))
+
+
+def default_screenshot_folder() -> Path:
+    """The user's own pictures folder, where screenshots go until told otherwise."""
+    return Path(platformdirs.user_pictures_dir()) / "shadowcull"
+
+
+def load_preferences(folder: Path | None = None) -> tuple[Preferences, str | None]:
+    """The stored preferences, and one line about what was wrong with the file, or None."""
+    path = (folder or config_folder()) / SETTINGS_FILE
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return Preferences(), None
+    except (OSError, UnicodeDecodeError) as error:
+        return Preferences(), f"settings not read: {error}"
+    try:
+        data = json.loads(text)
+        if not isinstance(data, dict):
+            raise ValueError("not an object")
+    except ValueError:
+        kept = path.with_suffix(".damaged.json")
+        try:
+            os.replace(path, kept)
+        except OSError:
+            kept = path
+        return Preferences(), f"settings were damaged, defaults are used; the old file is kept as {kept}"
+    return _from_json(data), None
+
+
+def save_preferences(preferences: Preferences, folder: Path | None = None) -> str | None:
+    """Write the preferences in one step; returns None, or one line saying why they could not be written."""
+    folder = folder or config_folder()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        write_text(folder / SETTINGS_FILE, json.dumps(asdict(preferences), indent=2))
+    except OSError as error:
+        return f"settings not saved: {error}"
+    return None
+
+
+def _from_json(data: Mapping[str, Any]) -> Preferences:
+    preferences = Preferences(tour=False)  # who has a file without a word of it has used the program before
+    for item in fields(Preferences):
+        if item.name in data:
+            default = getattr(preferences, item.name)
+            value = _checked(item.name, data[item.name], default)
+            setattr(preferences, item.name, value)
+    return preferences
+
+
+def _checked(name: str, value: Any, default: Any) -> Any:
+    """The value if it is of the default's kind and in its range, else the default."""
+    if isinstance(default, bool) or isinstance(value, bool):
+        return value if isinstance(value, bool) and isinstance(default, bool) else default
+    if isinstance(default, int | float):
+        low, high = _RANGES.get(name, (float("-inf"), float("inf")))
+        if not isinstance(value, int | float) or not low <= value <= high:
+            return default
+        return type(default)(value)
+    if name == "method":
+        return value if isinstance(value, str) and is_method(value) and value != "none" else default
+    if name == "theme":
+        return value if value in THEMES else default
+    if name == "recent":
+        return [v for v in value if isinstance(v, str)][:RECENT_SCENES] if isinstance(value, list) else default
+    if name == "bookmarks":
+        ok = isinstance(value, dict) and all(isinstance(v, list) for v in value.values())
+        return value if ok else default
+    return value if isinstance(value, type(default)) else default

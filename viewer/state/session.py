@@ -1,0 +1,196 @@
+"""What the user is looking at: scene, camera, time, settings, view; saved and restored as one value.
+
+The camera either follows the scene's own path or is free.  It follows until the user moves it;
+time goes on in both cases, so that one can stand still and watch things move.  A `Snapshot` is
+all of that as plain JSON: it is what a bookmark keeps and what a captured picture carries.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
+from pathlib import Path
+from typing import Any
+
+from tracer.renderer import Settings
+from tracer.scene.model import Camera, Scene
+from viewer.state.methods import DEFAULT
+from viewer.state.views import View
+
+# Settings that say how a frame was asked for, not what the user chose; those of this machine and of the open scene.
+_NOT_RESTORED = {
+    "width", "height", "threads", "accelerator", "modes", "record_lights", "record_work", "certificates",
+    "certificate_seconds", "patient",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """A state to come back to.  `settings` holds the fields of `tracer.Settings`; `scene` is a path."""
+
+    scene: str
+    time: float
+    camera: Camera
+    follow: bool
+    settings: dict[str, Any]
+    view: View
+    light: int
+    wipe: float = 0.5
+
+    def to_json(self) -> dict[str, Any]:
+        data = asdict(self)
+        return data | {"camera": self.camera.to_json(), "view": self.view.value}
+
+    @staticmethod
+    def from_json(data: Any) -> Snapshot:
+        """The inverse of `to_json`; raises ValueError, in one line, on anything else."""
+        if not isinstance(data, Mapping):
+            raise ValueError("no saved state in it")
+        try:
+            time, wipe = float(data["time"]), float(data.get("wipe", 0.5))
+            if not math.isfinite(time):
+                raise ValueError("its time is not a finite number")
+            return Snapshot(
+                scene=str(data["scene"]),
+                time=time,
+                camera=Camera.from_json(data["camera"]),
+                follow=bool(data.get("follow", False)),
+                settings=settings_from_json(data.get("settings", {})),
+                view=View(data.get("view", View.COLOR)),
+                light=max(0, int(data.get("light", 0))),
+                wipe=wipe if 0.0 <= wipe <= 1.0 else 0.5,
+            )
+        except KeyError as error:
+            raise ValueError(f"its saved state lacks {error}") from None
+        except TypeError:
+            raise ValueError("its saved state is damaged") from None
+
+
+def settings_to_json(settings: Settings) -> dict[str, Any]:
+    """What is kept of settings, in a snapshot."""
+    return {name: value for name, value in asdict(settings).items() if name not in _NOT_RESTORED}
+
+
+def settings_from_json(data: Any) -> dict[str, Any]:
+    """The known fields of stored settings, checked by `Settings.validated`; raises ValueError."""
+    if not isinstance(data, Mapping):
+        raise ValueError("its settings are damaged")
+    names = {f.name for f in fields(Settings)} - _NOT_RESTORED
+    known = {name: value for name, value in data.items() if name in names}
+    for name, value in known.items():
+        if type(value) is not type(getattr(Settings(), name)) and not (
+            isinstance(value, int) and isinstance(getattr(Settings(), name), float)
+        ):
+            raise ValueError(f"its setting {name} is not understood")
+    replace(Settings(), **known).validated()
+    return known
+
+
+@dataclass
+class Session:
+    """The state behind the window; plain data and what it implies, no threads and no widgets."""
+
+    scene: Scene | None = None
+    time: float = 0.0
+    free_camera: Camera | None = None
+    playing: bool = False
+    settings: Settings = field(default_factory=lambda: Settings(method=DEFAULT))
+    view: View = View.COLOR
+    light: int = 0
+    wipe: float = 0.5
+    selected: tuple[float, float] | None = None
+
+    @property
+    def follow(self) -> bool:
+        """Whether the camera goes along the scene's own path."""
+        return self.free_camera is None
+
+    @property
+    def camera(self) -> Camera:
+        if self.free_camera is not None:
+            return self.free_camera
+        return self.scene.camera_at(self.time) if self.scene is not None else Camera((0, 0, 5), (0, 0, -1))
+
+    def move(self, camera: Camera) -> None:
+        """Take the camera in hand."""
+        self.free_camera = camera
+
+    def open(self, scene: Scene) -> None:
+        """Look at another scene from its own first camera; settings and view stay."""
+        self.scene = scene
+        self.time = scene.time_range[0]
+        self.free_camera = None
+        self.playing = False
+        self.selected = None
+        self.light = min(self.light, max(len(scene.lights) - 1, 0))
+
+    @property
+    def animated(self) -> bool:
+        return self.scene is not None and self.scene.frames > 1 and self.scene.time_range[1] > self.scene.time_range[0]
+
+    @property
+    def frame(self) -> int:
+        """The number of the frame whose time is nearest."""
+        return self.frame_at(self.time)
+
+    def frame_at(self, time: float) -> int:
+        """The number of the frame whose time is nearest to some time in seconds."""
+        if self.scene is None or not self.animated:
+            return 0
+        start, end = self.scene.time_range
+        return round((time - start) / (end - start) * (self.scene.frames - 1))
+
+    def go_to_frame(self, frame: int) -> None:
+        if self.scene is not None:
+            self.time = self.scene.frame_time(min(max(frame, 0), self.scene.frames - 1))
+
+    def advance(self, seconds: float, loop: bool) -> None:
+        """Let time pass; at the end start again or stop."""
+        if self.scene is None or not self.animated:
+            self.playing = False
+            return
+        start, end = self.scene.time_range
+        self.time += seconds
+        if self.time > end:
+            self.time = start + (self.time - start) % (end - start) if loop else end
+            self.playing = loop
+
+    def advance_frame(self, loop: bool) -> None:
+        """Go on by one frame of the path; at the end start again or stop."""
+        if self.scene is None or not self.animated:
+            self.playing = False
+        elif self.frame + 1 < self.scene.frames:
+            self.go_to_frame(self.frame + 1)
+        elif loop:
+            self.go_to_frame(0)
+        else:
+            self.playing = False
+
+    def snapshot(self) -> Snapshot:
+        """Where we are now; raises ValueError without a scene."""
+        if self.scene is None:
+            raise ValueError("there is no scene yet")
+        return Snapshot(
+            scene=str(Path(self.scene.path).absolute()),
+            time=self.time,
+            camera=self.camera,
+            follow=self.follow,
+            settings=settings_to_json(self.settings),
+            view=self.view,
+            light=self.light,
+            wipe=self.wipe,
+        )
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back to a snapshot of the scene that is open (its path is the caller's business)."""
+        if self.scene is None:
+            return
+        start, end = self.scene.time_range
+        self.time = min(max(snapshot.time, start), end)
+        self.free_camera = None if snapshot.follow else snapshot.camera
+        self.playing = False
+        self.settings = replace(self.settings, **{k: v for k, v in snapshot.settings.items() if k not in _NOT_RESTORED})
+        self.view = snapshot.view
+        self.light = min(snapshot.light, max(len(self.scene.lights) - 1, 0))
+        self.wipe = snapshot.wipe

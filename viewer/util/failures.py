@@ -1,0 +1,38 @@
+"""What an exception comes to for the user: one line, and the details for those who look into it."""
+
+from __future__ import annotations
+
+import traceback
+from dataclasses import dataclass
+
+from tracer.scene.model import SceneError
+from viewer.util.messages import in_one_line
+
+KNOWN = (SceneError, ValueError, OSError, MemoryError)
+"""Kinds of errors that tell of a file, a value, a disk or memory, in one line."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """`expected` says that the line is all there is to know: nothing in the program is wrong."""
+
+    text: str
+    details: str
+    expected: bool
+
+
+def failure(error: BaseException, what: str = "", known: tuple[type[BaseException], ...] = KNOWN) -> Failure:
+    """An exception, with what failed by it in front; of a kind that is `known` to happen, it is expected."""
+    line = one_line(error)
+    details = "" if isinstance(error, SceneError) else "".join(traceback.format_exception(error))
+    return Failure(f"{what}: {line}" if what else line, details, isinstance(error, known))
+
+
+def one_line(error: BaseException) -> str:
+    """An exception as one line for the status bar; the kind is named unless the message speaks for itself."""
+    text = in_one_line(error)
+    if isinstance(error, MemoryError):
+        return "out of memory" + (f": {text}" if text else "")
+    if isinstance(error, SceneError | ValueError | OSError) and text:
+        return text
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__

@@ -1,0 +1,37 @@
+"""How long a piece of work will still take, from how long its steps have taken so far."""
+
+from __future__ import annotations
+
+import time
+from bisect import bisect_left
+from collections.abc import Callable
+
+
+class TimeLeft:
+    """How long steps of uneven length will still take.
+
+    Along a path neighbours are alike: where n steps remain, the last n that were done tell, but no fewer than FEWEST.
+    """
+
+    FEWEST = 8
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._total = 0
+        self._done: list[int] = []
+        self._at: list[float] = []
+
+    def mark(self, done: int, total: int) -> None:
+        """So many steps of `total` are done now."""
+        self._total = total
+        self._at.append(self._clock())
+        self._done.append(done)
+
+    def seconds(self) -> float | None:
+        """What is left, counting the step under way as one like the others; None before the first step is done."""
+        if not self._done or self._done[-1] == self._done[0]:
+            return None
+        done, left = self._done[-1], self._total - self._done[-1]
+        first = bisect_left(self._done, done - max(left, self.FEWEST))
+        pace = (self._at[-1] - self._at[first]) / (done - self._done[first])
+        return left * pace - min(self._clock() - self._at[-1], pace) if left else 0.0

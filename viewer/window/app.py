@@ -1,0 +1,293 @@
+"""The window, and one frame of it.
+
+Hello ImGui owns the window, its GL context, the docking and the screen's density; this module
+says what happens in which order.  A frame is two lists of calls: `before_widgets`, where all GL
+work is done, and the panels, which never touch GL.
+
+    files that were dropped -> keys -> camera -> controller (time, threads, requests)
+    -> newest frame to the GPU -> view drawn -> panels -> pictures of the window saved
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from imgui_bundle import glfw_utils, hello_imgui, imgui, immapp
+
+import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
+
+from viewer.services.controller import Controller
+from viewer.state.preferences import config_folder, load_preferences
+from viewer.util.failures import failure
+from viewer.util.resources import default_scene
+from viewer.window import commands, palette, style
+from viewer.window.display import Display, Look
+from viewer.window.guard import Guard
+from viewer.window.guard import configure as configure_recovery
+from viewer.window.layout import Layout, LayoutFile
+from viewer.window.panels import dialogs, faults, legend, loading, picture, status, strip, tour
+from viewer.window.shots import Shots
+from viewer.window.ui import CaptureKind, Ui
+
+TITLE = "Shadowcull"
+WINDOW_SIZE = (1440, 900)
+FASTEST = 60.0  # frames a second of the window's own
+# Where a processor draws the window, each frame takes time from tracing: one is drawn for each picture and each of the
+# user's doings, up to so many a second, and while something moves not fewer than so many.
+FASTEST_BY_PROCESSOR, SLOWEST_BY_PROCESSOR = 30.0, 12.0
+IDLE = 8.0  # frames a second while nothing happens
+ACTIVE = 0.25  # seconds after an event until nothing happens
+DRAWN_BY_PROCESSOR = ("llvmpipe", "softpipe", "swrast", "software")
+
+
+class App:
+    """The window's life: made, run once, closed."""
+
+    def __init__(self, scene_path: Path | None) -> None:
+        preferences, problem = load_preferences()
+        self.controller = Controller(preferences)
+        self.ui = Ui(self.controller)
+        self.ui.guard = Guard(self.controller, lambda name, fault: faults.instead(self.ui, name, fault))
+        self.ui.commands = commands.build(self.ui)
+        self.scene_path = scene_path
+        self.layout_file = LayoutFile(config_folder())
+        self.params = self._params()
+        self.layout = Layout(self.ui, self.params)
+        self.ui.request_exit = lambda: self.controller.asking.before_quitting(lambda: self._exit())
+        if preferences.tour:
+            preferences.tour = False  # on the first start only; the menu Help has it again
+            self.ui.tour.start()
+        self._frame_began = time.perf_counter()
+        self._capture_this_frame = False
+        self.drawn_by_processor = self.iconified = False
+        if problem:
+            self.controller.say(problem, error=True)
+
+    def run(self, runner: Callable[[hello_imgui.RunnerParams, immapp.AddOnsParams], None] = immapp.run) -> int:
+        """Open the window and stay until it is closed; returns the exit code."""
+        hook, threading.excepthook = threading.excepthook, self._thread_failed
+        try:
+            runner(self.params, immapp.AddOnsParams(with_implot=True))
+        finally:
+            threading.excepthook = hook
+            self.controller.close()
+            self.layout_file.keep()
+        return 0
+
+    def _thread_failed(self, of: threading.ExceptHookArgs) -> None:
+        """A thread ended by an exception that nobody caught."""
+        if of.exc_value is not None:
+            name = of.thread.name if of.thread is not None else "a thread"
+            self.controller.report(failure(of.exc_value, f"{name} failed", known=()))
+
+    # --- one frame -------------------------------------------------------------------------------
+
+    def before_widgets(self) -> None:
+        """Everything but the widgets: input of the last frame, threads, GL."""
+        self._frame_began = time.perf_counter()
+        self._follow_style()
+        style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
+        step = self.ui.guard.step
+        step("Full screen", self.ui.full_screen.follow)
+        step("Opening what was dropped", self._open_dropped)
+        step("Following the scene", lambda: self.controller.tick(self._room_for_picture()))
+        step("Drawing the picture", self._draw)
+        step("Drawing recorded pictures", self._bring_shots)
+        step("Saving the picture", self._capture_picture)
+        self._stay_awake()
+
+    def widgets(self) -> None:
+        """What is not a docked panel: keys, and what lies over the panels."""
+        style.fill_windows(True)
+        step, overlay = self.ui.guard.step, self.ui.guard.overlay
+        step("The layout", self.layout.follow)
+        overlay("The strip of folded panels", lambda: strip.show(self.ui), lambda: setattr(self.ui.fold, "drawer", ""))
+        step("Reading the keys", lambda: commands.handle_keys(self.ui))
+        step("Flying", lambda: picture.fly(self.ui))
+        overlay("The progress of loading", lambda: loading.show(self.ui))
+        dialogs.show(self.ui)
+        overlay("The tour", lambda: tour.show(self.ui), self.ui.tour.end)
+        overlay("The notice", lambda: faults.notice(self.ui), self.controller.faults.dismiss)
+
+    def after_widgets(self) -> None:
+        """The window is drawn but not yet shown."""
+        self.ui.guard.step("Saving the window", self._capture_window)
+        self.controller.drawn_seconds = time.perf_counter() - self._frame_began
+
+    # --- the steps -------------------------------------------------------------------------------
+
+    def _open_dropped(self) -> None:
+        dropped, self.ui.dropped = self.ui.dropped, []
+        if len(dropped) > 1:
+            self.controller.say(f"{len(dropped)} files were dropped; only {dropped[0].name} is opened")
+        if dropped:
+            self.controller.opener.open(dropped[0])
+
+    def _follow_style(self) -> None:
+        p = self.controller.preferences
+        if style.follow(p.theme, p.ui_scale):
+            self.params.imgui_window_params.background_color = palette.BACKGROUND
+
+    def _room_for_picture(self) -> tuple[int, int]:
+        size = imgui.get_io().display_size
+        if self.iconified or min(size.x, size.y) < 1:
+            return 0, 0
+        return self.ui.picture_area
+
+    def _draw(self) -> None:
+        """Bring a new frame to the GPU, and draw the view if anything about it has changed."""
+        display, c = self.ui.display, self.controller
+        if display is None:
+            return
+        display.show(c.frame)
+        display.draw(self._look(c.selected.primitive if c.selected is not None else -1))
+
+    def _bring_shots(self) -> None:
+        if self.ui.shots is not None:
+            self.ui.shots.bring()
+
+    def _look(self, selected: int) -> Look:
+        """How the view is to be drawn, with an outline around a primitive unless it is -1."""
+        c, p = self.controller, self.controller.preferences
+        return Look(
+            view=c.tracing.drawn_view,
+            light=c.session.light,
+            shading=p.shading,
+            outlines=p.outlines,
+            selected=selected,
+            smooth=p.smooth_upscaling,
+            marked=p.mark_wrong,
+            magnified=c.tracing.magnified,
+            wipe=c.session.wipe,
+            line=not c.tracing.becoming_finer,
+            shares=p.work_shares,
+            beneath=p.beneath,
+        )
+
+    def _capture_picture(self) -> None:
+        c = self.controller
+        shown = c.tracing.drawn_view is c.session.view
+        ready = shown and not c.tracing.becoming_finer  # else the picture is saved when it has come
+        if self.ui.capture_wanted is CaptureKind.PICTURE and self.ui.display is not None and ready:
+            self.ui.capture_wanted = None
+            look = self._look(selected=-1)  # the mark is for the user, not for the picture
+            self.ui.display.draw(look)
+            described = legend.of_picture(self.ui) if c.preferences.legend_in_pictures else None
+            c.keeper.capture(self.ui.display.read() if self.ui.display.drawn(look) else None, described)
+        if self.ui.capture_wanted is CaptureKind.WINDOW:
+            self.ui.capture_wanted = None
+            self._capture_this_frame = True  # when it is drawn, from here on, with all that was asked for before
+
+    def _capture_window(self) -> None:
+        if self._capture_this_frame and self.ui.display is not None:
+            self._capture_this_frame = False
+            size = glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui())
+            self.controller.keeper.capture(self.ui.display.read_window(*size))
+
+    def _stay_awake(self) -> None:
+        """Doze but when something moves: whatever comes from a thread wakes the window, and it needs the processor."""
+        idling, lively = self.params.fps_idling, self.controller.lively
+        by_processor = lively and self.drawn_by_processor
+        idling.enable_idling = by_processor or not lively
+        idling.fps_idle = SLOWEST_BY_PROCESSOR if by_processor else IDLE
+        idling.time_active_after_last_event = 0.0 if by_processor else ACTIVE
+
+    # --- the window ------------------------------------------------------------------------------
+
+    def _params(self) -> hello_imgui.RunnerParams:
+        params = hello_imgui.RunnerParams()
+        params.app_window_params.window_title = TITLE
+        params.app_window_params.window_geometry.size = WINDOW_SIZE
+        params.app_window_params.restore_previous_geometry = True
+        window = params.imgui_window_params
+        window.default_imgui_window_type = hello_imgui.DefaultImGuiWindowType.provide_full_screen_dock_space
+        window.show_menu_bar = window.show_status_bar = True
+        window.show_menu_app = window.show_menu_view = window.show_status_fps = False
+        window.remember_theme = window.remember_status_bar_settings = False
+        window.background_color = palette.BACKGROUND
+        params.renderer_backend_options.open_gl_options = hello_imgui.OpenGlOptions(
+            glsl_version="330", major_version=3, minor_version=3, use_core_profile=True, use_forward_compat=True,
+            anti_aliasing_samples=0,  # text and widgets are smooth by themselves
+        )  # fmt: skip
+        params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
+        params.ini_filename = str(self.layout_file.working_copy)
+        params.fps_idling.fps_idle = IDLE
+        params.fps_idling.fps_max = FASTEST
+        params.fps_idling.time_active_after_last_event = ACTIVE
+        call = params.callbacks
+        call.setup_imgui_config = _configure_imgui
+        call.load_additional_fonts = style.load_fonts
+        call.post_init = self._ready
+        call.show_menus = lambda: self.ui.guard.panel("The menus", self._menus)
+        call.show_status = lambda: self.ui.guard.panel("The status bar", lambda: status.show(self.ui))
+        call.pre_new_frame = self.before_widgets
+        call.show_gui = self.widgets
+        call.before_swap = self.after_widgets
+        call.before_exit = self._release
+        return params
+
+    def _menus(self) -> None:
+        commands.menus(self.ui)
+        self.layout.menu()
+
+    def _ready(self) -> None:
+        """The window and its GL context exist."""
+        self.ui.display = Display()
+        self.ui.shots = Shots(self.ui.display.context)
+        self.ui.renderer_name = self.ui.display.context.info["GL_RENDERER"]
+        self.drawn_by_processor = any(name in self.ui.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
+        if self.drawn_by_processor:
+            self.params.fps_idling.fps_max = FASTEST_BY_PROCESSOR
+        self.controller.wake = hello_imgui.request_refresh
+        window = glfw_utils.glfw_window_hello_imgui()
+        glfw.set_window_close_callback(window, self._close_wanted)
+        glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
+        glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
+        opener = self.controller.opener
+        opener.start(self.scene_path)
+        if self.scene_path is None and not (self.controller.preferences.start_where_left and opener.go_on()):
+            opener.open(default_scene())
+
+    def _close_wanted(self, window: Any) -> None:
+        """The window's close button, or the desktop: the same as the command."""
+        glfw.set_window_should_close(window, False)
+        self.ui.guard.step("Quitting", self.ui.request_exit)
+
+    def _iconify(self, _window: Any, iconified: int) -> None:
+        self.iconified = bool(iconified)
+
+    def _dropped(self, _window: Any, paths: list[str]) -> None:
+        self.ui.dropped = [Path(p) for p in paths]
+        hello_imgui.request_refresh()
+
+    def _release(self) -> None:
+        self.ui.full_screen.end()
+        self.controller.wake = lambda: None  # threads may still be at work when the window is gone
+        if self.ui.display is not None:
+            self.ui.display.release()
+            self.ui.display = None
+        if self.ui.shots is not None:
+            self.ui.shots.release()
+            self.ui.shots = None
+
+    def _exit(self) -> None:
+        self.params.app_shall_exit = True
+
+
+def _configure_imgui() -> None:
+    hello_imgui.imgui_default_settings.setup_default_imgui_config()
+    io = imgui.get_io()
+    # Arrows, space and escape are commands here; they must not move a focus from button to button.
+    io.config_flags &= ~int(imgui.ConfigFlags_.nav_enable_keyboard)
+    io.config_windows_move_from_title_bar_only = True
+    configure_recovery()
+
+
+def run(scene_path: Path | None = None) -> int:
+    """Open the viewer on a scene or a saved picture; without one on what was open last, where that is wanted, else on
+    the embedded room.  Returns the exit code."""
+    return App(scene_path).run()

@@ -1,0 +1,126 @@
+"""The camera: where it is, how it is moved, and places to come back to."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from imgui_bundle import imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from viewer.state import navigation
+from viewer.window.commands import focus
+from viewer.window.panels.widgets import (
+    QUIET,
+    checkbox,
+    em,
+    heading,
+    paragraph,
+    properties,
+    row,
+    same_line_for,
+    tooltip,
+    wide_button,
+)
+from viewer.window.ui import Ui
+
+
+def show(ui: Ui) -> None:
+    """The panel."""
+    if ui.controller.session.scene is None:
+        paragraph("No scene is open.", QUIET)
+        return
+    _place(ui)
+    _moving(ui)
+    _path(ui)
+    _bookmarks(ui)
+
+
+def _place(ui: Ui) -> None:
+    c = ui.controller
+    camera = c.session.camera
+    with properties("camera", 5.0) as shown:
+        if shown:
+            row("Position")
+            changed, position = imgui.drag_float3("##position", list(camera.position), 0.02 * c.pace, format="%.4g")
+            if changed:
+                c.move(replace(camera, position=(position[0], position[1], position[2])))
+            row("Direction")
+            view = [float(x) for x in camera.basis()[2]]
+            changed, direction = imgui.drag_float3("##direction", view, 0.01, -1.0, 1.0, "%.3f")
+            if changed and sum(x * x for x in direction) > 1e-6:
+                c.move(replace(camera, direction=(direction[0], direction[1], direction[2])))
+            row("Angle", "of the vertical field of view")
+            changed, angle = imgui.slider_float("##angle", camera.angle, 5.0, 120.0, "%.1f degrees")
+            if changed:
+                c.move(navigation.zoom(camera, angle))
+    if wide_button(f"{icons.ICON_FA_CROSSHAIRS}  Focus", "on what is selected, or under the pointer (F)", 2):
+        focus(ui)
+    imgui.same_line()
+    if wide_button(f"{icons.ICON_FA_ROTATE_LEFT}  Reset", "back to the scene's own camera (R)"):
+        c.reset_camera()
+
+
+def _moving(ui: Ui) -> None:
+    p = ui.controller.preferences
+    heading("Moving")
+    with properties("moving", 5.0) as shown:
+        if shown:
+            row("Mode")
+            if imgui.radio_button("Fly", p.navigation == "fly"):
+                p.navigation = "fly"
+            tooltip("drag to look around, W A S D Q E to move (G)")
+            same_line_for("Orbit")
+            if imgui.radio_button("Orbit", p.navigation == "orbit"):
+                p.navigation = "orbit"
+            tooltip("drag to turn around the point that was clicked (O)")
+            row("Speed", "1 crosses the scene in about eight seconds")
+            flags = int(imgui.SliderFlags_.logarithmic)
+            _, p.speed = imgui.slider_float("##speed", p.speed, 0.01, 20.0, "%.2f", flags)
+
+
+def _path(ui: Ui) -> None:
+    c = ui.controller
+    p = c.preferences
+    heading("Path and time")
+    if not c.session.animated:
+        paragraph("Nothing moves in this scene.", QUIET)
+        return
+    checkbox("Follow the scene's path", c.session.follow, c.follow_path, "until the camera is moved by hand (P)")
+    checkbox("Loop", p.loop, lambda on: setattr(p, "loop", on))
+    same_line_for("Every frame")
+    tip = "play every frame of the animation, each traced in full, however long it takes; otherwise play in real time"
+    checkbox("Every frame", p.every_frame, lambda on: setattr(p, "every_frame", on), tip)
+    if not p.every_frame:
+        with properties("rate", 5.0) as shown:
+            if shown:
+                row("Rate", "1 is the scene's own time")
+                flags = int(imgui.SliderFlags_.logarithmic)
+                _, p.playback_rate = imgui.slider_float("##rate", p.playback_rate, 0.1, 10.0, "%.2f x", flags)
+
+
+def _bookmarks(ui: Ui) -> None:
+    c = ui.controller
+    heading("Bookmarks")
+    button = f"{icons.ICON_FA_BOOKMARK}##add"
+    imgui.set_next_item_width(-em(2.6))
+    flags = int(imgui.InputTextFlags_.enter_returns_true)
+    entered, ui.new_bookmark = imgui.input_text_with_hint("##bookmark", "name", ui.new_bookmark, flags)
+    imgui.same_line()
+    if imgui.button(button, (-1.0, 0.0)) or entered:
+        c.keeper.add_bookmark(ui.new_bookmark)
+        ui.new_bookmark = ""
+    tooltip("keep this view: camera, time and settings (Ctrl+B)")
+    gone = None
+    for index, bookmark in enumerate(c.keeper.bookmarks):
+        imgui.push_id(index)
+        width = imgui.get_content_region_avail().x - em(2.2)
+        if imgui.selectable(str(bookmark.get("name", "?")), False, 0, (width, 0.0))[0]:
+            c.keeper.go_to_bookmark(index)
+        tooltip("go there")
+        imgui.same_line()
+        if imgui.small_button(icons.ICON_FA_XMARK):
+            gone = index
+        tooltip("delete it")
+        imgui.pop_id()
+    if gone is not None:
+        c.keeper.forget_bookmark(gone)

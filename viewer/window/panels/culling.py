@@ -1,0 +1,115 @@
+"""The culling: its method and settings, and what is learnt."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from tracer.method import BASES, base_of, certifies, takes
+from viewer.state.methods import BASES_TOLD, EXTRAS_TOLD, toggled, with_base
+from viewer.state.preferences import MOST_CERTIFYING
+from viewer.window.panels.widgets import (
+    ERROR,
+    GOOD,
+    QUIET,
+    checkbox,
+    count,
+    em,
+    paragraph,
+    percent,
+    properties,
+    row,
+    same_line_for,
+    tooltip,
+    wide_button,
+)
+from viewer.window.ui import Ui
+
+
+def show(ui: Ui) -> None:
+    """The panel."""
+    c = ui.controller
+    s, p = c.session.settings, c.preferences
+    _method(ui)
+    if c.frame is not None and c.frame.statistics.decision:
+        paragraph(c.frame.statistics.decision, QUIET)
+    tip = "test two neighbouring pixels both ways: each one's ray against the other's primitive (Y)"
+    checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.change(symmetric=on), tip)
+    same_line_for("Verify")
+    tip = "trace every culled shadow ray as well, and count wrong answers (V)"
+    checkbox("Verify", s.verify, lambda on: c.change(verify=on), tip)
+    _wrong(ui)
+    with properties("culling", 6.5) as shown:
+        if shown:
+            row(
+                "Zoom factor",
+                "a primitive that covers this many times its highest pixel count is judged anew",
+            )
+            flags = int(imgui.SliderFlags_.logarithmic)
+            changed, factor = imgui.slider_float("##zoom", s.zoom_factor, 1.0, 64.0, "%.1f", flags)
+            if changed:
+                c.change(zoom_factor=factor)
+        if shown and certifies(s.method):
+            row(
+                "Certificates",
+                "the share of each frame's time for making them while anything moves; when idle they get more",
+            )
+            share = 100.0 * p.certificate_share
+            changed, share = imgui.slider_float("##share", share, 1.0, 100.0 * MOST_CERTIFYING, "%.0f %%")
+            if changed:
+                p.certificate_share = min(max(share / 100.0, 0.0), MOST_CERTIFYING)
+    if wide_button(f"{icons.ICON_FA_ERASER}  Reset modes", "forget all modes and certificates (Backspace)", 2):
+        c.reset_modes()
+    imgui.same_line()
+    if wide_button(
+        f"{icons.ICON_FA_ROTATE_RIGHT}  Trace again",
+        "trace the same frame once more, with what the last one has taught (T)",
+    ):
+        c.trace_again()
+
+    def keep(on: bool) -> None:
+        p.keep_tracing = on
+        c.trace_again()
+
+    checkbox(
+        "Keep tracing when idle",
+        p.keep_tracing,
+        keep,
+        "trace frame after frame, to watch modes and certificates being learnt (K)",
+    )
+
+
+def _method(ui: Ui) -> None:
+    """What culls, and what it takes along."""
+    c = ui.controller
+    method = c.session.settings.method
+    base = base_of(method)
+    with properties("method", 4.0) as shown:
+        if shown:
+            row("Method", f"{BASES_TOLD[base]} (C turns culling off and on)")
+            if imgui.begin_combo("##method", base):
+                for other in BASES:
+                    if imgui.selectable(other, other == base)[0]:
+                        c.change(method=with_base(method, other))
+                    tooltip(BASES_TOLD[other])
+                imgui.end_combo()
+    for number, (extra, (label, told)) in enumerate(EXTRAS_TOLD.items()):
+        if number:
+            imgui.same_line(0.0, em(1.0))
+        changed, _ = imgui.checkbox(f"+{extra}", takes(method, extra))
+        tooltip(f"{label}: {told}")
+        if changed:
+            c.change(method=toggled(method, extra))
+
+
+def _wrong(ui: Ui) -> None:
+    c = ui.controller
+    if c.frame is None or not c.frame.settings.verify:
+        return
+    shadow = c.frame.statistics.shadow
+    if shadow.wrong:
+        paragraph(f"{count(shadow.wrong)} wrong ({percent(shadow.wrong, shadow.due)})", ERROR)
+    elif not shadow.culled + shadow.candidates_only + shadow.dynamic_only + shadow.cache_hits:
+        paragraph("nothing culled", QUIET)
+    else:
+        paragraph("none wrong", GOOD)

@@ -1,0 +1,236 @@
+"""The paper's Table 1 in the window: a path of frames by several methods, played as it is traced."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+from imgui_bundle import ImVec2, imgui, implot
+
+from tracer import experiment
+from tracer.experiment import REFERENCE, Results, Row
+from tracer.method import BASES, EXTRAS
+from viewer.output.reports import LINES, WRONG
+from viewer.services.runs import LONGEST_SIDE, Experiment, ExperimentPlan
+from viewer.state.methods import BASES_TOLD, EXTRAS_TOLD, in_order, named
+from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
+from viewer.window.panels.runs import export_buttons, side_by_side, start_or_progress
+from viewer.window.panels.widgets import (
+    ERROR,
+    QUIET,
+    checkbox,
+    clipped,
+    em,
+    in_window_style,
+    paragraph,
+    properties,
+    row,
+    size_field,
+    tooltip,
+)
+from viewer.window.ui import Ui
+
+_WORKS = (("steps", "steps"), ("tests", "tests"))
+_SHORT = ("steps saved", "  most (frame)", "tests saved", "  most (frame)", "extra / pixel", "wrong", "time in window")
+_TIME_TIP = "measured while the window draws as well: do not compare it with times of shadowcull bench"
+_FEWEST_FRAMES, _LEAST_TOP = 10, 2.0  # frames and percents that the plot's axes span at least
+_HEADING, _REFERENCE, _METHOD = 6.8, 5.4, 7.4  # widths of the table's columns in ems
+
+
+def show(ui: Ui) -> None:
+    """The panel: what to measure, the savings frame by frame, and the table."""
+    run = ui.controller.runner.experiment
+    results = run.results if run is not None else None
+    columns = len(run.methods) if run is not None else 2
+    side_by_side(
+        lambda: _controls(ui, run),
+        lambda size: _plot(ui, run, results, size),
+        lambda: _table(ui, run, results),
+        em(_table_width(columns)),
+        scrolls=True,
+    )
+
+
+def _table_width(columns: int) -> float:
+    """Of the paper's table with so many methods, in ems."""
+    return _HEADING + _REFERENCE + _METHOD * (columns - 1) + 1.2
+
+
+def _controls(ui: Ui, run: Experiment | None) -> None:
+    runner = ui.controller.runner
+    under_way = run is not None and runner.current is run
+    if run is not None and under_way:
+        _shown_method(run)
+    else:
+        _plan(ui)
+    tip = "trace the whole path with each method, and compare them"
+    start_or_progress(ui, run, runner.start_experiment, tip)
+    export_buttons(ui, run)
+
+
+def _plan(ui: Ui) -> None:
+    plan = ui.controller.runner.experiment_plan
+    with properties("plan", 4.6) as shown:
+        if not shown:
+            return
+        row("Methods", f"each is compared with {REFERENCE}, which traces every shadow ray")
+        _methods(plan)
+        row("Frames", "over the whole path of the scene")
+        changed, frames = imgui.input_int("##frames", plan.frames)
+        if changed:
+            plan.frames = min(max(frames, 1), 100_000)
+        row("Size")
+        plan.size = size_field(plan.size, LONGEST_SIDE, ui.controller.say)
+        row("Bounces", "of reflected and refracted rays, at most")
+        changed, depth = imgui.slider_int("##depth", plan.depth, 0, 20)
+        if changed:
+            plan.depth = min(max(depth, 0), 100)
+        row("Verify", "trace every culled shadow ray as well, and count wrong answers; this takes longer")
+        checkbox("##verify", plan.verify, lambda on: setattr(plan, "verify", on))
+
+
+def _methods(plan: ExperimentPlan) -> None:
+    """A list to be opened: a line for each base, a tick for each way to take extras along; the reference is always
+    among them."""
+    opened = imgui.begin_combo("##methods", ", ".join(in_order(plan.methods)), int(imgui.ComboFlags_.height_largest))
+    tooltip(", ".join(in_order({REFERENCE, *plan.methods})))
+    if opened:
+        _method_ticks(plan)
+        imgui.end_combo()
+
+
+def _method_ticks(plan: ExperimentPlan) -> None:
+    sets = [extras for n in range(len(EXTRAS) + 1) for extras in combinations(EXTRAS, n)]
+    if not imgui.begin_table("methods", 1 + len(sets), int(imgui.TableFlags_.sizing_fixed_fit)):
+        return
+    for heading in ("", *("+".join(("", *extras)) or "alone" for extras in sets)):
+        imgui.table_next_column()
+        imgui.text_colored(QUIET, heading)
+        if heading.startswith("+"):
+            tooltip("; ".join(f"+{extra}: {EXTRAS_TOLD[extra][1]}" for extra in heading[1:].split("+")))
+    for base in BASES:
+        imgui.table_next_column()
+        imgui.text_unformatted(base)
+        tooltip(BASES_TOLD[base])
+        for method in (named(base, extras) for extras in sets):
+            imgui.table_next_column()
+            imgui.begin_disabled(method == REFERENCE)
+            changed, _ = imgui.checkbox(f"##{method}", method == REFERENCE or method in plan.methods)
+            imgui.end_disabled()
+            if changed:
+                plan.methods ^= {method}
+    imgui.end_table()
+
+
+def _shown_method(run: Experiment) -> None:
+    """Whose frames are the picture."""
+    imgui.align_text_to_frame_padding()
+    imgui.text_colored(QUIET, "show")
+    imgui.same_line()
+    imgui.set_next_item_width(-1.0)
+    if imgui.begin_combo("##shown", run.shown):
+        for method in run.methods:
+            if imgui.selectable(method, run.shown == method)[0]:
+                run.shown = method
+        imgui.end_combo()
+    width, height = run.settings.width, run.settings.height
+    imgui.text_colored(QUIET, f"{width} x {height}, {run.settings.depth} bounces")
+
+
+def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2) -> None:
+    """Savings of each method but the reference, and its wrong answers, over the frames of the path."""
+    if run is None or results is None:
+        if imgui.begin_child("nothing", size):
+            paragraph("The work of shadow rays that culling saves, frame by frame, and the paper's Table 1.", QUIET)
+        imgui.end_child()
+        return
+    wrong = run.settings.verify and any(any(figures["wrong"]) for figures in results.methods.values())
+    savings = ui.cached("savings", results, 0, lambda: _savings(results))
+    thin = " (thin: tests)" if len(savings) > len(_WORKS) else ""
+    if not implot.begin_plot(f"{run.scene_path.name}: saved{thin}##{id(run)}", size, FLAGS):
+        return
+    frames = np.array(results.frames, np.float64)
+    top = max([float(values.max()) for _, values in savings] or [0.0])
+    bottom = min([float(values.min()) for _, values in savings] or [0.0])
+    implot.setup_axes("", "", AXIS, AXIS)
+    implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
+    implot.setup_axis_format(implot.ImAxis_.y1, "%.4g %%")
+    once = int(imgui.Cond_.always if ui.controller.runner.current is run else imgui.Cond_.once)
+    last = max(len(run.times), _FEWEST_FRAMES) - 0.5
+    implot.setup_axes_limits(-0.5, last, min(1.1 * bottom, 0.0), max(1.12 * top, _LEAST_TOP), once)
+    if wrong:
+        wrong_axis(max(int(max(figures["wrong"])) for figures in results.methods.values()), once)
+    implot.setup_legend(implot.Location_.south, LEGEND)
+    if wrong:
+        _plot_wrong(results, frames)
+    for (name, values), spec in zip(savings, _looks(len(savings)), strict=True):
+        if len(frames) == 1:  # is no line
+            spec.marker = int(implot.Marker_.circle)
+        implot.plot_line(name, frames, values, spec)
+    implot.end_plot()
+
+
+def _looks(curves: int) -> list[implot.Spec]:
+    """How to draw so many curves, steps and tests of each method in turn: of several methods each has one colour and
+    one entry in the legend, and its tests are thin."""
+    if curves <= len(_WORKS):
+        return [implot.Spec(line_color=color, line_weight=1.6) for color in COLORS[:curves]]
+    pairs = [(COLORS[n // len(_WORKS) % len(COLORS)], n % len(_WORKS) == 0) for n in range(curves)]
+    return [implot.Spec(line_color=color, line_weight=2.2 if steps else 0.9) for color, steps in pairs]
+
+
+def _savings(results: Results) -> list[tuple[str, np.ndarray]]:
+    methods = [method for method in results.methods if method != REFERENCE]
+    many = len(methods) > 1
+    return [
+        (method if many else label, 100.0 * results.reductions(method, work))
+        for method in methods
+        for work, label in _WORKS
+    ]
+
+
+def _plot_wrong(results: Results, frames: np.ndarray) -> None:
+    implot.set_axes(implot.ImAxis_.x1, implot.ImAxis_.y2)
+    for method, figures in results.methods.items():
+        if method != REFERENCE:
+            values = np.array(figures["wrong"], np.float64)
+            spec = implot.Spec(line_color=ERROR, fill_color=ERROR, fill_alpha=0.55)
+            implot.plot_bars(f"wrong##{method}", frames, values, 0.8, spec)
+    implot.set_axes(implot.ImAxis_.x1, implot.ImAxis_.y1)
+
+
+def _table(ui: Ui, run: Experiment | None, results: Results | None) -> None:
+    """A line for each figure of the paper's Table 1, a column for each method."""
+    if run is None or results is None:
+        return
+    rows: list[Row] = ui.cached("table 1", results, 0, lambda: experiment.table(results))
+    whole = len(results.frames) == len(run.times)
+    plural = "s" * (len(run.times) != 1)
+    done = f"{len(results.frames)} frame{plural}" if whole else f"{len(results.frames)} of {len(run.times)} frames"
+    clipped(f"{done}, {run.settings.width} x {run.settings.height}, {run.settings.accelerator}", QUIET)
+    flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg
+    scrolls = em(_table_width(len(rows)) - 1.2) > imgui.get_content_region_avail().x
+    if scrolls:
+        flags |= imgui.TableFlags_.scroll_x | imgui.TableFlags_.scroll_y
+    if not imgui.begin_table("table 1", 1 + len(rows), int(flags)):
+        return
+    imgui.table_setup_scroll_freeze(1, 1)
+    stretch, fixed = imgui.TableColumnFlags_.width_stretch, imgui.TableColumnFlags_.width_fixed
+    imgui.table_setup_column("", int(fixed if scrolls else stretch), em(_HEADING) if scrolls else 0.0)
+    for line in rows:
+        width = em(_REFERENCE if line.method == REFERENCE else _METHOD)
+        imgui.table_setup_column(line.method, int(fixed), width)
+    imgui.table_next_column()
+    for line in rows:
+        imgui.table_next_column()
+        clipped(line.method, QUIET)
+    for (heading, cell), short in zip(LINES, _SHORT, strict=True):
+        if heading == WRONG and not run.settings.verify:
+            continue
+        imgui.table_next_column()
+        clipped(short, QUIET)
+        tooltip(f"{heading.strip()}, {_TIME_TIP}" if short is _SHORT[-1] else heading.strip())
+        for line in rows:
+            imgui.table_next_column()
+            clipped(in_window_style(cell(line)), ERROR if heading == WRONG and line.wrong else None)
+    imgui.end_table()

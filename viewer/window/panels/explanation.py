@@ -1,0 +1,189 @@
+"""Why it is in shadow: rows of the inspector and, for what was clicked, lines in the picture to lights and blockers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from tracer.explanation import Explanation
+from tracer.frame import Frame
+from viewer.services.shadow_inspector import MOST_OCCLUDERS, Answer, Part, others_named
+from viewer.state.picking import kind_of
+from viewer.state.projection import place
+from viewer.state.views import CERTIFICATE_COLORS, CERTIFICATE_MEANING, SHADOW_COLORS, Certificate, ShadowMode
+from viewer.window.panels.widgets import QUIET, checkbox, em, heading, paragraph, swatch, tooltip
+from viewer.window.ui import Ui
+
+_LIT, _STOPPED = SHADOW_COLORS[ShadowMode.NON_SHADOW], (0.34, 0.71, 0.91)
+_BLOCKER = SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW]
+_COLORS = {Part.REACHING: _LIT, Part.STOPPED: _STOPPED, Part.BLOCKER: _BLOCKER, Part.OCCLUDER: (0.90, 0.62, 0.0)}
+_WIDTHS = {Part.REACHING: 0.13, Part.STOPPED: 0.13, Part.BLOCKER: 0.16, Part.OCCLUDER: 0.1}  # in ems
+_RESTS_ON = {  # and what is said where the blocker is among them
+    Certificate.FULL.name: ("hidden by", "and hidden by"),
+    Certificate.CANDIDATES.name: ("can only be blocked by", "other candidates:"),
+}
+_UNSEEN = 0.6  # of the width of what is seen
+_SHADE = ImVec4(0.05, 0.06, 0.08, 0.6)
+_FADED = 0.18  # opacity of other lights than the one that is pointed at
+
+
+def rows(ui: Ui) -> None:
+    """In the inspector: each light, whether it gets here, and what blocks it; nothing while that is not known."""
+    c = ui.controller
+    heading("Shadow rays")
+    p = c.preferences
+    tip = (
+        "in the picture, the shadow rays of the clicked point (I): yellow as far as light comes, then blue; outlined "
+        "in red is what blocks it, in orange what a certificate names; dashes are hidden"
+    )
+    checkbox("Draw for a click", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), tip)
+    answer = c.explaining.answer
+    if answer is None:
+        paragraph("traced when nothing moves", QUIET)
+        return
+    if not answer.lights:
+        paragraph("The scene has no lights.", QUIET)
+    receiver = int(answer.frame.primitive[answer.y, answer.x])
+    with light_rows("rays") as shown:
+        for one in answer.lights if shown else ():
+            imgui.push_id(one.light)
+            _row(ui, one, receiver)
+            imgui.pop_id()
+
+
+@contextmanager
+def light_rows(name: str) -> Iterator[bool]:
+    """A table of two columns that wrap, a light on the left and what is told of it; yields whether it is visible."""
+    shown = imgui.begin_table(name, 2, int(imgui.TableFlags_.sizing_stretch_prop))
+    if shown:
+        imgui.table_setup_column("light", int(imgui.TableColumnFlags_.width_stretch), 1.0)
+        imgui.table_setup_column("told", int(imgui.TableColumnFlags_.width_stretch), 1.5)
+    try:
+        yield shown
+    finally:
+        if shown:
+            imgui.end_table()
+
+
+def _row(ui: Ui, one: Explanation, receiver: int) -> None:
+    """A light; resting on it picks it out over the picture."""
+    told, color = _answer(one)
+    imgui.table_next_column()
+    swatch(color)
+    imgui.selectable(f"{ui.light_name(one.light)}##light", False)
+    if imgui.is_item_hovered():
+        ui.pointed_light = one.light
+    imgui.table_next_column()
+    paragraph(told)
+    _certificate(one.certificate)
+    for sentence in sentences(ui, one, receiver):
+        paragraph(sentence, QUIET)
+
+
+def _answer(one: Explanation) -> tuple[str, tuple[float, float, float]]:
+    if not one.due:
+        return "in its own shadow: this side faces away", (0.25, 0.27, 0.31)
+    return ("lit", _LIT) if one.lit else ("in shadow", SHADOW_COLORS[ShadowMode.FULL_SHADOW])
+
+
+def _certificate(name: str) -> None:
+    """The certificate and its colour."""
+    if name.upper() not in Certificate.__members__ or name.upper() == Certificate.NONE.name:
+        return
+    certificate = Certificate[name.upper()]
+    swatch(CERTIFICATE_COLORS[certificate])
+    imgui.text_unformatted(f"proven: {certificate.name.lower()}")
+    tooltip(CERTIFICATE_MEANING[certificate])
+
+
+def sentences(ui: Ui, one: Explanation, receiver: int) -> list[str]:
+    """What blocks a light on its way to a primitive, and what its certificate rests on besides; each is named once."""
+    told, certificate = [], one.certificate.upper()
+    among = {Certificate.CANDIDATES.name: ", one of its candidates", Certificate.FULL.name: ", which hides all of it"}
+    if one.blocker is not None:
+        by = _own(ui, receiver) if one.blocker == receiver else _named(ui, one.blocker)
+        told.append(f"blocked by {by}{among.get(certificate, '') if one.blocker in one.named else ''}")
+    others = others_named(one)
+    if others:
+        names = [_named(ui, number) if number != receiver else "its own surface" for number in others[:MOST_OCCLUDERS]]
+        more = f" and {len(others) - MOST_OCCLUDERS} more" if len(others) > MOST_OCCLUDERS else ""
+        first, besides = _RESTS_ON.get(certificate, ("certified by", "certified by"))
+        told.append(f"{besides if one.blocker in one.named else first} {', '.join(names)}{more}")
+    return told
+
+
+def _own(ui: Ui, receiver: int) -> str:
+    """A primitive that is in its own light."""
+    scene = ui.controller.session.scene
+    kind = kind_of(scene, receiver) if scene is not None and receiver < scene.primitive_count else "primitive"
+    return f"its own surface: this {kind} shadows itself" + (", as the light grazes it" if kind == "triangle" else "")
+
+
+def _named(ui: Ui, primitive: int) -> str:
+    """A primitive as people find it again: its kind and number, its object and its material."""
+    scene = ui.controller.session.scene
+    if scene is None or primitive >= scene.primitive_count:
+        return f"primitive {primitive}"
+    return (
+        f"{kind_of(scene, primitive)} {primitive} of {scene.name_of(primitive)} ({scene.material_of(primitive).name})"
+    )
+
+
+def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
+    """Over the picture: the lights' ways to the point, and outlines of what blocks them."""
+    c = ui.controller
+    pointed, ui.pointed_light = ui.pointed_light, None  # the inspector says so in each frame
+    answer, frame = c.explaining.answer, c.frame
+    if answer is None or frame is None or c.selected is None or not c.preferences.draw_explanation:
+        return
+    width, height = end.x - corner.x, end.y - corner.y
+
+    def on_screen(at: tuple[float, float]) -> ImVec2:
+        return ImVec2(corner.x + at[0] * width, corner.y + at[1] * height)
+
+    draw = imgui.get_window_draw_list()
+    draw.push_clip_rect(corner, end, True)
+    lines = c.explaining.lines(frame)
+    for shade in (True, False):
+        for part, light, strokes in lines:
+            alpha = _FADED if pointed not in (None, light) else 1.0
+            color = imgui.get_color_u32(_with_alpha(_SHADE, alpha) if shade else ImVec4(*_COLORS[part], alpha))
+            for stroke in strokes:
+                wide = em(_WIDTHS[part]) * (1.0 if stroke.seen else _UNSEEN) + (em(0.12) if shade else 0.0)
+                draw.add_line(on_screen(stroke.start), on_screen(stroke.end), color, max(1.0, wide))
+    _ends(answer, frame, pointed, on_screen, draw)
+    draw.pop_clip_rect()
+
+
+def _ends(
+    answer: Answer,
+    frame: Frame,
+    pointed: int | None,
+    on_screen: Callable[[tuple[float, float]], ImVec2],
+    draw: imgui.ImDrawList,
+) -> None:
+    """A disc at each light that is due, a cross where its way ends before the point, and a ring around the point."""
+    for one in answer.lights:
+        if not one.due:
+            continue
+        alpha = _FADED if pointed not in (None, one.light) else 1.0
+        at = place(frame, one.light_position)
+        if at is not None:
+            draw.add_circle_filled(on_screen(at), em(0.42), imgui.get_color_u32(_with_alpha(_SHADE, alpha)))
+            draw.add_circle_filled(on_screen(at), em(0.3), imgui.get_color_u32(ImVec4(*_LIT, alpha)))
+        stop = place(frame, one.blocked_at) if one.blocked_at is not None else None
+        if stop is not None:
+            x, y, arm = on_screen(stop).x, on_screen(stop).y, em(0.28)
+            color = imgui.get_color_u32(ImVec4(*_BLOCKER, alpha))
+            draw.add_line(ImVec2(x - arm, y - arm), ImVec2(x + arm, y + arm), color, em(0.14))
+            draw.add_line(ImVec2(x - arm, y + arm), ImVec2(x + arm, y - arm), color, em(0.14))
+    point = place(frame, answer.lights[0].point) if answer.lights else None
+    if point is not None:
+        draw.add_circle(on_screen(point), em(0.4), imgui.get_color_u32(_SHADE), 0, em(0.22))
+        draw.add_circle(on_screen(point), em(0.4), imgui.get_color_u32(ImVec4(1.0, 1.0, 1.0, 1.0)), 0, em(0.1))
+
+
+def _with_alpha(color: ImVec4, alpha: float) -> ImVec4:
+    return ImVec4(color.x, color.y, color.z, color.w * alpha)

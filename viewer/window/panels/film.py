@@ -1,0 +1,149 @@
+"""The filmstrip of a zoom test: a row of small pictures for each zoom factor; one is shown in the picture's place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from tracer.zoom import Approach, Step
+from viewer.output.film import Shot
+from viewer.output.reports import changes_in_words
+from viewer.services.runs import ZoomTest
+from viewer.window.palette import MARK
+from viewer.window.panels.widgets import ERROR, QUIET, count, em, paragraph, tooltip
+from viewer.window.ui import Ui
+
+_CHOSEN = ImVec4(0.42, 0.70, 0.96, 1.0)
+
+
+@dataclass(frozen=True)
+class Screening:
+    """A recorded picture that is shown where the traced one is, until something changes that."""
+
+    test: ZoomTest
+    shot: Shot
+    beside: object
+
+    def step(self) -> Step | None:
+        """The step that it is of; None of a test whose results are not there."""
+        return next((s for a in approaches_of(self.test) if a.factor == self.shot.factor for s in a.steps
+                     if s.number == self.shot.number), None)  # fmt: skip
+
+
+def approaches_of(test: ZoomTest) -> list[Approach]:
+    return test.results.approaches if test.results is not None else []
+
+
+def show_step(ui: Ui, test: ZoomTest, factor: float, number: int) -> None:
+    """Show the recorded picture of a step, or of the nearest that is kept."""
+    shot = test.film.nearest(factor, number)
+    if shot is None:
+        ui.controller.say("no picture of this step was kept")
+    else:
+        ui.screening = Screening(test, shot, _live(ui))
+
+
+def _live(ui: Ui) -> object:
+    """What the user does with the traced picture: once that is something else, it is what they want to see."""
+    s = ui.controller.session
+    return s.scene, s.camera, s.time, s.view, s.light, s.playing
+
+
+def strip(ui: Ui, test: ZoomTest, approach: Approach, name: str, size: ImVec2) -> None:
+    """The pictures towards the primitive with one factor, side by side; a click shows one large."""
+    shots, steps = test.film.of(approach.factor), {step.number: step for step in approach.steps}
+    bar = imgui.get_style().scrollbar_size
+    if imgui.begin_child(name, size, 0, int(imgui.WindowFlags_.horizontal_scrollbar)):
+        height = max(em(1.5), size.y - bar - em(0.25))
+        for shot in shots:
+            if shot.number in steps:
+                _thumbnail(ui, test, shot, steps[shot.number], height)
+                imgui.same_line(0.0, em(0.15))
+        if ui.controller.runner.current is test and approach is approaches_of(test)[-1]:
+            imgui.set_scroll_x(imgui.get_scroll_max_x())
+    imgui.end_child()
+
+
+def _thumbnail(ui: Ui, test: ZoomTest, shot: Shot, step: Step, height: float) -> None:
+    size = ImVec2(height * shot.width / shot.height, height)
+    if imgui.invisible_button(f"{shot.factor:g} step {shot.number}##shot", size):
+        show_step(ui, test, shot.factor, shot.number)
+    if not imgui.is_item_visible() or ui.shots is None:
+        return
+    start, end = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+    draw, texture = imgui.get_window_draw_list(), ui.shots.texture_id(shot, small=True)
+    if texture is not None:
+        draw.add_image(imgui.ImTextureRef(texture), start, end)
+    chosen = ui.screening is not None and ui.screening.shot is shot
+    color = _CHOSEN if chosen else ERROR if step.wrong_of_primitive else MARK if step.changes else None
+    if color is not None:
+        draw.add_rect(start, end, imgui.get_color_u32(color), 0.0, em(0.15 if chosen else 0.1))
+    tooltip("\n".join([*told(step), "click to see it large"]))
+
+
+def told(step: Step) -> list[str]:
+    """A step in numbers and words."""
+    wrong = f"{count(step.wrong_of_primitive)} of them wrong, {count(step.wrong)} in the picture"
+    return [f"step {step.number}: {count(step.pixels)} pixels, {wrong}", *changes_in_words(step.changes)]
+
+
+def screen(ui: Ui, room: ImVec2) -> bool:
+    """The recorded picture that was asked for, in the picture's room; returns whether there is one.
+
+    It goes as soon as anything else is done with the traced picture."""
+    shown = ui.screening
+    c = ui.controller
+    if shown is None or ui.shots is None:
+        return False
+    if shown.test is not c.runner.zoom_test or shown.beside != _live(ui):
+        ui.screening = None
+        return False
+    c.hovered = None
+    top = imgui.get_cursor_screen_pos()
+    texture = ui.shots.texture_id(shown.shot, small=False)
+    factor = min(room.x / shown.shot.width, room.y / shown.shot.height)
+    size = ImVec2(shown.shot.width * factor, shown.shot.height * factor)
+    start = ImVec2(top.x + (room.x - size.x) / 2.0, top.y + (room.y - size.y) / 2.0)
+    if texture is not None:
+        imgui.get_window_draw_list().add_image(
+            imgui.ImTextureRef(texture), start, ImVec2(start.x + size.x, start.y + size.y)
+        )
+    _caption(ui, shown, top, room)
+    return True
+
+
+def _caption(ui: Ui, shown: Screening, top: ImVec2, room: ImVec2) -> None:
+    """What it is, the way to its neighbours, and the way back."""
+    imgui.set_cursor_screen_pos(ImVec2(top.x + em(0.4), top.y + em(0.4)))
+    imgui.push_style_color(imgui.Col_.child_bg, imgui.get_style_color_vec4(imgui.Col_.popup_bg))
+    flags = imgui.ChildFlags_.auto_resize_y | imgui.ChildFlags_.always_use_window_padding
+    if imgui.begin_child("recorded", ImVec2(min(room.x - em(0.8), em(25.0)), 0.0), int(flags)):
+        step = shown.step()
+        paragraph(f"Recorded with zoom factor {shown.shot.factor:g}")
+        for line in told(step) if step is not None else ():
+            paragraph(line, QUIET)
+        _turn(ui, shown, -1, icons.ICON_FA_CHEVRON_LEFT, "the step before")
+        imgui.same_line()
+        _turn(ui, shown, 1, icons.ICON_FA_CHEVRON_RIGHT, "the next step")
+        imgui.same_line()
+        if imgui.button("Back (Escape)##recorded"):
+            ui.screening = None
+        if step is not None and ui.controller.runner.current is None:
+            imgui.same_line()
+            if imgui.button("Fly there"):
+                ui.controller.runner.go_to(step)
+            tooltip("traced at the window's size and with its modes, so that wrong pixels may be missing")
+    imgui.end_child()
+    imgui.pop_style_color()
+
+
+def _turn(ui: Ui, shown: Screening, by: int, icon: str, tip: str) -> None:
+    shots = shown.test.film.of(shown.shot.factor)
+    at = next((i for i, shot in enumerate(shots) if shot.number == shown.shot.number), 0) + by
+    imgui.begin_disabled(not 0 <= at < len(shots))
+    if imgui.button(f"{icon}##{by}") and 0 <= at < len(shots):
+        show_step(ui, shown.test, shots[at].factor, shots[at].number)
+    imgui.end_disabled()
+    tooltip(tip)

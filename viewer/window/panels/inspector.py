@@ -1,0 +1,117 @@
+"""One pixel, and the primitive it shows: why it is culled, or not."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from tracer.culling.modes import OcclusionMode, ShadowMode
+from viewer.state.picking import Pick
+from viewer.state.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
+from viewer.window.panels import explanation
+from viewer.window.panels.widgets import QUIET, count, heading, judged, paragraph, properties, swatch, told, tooltip
+from viewer.window.ui import Ui
+
+
+def show(ui: Ui) -> None:
+    """The panel: what was clicked, else what the pointer is on."""
+    c = ui.controller
+    if c.selected is not None:
+        imgui.text_colored(QUIET, f"pixel {c.selected.x}, {c.selected.y}, clicked")
+        imgui.same_line()
+        if imgui.small_button(f"{icons.ICON_FA_XMARK}##release"):
+            c.selected = None
+            return
+        tooltip("let it go, and follow the pointer again (Escape)")
+        _details(ui, c.selected)
+        return
+    found = c.pick(c.hovered)
+    if found is None:
+        paragraph("Point at the picture to inspect a pixel; click to keep it here and draw its shadow rays.", QUIET)
+    elif found.primitive < 0:
+        paragraph(f"Pixel {found.x}, {found.y}: nothing but background.", QUIET)
+    else:
+        imgui.text_colored(QUIET, f"pixel {found.x}, {found.y}, under the pointer")
+        _details(ui, found)
+
+
+def _details(ui: Ui, pick: Pick) -> None:
+    frame = ui.controller.frame
+    by_modes = frame is None or frame.settings.keeps_modes
+    if by_modes:
+        heading("Modes of its cell" if pick.in_cells else "Modes")
+        _modes(ui, pick)
+        paragraph(_verdict(pick), QUIET)
+    explanation.rows(ui)
+    heading("Surface")
+    with properties("primitive", 5.8) as shown:
+        if shown:
+            told("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""))
+            told("Primitive", f"{pick.primitive}  ({pick.kind})")
+            if pick.in_cells:
+                told("Cell", f"{pick.unit}", "the part of it that carries modes and counts")
+            if pick.material is not None:
+                told("Material", pick.material.name, _describe(pick))
+            tip = "that it covers now; it was judged by the most it covered while fully rendered"
+            told("Pixels", f"{count(pick.pixels)} now{f', {judged(pick.highest)}' if by_modes else ''}", tip)
+            if pick.wrong is not None:
+                answers = f"{count(pick.wrong)} shadow {'answer' if pick.wrong == 1 else 'answers'}"
+                told("Wrong here", answers, "for any light, at any bounce: what is seen in mirrors counts too")
+            told("Depth", f"{pick.depth:.5g}")
+            if pick.point is not None:
+                told("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
+            if pick.normal is not None:
+                told("Normal", "{:.2f}, {:.2f}, {:.2f}".format(*pick.normal))
+
+
+def _modes(ui: Ui, pick: Pick) -> None:
+    """The occlusion mode, and the shadow mode per light."""
+    with explanation.light_rows("modes") as shown:
+        if not shown:
+            return
+        if pick.occlusion is not None:
+            mode = pick.occlusion
+            _mode("occlusion", mode.name, OCCLUSION_COLORS[mode], OCCLUSION_MEANING[mode])
+        moves = pick.occlusion is OcclusionMode.DYNAMIC
+        for light, shadow in enumerate(() if moves else pick.shadows):
+            if shadow is not None:
+                _mode(ui.light_name(light), shadow.name, SHADOW_COLORS[shadow], SHADOW_MEANING[shadow])
+    uncovered = sum(mode is None for mode in pick.shadows)
+    if uncovered:
+        paragraph(f"{uncovered} more {'light is' if uncovered == 1 else 'lights are'} not culled", QUIET)
+
+
+def _mode(name: str, mode: str, color: tuple[float, float, float], meaning: str) -> None:
+    imgui.table_next_column()
+    swatch(color)
+    paragraph(name, QUIET)
+    imgui.table_next_column()
+    paragraph(mode.replace("_", " ").lower())
+    tooltip(meaning)
+
+
+def _describe(pick: Pick) -> str:
+    m = pick.material
+    assert m is not None
+    text = "diffuse ({:.3g}, {:.3g}, {:.3g}), specular ({:.3g}, {:.3g}, {:.3g})".format(*m.diffuse, *m.specular)
+    text += f", exponent {m.exponent:.4g}"
+    return text + (f", transmission {m.transmission:.3g}, index {m.ior:.3g}" if m.transmission else "")
+
+
+def _verdict(pick: Pick) -> str:
+    """In words: which shadow rays of this primitive the paper's method saves by its modes."""
+    if pick.occlusion is OcclusionMode.DYNAMIC:
+        return "It moves, so its shadow rays are always traced."
+    if pick.occlusion is not OcclusionMode.FULLY_RENDERED:
+        return "Not seen whole yet, so its shadow rays are traced."
+    lights = len(pick.shadows)
+    full = sum(mode is ShadowMode.FULL_SHADOW for mode in pick.shadows)
+    free = sum(mode is ShadowMode.NON_SHADOW for mode in pick.shadows)
+    if not full and not free:
+        return "Seen whole, but partly lit by each light, so its shadow rays are traced."
+    saved = (f"{full} of {lights} lights are culled" if full else "", _dynamic_only(free, lights) if free else "")
+    return f"By its modes, shadow rays to {' and those to '.join(filter(None, saved))}."
+
+
+def _dynamic_only(free: int, lights: int) -> str:
+    return f"{free} of {lights} lights are tested against dynamic objects only"

@@ -1,0 +1,132 @@
+"""The legend of the view: in the picture, where it can be dragged about, or, where it is not there, in a panel."""
+
+from __future__ import annotations
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from viewer.output.legend import Chosen, Legend, legend_of
+from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, Layout, Swatch, fitting, lay_out
+from viewer.state.views import Color, color_map
+from viewer.window.panels.widgets import em, tooltip_at
+from viewer.window.ui import Ui
+
+_STEPS = 24  # of a bar of the colour map
+_MARGIN = 0.5  # ems between the legend and the picture's edge
+_CATCH = 1.6  # ems within which it snaps to an edge
+_MOST = 0.62  # of the picture's width, and of its height
+
+
+def of_picture(ui: Ui) -> Legend | None:
+    """The legend of what is drawn of the newest frame; None where there is none."""
+    c = ui.controller
+    frame, scene, view = c.frame, c.session.scene, c.tracing.drawn_view
+    if frame is None or scene is None:
+        return None
+    light = c.session.light
+    name = scene.lights[light].name if light < len(scene.lights) else ""
+    chosen = Chosen(light, name, c.preferences.mark_wrong, c.preferences.work_shares)
+    found: Legend | None = ui.cached("legend", frame, (view, chosen), lambda: legend_of(frame, view, chosen))
+    return found
+
+
+def in_panel(ui: Ui) -> None:
+    """The whole legend at the cursor, where the picture does not show it."""
+    legend = of_picture(ui)
+    if legend is None or ui.legend_shown:
+        return
+    layout = fitting(legend, _width_of, imgui.get_text_line_height(), imgui.get_content_region_avail().x, 1e6)
+    layout = layout or lay_out(legend, _width_of, imgui.get_text_line_height())
+    at = imgui.get_cursor_screen_pos()
+    _draw(imgui.get_window_draw_list(), layout, at)
+    imgui.dummy(ImVec2(layout.width, layout.height))
+    if imgui.is_item_hovered():
+        _tell(layout, at)
+
+
+def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
+    """Over the picture from `corner` to `end`: where it was put, and always inside."""
+    ui.legend_shown = False
+    legend, p = of_picture(ui), ui.controller.preferences
+    if legend is None or not p.legend:
+        return
+    width, height = end.x - corner.x, end.y - corner.y
+    layout = fitting(legend, _width_of, imgui.get_text_line_height(), _MOST * width, _MOST * height)
+    if layout is None:
+        return
+    ui.legend_shown = True
+    margin = em(_MARGIN)
+    least = ImVec2(corner.x + margin, corner.y + margin + imgui.get_text_line_height() + em(0.7))  # below the title
+    room = ImVec2(end.x - margin - layout.width - least.x, end.y - margin - layout.height - least.y)
+    room = ImVec2(max(room.x, 1.0), max(room.y, 1.0))
+    at = ImVec2(round(least.x + p.legend_x * room.x), round(least.y + p.legend_y * room.y))
+    imgui.set_cursor_screen_pos(at)
+    imgui.invisible_button("legend", ImVec2(layout.width, layout.height))
+    _drag(ui, at, least, room)
+    draw = imgui.get_window_draw_list()
+    draw.push_clip_rect(corner, end, True)
+    _draw(draw, layout, at)
+    if imgui.is_item_hovered() and not imgui.is_item_active():
+        draw.add_rect(at, ImVec2(at.x + layout.width, at.y + layout.height), _packed((1.0, 1.0, 1.0), 0.35), em(0.3))
+        _tell(layout, at)
+    draw.pop_clip_rect()
+
+
+def _drag(ui: Ui, at: ImVec2, least: ImVec2, room: ImVec2) -> None:
+    """Follow the pointer that holds it; let go near an edge, it lies at that edge."""
+    p, mouse = ui.controller.preferences, imgui.get_io().mouse_pos
+    if imgui.is_item_activated():
+        ui.legend_held = mouse.x - at.x, mouse.y - at.y
+    released = imgui.is_item_deactivated()
+    if imgui.is_item_hovered() or imgui.is_item_active():
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
+    if not (imgui.is_item_active() or released):
+        return
+    left, top = mouse.x - ui.legend_held[0] - least.x, mouse.y - ui.legend_held[1] - least.y
+    p.legend_x, p.legend_y = (min(max(way / free, 0.0), 1.0) for way, free in ((left, room.x), (top, room.y)))
+    if released:
+        p.legend_x, p.legend_y = _caught(p.legend_x, room.x), _caught(p.legend_y, room.y)
+
+
+def _caught(part: float, room: float) -> float:
+    """A place along an edge, at its end where it is near one."""
+    if part * room <= em(_CATCH):
+        return 0.0
+    return 1.0 if (1.0 - part) * room <= em(_CATCH) else part
+
+
+def _draw(draw: imgui.ImDrawList, layout: Layout, at: ImVec2) -> None:
+    end = ImVec2(at.x + layout.width, at.y + layout.height)
+    draw.add_rect_filled(at, end, _packed(BACKDROP, BACKDROP_OPACITY), em(0.3))
+    for swatch in layout.swatches:
+        _fill(draw, swatch, at)
+    for words in layout.words:
+        draw.add_text(ImVec2(at.x + words.x, at.y + words.y), _packed(words.color), words.text)
+
+
+def _fill(draw: imgui.ImDrawList, swatch: Swatch, at: ImVec2) -> None:
+    x, y, bottom = at.x + swatch.x, at.y + swatch.y, at.y + swatch.y + swatch.height
+    if swatch.color is not None:
+        draw.add_rect_filled(ImVec2(x, y), ImVec2(x + swatch.width, bottom), _packed(swatch.color), em(0.15))
+        return
+    colors = color_map(_STEPS + 1)
+    packed = [_packed((float(r), float(g), float(b))) for r, g, b in (colors[::-1] if swatch.reverse else colors)]
+    for i in range(_STEPS):
+        start, stop = (x + swatch.width * k / _STEPS for k in (i, i + 1))
+        left, right = packed[i], packed[i + 1]
+        draw.add_rect_filled_multi_color(ImVec2(start, y), ImVec2(stop, bottom), left, right, right, left)
+
+
+def _tell(layout: Layout, at: ImVec2) -> None:
+    """What the line under the pointer stands for."""
+    y = imgui.get_io().mouse_pos.y - at.y
+    for top, bottom, text in layout.told:
+        if top <= y < bottom:
+            tooltip_at(text)
+
+
+def _width_of(text: str) -> float:
+    return float(imgui.calc_text_size(text).x)
+
+
+def _packed(color: Color, alpha: float = 1.0) -> int:
+    return int(imgui.get_color_u32(ImVec4(*color, alpha)))

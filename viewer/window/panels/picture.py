@@ -1,0 +1,193 @@
+"""The traced picture in its window, and the pointer on it.
+
+The picture keeps its aspect inside whatever room its window has; that room, in framebuffer
+pixels, is the resolution at which the next frame is traced.  The pointer moves the camera only
+when it was pressed on the picture itself.
+"""
+
+from __future__ import annotations
+
+import math
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from viewer.state import navigation
+from viewer.state.picking import point_at
+from viewer.window.palette import ON_PICTURE_ERROR
+from viewer.window.panels import explanation, film, legend, missing, timeline, tour, wipe
+from viewer.window.panels.widgets import QUIET, count, em, paragraph
+from viewer.window.ui import Ui
+
+CLICK_SLACK = 4.0
+BUTTONS = tuple(int(b) for b in (imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle))
+_ALL_BUTTONS = int(
+    imgui.ButtonFlags_.mouse_button_left
+    | imgui.ButtonFlags_.mouse_button_right
+    | imgui.ButtonFlags_.mouse_button_middle
+)
+FASTER = 4.0
+
+
+def show(ui: Ui) -> None:
+    """The window's content: the picture, the tour's strip and the timeline under it."""
+    room = imgui.get_content_region_avail()
+    bar = timeline.height() if ui.controller.session.animated else 0.0
+    room = ImVec2(room.x, room.y - bar)
+    strip = tour.leave_room(ui, imgui.get_cursor_screen_pos(), room)
+    room = ImVec2(room.x, room.y - strip)
+    scale = imgui.get_io().display_framebuffer_scale
+    ui.picture_area = (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y)))
+    ui.picture_focused = imgui.is_window_focused()
+    top = imgui.get_cursor_pos()
+    if room.x >= 1.0 and room.y >= 1.0 and not film.screen(ui, room):
+        _picture(ui, room)
+    if bar > 0.0:
+        imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y + strip))
+        timeline.show(ui)
+
+
+def _picture(ui: Ui, room: ImVec2) -> None:
+    c = ui.controller
+    c.hovered = None
+    frame = c.frame
+    texture = ui.display.texture_id if ui.display is not None else None
+    if frame is None or texture is None:
+        _placeholder(ui, room)
+        return
+    width, height = c.tracing.traced_full_size
+    factor = min(room.x / width, room.y / height)
+    size = ImVec2(max(1.0, width * factor), max(1.0, height * factor))
+    at = imgui.get_cursor_pos()
+    imgui.set_cursor_pos(ImVec2(at.x + (room.x - size.x) / 2.0, at.y + (room.y - size.y) / 2.0))
+    corner = imgui.get_cursor_screen_pos()
+    imgui.set_next_item_allow_overlap()  # what lies over the picture takes the pointer there
+    imgui.invisible_button("picture", size, _ALL_BUTTONS)
+    end = ImVec2(corner.x + size.x, corner.y + size.y)
+    imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), corner, end)
+    explanation.show(ui, corner, end)
+    _pointer(ui, corner, size)
+    wipe.show(ui, corner, end)
+    _overlay(ui, corner, end)
+    legend.show(ui, corner, end)
+    missing.show(ui, corner, end)
+
+
+def _placeholder(ui: Ui, room: ImVec2) -> None:
+    """What stands there before the first picture."""
+    c = ui.controller
+    if c.opener.load_job is not None or c.opener.warm_up_job is not None or c.render.busy:
+        return  # the progress window speaks
+    text = "Open a scene (Ctrl+O), or drop one on this window"
+    width = imgui.calc_text_size(text).x
+    at = imgui.get_cursor_pos()
+    imgui.set_cursor_pos(ImVec2(at.x + max(0.0, (room.x - width) / 2.0), at.y + room.y / 2.0))
+    paragraph(text, QUIET)
+
+
+def _pointer(ui: Ui, corner: ImVec2, size: ImVec2) -> None:
+    """Hovering, clicking and dragging on the picture, which is ImGui's last item."""
+    c, io = ui.controller, imgui.get_io()
+    if ui.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
+        ui.pivot, ui.pivot_scene = None, c.session.scene
+    u, v = (io.mouse_pos.x - corner.x) / size.x, (io.mouse_pos.y - corner.y) / size.y
+    if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
+        c.hovered = (u, v)
+        _wheel(ui, io.mouse_wheel)
+    if wipe.handle(ui, corner, size):
+        return
+    if imgui.is_item_activated():
+        ui.dragged = False
+        ui.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
+        ui.pressed = next((b for b in BUTTONS if imgui.is_mouse_clicked(b)), BUTTONS[0])
+        point = point_at(c.frame, u, v) if c.frame is not None else None
+        if point is not None:
+            ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
+    released = imgui.is_item_deactivated()
+    if imgui.is_item_active() or released:  # a quick hand drags and lets go within one of our frames
+        ui.dragged |= math.dist(ui.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > CLICK_SLACK
+        if ui.dragged:
+            _drag(ui, ui.pressed, io.mouse_delta.x / size.y, io.mouse_delta.y / size.y)
+    if released and not ui.dragged:
+        c.select((u, v))
+
+
+def _drag(ui: Ui, button: int, dx: float, dy: float) -> None:
+    """Move the camera by a drag of so many picture heights."""
+    if dx == 0.0 and dy == 0.0:
+        return
+    c = ui.controller
+    camera, world = c.session.camera, c.world_up
+    pivot = ui.pivot
+    orbiting = c.preferences.navigation == "orbit" and pivot is not None
+    if button == BUTTONS[2] or (orbiting and button == BUTTONS[1]):
+        distance = math.dist(pivot, camera.position) if pivot is not None else 4.0 * c.pace
+        c.move(navigation.pan(camera, dx, -dy, distance))
+    elif orbiting and pivot is not None:
+        turn = 2.0 * navigation.RADIANS_PER_HEIGHT
+        c.move(navigation.orbit(camera, pivot, dx * turn, -dy * turn, world))
+    else:
+        turn = navigation.RADIANS_PER_HEIGHT
+        c.move(navigation.look(camera, dx * turn, -dy * turn, world))
+
+
+def _wheel(ui: Ui, notches: float) -> None:
+    if notches == 0.0:
+        return
+    c = ui.controller
+    if c.preferences.navigation == "orbit":
+        point = point_at(c.frame, *c.hovered) if c.frame is not None and c.hovered is not None else None
+        if point is not None:
+            ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
+        if ui.pivot is not None:
+            c.move(navigation.dolly(c.session.camera, ui.pivot, notches))
+    else:
+        c.preferences.speed = min(max(c.preferences.speed * 1.2**notches, 0.001), 1000.0)
+        c.say(f"flying speed {c.preferences.speed:.3g}")
+
+
+def fly(ui: Ui) -> None:
+    """Move by the keys that are held down; called once per frame, for every window but those being typed in."""
+    c, io = ui.controller, imgui.get_io()
+    if io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or c.session.scene is None:
+        return
+    if imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup_id | imgui.PopupFlags_.any_popup_level)):
+        return
+
+    def axis(plus: imgui.Key, minus: imgui.Key) -> float:
+        return float(imgui.is_key_down(plus)) - float(imgui.is_key_down(minus))
+
+    right, up, forward = axis(imgui.Key.d, imgui.Key.a), axis(imgui.Key.e, imgui.Key.q), axis(imgui.Key.w, imgui.Key.s)
+    if right == up == forward == 0.0:
+        return
+    way = c.pace * c.preferences.speed * min(io.delta_time, 0.1) * (FASTER if io.key_shift else 1.0)
+    c.move(navigation.fly(c.session.camera, right * way, up * way, forward * way, c.world_up))
+
+
+def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
+    """What view it is and how coarse, in the picture's corner."""
+    c = ui.controller
+    frame, request = c.frame, c.traced.request if c.traced is not None else None
+    if frame is None or request is None:
+        return
+    text = f"{c.tracing.title}   {frame.width} x {frame.height}"
+    if request.divisor > 1:
+        text += f"   1/{request.divisor}"
+    if frame.statistics.part < 1.0:
+        text += f"   {frame.statistics.part:.0%} shaded"
+    elif request.samples > 1:
+        text += f"   {c.tracing.samples_shown} of {request.samples} samples"
+    shadow, counter = frame.statistics.shadow, ""
+    if c.tracing.drawn_view.needs_verify and not ui.legend_shown:
+        counter = f"   {count(shadow.wrong)} wrong of {count(shadow.due)} answers"
+    size = imgui.calc_text_size(text + counter)
+    if end.x - corner.x < size.x + em(2.0):
+        return
+    pad = em(0.35)
+    lower = ImVec2(corner.x + size.x + 3.0 * pad, corner.y + size.y + 2.0 * pad)
+    back, front = (imgui.get_color_u32(ImVec4(*color)) for color in ((0.05, 0.06, 0.08, 0.72), (0.93, 0.94, 0.96, 1.0)))
+    draw = imgui.get_window_draw_list()
+    draw.add_rect_filled(corner, lower, back, em(0.3))
+    draw.add_text(ImVec2(corner.x + 1.5 * pad, corner.y + pad), front, text)
+    if counter:
+        color = imgui.get_color_u32(ON_PICTURE_ERROR) if shadow.wrong else front
+        draw.add_text(ImVec2(corner.x + 1.5 * pad + imgui.calc_text_size(text).x, corner.y + pad), color, counter)

@@ -1,0 +1,150 @@
+"""The last frames' numbers: what became of shadow rays as stacked areas, work and milliseconds as curves."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from imgui_bundle import ImVec2, ImVec4, imgui, implot
+from numpy.typing import NDArray
+
+from viewer.state import terms
+from viewer.window.palette import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
+from viewer.window.panels.widgets import QUIET, checkbox, count, em, paragraph
+from viewer.window.ui import Ui
+
+_FATES = "What became of shadow rays"
+_LOGARITHMIC = "Milliseconds"
+_PLOTS = (
+    (_FATES, ((terms.CULLED, "culled", BLUE), (terms.DYNAMIC_ONLY, "dynamic_only", YELLOW),
+              (terms.CANDIDATES_ONLY, "candidates_only", ORANGE), (terms.CACHE_HITS, "cache_hits", PINK),
+              (terms.TRACED, "traced", GREY))),
+    ("Steps and tests", (("steps", "steps", BLUE), ("for shadows", "shadow_steps", SKY),
+                         ("tests", "tests", ORANGE))),
+    (_LOGARITHMIC, (("tracing", "traced_ms", BLUE), ("drawing", "drawn_ms", ORANGE))),
+)  # fmt: skip
+_SHARES = (0.44, 0.31, 0.25)  # of the panel's width: the first legend is the longest
+FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
+AXIS = int(implot.AxisFlags_.no_highlight)
+LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
+COLORS = (BLUE, ORANGE, GREEN, SKY, PINK, YELLOW)
+
+
+def whole_numbers(first: float, last: float, width: float) -> None:
+    """Ticks along the x axis of a plot of `first` to `last`, so many pixels wide: at whole numbers, and none so near to
+    an edge that its label would be cut off."""
+    room = max(width - em(5.0), em(2.0))  # what the labels of the other axes leave, at least
+    label = imgui.calc_text_size(f"{last:.0f}").x
+    apart = (last - first) / room  # what one pixel is
+    power = 10 ** max(math.ceil(math.log10(2.5 * label * apart)) - 1, 0)
+    step = next((n * power for n in (1, 2, 5) if n * power >= 2.5 * label * apart), 10 * power)
+    least, most = math.ceil(first / step) * step, math.floor((last - 0.6 * label * apart) / step) * step
+    ticks = range(least, most + 1, step)
+    implot.setup_axis_ticks(implot.ImAxis_.x1, [float(tick) for tick in ticks], [str(tick) for tick in ticks])
+
+
+def wrong_axis(most: int, condition: int) -> None:
+    """A right-hand axis y2 for bars of `most` at most, which stay in the lowest third; its ticks are whole numbers."""
+    step = max(1, most // 2)
+    implot.setup_axis(implot.ImAxis_.y2, "wrong", AXIS | int(implot.AxisFlags_.aux_default))
+    implot.setup_axis_limits(implot.ImAxis_.y2, 0.0, 3.0 * max(most, 1), condition)
+    ticks = [0, step] if most < 2 else [0, step, most]
+    implot.setup_axis_ticks(implot.ImAxis_.y2, [float(tick) for tick in ticks], [count(tick) for tick in ticks])
+
+
+def show(ui: Ui) -> None:
+    """The panel: three plots side by side, over the number of the frame."""
+    history = ui.controller.history
+    if len(history) == 0:
+        paragraph("Curves appear with the first frames.", QUIET)
+        return
+    checkbox(
+        "per pixel",
+        ui.per_pixel,
+        lambda on: setattr(ui, "per_pixel", on),
+        "divide by the number of pixels, so that frames of different sizes can be compared",
+    )
+    imgui.same_line()
+    if imgui.small_button("clear"):
+        history.clear()
+        return
+    imgui.same_line()
+    imgui.text_colored(QUIET, f"the last {len(history)} frames" if len(history) > 1 else "one frame so far")
+    room = imgui.get_content_region_avail()
+    spacing = imgui.get_style().item_spacing.x
+    columns = 3 if room.x > em(42.0) else 1  # else one below the other, and the panel scrolls
+    shares = _SHARES if columns > 1 else (1.0,) * len(_PLOTS)
+    for number, ((title, series), share) in enumerate(zip(_PLOTS, shares, strict=True)):
+        if number % columns:
+            imgui.same_line()
+        _plot(ui, title, series, ImVec2(share * (room.x - (columns - 1) * spacing), max(room.y, em(8.0))))
+
+
+def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size: ImVec2) -> None:
+    history = ui.controller.history
+    per_pixel = ui.per_pixel and title != _LOGARITHMIC
+    if not implot.begin_plot(f"{title}{' per pixel' if per_pixel else ''}##{title}", size, FLAGS):
+        return
+    curves = [(label, _values(ui, name, per_pixel), color) for label, name, color in series]
+    last = history.first + max(len(history) - 1, 10)
+    top = max(float(values.max()) for _, values, _ in curves)
+    if title == _FATES:
+        top = float(_values(ui, "due", per_pixel).max())
+    implot.setup_axes("", "", AXIS, AXIS)
+    whole_numbers(history.first, last, size.x)
+    implot.setup_axis_format(implot.ImAxis_.y1, "%.4g")
+    if title == _LOGARITHMIC:  # full frames and those in motion differ a hundredfold
+        implot.setup_axis_scale(implot.ImAxis_.y1, int(implot.Scale_.log10))
+        lowest, highest = 1.0, 10.0 * max(top, 1.0)
+    else:
+        lowest, highest = 0.0, 1.12 * top if top > 0.0 else 1.0
+    implot.setup_axes_limits(history.first, last, lowest, highest, int(imgui.Cond_.always))
+    _label_frames(history.first, last, size.x)
+    if title == _LOGARITHMIC:
+        _label_decades(highest, size.y)
+    implot.setup_legend(implot.Location_.south, LEGEND)
+    if title == _FATES:
+        _stack(curves, float(history.first))
+    else:
+        for label, values, color in curves:
+            implot.plot_line(label, values, 1.0, float(history.first), implot.Spec(line_color=color, line_weight=1.6))
+    implot.end_plot()
+
+
+def _label_frames(first: int, last: int, width: float) -> None:
+    """Numbers of frames at round places, far enough apart to be read in a plot so wide, none past its right edge."""
+    across, digit = max(width - em(4.0), em(1.0)), imgui.calc_text_size("0").x
+    most = max(across / (digit * (len(str(last)) + 1.5)) - 1.0, 1.0)
+    step = next(s for k in range(12) for s in (10**k, 2 * 10**k, 5 * 10**k) if (last - first) / s <= most)
+    over = max(0.5 * digit * len(str(last)) - em(0.4), 0.0) / across * (last - first)  # that a number at the end is
+    ticks = [float(n) for n in range(-(-first // step) * step, math.floor(last - over) + 1, step)]
+    implot.setup_axis_ticks(implot.ImAxis_.x1, ticks, [f"{tick:.0f}" for tick in ticks])
+
+
+def _label_decades(highest: float, height: float) -> None:
+    """1, 10, 100, ... at the left edge; every second or third of them where the plot is low."""
+    decades = max(1, math.floor(math.log10(highest)))
+    room = max((height - em(5.0)) / (1.3 * imgui.get_text_line_height()), 1.0)
+    ticks = [10.0**k for k in range(0, decades + 1, math.ceil((decades + 1) / room))]
+    implot.setup_axis_ticks(implot.ImAxis_.y1, ticks, [f"{tick:.0f}" for tick in ticks])
+
+
+def _stack(curves: list[tuple[str, NDArray[np.float64], ImVec4]], first: float) -> None:
+    """Areas one above the other, which together are all rays that were due; a fate that no ray had is left out."""
+    below = np.zeros(len(curves[0][1]))
+    frames = first + np.arange(len(below), dtype=np.float64)
+    if len(frames) == 1:  # is no area
+        frames = np.array([first, first + 1.0])
+    for number, (label, values, color) in enumerate(curves):
+        above = below + values
+        if values.any() or number == len(curves) - 1:
+            lower, upper = (np.resize(edge, len(frames)) for edge in (below, above))
+            implot.plot_shaded(label, frames, lower, upper, implot.Spec(fill_color=color, fill_alpha=0.85))
+        below = above
+
+
+def _values(ui: Ui, name: str, per_pixel: bool) -> NDArray[np.float64]:
+    """A series as ImPlot wants it, contiguous float64."""
+    history = ui.controller.history
+    values = history.values(name)
+    return values / np.maximum(history.values("pixels"), 1.0) if per_pixel else values

@@ -1,0 +1,87 @@
+"""What the panels of experiments and zoom tests share: three parts side by side, progress, and the files to save."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from viewer.output.exports import ENDINGS
+from viewer.services.runs import Run, duration
+from viewer.window.panels.widgets import QUIET, clipped, em, tooltip_above, wide_button
+from viewer.window.ui import Ui
+
+_KINDS = {".json": "JSON", ".csv": "CSV", ".png": "Plot"}
+_TIPS = {
+    ".json": "save every figure",
+    ".csv": "save the table",
+    ".png": "save the plot as a picture",
+}
+
+
+def side_by_side(
+    controls: Callable[[], None],
+    plot: Callable[[ImVec2], None],
+    table: Callable[[], None],
+    table_width: float,
+    scrolls: bool = False,
+) -> None:
+    """Controls, plot and table in a row; one below the other where the panel is too narrow for that.
+
+    A table that `scrolls` does so in half of what the controls leave, where it is wider than that."""
+    room = imgui.get_content_region_avail()
+    spacing = imgui.get_style().item_spacing.x
+    left = em(14.0)
+    if scrolls:
+        table_width = min(table_width, max(0.5 * (room.x - left), em(18.0)))
+    middle = room.x - left - table_width - 2.0 * spacing
+    if middle < em(16.0):  # before they go one below the other, the table gives what it can
+        table_width = max(em(11.0), table_width - (em(16.0) - middle))
+        middle = room.x - left - table_width - 2.0 * spacing
+    if middle < em(12.0):
+        controls()
+        plot(ImVec2(room.x, em(14.0)))
+        if imgui.begin_child("table", ImVec2(0.0, em(14.0))):
+            table()
+        imgui.end_child()
+        return
+    if imgui.begin_child("controls", ImVec2(left, 0.0)):
+        controls()
+    imgui.end_child()
+    imgui.same_line()
+    plot(ImVec2(middle, max(room.y, em(8.0))))
+    imgui.same_line()
+    if imgui.begin_child("table", ImVec2(table_width, 0.0)):
+        table()
+    imgui.end_child()
+
+
+def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: str) -> None:
+    """The button that starts, or, while the run is under way, how far it is and the button that stops it."""
+    runner = ui.controller.runner
+    if run is None or runner.current is not run:
+        imgui.begin_disabled(runner.current is not None)
+        if wide_button(f"{icons.ICON_FA_PLAY}  Start", tip, explain=tooltip_above):
+            start()
+        imgui.end_disabled()
+        return
+    left = run.seconds_left
+    imgui.progress_bar(run.fraction, ImVec2(-1.0, 0.0), "" if left is None else f"{duration(left)} left")
+    clipped(f"now {run.label}", QUIET)
+    if run.stopping:
+        imgui.text_colored(QUIET, "stopping ...")
+    elif wide_button(f"{icons.ICON_FA_STOP}  Stop", "keeps what is done (Escape)", explain=tooltip_above):
+        runner.stop()
+
+
+def export_buttons(ui: Ui, run: Run | None) -> None:
+    """One small button for each kind of file; none before there are results."""
+    if run is None or run.results is None:
+        return
+    for ending in ENDINGS:
+        if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK} {_KINDS[ending]}"):
+            ui.controller.runner.export(run, ending)
+        tooltip_above(_TIPS[ending])
+        imgui.same_line(0.0, em(0.25))
+    imgui.new_line()

@@ -1,0 +1,31 @@
+"""Saving pictures: now, where to, and under which name."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from viewer.window.panels.widgets import QUIET, checkbox, paragraph, properties, row, tooltip, wide_button
+from viewer.window.ui import CaptureKind, Ui
+
+
+def show(ui: Ui) -> None:
+    """The panel."""
+    p = ui.controller.preferences
+    if wide_button(f"{icons.ICON_FA_CAMERA}  Save", "the picture alone (F12)", 2):
+        ui.capture_wanted = CaptureKind.PICTURE
+    imgui.same_line()
+    if wide_button(f"{icons.ICON_FA_DISPLAY}  With panels", "the whole window (Shift+F12)"):
+        ui.capture_wanted = CaptureKind.WINDOW
+    with properties("pictures", 5.0) as shown:
+        if shown:
+            row("Folder", "where pictures are saved")
+            hint = str(ui.default_folder)
+            _, p.screenshot_folder = imgui.input_text_with_hint("##folder", hint, p.screenshot_folder)
+            tooltip(p.screenshot_folder or hint)
+            row("Name", "template of the file's name")
+            _, p.screenshot_template = imgui.input_text("##template", p.screenshot_template)
+            tooltip(ui.template_help)
+    tip = "where the view has one; the picture with panels shows what the window shows"
+    checkbox("With legend", p.legend_in_pictures, lambda on: setattr(p, "legend_in_pictures", on), tip)
+    paragraph("A saved picture carries scene, camera, settings and statistics: open or drop it to come back.", QUIET)

@@ -1,0 +1,127 @@
+"""The scene: what is in it, what its reader warns of, and how to open another."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from imgui_bundle import imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from tracer.culling.modes import MAX_CULLED_LIGHTS
+from viewer.util.resources import embedded_scenes
+from viewer.window.panels.widgets import (
+    QUIET,
+    WARNING,
+    clipped,
+    count,
+    heading,
+    paragraph,
+    properties,
+    tooltip,
+    value,
+    wide_button,
+)
+from viewer.window.ui import Ui
+
+
+def show(ui: Ui) -> None:
+    """The panel."""
+    c = ui.controller
+    if wide_button(f"{icons.ICON_FA_FOLDER_OPEN}  Open...", "or drop a file on the window (Ctrl+O)", 2):
+        ui.browser.open = True
+    imgui.same_line()
+    if wide_button(f"{icons.ICON_FA_CLOCK_ROTATE_LEFT}  Recent"):
+        imgui.open_popup("recent")
+    _recent(ui)
+    if c.session.scene is None:
+        paragraph("No scene is open.", QUIET)
+        return
+    _facts(ui)
+    _lights(ui)
+    _warnings(ui)
+
+
+def _recent(ui: Ui) -> None:
+    if not imgui.begin_popup("recent"):
+        return
+    for name, path in embedded_scenes().items():
+        if imgui.menu_item(f"{name}##embedded", "comes with Shadowcull", False, True)[0]:
+            ui.controller.opener.open(path)
+    recent = [r for r in ui.controller.preferences.recent if Path(r) not in embedded_scenes().values()]
+    if recent:
+        imgui.separator()
+    for text in recent:
+        if imgui.menu_item(f"{Path(text).name}##{text}", "", False, True)[0]:
+            ui.controller.opener.open(Path(text))
+        tooltip(text)
+    imgui.end_popup()
+
+
+def _facts(ui: Ui) -> None:
+    c = ui.controller
+    scene, info = c.session.scene, c.info
+    assert scene is not None
+    with properties("facts", 7.0) as shown:
+        if shown:
+            value("File", scene.path.name, str(scene.path))
+            value("Triangles", count(info.get("triangles", 0)))
+            value(
+                "  dynamic",
+                count(info.get("dynamic_triangles", 0)),
+                "triangles of objects that move: their shadow rays are never culled",
+            )
+            if info.get("spheres") or info.get("cones"):
+                value("Spheres, cones", f"{count(info.get('spheres', 0))}, {count(info.get('cones', 0))}")
+            value("Objects", f"{len(scene.objects) - 1} dynamic" if len(scene.objects) > 1 else "all static")
+            value("Materials", f"{len(scene.materials)}, {len(scene.textures)} textures")
+            if c.session.animated:
+                start, end = scene.time_range
+                value("Animation", f"{scene.frames} frames, {end - start:.4g} s")
+
+
+def _lights(ui: Ui) -> None:
+    c = ui.controller
+    scene = c.session.scene
+    assert scene is not None
+    lights = scene.lights
+    heading(f"Lights ({len(lights)})")
+    if not lights:
+        paragraph("No lights: only ambient light shows, and there are no shadows to cull.", WARNING)
+        return
+    if len(lights) > MAX_CULLED_LIGHTS:
+        paragraph(
+            f"{icons.ICON_FA_TRIANGLE_EXCLAMATION} Culling covers the first {MAX_CULLED_LIGHTS} lights; the other "
+            f"{len(lights) - MAX_CULLED_LIGHTS} are traced without it.",
+            WARNING,
+        )
+    rows = min(len(lights), 6)
+    height = rows * imgui.get_text_line_height_with_spacing() + 2.0
+    if imgui.begin_child("lights", (0.0, height)):
+        for index, light in enumerate(lights):
+            strongest = max(*light.color, 1e-9)
+            red, green, blue = (channel / strongest for channel in light.color)
+            side = imgui.get_text_line_height()
+            flags = int(imgui.ColorEditFlags_.no_tooltip)
+            imgui.color_button(f"##light{index}", (red, green, blue, 1.0), flags, (side, side))
+            imgui.same_line()
+            name = ui.light_name(index) + ("  (moves)" if light.track else "")
+            if index >= MAX_CULLED_LIGHTS:
+                name += "  (not culled)"
+            clicked, _ = imgui.selectable(f"{name}##{index}", c.session.light == index)
+            tooltip("at ({:.4g}, {:.4g}, {:.4g}), colour ({:.3g}, {:.3g}, {:.3g}); the shadow view shows the chosen "
+                    "light".format(*light.position, *light.color))  # fmt: skip
+            if clicked:
+                c.set_light(index)
+    imgui.end_child()
+
+
+def _warnings(ui: Ui) -> None:
+    scene = ui.controller.session.scene
+    assert scene is not None
+    if not scene.warnings:
+        return
+    heading(f"Warnings ({len(scene.warnings)})")
+    if imgui.begin_child("warnings", (0.0, min(len(scene.warnings), 6) * imgui.get_text_line_height_with_spacing())):
+        for warning in scene.warnings:
+            clipped(warning.replace(f"{scene.path.parent}/", ""), WARNING)
+    imgui.end_child()

@@ -1,0 +1,168 @@
+"""The numbers of the newest frame, and the resolution they are for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from imgui_bundle import imgui
+
+from tracer.frame import Frame
+from tracer.method import certifies as makes_certificates
+from tracer.method import takes
+from viewer.state import terms
+from viewer.state.history import fully_traced
+from viewer.window.panels.widgets import (
+    QUIET,
+    amount,
+    clipped,
+    count,
+    em,
+    heading,
+    paragraph,
+    percent,
+    right,
+    short,
+    tooltip,
+)
+from viewer.window.ui import Ui
+
+_WIDE = 15.0  # ems of a panel that has room for counts and shares beside each other
+_WORK = ("rays", "steps", "tests")
+
+
+def show(ui: Ui) -> None:
+    """The panel."""
+    c = ui.controller
+    frame = c.frame
+    if frame is None or c.traced is None:
+        paragraph("No frame has been traced yet.", QUIET)
+        return
+    s = frame.statistics
+    pixels = max(round(s.part * frame.width * frame.height), 1)  # that have been shaded
+    divisor = c.traced.request.divisor
+    coarse = f" (1/{divisor} of the window)" if divisor > 1 else ""
+    part = f"{s.part:.0%} of " if s.part < 1.0 else ""
+    clipped(f"for {part}{frame.width} x {frame.height} pixels{coarse}, method {frame.settings.method}")
+    if c.tracing.outdated:
+        paragraph("These are for the previous settings; a new frame is being traced.", QUIET)
+    if s.decision:
+        paragraph(s.decision, QUIET)
+    certifies = makes_certificates(frame.settings.method)
+    _shadow_rays(frame, pixels, certifies)
+    heading("Work")
+    _work(ui)
+    heading("Time")
+    with _amounts("time") as shown:
+        if shown:
+            amount("Frame", _milliseconds(s.seconds), "from the request to the picture; below, its parts")
+            for name in [*terms.PHASES, *(n for n in s.phases if n not in terms.PHASES)]:
+                if name in s.phases and (certifies or name != "certification"):
+                    label, tip = terms.PHASES.get(name, (name, ""))
+                    amount(f"  {label}", _milliseconds(s.phases[name]), tip)
+            amount("Window drawn in", _milliseconds(c.drawn_seconds), "what the window needs for one of its own frames")
+
+
+def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
+    """What became of them, and what deciding that took."""
+    s, shadow = frame.statistics, frame.statistics.shadow
+    wide = imgui.get_content_region_avail().x > em(_WIDE)
+
+    def fate(term: str, part: int) -> None:
+        name, tip, share = term.capitalize(), terms.MEANINGS[term], percent(part, shadow.due)
+        if wide:
+            amount(name, count(part), tip)
+            imgui.table_next_column()
+            right(share)
+        else:
+            amount(name, share, f"{tip} ({count(part)})")
+
+    heading("Shadow rays")
+    with _amounts("shadow" if wide else "shadow, narrow", em(3.6) if wide else 0.0) as shown:
+        if not shown:
+            return
+        due = count(shadow.due) if wide else short(shadow.due)
+        amount(terms.DUE.capitalize(), due, f"{terms.MEANINGS[terms.DUE]} ({count(shadow.due)})")
+        fate(terms.CULLED, shadow.culled)
+        fate(terms.DYNAMIC_ONLY, shadow.dynamic_only)
+        if certifies or shadow.candidates_only:
+            fate(terms.CANDIDATES_ONLY, shadow.candidates_only)
+        if takes(frame.settings.method, "cache") or shadow.cache_hits:
+            fate(terms.CACHE_HITS, shadow.cache_hits)
+        fate(terms.TRACED, fully_traced(shadow))
+        if frame.settings.verify:
+            fate(terms.WRONG, shadow.wrong)
+    with _amounts("cost of deciding") as shown:
+        if not shown:
+            return
+        amount("Due per pixel", f"{shadow.due / pixels:.2f}")
+        if frame.settings.keeps_modes:
+            tip = f"whether a primitive hides that of the neighbouring pixel ({count(s.occlusion_tests)} in all)"
+            amount("Occlusion tests per pixel", f"{s.occlusion_tests / pixels:.3f}", tip)
+        if certifies:
+            amount("New certificates", count(s.certificates), "proofs for parts of surfaces, made in this frame")
+
+
+@contextmanager
+def _amounts(name: str, shares: float = 0.0) -> Iterator[bool]:
+    """A table of names and numbers, and a column of shares where that has a width."""
+    shown = imgui.begin_table(name, 3 if shares else 2, int(imgui.TableFlags_.sizing_stretch_prop))
+    if shown:
+        imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_stretch), 1.8)
+        imgui.table_setup_column("number", int(imgui.TableColumnFlags_.width_stretch), 1.0)
+        if shares:
+            imgui.table_setup_column("share", int(imgui.TableColumnFlags_.width_fixed), shares)
+    try:
+        yield shown
+    finally:
+        if shown:
+            imgui.end_table()
+
+
+def _milliseconds(seconds: float) -> str:
+    return f"{1e3 * seconds:.1f} ms"
+
+
+def _work(ui: Ui) -> None:
+    """Rays, steps and tests of each kind of ray, and steps and tests of certificates."""
+    frame = ui.controller.frame
+    assert frame is not None
+    s = frame.statistics
+    rows: list[tuple[str, tuple[int, ...]]] = [
+        (name, (part.rays, part.traversal_steps, part.intersection_tests))
+        for name, part in (("primary", s.primary), ("secondary", s.secondary), ("shadow", s.shadow))
+    ]
+    if makes_certificates(frame.settings.method):
+        rows.append(("certificates", (0, s.certificate_steps, s.certificate_tests)))
+    rows.append(("all", tuple(sum(numbers[n] for _, numbers in rows) for n in range(3))))
+    told = "steps: nodes of the tree that rays enter; tests: rays against primitives"
+    if frame.settings.accelerator != "kdtree":
+        told += "; of whole packets of rays where these are coherent (an experiment counts each ray's, in a kd-tree)"
+    if imgui.get_content_region_avail().x > em(_WIDE):
+        _work_table(rows, told)
+        return
+    with _amounts("work, narrow") as shown:  # a narrow panel has no room for four columns
+        for name, numbers in rows if shown else ():
+            for title, number in zip(_WORK, numbers, strict=True):
+                if number:
+                    amount(f"{name}, {title}", short(number), f"{count(number)}; {told}")
+
+
+def _work_table(rows: list[tuple[str, tuple[int, ...]]], told: str) -> None:
+    if not imgui.begin_table("work", 4, int(imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg)):
+        return
+    imgui.table_setup_column("kind", int(imgui.TableColumnFlags_.width_fixed), em(5.2))
+    for title in _WORK:
+        imgui.table_setup_column(title, int(imgui.TableColumnFlags_.width_stretch))
+    for title in ("", *_WORK):
+        imgui.table_next_column()
+        right(title, QUIET)
+        tooltip(told)
+    for name, numbers in rows:
+        imgui.table_next_column()
+        clipped(name, QUIET)
+        for number in numbers:
+            imgui.table_next_column()
+            right(short(number))
+            tooltip(count(number))
+    imgui.end_table()

@@ -1,0 +1,75 @@
+"""The status bar: what the program does now, in plain words, and what the picture cost."""
+
+from __future__ import annotations
+
+from imgui_bundle import hello_imgui, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from viewer.services.controller import Controller
+from viewer.window.panels.widgets import ERROR, QUIET, clipped, count, em
+from viewer.window.ui import Ui
+
+
+def show(ui: Ui) -> None:
+    """The bar."""
+    c = ui.controller
+    message = c.current_message
+    right = _summary(ui)
+    width = imgui.calc_text_size(right).x + em(1.0)
+    room = imgui.get_content_region_avail().x
+    left = imgui.get_cursor_pos_x()
+    if width > 0.6 * room:  # a narrow window: what happens is told first
+        right, width = "", 0.0
+    if imgui.begin_child("message", (max(em(4.0), room - width), imgui.get_text_line_height() + 2.0)):
+        if message is not None:
+            icon = icons.ICON_FA_CIRCLE_EXCLAMATION if message.error else icons.ICON_FA_CIRCLE_INFO
+            clipped(f"{icon}  {message.text}", ERROR if message.error else None)
+            if message.error and imgui.is_item_clicked():
+                c.message = None
+        else:
+            clipped(doing(c), QUIET)
+    imgui.end_child()
+    if right:
+        imgui.same_line(left + max(0.0, room - width + em(0.5)))
+        imgui.text_colored(QUIET, right)
+
+
+def doing(c: Controller) -> str:
+    """What the program does now."""
+    preparing, loading = c.opener.warm_up_job, c.opener.load_job
+    if preparing is not None and c.frame is None:
+        return f"{preparing.title}: {preparing.label}"
+    if loading is not None:
+        return f"{loading.title}: {loading.label}" if loading.label else loading.title
+    if c.runner.current is not None:
+        return f"{c.runner.current.name}, traced: {c.runner.current.label}   (Escape stops it)"
+    if preparing is not None:
+        return f"compiling certificates (first start only), not culled by them until then: {preparing.label}"
+    if c.session.scene is None:
+        return "no scene is open"
+    if c.moving or c.session.playing:
+        return "tracing"
+    if c.render.busy:
+        return "refining the picture" if c.tracing.becoming_finer or _learns(c) else "tracing"
+    if c.render.running is not None and c.tracing.samples_shown < c.tracing.samples_wanted:
+        return f"adding samples: {c.tracing.samples_shown} of {c.tracing.samples_wanted}"
+    return "idle   (F1: keyboard and mouse)"
+
+
+def _learns(c: Controller) -> bool:
+    """Whether the picture is there, and is traced again so that culling learns."""
+    return c.frame is not None and not c.tracing.outdated and c.frame.camera == c.session.camera
+
+
+def _summary(ui: Ui) -> str:
+    """The picture's size and cost, and how often the window is drawn while anything goes on."""
+    c = ui.controller
+    frame = c.frame
+    parts = []
+    if frame is not None:
+        if frame.settings.verify:
+            parts.append(f"{count(frame.statistics.shadow.wrong)} wrong")
+        parts += [f"{frame.width} x {frame.height}", f"{1e3 * frame.statistics.seconds:.0f} ms"]
+    if c.active:
+        parts.append(f"{hello_imgui.frame_rate():.0f} frames/s")
+    return "   ".join(parts)

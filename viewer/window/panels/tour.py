@@ -1,0 +1,111 @@
+"""The tour: a strip between the picture and its timeline, which covers nothing; a window with all steps while the first
+start is still compiling."""
+
+from __future__ import annotations
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from viewer.services.tour import STEPS
+from viewer.window.panels.widgets import GOOD, QUIET, clipped, em, paragraph, tooltip
+from viewer.window.ui import Ui
+
+_WIDTH = 27.0  # ems of the window
+_HIGH = 48.0  # ems of a window that has room for the text of all steps
+_LEAST = 9.0  # ems of height that the picture keeps: with less room the strip lies over its lower edge
+_PADDING = ImVec2(0.6, 0.45)  # ems
+
+
+def show(ui: Ui) -> None:
+    """The step that is next, and what to do; all steps while there is no picture yet."""
+    tour = ui.tour
+    tour.follow()
+    if tour.step is None:
+        ui.tour_height = 0.0
+        return
+    if ui.controller.frame is None:
+        _all_steps(ui)
+    elif ui.tour_place is not None:
+        _strip(ui, *ui.tour_place)
+
+
+def leave_room(ui: Ui, corner: ImVec2, room: ImVec2) -> float:
+    """How much of the room that the picture has from `corner` on goes to the tour, below the picture."""
+    height = ui.tour_height if ui.tour.step is not None else 0.0
+    ui.tour_place = (corner.x, corner.y + room.y - height, room.x)
+    return height if room.y - height >= em(_LEAST) else 0.0
+
+
+def _strip(ui: Ui, left: float, top: float, width: float) -> None:
+    """The step in two or three lines, as wide as the picture's window."""
+    tour = ui.tour
+    assert tour.step is not None and tour.at is not None
+    padding = ImVec2(em(_PADDING.x), em(_PADDING.y))
+    wrap = max(width - 2.0 * padding.x, em(4.0))
+    words = max(imgui.calc_text_size(step.text(ui.controller), False, wrap).y for step in STEPS)
+    ui.tour_height = imgui.get_frame_height_with_spacing() + words + 2.0 * padding.y + em(0.2)
+    imgui.set_next_window_pos(ImVec2(left, top))
+    imgui.set_next_window_size(ImVec2(width, ui.tour_height - em(0.2)))
+    flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_docking
+    flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_focus_on_appearing
+    imgui.push_style_var(imgui.StyleVar_.window_padding, padding)
+    imgui.begin("Tour###tour", None, int(flags))
+    imgui.pop_style_var()
+    last = tour.at == len(STEPS) - 1
+    labels = f"{icons.ICON_FA_PLAY}  Show me", "Finish" if last else "Skip", icons.ICON_FA_XMARK
+    style = imgui.get_style()
+    buttons = sum(
+        imgui.calc_text_size(label).x + 2.0 * style.frame_padding.x + style.item_spacing.x for label in labels
+    )
+    imgui.align_text_to_frame_padding()
+    if imgui.begin_child("title", ImVec2(max(wrap - buttons, em(2.0)), imgui.get_frame_height())):
+        imgui.align_text_to_frame_padding()
+        clipped(f"Tour, {tour.at + 1} of {len(STEPS)}:  {tour.step.title}")
+        _marks(len(tour.done))
+    imgui.end_child()
+    imgui.same_line()
+    imgui.begin_disabled(tour.showing)
+    if imgui.button(labels[0]):
+        tour.show()
+    imgui.end_disabled()
+    tooltip("do this step for you")
+    imgui.same_line()
+    text = tour.step.text(ui.controller)
+    if imgui.button(labels[1]):
+        tour.skip()
+    tooltip("end the tour; the menu Help has it again" if last else "go on to the next step")
+    imgui.same_line()
+    if imgui.button(f"{labels[2]}##end"):
+        tour.end()
+    tooltip("end the tour; the menu Help has it again")
+    paragraph(text, QUIET)
+    imgui.end()
+
+
+def _marks(done: int) -> None:
+    """How many steps are done, where there is room for it."""
+    told = f"{icons.ICON_FA_CHECK} {done} done"
+    imgui.same_line()
+    if done and imgui.calc_text_size(told).x <= imgui.get_content_region_avail().x:
+        imgui.text_colored(GOOD, told)
+
+
+def _all_steps(ui: Ui) -> None:
+    """Under the progress of the first start."""
+    tour, area = ui.tour, imgui.get_main_viewport()
+    width = min(em(_WIDTH), 0.9 * area.work_size.x)
+    centre = area.get_work_center()
+    imgui.set_next_window_pos(ImVec2(centre.x - 0.5 * width, centre.y + em(0.5)))
+    imgui.set_next_window_size(ImVec2(width, 0.0))
+    flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_resize
+    flags |= imgui.WindowFlags_.no_focus_on_appearing | imgui.WindowFlags_.no_move
+    shown, stays = imgui.begin(f"A tour of {len(STEPS)} steps###steps", True, int(flags))
+    if shown:
+        for number, step in enumerate(STEPS):
+            paragraph(f"{number + 1}  {step.title}")
+            if area.work_size.y > em(_HIGH):
+                paragraph(step.text(ui.controller), QUIET)
+        paragraph("You can begin as soon as there is a picture.", QUIET)
+    imgui.end()
+    if not stays:
+        tour.end()

@@ -1,0 +1,66 @@
+"""The view: what is shown of the frame, and what its colours mean."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from viewer.state.views import View
+from viewer.window.panels import legend
+from viewer.window.panels.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, row
+from viewer.window.ui import Ui
+
+_FLAT = (View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT, View.CERTIFICATE)
+
+
+def show(ui: Ui) -> None:
+    """The panel."""
+    c = ui.controller
+    p = c.preferences
+    views = list(View)
+    with properties("view", 5.0) as shown:
+        if shown:
+            row("View", "keys 1 to 9, 0, H and Shift+H")
+            chosen = views.index(c.session.view)
+            changed, index = imgui.combo("##view", chosen, [f"{v.label}" for v in views])
+            if changed:
+                c.set_view(views[index])
+            if c.session.view.of_light and c.session.scene is not None and c.session.scene.lights:
+                row("Light", "L and Shift+L")
+                names = [ui.light_name(i) for i in range(len(c.session.scene.lights))]
+                changed, light = imgui.combo("##light", c.session.light, names)
+                if changed:
+                    c.set_light(light)
+            if c.session.view is View.WIPE:
+                row("Line", "where it is; or drag it in the picture")
+                changed, at = imgui.slider_float("##wipe", 100.0 * c.session.wipe, 0.0, 100.0, "%.0f %%")
+                c.session.wipe = min(max(at / 100.0, 0.0), 1.0) if changed else c.session.wipe
+            if c.session.view is View.DIFFERENCE:
+                row("Beneath", "how bright the picture is beneath the wrong pixels")
+                changed, percents = imgui.slider_float("##beneath", 100.0 * p.beneath, 0.0, 60.0, "%.0f %%")
+                p.beneath = min(max(percents / 100.0, 0.0), 0.6) if changed else p.beneath
+            if c.session.view in _FLAT:
+                row("Shading", "how much of the picture's light and shade shows under the colours")
+                _, c.preferences.shading = imgui.slider_float("##shading", c.preferences.shading, 0.0, 1.0, "%.2f")
+    checkbox("Legend", p.legend, lambda on: setattr(p, "legend", on), "in the picture (N); drag it where you like")
+    imgui.same_line(0.0, em(1.0))
+    checkbox("Outlines", p.outlines, lambda on: setattr(p, "outlines", on), "borders between primitives (B)")
+    if c.session.view.needs_work:
+        tip = "the share of the shadow rays due, or of the rays traced without culling, instead of counts (U)"
+        checkbox("Shares", p.work_shares, lambda on: setattr(p, "work_shares", on), tip)
+    if c.session.view.needs_verify:
+        tip = "rings around pixels with wrong shadow answers, so that a lone one is found (M)"
+        checkbox("Mark wrong pixels", p.mark_wrong, lambda on: setattr(p, "mark_wrong", on), tip)
+    legend.in_panel(ui)
+    _explanation(ui)
+
+
+def _explanation(ui: Ui) -> None:
+    """What the view shows, and what it costs."""
+    c = ui.controller
+    view, run, told = c.session.view, c.runner.current, c.session.view.explanation
+    lacks = run.lacks(view) if run is not None else ""
+    if lacks:
+        paragraph(f"This run {lacks}.", WARNING)
+    elif view.needs_verify:
+        told += " It traces every culled ray as well, so that frames take longer."
+    paragraph(told, QUIET)

@@ -1,0 +1,254 @@
+"""Small pieces that the panels share, all sized in ems so that they fit any screen."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from viewer.util.numbers import count as count
+from viewer.util.numbers import percent as percent
+from viewer.window.palette import ERROR as ERROR
+from viewer.window.palette import GOOD as GOOD
+from viewer.window.palette import QUIET as QUIET
+from viewer.window.palette import WARNING as WARNING
+
+_LABELS = 0.45  # of a panel's width, at most, is for the names of what is in it
+SIZES = ((128, 128), (256, 256), (512, 512), (800, 600), (1024, 1024), (1280, 720), (1920, 1080))
+
+
+def em(size: float) -> float:
+    return hello_imgui.em_size(size)
+
+
+def centred(width: float, pivot: float = 0.5) -> None:
+    """Put the next window, so wide, at the middle; `pivot` is the part of its height that lies above that."""
+    viewport = imgui.get_main_viewport()
+    imgui.set_next_window_pos(viewport.get_work_center(), int(imgui.Cond_.appearing), ImVec2(0.5, pivot))
+    imgui.set_next_window_size(ImVec2(min(width, 0.95 * viewport.work_size.x), 0.0))
+
+
+@contextmanager
+def properties(name: str, label_width: float = 7.0) -> Iterator[bool]:
+    """A table of two columns, names on the left; yields whether it is visible."""
+    shown = imgui.begin_table(name, 2, int(imgui.TableFlags_.sizing_stretch_prop))
+    if shown:
+        label = min(em(label_width), _LABELS * imgui.get_content_region_avail().x)
+        imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_fixed), label)
+        imgui.table_setup_column("value", int(imgui.TableColumnFlags_.width_stretch))
+    try:
+        yield shown
+    finally:
+        if shown:
+            imgui.end_table()
+
+
+def row(name: str, tip: str = "") -> None:
+    """Begin a row of `properties`: write its name and stand ready, full width, for its value."""
+    imgui.table_next_row()
+    imgui.table_next_column()
+    imgui.align_text_to_frame_padding()
+    _name(name, tip)
+    imgui.set_next_item_width(-1.0)
+
+
+def _name(name: str, tip: str) -> None:
+    """A row's name in the first column, to go on in the second."""
+    clipped(name, QUIET)
+    if tip:
+        tooltip(tip)
+    imgui.table_next_column()
+
+
+def value(name: str, text: str, tip: str = "") -> None:
+    """A row that only tells something; long text is cut with an ellipsis and told in full on hovering."""
+    imgui.table_next_row()
+    imgui.table_next_column()
+    _name(name, tip)
+    clipped(text)
+
+
+def told(name: str, text: str, tip: str = "") -> None:
+    """The same with text that wraps."""
+    imgui.table_next_row()
+    imgui.table_next_column()
+    imgui.text_colored(QUIET, name)
+    if tip:
+        tooltip(tip)
+    imgui.table_next_column()
+    paragraph(text)
+
+
+def amount(name: str, text: str, tip: str = "") -> None:
+    """A row of a table whose numbers stand at the right edge, below each other."""
+    imgui.table_next_row()
+    imgui.table_next_column()
+    _name(name, tip)
+    right(text)
+
+
+def right(text: str, color: ImVec4 | None = None) -> None:
+    """Text at the right edge of its column."""
+    room = imgui.get_content_region_avail().x - imgui.calc_text_size(text).x
+    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(0.0, room))
+    clipped(text, color)
+
+
+def fitted(text: str, room: float) -> str:
+    """The text, or as much of it as there is room for, with an ellipsis."""
+    if imgui.calc_text_size(text).x <= room + 0.5:
+        return text
+    low, high = 0, len(text)
+    while low < high:
+        middle = (low + high + 1) // 2
+        fits = imgui.calc_text_size(text[:middle] + "...").x <= room + 0.5
+        low, high = (middle, high) if fits else (low, middle - 1)
+    return text[:low] + "..."
+
+
+def same_line_for(label: str) -> None:
+    """Go on in this line if a tick with such a label fits into what is left of it."""
+    spacing = em(1.0)
+    needed = imgui.calc_text_size(label).x + imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x
+    edge = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
+    if imgui.get_item_rect_max().x + spacing + needed <= edge:
+        imgui.same_line(0.0, spacing)
+
+
+def clipped(text: str, color: ImVec4 | None = None) -> None:
+    """One line of text that ends in an ellipsis where there is no room, with all of it as a tooltip."""
+    shown = fitted(text, imgui.get_content_region_avail().x)
+    if color is not None:
+        imgui.push_style_color(imgui.Col_.text, color)
+    imgui.text_unformatted(shown)
+    if color is not None:
+        imgui.pop_style_color()
+    if shown != text:
+        tooltip(text)
+
+
+def tooltip(text: str) -> None:
+    """Explain the last item when the pointer rests on it."""
+    if imgui.is_item_hovered(int(imgui.HoveredFlags_.for_tooltip)):
+        tooltip_at(text)
+
+
+def tooltip_at(text: str) -> None:
+    """Explain what is under the pointer."""
+    if imgui.begin_tooltip():
+        imgui.push_text_wrap_pos(em(24.0))
+        imgui.text_unformatted(text)
+        imgui.pop_text_wrap_pos()
+        imgui.end_tooltip()
+
+
+def tooltip_above(text: str) -> None:
+    """The same above the item, after a longer rest, so that neither what lies beside nor what lies below is hidden."""
+    flags = imgui.HoveredFlags_.stationary | imgui.HoveredFlags_.delay_normal | imgui.HoveredFlags_.allow_when_disabled
+    if not imgui.is_item_hovered(int(flags)):
+        return
+    corner = imgui.get_item_rect_min()
+    imgui.set_next_window_pos(ImVec2(corner.x, corner.y - em(0.3)), 0, ImVec2(0.0, 1.0))
+    if imgui.begin_tooltip():
+        imgui.push_text_wrap_pos(em(13.0))
+        imgui.text_unformatted(text)
+        imgui.pop_text_wrap_pos()
+        imgui.end_tooltip()
+
+
+def checkbox(label: str, state: bool, change: Callable[[bool], None], tip: str = "") -> None:
+    """A tick that calls `change` with its new state; a label that is too long for its line ends in an ellipsis."""
+    room = imgui.get_content_region_avail().x - imgui.get_frame_height() - imgui.get_style().item_inner_spacing.x
+    shown = label if label.startswith("##") else fitted(label, room)
+    changed, now = imgui.checkbox(label if shown == label else f"{shown}###{label}", state)
+    if shown != label:
+        tip = f"{label}: {tip}" if tip else label
+    if tip:
+        tooltip(tip)
+    if changed:
+        change(now)
+
+
+def size_field(size: tuple[int, int], longest: int, say: Callable[[str], None]) -> tuple[int, int]:
+    """Width and height in pixels, typed or chosen from a list, across what room there is; returns what is set now.
+
+    Says so where a side that is typed is none, or longer than `longest`, and another taken for it."""
+    imgui.set_next_item_width(-em(2.2))
+    changed, typed = imgui.input_int2("##size", list(size))
+    if changed:
+        width, height = (min(max(pixels, 1), longest) for pixels in typed)
+        size = width, height
+        if list(size) != list(typed):
+            say(f"{typed[0]} x {typed[1]} became {width} x {height}: a side has 1 to {longest} pixels here")
+    imgui.same_line(0.0, em(0.2))
+    if imgui.button(icons.ICON_FA_CHEVRON_DOWN, (-1.0, 0.0)):
+        imgui.open_popup("sizes")
+    if imgui.begin_popup("sizes"):
+        for width, height in SIZES:
+            if imgui.menu_item(f"{width} x {height}", "", False, True)[0]:
+                size = width, height
+        imgui.end_popup()
+    return size
+
+
+def wide_button(label: str, tip: str = "", columns: int = 1, explain: Callable[[str], None] = tooltip) -> bool:
+    """A button that fills its share of the width; `explain` shows its tip.  Where that is too narrow for a label of an
+    icon and words, the words are in the tip alone."""
+    style = imgui.get_style()
+    width = (imgui.get_content_region_avail().x - style.item_spacing.x * (columns - 1)) / columns
+    text, _, _ = label.partition("##")
+    icon, _, words = text.partition("  ")
+    if words and imgui.calc_text_size(text).x > width - 2.0 * style.frame_padding.x:
+        label, tip = f"{icon}###{label}", f"{words}: {tip}" if tip else words
+    clicked = imgui.button(label, ImVec2(max(width, em(2.0)), 0.0))
+    if tip:
+        explain(tip)
+    return clicked
+
+
+def swatch(color: tuple[float, float, float]) -> None:
+    """A square of a colour, for the word that follows on its line."""
+    side = imgui.get_text_line_height()
+    at = imgui.get_cursor_screen_pos()
+    end = ImVec2(at.x + 0.8 * side, at.y + 0.9 * side)
+    start = ImVec2(at.x, at.y + 0.1 * side)
+    imgui.get_window_draw_list().add_rect_filled(start, end, imgui.get_color_u32(ImVec4(*color, 1.0)), em(0.15))
+    imgui.dummy(ImVec2(0.8 * side, side))
+    imgui.same_line(0.0, em(0.4))
+
+
+def heading(text: str) -> None:
+    imgui.dummy(ImVec2(0.0, em(0.15)))
+    imgui.separator_text(text)
+
+
+def paragraph(text: str, color: ImVec4 | None = None) -> None:
+    """Text that wraps at the panel's edge."""
+    imgui.push_text_wrap_pos(0.0)
+    if color is not None:
+        imgui.push_style_color(imgui.Col_.text, color)
+    imgui.text_unformatted(text)
+    if color is not None:
+        imgui.pop_style_color()
+    imgui.pop_text_wrap_pos()
+
+
+def judged(highest: int) -> str:
+    """A primitive's highest pixel count in words: what its modes go by."""
+    return f"judged by {count(highest)}" if highest else "not judged yet"
+
+
+def short(number: float) -> str:
+    """A large number in few characters: 1.23 M."""
+    for limit, unit in ((1e9, " G"), (1e6, " M"), (1e4, " k")):
+        if abs(number) >= limit:
+            return f"{number / (limit if limit != 1e4 else 1e3):.4g}{unit}"
+    return f"{number:.0f}"
+
+
+def in_window_style(text: str) -> str:
+    """Numbers of a text written as they are here: 10 570 (0.499 %) for 10,570 (0.499%)."""
+    return re.sub(r"(?<=\d)%", " %", re.sub(r"(?<=\d),(?=\d{3})", " ", text))

@@ -1,0 +1,74 @@
+"""The line of the wipe over the picture: what lies on either side of it, and the hand that drags it."""
+
+from __future__ import annotations
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from viewer.state.views import View
+from viewer.window.panels.widgets import em
+from viewer.window.ui import Ui
+
+_REACH = 0.45  # ems to either side of the line where it can be taken hold of
+_DARK, _LIGHT, _HELD = (
+    ImVec4(0.05, 0.06, 0.08, 0.72),
+    ImVec4(0.95, 0.96, 0.97, 1.0),
+    ImVec4(0.42, 0.70, 0.96, 1.0),
+)
+
+
+def handle(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
+    """Let the pointer drag the line across the picture, which is ImGui's last item; whether the line holds it."""
+    c = ui.controller
+    if c.tracing.drawn_view is not View.WIPE:
+        ui.wiping = False
+        return False
+    if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left) and _near(ui, corner, size):
+        ui.wiping = True
+    held = ui.wiping
+    if held:
+        c.session.wipe = min(max((imgui.get_io().mouse_pos.x - corner.x) / size.x, 0.0), 1.0)
+        ui.wiping = imgui.is_item_active()
+    if held or (imgui.is_item_hovered() and not imgui.is_item_active() and _near(ui, corner, size)):
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+    return held
+
+
+def _near(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
+    return abs(imgui.get_io().mouse_pos.x - corner.x - ui.controller.session.wipe * size.x) <= em(_REACH)
+
+
+def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
+    """The line, its handle, and the names of both sides near the picture's upper edge, below what is told there."""
+    c = ui.controller
+    if c.tracing.drawn_view is not View.WIPE or c.frame is None:
+        return
+    x = corner.x + c.session.wipe * (end.x - corner.x)
+    dark, light, held = (imgui.get_color_u32(color) for color in (_DARK, _LIGHT, _HELD))
+    bright = held if ui.wiping else light
+    draw = imgui.get_window_draw_list()
+    draw.push_clip_rect(corner, end, True)
+    half = max(1.0, em(0.05))
+    draw.add_rect_filled(ImVec2(x - 2.0 * half, corner.y), ImVec2(x + 2.0 * half, end.y), dark)
+    draw.add_rect_filled(ImVec2(x - half, corner.y), ImVec2(x + half, end.y), bright)
+    _knob(draw, ImVec2(x, (corner.y + end.y) / 2.0), bright, dark)
+    left = c.frame.settings.method if c.frame.settings.method != "none" else "no culling"
+    pad, text = em(0.35), imgui.get_text_line_height()
+    top = corner.y + text + 4.0 * pad
+    for name, side in ((left, -1.0), ("reference", 1.0)):
+        width = imgui.calc_text_size(name).x + 2.0 * pad
+        start = x + 2.0 * pad if side > 0.0 else x - 2.0 * pad - width
+        if corner.x <= start and start + width <= end.x:
+            lower = ImVec2(start + width, top + text + 2.0 * pad)
+            draw.add_rect_filled(ImVec2(start, top), lower, dark, em(0.3))
+            draw.add_text(ImVec2(start + pad, top + pad), light, name)
+    draw.pop_clip_rect()
+
+
+def _knob(draw: imgui.ImDrawList, at: ImVec2, bright: int, dark: int) -> None:
+    """A disc on the line with an arrow to either side."""
+    radius, arrow = em(0.8), em(0.28)
+    draw.add_circle_filled(at, radius, dark)
+    draw.add_circle(at, radius, bright, 0, max(1.5, em(0.1)))
+    for side in (-1.0, 1.0):
+        tip, base = at.x + side * 0.62 * radius, at.x + side * 0.22 * radius
+        draw.add_triangle_filled(ImVec2(tip, at.y), ImVec2(base, at.y - arrow), ImVec2(base, at.y + arrow), bright)

@@ -1,0 +1,119 @@
+"""The state of the interface itself: what is open, what was asked for, and what the pointer holds.
+
+Panels and commands share it; what they do to the scene goes through the controller.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from viewer.output.capture import FIELDS
+from viewer.output.legend import light_in_words
+from viewer.services.controller import Controller
+from viewer.services.file_browser import Browser
+from viewer.services.tour import Tour
+from viewer.state.preferences import default_screenshot_folder
+from viewer.window.full_screen import FullScreen
+from viewer.window.guard import Guard
+
+if TYPE_CHECKING:
+    from viewer.window.commands import Command
+    from viewer.window.display import Display
+    from viewer.window.panels.film import Screening
+    from viewer.window.shots import Shots
+
+
+class CaptureKind(Enum):
+    """What a screenshot shows."""
+
+    PICTURE = "the picture alone"
+    WINDOW = "the window with its panels"
+
+
+@dataclass
+class Fold:
+    """What became of the panels: hidden all, or folded into a strip in a small window, with one of them open."""
+
+    hidden: bool = False
+    folded: bool = False
+    drawer: str = ""
+
+    @property
+    def away(self) -> bool:
+        """Whether no panel is docked beside the picture."""
+        return self.hidden or self.folded
+
+
+@dataclass
+class Ui:
+    """See the module.  `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says
+    that the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector; `screening` is
+    the recorded picture that is shown in the picture's place; `legend_shown` says whether the picture shows its legend,
+    `legend_held` where the pointer holds that; `tour_height` is what the picture leaves free below it for the tour,
+    `tour_place` where that is: left, top and width."""
+
+    controller: Controller
+    display: Display | None = None
+    commands: list[Command] = field(default_factory=list)
+    browser: Browser = field(default_factory=Browser)
+    fold: Fold = field(default_factory=Fold)
+    full_screen: FullScreen = field(default_factory=FullScreen)
+    capture_wanted: CaptureKind | None = None
+    shortcuts_open: bool = False
+    about_open: bool = False
+    per_pixel: bool = True
+    picture_area: tuple[int, int] = (0, 0)
+    picture_focused: bool = False
+    pivot: tuple[float, float, float] | None = None
+    pivot_scene: object = None
+    modifiers: int = 0
+    pressed: int = 0
+    pressed_at: tuple[float, float] = (0.0, 0.0)
+    dragged: bool = False
+    wiping: bool = False
+    new_bookmark: str = ""
+    dropped: list[Path] = field(default_factory=list)
+    renderer_name: str = ""
+    request_exit: Callable[[], None] = lambda: None
+    reset_layout: Callable[[], None] = lambda: None
+    show_panel: Callable[[str], Any] = lambda label: None
+    guard: Guard = field(init=False)
+    log_errors_only: bool = False
+    zoom_all_steps: bool = False
+    pointed_light: int | None = None
+    shots: Shots | None = None
+    screening: Screening | None = None
+    legend_shown: bool = False
+    legend_held: tuple[float, float] = (0.0, 0.0)
+    tour_height: float = 0.0
+    tour_place: tuple[float, float, float] | None = None
+    _cache: dict[str, tuple[object, object, Any]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.tour = Tour(self.controller, lambda label: self.show_panel(label))
+
+    def cached(self, name: str, of: object, chosen: object, compute: Callable[[], Any]) -> Any:
+        """What was computed of this object (a frame, results) for what is chosen, computed now if it is new."""
+        known = self._cache.get(name)
+        if known is None or known[0] is not of or known[1] != chosen:
+            known = self._cache[name] = (of, chosen, compute())
+        return known[2]
+
+    def light_name(self, light: int) -> str:
+        """A light as every panel calls it: by the number that views and keys go by, and its name if it has one."""
+        scene = self.controller.session.scene
+        return light_in_words(
+            light, scene.lights[light].name if scene is not None and light < len(scene.lights) else ""
+        )
+
+    @property
+    def default_folder(self) -> Path:
+        return default_screenshot_folder()
+
+    @property
+    def template_help(self) -> str:
+        return "Fields:\n" + "\n".join(f"{{{name}}}  {meaning}" for name, meaning in FIELDS.items())
