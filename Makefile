@@ -22,7 +22,7 @@ export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
 export MPLCONFIGDIR := $(CURDIR)/.cache/matplotlib
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run test quick test-all golden bench frames quickest counters window motion memory growth lint format lock clean distclean help
+.PHONY: run test quick test-all golden bench frames quickest counters window motion memory growth docs linkcheck pictures lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -75,6 +75,18 @@ memory:  ## measure the memory of Kitchen and of a million triangles, and build 
 growth:  ## measure how the cost of a ray grows from 10,000 to 2,000,000 triangles (ARGS="--most 200000")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.growth $(ARGS)
+
+docs:  ## build the documentation in build/docs; every warning is an error
+	@tools/environment.sh dev
+	$(RUN) -m sphinx -W --keep-going -n -q -d .cache/docs -b html docs build/docs
+
+linkcheck:  ## check the documentation's links to other sites, which needs the network
+	@tools/environment.sh dev
+	$(RUN) -m sphinx -q -d .cache/docs -b linkcheck docs build/linkcheck
+
+pictures:  ## make the pictures of the README anew, from the real window
+	@tools/environment.sh dev
+	@$(RUN) tools/with_screen.py $(RUN) tools/make_pictures.py
 
 lint:  ## check style, types and the direction of imports
 	@tools/environment.sh dev

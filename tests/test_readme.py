@@ -1,57 +1,81 @@
-"""The README's scripts run as they are printed, and what its pages show and tell is there."""
+"""README and documentation are true: examples run, links lead somewhere, commands, options and targets exist."""
 
 from __future__ import annotations
 
+import argparse
 import importlib
 import os
 import re
+import shlex
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from PIL import Image
 
 import tracer
 from tracer import experiment
+from viewer.__main__ import main
 
 ROOT = Path(__file__).resolve().parent.parent
-README = (ROOT / "README.md").read_text()
-CERTIFIED = ROOT / "docs" / "certified-cells.md"
-PAGES = (ROOT / "README.md", ROOT / "ARCHITECTURE.md", CERTIFIED)
+DOCS = ROOT / "docs"
+README, PYTHON, CERTIFIED, GLOSSARY = (
+    ROOT / "README.md",
+    DOCS / "python.md",
+    DOCS / "certified-cells.md",
+    DOCS / "glossary.md",
+)
+PAGES = (README, ROOT / "ARCHITECTURE.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.rglob("*.md")))
+LONGEST = 150  # lines of the README
 SCENE = ROOT / "assets" / "scenes" / "figure4.aff"
 
-
-def script(section: str, **replaced: str) -> str:
-    """The Python block of a section; each word to replace must be in it just once."""
-    parts = dict(part.split("\n", 1) for part in README.split("\n## ")[1:])
-    code, _, rest = parts[section].partition("```python\n")[2].partition("```\n")
-    assert code and "```python" not in rest
-    for old, new in replaced.items():
-        assert code.count(old) == 1, f"{old!r} is not once in the README's section {section!r}"
-        code = code.replace(old, new)
-    return code
+each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 
 
-def run(folder: Path, code: str, *arguments: object) -> str:
-    """Run a script in a folder of its own; returns what it prints."""
-    (folder / "script.py").write_text(code)
+def blocks(page: Path, language: str) -> list[str]:
+    """The fenced blocks of a language, in their order."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", page.read_text(), re.MULTILINE | re.DOTALL)
+
+
+def shell_lines(page: Path) -> list[str]:
+    """The commands that a page shows, each in one line and without its comment."""
+    text = "".join(blocks(page, "sh")).replace("\\\n", " ")
+    return [line for line in (line.partition(" #")[0].strip() for line in text.splitlines()) if line]
+
+
+def test_readme_is_short() -> None:
+    assert len(README.read_text().splitlines()) <= LONGEST
+
+
+def test_examples_run(tmp_path: Path) -> None:
+    """Each page is one script, run in the project's folder; what takes arguments is a script of its own."""
+    pages = [page for page in PAGES if blocks(page, "python")]
+    assert {README, PYTHON} <= set(pages)
+    for page in pages:
+        code = "\n".join(block for block in blocks(page, "python") if "sys.argv" not in block)
+        assert run(ROOT, tmp_path / "script.py", code)
+
+
+def run(folder: Path, script: Path, code: str, *arguments: object) -> str:
+    """Run a script in a folder; returns what it prints."""
+    script.write_text(code)
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    command = [sys.executable, "script.py", *map(str, arguments)]
+    command = [sys.executable, script, *map(str, arguments)]
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
 
-def test_from_python(tmp_path: Path) -> None:
-    code = script("From Python", **{'"kitchen.aff"': repr(str(SCENE))})
-    assert run(tmp_path, code + "\nprint(frame.color.shape, frame.statistics.shadow.due)").startswith("(512, 512, 3) ")
-
-
 def test_table_1_from_python(tmp_path: Path) -> None:
-    code = script("Table 1 from Python", **{"SIZE, FRAMES = 512, 100": "SIZE, FRAMES = 48, 7"})
-    heading, *lines = run(tmp_path, code, SCENE).splitlines()
+    (code,) = (block for block in blocks(PYTHON, "python") if "sys.argv" in block)
+    size = "SIZE, FRAMES = 512, 100"
+    assert code.count(size) == 1
+    printed = run(tmp_path, tmp_path / "script.py", code.replace(size, "SIZE, FRAMES = 48, 7"), SCENE)
+    heading, *lines = printed.splitlines()
     columns = ["method", "steps saved (most, frame)", "tests saved (most, frame)", "extra/pixel", "wrong"]
     assert re.split(" {2,}", heading) == columns
 
@@ -72,19 +96,50 @@ def test_table_1_from_python(tmp_path: Path) -> None:
         assert np.ptp(np.nonzero(half.any(axis=0))) > 800
 
 
-def test_commands_have_the_options_that_are_shown() -> None:
-    shown: dict[str, set[str]] = {}
-    text = README + CERTIFIED.read_text().replace("\\\n", " ")
-    for command, rest in re.findall(r"^shadowcull ([a-z]+) ([^#\n]*)", text, re.MULTILINE):
-        shown.setdefault(command, set()).update(re.findall(r"--[a-z-]+", rest))
-    assert {"render", "bench", "zoom", "info"} <= set(shown)
-    for command, options in shown.items():
-        line = [sys.executable, "-m", "viewer", command, "--help"]
-        told = subprocess.run(line, cwd=ROOT, capture_output=True, text=True).stdout
-        assert options <= set(re.findall(r"--[a-z-]+", told.partition("examples:")[0])), command
+class Accepted(BaseException):
+    """A command line was understood; nothing more is to be done with it."""
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_commands_are_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every `shadowcull` line of every page goes through the parser of its command."""
+    parse = argparse.ArgumentParser.parse_args
+
+    def parse_only(parser: argparse.ArgumentParser, arguments: list[str]) -> None:
+        parse(parser, arguments)
+        raise Accepted
+
+    monkeypatch.setattr(argparse.ArgumentParser, "parse_args", parse_only)
+    shown = {line for page in PAGES for line in shell_lines(page) if line.startswith("shadowcull")}
+    assert {"render", "bench", "zoom", "info"} <= {word for line in shown for word in line.split()[1:2]}
+    for line in sorted(shown):
+        with pytest.raises(Accepted):
+            main(shlex.split(line)[1:])
+
+
+def test_options_in_the_text_exist(capsys: pytest.CaptureFixture[str]) -> None:
+    """Options that the text names, as in `--verify`, are options of some command."""
+    known = {"--help", "--version"}
+    for command in ("render", "bench", "zoom", "info"):
+        with pytest.raises(SystemExit):
+            main([command, "--help"])
+        known |= set(re.findall(r"--[a-z-]+", capsys.readouterr().out))
+    for page in (README, *(DOCS / f"{name}.md" for name in ("viewer", "command-line", "methods", "results"))):
+        named = set(re.findall(r"`[^`\n]*?(--[a-z-]+)", page.read_text()))
+        assert named <= known, page
+
+
+@each_page
+def test_targets_and_files_exist(page: Path) -> None:
+    """Of `make`, and of the project's folders."""
+    text = page.read_text()
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    shown = re.findall(r"`make ([a-z-]+)", text) + re.findall(r"^make ([a-z-]+)", "\n".join(shell_lines(page)), re.M)
+    assert set(shown) <= targets
+    for path in re.findall(r"`((?:tracer|viewer|shaders|tests|tools|docs|assets)/[\w./-]*)`", text):
+        assert (ROOT / path).exists(), path
+
+
+@each_page
 def test_links_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text()):
         if target.startswith("https://"):
@@ -95,6 +150,39 @@ def test_links_lead_somewhere(page: Path) -> None:
         if heading:
             headings = re.findall(r"^#+ (.*)$", there.read_text(), re.MULTILINE)
             assert heading in [re.sub(r"[^a-z0-9-]", "", h.lower().replace(" ", "-")) for h in headings], target
+
+
+def test_every_page_is_reachable() -> None:
+    """From the README or from a table of contents, and those from each other."""
+    trees = [index.parent / f"{entry}.md" for index in DOCS.rglob("index.md") for entry in _entries(index)]
+    assert sorted(trees) == sorted(page for page in DOCS.rglob("*.md") if page != DOCS / "index.md")
+
+
+def _entries(index: Path) -> list[str]:
+    return [line for block in blocks(index, r"\{toctree\}") for line in block.splitlines() if re.match(r"[a-z]", line)]
+
+
+def test_the_glossary_leads_to_the_sources() -> None:
+    """Each file is there, and each name is in its file."""
+    rows = re.findall(r"^\| (?!term|---)(.*?) \| (.*?) \| (.*?) \| (.*?) \|$", GLOSSARY.read_text(), re.MULTILINE)
+    assert len(rows) > 14
+    for term, _, where, _ in rows:
+        path, *names = re.findall(r"`([^`]+)`", where)
+        source = ROOT / path
+        assert source.exists(), f"{term}: {path}"
+        text = source.read_text() if source.is_file() else "".join(p.read_text() for p in source.rglob("*.py"))
+        for name in names:
+            assert re.search(rf"\b{re.escape(name)}\b", text), f"{term}: {name} is not in {path}"
+
+
+def test_the_citation_is_of_this_program() -> None:
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    about = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert citation["cff-version"] == "1.2.0"
+    assert {"message", "title", "authors", "references"} <= set(citation)
+    assert citation["version"] == about["version"]
+    assert citation["license"] == about["license"]
+    assert f"## {citation['version']} ({citation['date-released']})" in (ROOT / "CHANGELOG.md").read_text()
 
 
 def test_certified_cells_are_told_with_the_numbers_they_have() -> None:

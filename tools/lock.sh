@@ -19,6 +19,6 @@ compile() {
         --custom-compile-command "make lock" pyproject.toml "$@"
 }
 compile "${upgrade[@]}" --group build -o tools/run.lock
-compile "${upgrade[@]}" --group build --group test --group lint --group bench --group lock \
+compile "${upgrade[@]}" --group build --group test --group lint --group bench --group docs --group lock \
     --constraint tools/run.lock -o tools/dev.lock
 echo "Wrote tools/run.lock and tools/dev.lock; 'make test' installs them."

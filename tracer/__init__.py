@@ -1,4 +1,11 @@
-"""Shadow culling for interactive ray tracing, after Nah, Lee, Park and Han: the tracer, of use alone.
+"""Shadow culling for interactive ray tracing: a tracer that needs no window.
+
+It implements the algorithm of this paper, whose sections are cited as §:
+
+    Nah, Lee, Park and Han: A Shadow Culling Algorithm for Interactive Ray Tracing.
+    (Listed as: Jae-Ho Nah, Woo-Chan Park, Tack-Don Han, Journal of Korea Game Society, December 2009.)
+
+Render a frame and read a counter:
 
 scene = tracer.load_scene("kitchen.aff")
 renderer = tracer.Renderer(scene, tracer.Settings(width=512, height=512, method="paper"))

@@ -1,0 +1,102 @@
+"""Make the pictures of the README anew, from the real window: `make pictures`, or
+
+    python tools/with_screen.py python tools/make_pictures.py
+
+`viewer.png` is the window with a clicked pixel and its shadow rays.  `loop.webp` is a short film that repeats: a
+flight along the scene's own path, the occlusion modes and shadow modes that it has taught, and the wipe between the
+culled picture and the right one.  ImGui's test engine presses the keys, as in the tests of the window.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+import numpy as np
+from imgui_bundle import imgui
+from PIL import Image
+
+from tests.viewer import window
+from tests.viewer.driver import Driver
+
+ROOT = Path(__file__).resolve().parent.parent
+SIZE = [1280, 800]  # of the window
+FILM_SIZE = (880, 550)
+FOLDER = ROOT / "assets" / "readme"
+KEY = imgui.Key
+START, FLOWN = 40, 24  # the frame where the flight begins, and how many frames it is long
+STILL, SAMPLES = 53, 16  # the frame of the still picture, and its samples per pixel
+STEP, HOLD = 90, 1100  # milliseconds that a frame of the film is shown, in motion and when it rests
+CLICKED = (0.855, 0.49)  # the pixel whose shadow rays are drawn, in parts of the picture's width and height
+QUALITY = 72
+
+
+class Film:
+    """The frames of the loop with the time that each is shown; frames that look the same are one."""
+
+    def __init__(self, driver: Driver) -> None:
+        self._driver = driver
+        self.frames: list[Image.Image] = []
+        self.durations: list[int] = []
+
+    def shoot(self, milliseconds: int = STEP) -> None:
+        """Wait for the whole picture, then keep the window as it is drawn."""
+        self._driver.settle()
+        image = Image.fromarray(self._driver.window()).resize(FILM_SIZE, Image.Resampling.LANCZOS)
+        self.frames.append(image)
+        self.durations.append(milliseconds)
+
+    def save(self, path: Path) -> None:
+        first, *others = self.frames
+        first.save(
+            path, save_all=True, append_images=others, duration=self.durations, loop=0, quality=QUALITY, method=6
+        )
+
+
+def pictures(d: Driver) -> None:
+    """The scenario: what a user presses, and what is kept of it."""
+    d.c.preferences.dynamic_resolution = False  # whole pictures only
+    d.context.mouse_move_to_pos((SIZE[0] - 1.0, SIZE[1] - 1.0))  # the pointer is drawn, too
+    d.c.change(method="paper")
+    d.settle()
+    d.press(KEY.home)
+    d.press(KEY.right_arrow, START)
+    film = Film(d)
+    for _ in range(FLOWN):
+        d.press(KEY.right_arrow)
+        film.shoot()
+    film.durations[-1] = HOLD
+    for keys in ((KEY._2,), (KEY._3,), (KEY.l,)):
+        for key in keys:
+            d.press(key)
+        film.shoot(HOLD)
+    d.press(KEY._9)
+    for wipe in 0.5 + 0.4 * np.sin(np.linspace(0.0, 2.0 * np.pi, 17)[:-1]):
+        d.c.session.wipe = float(wipe)
+        film.shoot()
+    d.press(KEY._1)
+    film.save(FOLDER / "loop.webp")
+
+    d.c.change(method="certified")
+    d.press(KEY.left_arrow, START + FLOWN - STILL)
+    d.settle()
+    d.c.change(samples=SAMPLES)
+    d.wait(lambda: d.c.frame.settings.samples == SAMPLES, "all samples")
+    d.c.select(CLICKED)
+    d.settle()
+    Image.fromarray(d.window()).save(FOLDER / "viewer.png", optimize=True)
+
+
+def main() -> int:
+    window.SCENARIOS["pictures"] = pictures
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["SHADOWCULL_CONFIG_DIR"] = folder
+        return window.run("pictures", SIZE, str(ROOT / "assets" / "scenes" / "default.aff"), folder)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
