@@ -20,7 +20,7 @@ import numpy as np
 from imgui_bundle import imgui
 from PIL import Image
 
-from tests.viewer import window
+from tests.viewer import real_window
 from tests.viewer.driver import Driver
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -92,10 +92,10 @@ def pictures(d: Driver) -> None:
 
 
 def main() -> int:
-    window.SCENARIOS["pictures"] = pictures
+    real_window.SCENARIOS["pictures"] = pictures
     with tempfile.TemporaryDirectory() as folder:
         os.environ["SHADOWCULL_CONFIG_DIR"] = folder
-        return window.run("pictures", SIZE, str(ROOT / "assets" / "scenes" / "default.aff"), folder)
+        return real_window.run("pictures", SIZE, str(ROOT / "assets" / "scenes" / "default.aff"), folder)
 
 
 if __name__ == "__main__":
