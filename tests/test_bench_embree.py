@@ -28,7 +28,6 @@ from tests.bench.report import Goal, gains
 from tests.tracing import naive
 from tests.tracing.worlds import random_corners, scene
 from tracer.geometry.rays import Hits, ray_batch
-from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera
 from viewer.cli.main import scene_path
 
@@ -131,7 +130,7 @@ def test_shadow_and_mirror_rays_start_and_end_where_they_should():
     hits = world.closest_hits(rays)
     points = points_of(Surfaces.of(world.scene, 0.0), rays, Hits(*hits))
     assert len(points.primitive) == 2  # the third misses
-    above, below = (shadow_rays(points, p.astype(np.float32)) for p in light_positions(world.scene, 0.0))
+    above, below = (shadow_rays(points, p.astype(np.float32)) for p in world.scene.light_positions(0.0))
     assert above[1].all() and not below[1].any()
     ends = above[0].origin + above[0].direction
     assert np.allclose(ends.T, points.position, atol=1e-3) and (ends[2] > 0).all()

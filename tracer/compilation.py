@@ -10,7 +10,6 @@ needs comes first, certificates last.
 from __future__ import annotations
 
 import os
-import select
 import subprocess
 import sys
 import threading
@@ -18,6 +17,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from itertools import chain
 from pathlib import Path
+from queue import Empty, SimpleQueue
 from typing import Any
 
 import numpy as np
@@ -71,6 +71,7 @@ _SHARES = {
 }
 _USUAL = 70.0  # seconds that all of it takes one process on a usual machine, with all cores busy
 _POLL = 0.1  # seconds from one look at a process to the next
+_STEP = "next step: "  # before what a process says of itself, since whatever it calls may print too
 
 
 def warm_up(progress: Progress | None = None, lights: int = 1, accelerator: str = "bvh8") -> None:
@@ -231,46 +232,47 @@ def _compile_beside(
     """Compile all parts into the cache, as many at once as there are cores; adds the steps to `done`.
 
     Calls `drawable` when all that a picture needs is there; what `report` raises ends the processes."""
-    read, write = os.pipe()
+    told: SimpleQueue[tuple[str, str]] = SimpleQueue()  # a part, and its next step
     slots = max(2, os.cpu_count() or 1)
     estimate = Estimate(_PARTS, _SHARES, slots, _USUAL)
     workers: dict[str, subprocess.Popen] = {}
+    readers: list[threading.Thread] = []
     under_way: dict[str, str] = {}
-    waiting, ended, told, drawn = list(_PARTS), set[str](), b"", False
+    waiting, ended, drawn = list(_PARTS), set[str](), False
     try:
         while True:
             for part in [part for part in waiting if ended.issuperset(_NEEDS.get(part, ()))]:
                 if len(workers) - len(ended) < slots:
                     waiting.remove(part)
-                    workers[part] = _worker(write, part, str(lights), accelerator)
+                    workers[part] = worker = _worker(part, str(lights), accelerator)
+                    readers.append(threading.Thread(target=_pass_on, args=(part, worker, told), daemon=True))
+                    readers[-1].start()
             if not drawn and ended.issuperset(_FOR_A_PICTURE):
                 drawn = True
                 drawable()
             report(_told(under_way, estimate, drawn), estimate.fraction)
             if len(ended) == len(_PARTS):
                 return
-            if not select.select([read], [], [], _POLL)[0]:
-                if all(worker.poll() is not None for worker in workers.values()):
-                    return  # and none has said why; what is lacking is compiled when it is needed
+            try:
+                part, step = told.get(timeout=_POLL)
+            except Empty:
+                if not any(reader.is_alive() for reader in readers) and told.empty():
+                    return  # none has said why; what is lacking is compiled when it is needed
                 continue
-            *lines, told = (told + os.read(read, 1 << 12)).split(b"\n")
-            for part, step in (line.decode().split(":") for line in lines):
-                if part in under_way:
-                    estimate.end(under_way[part])
-                    done.add(under_way.pop(part))
-                if step:
-                    under_way[part] = step
-                    estimate.begin(step)
-                else:
-                    ended.add(part)
+            if part in under_way:
+                estimate.end(under_way[part])
+                done.add(under_way.pop(part))
+            if step:
+                under_way[part] = step
+                estimate.begin(step)
+            else:
+                ended.add(part)
     finally:
         for worker in workers.values():
             worker.kill()
             worker.wait()
             assert worker.stdin is not None
             worker.stdin.close()
-        os.close(read)
-        os.close(write)
 
 
 def _told(under_way: dict[str, str], estimate: Estimate, drawn: bool) -> str:
@@ -284,20 +286,31 @@ def _told(under_way: dict[str, str], estimate: Estimate, drawn: bool) -> str:
     return f"{names}; first picture in about {max(round(picture), 1)} s, all in {max(round(left), 1)} s"
 
 
-def _worker(told: int, *arguments: str) -> subprocess.Popen:
-    """A process that compiles one part, and tells of its steps through the pipe `told`."""
+def _pass_on(part: str, worker: subprocess.Popen, told: SimpleQueue[tuple[str, str]]) -> None:
+    """Queue each step that a worker names, until the worker ends."""
+    assert worker.stdout is not None
+    for line in worker.stdout:
+        if line.startswith(_STEP):
+            told.put((part, line.removeprefix(_STEP).strip()))
+
+
+def _worker(*arguments: str) -> subprocess.Popen:
+    """A process that compiles one part, and names its steps on its standard output."""
     environment = os.environ | {
         "PYTHONPATH": os.pathsep.join(dict.fromkeys([*filter(None, sys.path), str(Path(__file__).parents[1])])),
         "SHADOWCULL_CACHE_DIR": str(cache_folder().parent),
     }
     return subprocess.Popen(
-        [sys.executable, "-P", "-m", "tracer.compilation", str(told), *arguments],
+        [sys.executable, "-P", "-m", "tracer.compilation", *arguments],
         env=environment,
         stdin=subprocess.PIPE,  # nothing is written to it: it closes when this process ends, however that happens
-        stdout=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
-        pass_fds=[told],
-        start_new_session=True,  # Ctrl-C is for the process that asked
+        text=True,
+        encoding="utf-8",
+        # Ctrl-C is for the process that asked: POSIX takes the first, Windows the second.
+        start_new_session=True,
+        creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),
     )
 
 
@@ -353,12 +366,12 @@ def _steps(part: str, lights: int, accelerator: str) -> Iterator[str]:
     return (step for step in _frame(lights, accelerator) if step != "the builder")
 
 
-def _main(told: str, part: str, lights: str, accelerator: str) -> None:
-    """Compile a part, and say to the pipe `told` which step comes next, and that there is none."""
+def _main(part: str, lights: str, accelerator: str) -> None:
+    """Compile a part, and say on standard output which step comes next, and at the end that there is none."""
     threading.Thread(target=_die_with_parent, daemon=True).start()
     for step in _steps(part, int(lights), accelerator):
-        os.write(int(told), f"{part}:{step}\n".encode())
-    os.write(int(told), f"{part}:\n".encode())
+        print(_STEP + step, flush=True)
+    print(_STEP, flush=True)
     os._exit(0)  # without taking everything down piece by piece: that takes a second
 
 

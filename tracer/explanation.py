@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.shadow import LIGHT_MARGIN
+from tracer.geometry.attributes import FACE_NORMAL, OBJECT
 from tracer.geometry.camera import pinhole
-from tracer.geometry.facets import ACROSS, OBJECT
+from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.rays import ray_batch
-from tracer.scene.animation import light_positions
-from tracer.scene.model import SPHERE, Float32, Float64, Quadrics
-from tracer.shading.points import OFFSET
+from tracer.scene.arrays import Float32, Float64
+from tracer.scene.model import SPHERE, Quadrics
 
 if TYPE_CHECKING:
     from tracer.frame import Frame
@@ -58,7 +58,7 @@ def explain(renderer: Renderer, frame: Frame, x: int, y: int) -> tuple[Explanati
     if primitive < 0:
         return ()
     position, normal, point = _surface(renderer.world, frame, x, y)
-    lights = light_positions(renderer.scene, frame.time).astype(np.float32)
+    lights = renderer.scene.light_positions(frame.time).astype(np.float32)
     ways = point - lights
     due = (lights - position) @ normal > 0
     asked = np.flatnonzero(due)
@@ -99,10 +99,10 @@ def _surface(world: World, frame: Frame, x: int, y: int) -> tuple[Float32, Float
     position = rays.origin + depth * direction
     across = frame.normal[y, x].astype(np.float64)  # a quadric's shading normal is its own
     if primitive < len(world.placed.triangles):
-        across = world.facets[primitive, ACROSS:OBJECT] @ _to_object(world, primitive)[:, :3]
+        across = world.attributes[primitive, FACE_NORMAL:OBJECT] @ _to_object(world, primitive)[:, :3]
         across /= max(float(np.linalg.norm(across)), 1e-300)
     normal: Float32 = (-across if across @ direction > 0 else across).astype(np.float32)
-    offset = OFFSET * max(depth, np.abs(position).max())
+    offset = np.float32(RAY_OFFSET) * max(depth, np.abs(position).max())
     return position, normal, position + offset * normal
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling import modes
-from tracer.geometry.world import ACCELERATORS
+from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import choice, culls_by_modes, is_method
 from tracer.scene.model import Camera
 from tracer.statistics import FrameStatistics

@@ -12,7 +12,6 @@ cannot be written is compiled again next time.
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import os
 import re
@@ -26,6 +25,7 @@ from typing import Any
 
 import numba
 import platformdirs
+from filelock import FileLock
 from numba import njit, types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
 from numba.core.ccallback import CFunc
@@ -138,8 +138,7 @@ class _Cache(FunctionCache):
     @contextmanager
     def _alone(self) -> Iterator[None]:
         """Save one at a time: two processes that number two signatures at once may give both the same file."""
-        with (cache_folder() / "lock").open("w") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
+        with FileLock(cache_folder() / "lock", poll_interval=0.01):
             yield
 
 

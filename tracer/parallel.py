@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import sys
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -30,8 +31,8 @@ def _pool(threads: int, priority: int) -> ThreadPoolExecutor:
 
 
 def _priority() -> int:
-    """Niceness of the calling thread."""
-    return os.getpriority(os.PRIO_PROCESS, threading.get_native_id()) if hasattr(os, "getpriority") else 0
+    """Niceness of the calling thread, where threads have one: on Linux."""
+    return os.getpriority(os.PRIO_PROCESS, threading.get_native_id()) if sys.platform.startswith("linux") else 0
 
 
 def for_each_chunk(

@@ -35,7 +35,6 @@ from tracer.investor import Investor, Plan, Trial
 from tracer.method import base_of, culls_by_modes, takes
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.parts import LEVELS, Parts, after
-from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera, Progress, Scene
 from tracer.shading.blocks import NO_PLANES, TURNS, Planes, all_blocks, make_planes
 from tracer.shading.look import SHINE, TRANSMISSION, make_look
@@ -82,7 +81,7 @@ class Renderer:
         self.settings = (settings or Settings()).validated()
         self.world = world or World(scene, scene.time_range[0], self.settings.accelerator, progress)
         self.rest = Rest(len(scene.objects))
-        self._look = make_look(scene, self.world.facets)
+        self._look = make_look(scene, self.world.attributes)
         self._memories: dict[tuple[int, int, bool], Memory] = {}
         self._first_units = {False: primitives_are_units()}
         self._workspaces: list[Workspace] = []
@@ -418,15 +417,16 @@ class UnfinishedFrame:
         object that has come to rest, or rests no longer."""
         renderer = self._renderer
         world, rest, lights = renderer.world, renderer.rest, renderer._look.lights
+        poses = world.pose(self._time)
         certified = self._plan.needs_certificates
         follows = self._investor is not None and renderer.certificates is not None
         beside = self._settings.modes and not culls_by_modes(self._settings.method)
         if certified or follows or beside or takes(self._settings.method, "rest"):
-            world.place(self._time, rest)
+            world.place(poses, rest.follow(poses, world.primitives))
         else:
             rest.forget()
-            world.place(self._time)
-        lights[:] = light_positions(renderer.scene, self._time)
+            world.place(poses)
+        lights[:] = renderer.scene.light_positions(self._time)
         self.memory.follow_lights(lights)
         self.memory.follow_rest(rest.now, world.outlines, self._workers)
         renderer.certificates_hold = certified

@@ -14,10 +14,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from tests.bench.embree import MODES, EmbreeRays, EmbreeScene, Mode
+from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.rays import Rays
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk, thread_count
-from tracer.shading.points import OFFSET
 
 SAME_T = 1e-4  # relative
 LEAST_AGREEMENT = 0.9999
@@ -158,7 +158,9 @@ def oracle(scene: EmbreeScene, rays: Rays, closest: bool) -> NDArray[np.float32]
     return asked.answers()
 
 
-def differing(rays: Rays, one: NDArray[np.float32], other: NDArray[np.float32], offset: float = OFFSET) -> int:
+def differing(
+    rays: Rays, one: NDArray[np.float32], other: NDArray[np.float32], offset: float = np.float32(RAY_OFFSET)
+) -> int:
     """How many rays have answers that are not the same: both a miss, both blocked, or t within SAME_T.
 
     Of hits right at the origin that asks too much: one contestant's rays are carried into the space of an

@@ -22,7 +22,6 @@ from tests.bench.rays import (
 from tracer.culling.modes import OcclusionMode, ShadowMode, has_shadow_mode, occlusion_mode, shadow_mode
 from tracer.geometry.rays import Rays, ray_batch
 from tracer.geometry.world import World
-from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera
 from tracer.shading.bounce import MIN_WEIGHT
 
@@ -44,7 +43,7 @@ def frame_rays(
     """The rays of a frame of that size, with at most `depth` bounces, of a world of triangles that is
     placed at that time.  `words` are the modes as the last frame left them; without any, nothing is culled."""
     scene, surfaces = world.scene, Surfaces.of(world.scene, time)
-    lights = light_positions(scene, time).astype(np.float32)
+    lights = scene.light_positions(time).astype(np.float32)
     material = np.concatenate([item.triangles.material for item in scene.objects])
     rows = [[*m.specular, m.transmission, m.ior] for m in scene.materials]
     materials = np.array(rows, np.float32)

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from tracer.culling.shadow import LIGHT_MARGIN
 from tracer.geometry.camera import pinhole
+from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.rays import Hits, Rays, ray_batch
-from tracer.scene.animation import deformed
+from tracer.scene.deformation import deformed
 from tracer.scene.model import Camera, Scene, empty_quadrics
-from tracer.shading.points import OFFSET
 from tracer.shading.whitted import TILE
 
 Vectors = NDArray[np.float32]
@@ -102,7 +102,7 @@ def points_of(surfaces: Surfaces, rays: Rays, hits: Hits) -> Points:
     entering = dot(geometric, direction) <= 0
     geometric = np.where(entering, geometric, -geometric)
     normal = np.where(dot(geometric, normal) < 0, -normal, normal)
-    offset = OFFSET * np.maximum(t[:, 0], np.abs(position).max(axis=1, initial=0))
+    offset = np.float32(RAY_OFFSET) * np.maximum(t[:, 0], np.abs(position).max(axis=1, initial=0))
     return Points(position, direction, geometric, normal, offset, primitive, entering[:, 0])
 
 

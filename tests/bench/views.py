@@ -12,7 +12,6 @@ from tests.bench.embree import EmbreeRays, EmbreeScene
 from tests.bench.rays import Surfaces, incoherent_rays, joined, mirror_rays, points_of, primary_rays, shadow_rays
 from tracer.geometry.rays import Rays
 from tracer.geometry.world import World
-from tracer.scene.animation import light_positions
 
 KINDS = ("primary", "shadow", "mirror", "incoherent")
 SINGLE = "incoherent"  # the kind for which Embree's single-ray call is the measure
@@ -57,7 +56,7 @@ def ray_sets(world: World, surfaces: Surfaces, time: float, size: int, seed: int
     scene = world.scene
     primary = primary_rays(scene.camera_at(time), size, size)
     points = points_of(surfaces, primary, world.closest_hits(primary))
-    lights = light_positions(scene, time).astype(np.float32)
+    lights = scene.light_positions(time).astype(np.float32)
     return {
         "primary": primary,
         "shadow": joined([shadow_rays(points, light)[0] for light in lights]),

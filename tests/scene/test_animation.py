@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracer.scene.animation import Animation, Keys, TrackSet, deformed, light_positions
-from tracer.scene.model import Camera, Deformation
+from tracer.scene.animation import Animation, Keys, TrackSet
+from tracer.scene.deformation import Deformation, deformed
+from tracer.scene.model import Camera
 
 
 def keys(times, values, shape=None):
@@ -243,11 +244,11 @@ def test_the_camera_takes_what_its_track_tells():
 
 def test_lights_move_by_their_translation(read):
     scene = read("l 1 1 1 la lamp 4 5 6 k lamp { transl 4 0 0 0 0 0 0 0 1 0 0 0 0 0 0 2 2 0 0 0 0 0 3 2 0 0 0 0 0 }")
-    assert light_positions(scene, 2).tolist() == [[1, 1, 1], [6, 5, 6]]
+    assert scene.light_positions(2).tolist() == [[1, 1, 1], [6, 5, 6]]
 
 
 def test_no_lights(read):
-    assert light_positions(read("b 0 0 0"), 0).shape == (0, 3)
+    assert read("b 0 0 0").light_positions(0).shape == (0, 3)
 
 
 def test_deformation_is_linear_and_clamped():

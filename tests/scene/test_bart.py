@@ -8,7 +8,7 @@ import time
 import numpy as np
 import pytest
 
-from tracer.scene.animation import deformed
+from tracer.scene.deformation import deformed
 from tracer.scene.load import load_scene, scene_info
 
 SCENES = {

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 import tracer
-from tracer.geometry.queries import DYNAMIC, STATIC, batch_of
+from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, batch_of
 from tracer.geometry.rays import MISS, Hits, Rays
 
 UNTOUCHED = 77
@@ -44,17 +44,17 @@ def ask(world: tracer.World, rays: Rays, first: int = 0, last: int | None = None
     batch = batch_of(rays, Hits(*numbers))
     structure.closest.call(data, batch.ctypes.data, first, last, counts.ctypes.data)
     names = [np.full(n, UNTOUCHED, np.int32) for _ in range(2)]
-    for which, blocked, occluders in zip((STATIC, DYNAMIC), flags, names, strict=True):
+    for which, blocked, occluders in zip((STATIC_GEOMETRY, DYNAMIC_OBJECTS), flags, names, strict=True):
         batch = batch_of(rays, blocked=blocked, which=which, occluders=occluders)
         structure.any_hit.call(data, batch.ctypes.data, first, last, counts.ctypes.data)
         assert np.isin(blocked[first:last], (0, which)).all()
         named = occluders[first:last] != MISS
         assert np.array_equal(named, blocked[first:last] != 0)
-        assert ((world.object_of[occluders[first:last][named]] == 0) == (which == STATIC)).all()
+        assert ((world.object_of[occluders[first:last][named]] == 0) == (which == STATIC_GEOMETRY)).all()
     both = np.full(n, UNTOUCHED, np.uint8)
     structure.any_hit.call(data, batch_of(rays, blocked=both).ctypes.data, first, last, counts.ctypes.data)
     static, dynamic = (f[first:last] for f in flags)
-    assert np.array_equal(both[first:last], np.where(static, STATIC, dynamic))
+    assert np.array_equal(both[first:last], np.where(static, STATIC_GEOMETRY, dynamic))
     for array in (*numbers, *flags, *names, both):
         assert (array[:first] == UNTOUCHED).all() and (array[last:] == UNTOUCHED).all()
     return Answers(*(a[first:last] for a in numbers), *(f[first:last].astype(np.bool_) for f in flags))

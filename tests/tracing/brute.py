@@ -13,19 +13,30 @@ import numpy as np
 
 import tracer
 from tracer.geometry.intersect import hit_quadric, hit_triangle, transform_ray
-from tracer.geometry.memory import pointer
-from tracer.geometry.rays import INFINITY, Rays, ray_at, ray_pointers
-from tracer.kernels import kernel
+from tracer.geometry.memory import data_pointer
+from tracer.geometry.rays import INFINITY, Ray, Rays
+from tracer.kernels import inlined, kernel
+
+
+@inlined
+def ray_in(rays, i):
+    """The i-th ray of a batch."""
+    o, d = rays.origin, rays.direction
+    return Ray(o[0, i], o[1, i], o[2, i], d[0, i], d[1, i], d[2, i], rays.t_min[i], rays.t_max[i])
 
 
 @kernel
 def _meet_all(placed, rays, t, u, v):
     """Into t, u and v (rays, primitives) float32: where each ray meets each primitive; t = inf for a miss."""
-    triangles, quadrics, to_object = pointer(placed.triangles), pointer(placed.quadrics), pointer(placed.to_object)
-    batch, flat = ray_pointers(rays), len(placed.triangles)
+    triangles, quadrics, to_object = (
+        data_pointer(placed.triangles),
+        data_pointer(placed.quadrics),
+        data_pointer(placed.to_object),
+    )
+    flat = len(placed.triangles)
     for i in range(len(rays.t_min)):
         for primitive in range(len(placed.object_of)):
-            ray, owner = ray_at(batch, i), placed.object_of[primitive]
+            ray, owner = ray_in(rays, i), placed.object_of[primitive]
             if owner != 0:
                 ray = transform_ray(ray, to_object, owner, 12)
             if primitive < flat:

@@ -10,15 +10,16 @@ from __future__ import annotations
 import numpy as np
 
 import tracer
-from tests.tracing.brute import Meetings
+from tests.tracing.brute import Meetings, ray_in
 from tests.tracing.trees8 import walk
-from tracer.geometry.bvh8.intersect import crossing, terms_of, triangle_of
-from tracer.geometry.bvh8.packet import FAR, inverse
-from tracer.geometry.bvh8.tree import BOX, COUNT, Tree
-from tracer.geometry.bvh8.trees import BLOCK, NUMBERS
+from tracer.geometry.boxes import inverse
+from tracer.geometry.bvh8.layout import BOX, COUNT, Tree
+from tracer.geometry.bvh8.packet import FAR
+from tracer.geometry.bvh8.placed import BLOCK, NUMBERS, triangle_of
 from tracer.geometry.intersect import hit_quadric
-from tracer.geometry.memory import pointer
-from tracer.geometry.rays import INFINITY, Ray, Rays, ray_at, ray_pointers
+from tracer.geometry.memory import data_pointer
+from tracer.geometry.rays import INFINITY, Ray, Rays
+from tracer.geometry.triangle_test import crossing, terms_of
 from tracer.kernels import inlined, kernel
 from tracer.simd import address_of, as_f32, as_i32, load_i32
 
@@ -36,9 +37,8 @@ def _inside(ray, box):
 @kernel
 def _meet_blocks(blocks, which, rays, t, u, v):
     """Into t, u and v (rays, primitives) float32: where rays meet the triangles of these blocks (k,)."""
-    batch = ray_pointers(rays)
     for i in range(len(rays.t_min)):
-        ray = ray_at(batch, i)
+        ray = ray_in(rays, i)
         for b in which:
             block = address_of(blocks) + BLOCK * b
             enter, leave = _inside(ray, blocks[b, BOX:])
@@ -55,13 +55,12 @@ def _meet_blocks(blocks, which, rays, t, u, v):
 @kernel
 def _meet_quadrics(quadrics, which, boxes, rays, first, t):
     """Into t (rays, primitives) float32, from column `first` on: where rays meet these quadrics, in boxes (k, 6)."""
-    batch = ray_pointers(rays)
     for i in range(len(rays.t_min)):
-        ray = ray_at(batch, i)
+        ray = ray_in(rays, i)
         endless = Ray(ray.ox, ray.oy, ray.oz, ray.dx, ray.dy, ray.dz, ray.t_min, FAR)
         for k in range(len(which)):
             enter, leave = _inside(ray, boxes[k])
-            where = hit_quadric(endless, pointer(quadrics), which[k])
+            where = hit_quadric(endless, data_pointer(quadrics), which[k])
             if where >= enter and where <= leave:
                 t[i, first + which[k]] = where
 

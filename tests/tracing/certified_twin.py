@@ -14,8 +14,9 @@ from tests.tracing.brute import meet_all
 from tracer.culling.certified.cells import CANDIDATES, FULL, HIGHEST, LIT, named_by, state_of
 from tracer.culling.certified.error_bounds import EPSILON
 from tracer.culling.certified.light_space import verdicts
-from tracer.culling.certified.shaft import LOWEST, OFFSET
+from tracer.culling.certified.shaft import LOWEST
 from tracer.culling.certified.store import CertificateStore
+from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import ACCELERATORS
 from tracer.kernels import kernel
@@ -39,7 +40,7 @@ class Twin:
         used = int(self.cells.used[0])
         roots = 1 + np.flatnonzero(self.cells.parent[1:used] == 0)
         self.roots = dict(zip(self.cells.owner[roots].tolist(), roots.tolist(), strict=True))
-        self.largest = float(certificates.highest) / (HIGHEST * OFFSET)
+        self.largest = float(certificates.highest) / (HIGHEST * RAY_OFFSET)
 
     def certificates_made(self) -> np.ndarray:
         """All (cell, light, state) there are, (n, 3)."""
@@ -64,7 +65,9 @@ class Twin:
         u, v, height = (_dot(d, x) for d in (along_u, along_v, normal))
         beyond = [np.float32(3 * EPSILON * self.largest * np.linalg.norm(e) / across) for e in (e2, e1)]
         above = np.abs(height)
-        inside = (above >= np.float32(LOWEST * OFFSET) * np.abs(points).max(1)) & (above <= self.certificates.highest)
+        inside = (above >= np.float32(LOWEST * RAY_OFFSET) * np.abs(points).max(1)) & (
+            above <= self.certificates.highest
+        )
         inside &= (height > 0) if owner & 1 == 0 else (height < 0)
         inside &= (u >= -beyond[0]) & (v >= -beyond[1]) & (u + v <= np.float32(1) + beyond[0] + beyond[1])
         found = np.array([self._leaf(self.roots[owner], *at) for at in zip(u.clip(0, 1), v.clip(0, 1), strict=True)])
@@ -105,7 +108,7 @@ class Twin:
         at = a + x[:, None] * e1 + y[:, None] * e2
         largest, highest = np.abs(at).max(1), float(self.certificates.highest)
         kind = rng.integers(5, size=len(at))
-        low = LOWEST * OFFSET * largest
+        low = LOWEST * RAY_OFFSET * largest
         rise = [
             low * (1 + 1e-6),
             low * 1.001,

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tracer.culling.modes import OcclusionMode, ShadowMode
-from tracer.scene.animation import deformed
+from tracer.scene.deformation import deformed
 from tracer.scene.model import SPHERE, Scene
 
 INIT, PARTIAL, FULLY, DYNAMIC = OcclusionMode

@@ -24,7 +24,6 @@ from tests.tracing import brute, naive, naive_cells
 from tracer.culling.cells import first_units
 from tracer.culling.modes import ShadowMode
 from tracer.geometry.camera import Pinhole, pinhole
-from tracer.scene.animation import light_positions
 from tracer.scene.model import SPHERE, Camera
 
 F = np.float32
@@ -115,7 +114,7 @@ class NaiveRenderer:
         """Where objects and lights are now; what is known of a light that moved is forgotten."""
         self.world.place(time)
         self.there = brute.primitives_there(self.scene, time)
-        before, self.lamps = self.lamps, light_positions(self.scene, time).astype(F)
+        before, self.lamps = self.lamps, self.scene.light_positions(time).astype(F)
         if before is not None:
             for light in np.flatnonzero((before != self.lamps).any(axis=1)):
                 self.modes.forget(int(light))

@@ -14,18 +14,8 @@ import tracer
 from tests.sweeps import examples
 from tests.tracing.worlds import affine, quad, quadrics, random_corners, scene, triangles
 from tracer.scene.animation import Animation, Keys, TrackSet
-from tracer.scene.model import (
-    CONE,
-    SPHERE,
-    Camera,
-    Deformation,
-    Light,
-    Material,
-    Quadrics,
-    SceneObject,
-    Triangles,
-    empty_quadrics,
-)
+from tracer.scene.deformation import Deformation
+from tracer.scene.model import CONE, SPHERE, Camera, Light, Material, Quadrics, SceneObject, Triangles, empty_quadrics
 
 END = 3.0  # seconds: everything that moves does so from 0 to END
 MATERIALS = (

@@ -13,10 +13,11 @@ import tracer
 from tests.tracing.trees8 import NO_BOXES, assert_sound, cost, same, walk
 from tests.tracing.worlds import random_corners, scene
 from tracer.geometry.building import CANCELLED, DONE
-from tracer.geometry.bvh8.binary import grow, make_items, put_triangles
-from tracer.geometry.bvh8.build import SMALL, build_shape, build_tree
-from tracer.geometry.bvh8.collapse import LEAF_COST, NODE_COST, TRIANGLE_COST
+from tracer.geometry.bvh8.build import build_tree
 from tracer.geometry.primitives import triangle_rows
+from tracer.geometry.wide_tree.binary import grow, make_items, put_triangles
+from tracer.geometry.wide_tree.build import SMALL, build_topology
+from tracer.geometry.wide_tree.collapse import LEAF_COST, NODE_COST, TRIANGLE_COST
 from tracer.scene.model import Cancelled
 
 SHAPES = {
@@ -113,7 +114,7 @@ def test_no_way_down_is_longer_than_it_may_be(depth):
     """Not even over triangles of which each but the last is as large as all after it."""
     corners = random_corners(np.random.default_rng(6), 1000, 0.1) * 0.8 ** np.arange(1000)[:, None, None]
     rows, control = triangle_rows(corners.astype(np.float32)), np.zeros(2, np.int64)
-    children = build_shape(rows, NO_BOXES, control, depth=depth).children
+    children = build_topology(rows, NO_BOXES, control, depth=depth).children
     levels = np.ones(len(children), int)
     for node, row in enumerate(children):
         levels[row[row >= 0]] = levels[node] + 1

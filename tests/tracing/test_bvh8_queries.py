@@ -19,7 +19,6 @@ from tests.tracing.random_worlds import END, quickly, scenes
 from tests.tracing.shoals import shoals
 from tests.tracing.worlds import affine, moved, quad, quadrics, random_corners, scene
 from tracer.geometry.rays import Rays
-from tracer.scene.animation import light_positions
 from tracer.scene.model import CONE, SPHERE
 
 VIEWS = [("kitchen/kitchen.aff", 400), ("museum/museum5.aff", 40)]
@@ -40,7 +39,7 @@ def view(path: Path, number: int) -> tuple[tracer.World, tracer.World, dict[str,
     hits = kd.closest_hits(primary)
     hits.primitive[hits.primitive >= content.triangle_count] = -1  # surfaces are those of triangles
     points = points_of(Surfaces.of(content, time), primary, hits)
-    lights = light_positions(content, time).astype(np.float32)
+    lights = content.light_positions(time).astype(np.float32)
     return wide, kd, {
         "primary": primary,
         "shadow": joined([shadow_rays(points, light)[0] for light in lights]),

@@ -18,6 +18,7 @@ from tracer.culling.certified.cells import CANDIDATES, FINAL, FULL, LIT, NOBODY,
 from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.certified.invalidate import copy_kept
 from tracer.culling.certified.store import CertificateStore
+from tracer.culling.rest import changes
 from tracer.explanation import explain
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import ACCELERATORS
@@ -157,9 +158,10 @@ def test_frames_of_a_kitchen_in_which_things_start_and_stop(bart: Path):
     changed = 0
     for number in range(116, 125):
         time = made.frame_time(number)
+        before = certified.rest.now
         expected, frame = none.render(time), certified.render(time)
         assert expected.color.tobytes() == frame.color.tobytes(), f"frame {number}"
-        changed += number > 117 and len(certified.rest.started.which) + len(certified.rest.stopped.which) > 0
+        changed += number > 117 and any(len(objects.which) for objects in changes(before, certified.rest.now))
     assert changed > 0 and frame.statistics.shadow.culled > 0
 
 

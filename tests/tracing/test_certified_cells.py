@@ -20,7 +20,6 @@ from tracer.culling.certified import cost_model
 from tracer.culling.certified.cells import CANDIDATES, FULL, LIT
 from tracer.culling.certified.cost_model import CostModel
 from tracer.geometry.world import ACCELERATORS
-from tracer.scene.animation import light_positions
 from tracer.scene.model import Camera
 
 STATES = (FULL, LIT, CANDIDATES)
@@ -45,7 +44,7 @@ def _certified(made: tracer.Scene, size: int, frames: Sequence[tuple[float, Came
     for time, camera in frames:
         certified.render(time, camera)
     assert certified.certificates is not None
-    return Twin(made, certified.certificates, light_positions(made, frames[-1][0]))
+    return Twin(made, certified.certificates, made.light_positions(frames[-1][0]))
 
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)

@@ -12,7 +12,7 @@ from embreex.mesh_construction import TriangleMesh
 
 import tracer
 from tracer.geometry.camera import pinhole
-from tracer.scene.animation import deformed, light_positions
+from tracer.scene.deformation import deformed
 from tracer.scene.model import Light, empty_quadrics
 
 SIZE = 160
@@ -133,7 +133,7 @@ def test_depth_primitive_due_and_lit_agree_with_embree(bart: Path, name: str, ti
         assert other.mean() < 0.005
         rows = np.searchsorted(numbers, frame.primitive.reshape(-1)[other])
         assert lay_in_plane(triangles[rows], seen.point[other]).all()
-        for light, position in enumerate(light_positions(scene, time)):
+        for light, position in enumerate(scene.light_positions(time)):
             due = hit & (((position - seen.point) * seen.normal).sum(1) > 0)
             assert (due != frame.due.reshape(len(hit), -1)[:, light])[hit].sum() <= STRAY, f"{light} due at {time} s"
             towards = seen.above(due) - position

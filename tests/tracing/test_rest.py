@@ -16,10 +16,11 @@ from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.shades import BEHIND, GOING, MIDDLES, floor, going, kite, roof
 from tests.tracing.worlds import random_corners, scene, triangles
 from tracer.culling.modes import OcclusionMode, ShadowMode, occlusion_mode, shadow_mode
-from tracer.culling.rest import Rest
+from tracer.culling.rest import Changed, Rest, changes
 from tracer.geometry.world import ACCELERATORS
-from tracer.scene.animation import Animation, TrackSet, deformed
-from tracer.scene.model import Deformation, SceneObject, empty_quadrics
+from tracer.scene.animation import Animation, TrackSet
+from tracer.scene.deformation import Deformation, deformed
+from tracer.scene.model import SceneObject, empty_quadrics
 
 
 @pytest.fixture(params=ACCELERATORS)
@@ -36,6 +37,13 @@ TRACKS = {
 }
 
 
+def place_and_follow(world: tracer.World, rest: Rest, time: float) -> tuple[Changed, Changed]:
+    """Place the world at a time as a frame does; which objects have started to move since, and which stopped."""
+    before, poses = rest.now, world.pose(time)
+    world.place(poses, rest.follow(poses, world.primitives))
+    return changes(before, rest.now)
+
+
 def test_an_object_rests_from_the_second_frame_in_which_it_is_the_same():
     jelly = random_corners(np.random.default_rng(1), 5, 0.3)
     keys = np.stack([jelly, jelly, jelly + np.float32(0.1)], axis=1)
@@ -45,25 +53,26 @@ def test_an_object_rests_from_the_second_frame_in_which_it_is_the_same():
     world, rest = tracer.World(made), Rest(4)
     rested, changed = [], []
     for time in (0.0, 0.5, 1.25, 1.75, 1.75, 2.25, 2.75, 3.0, 3.5):
-        world.place(time, rest)
+        started, stopped = place_and_follow(world, rest, time)
         rested.append("".join(".SBJ"[i] for i in np.flatnonzero(rest.now.since)))
-        changed.append(tuple("".join(".SBJ"[i] for i in c.which) for c in (rest.started, rest.stopped)))
+        changed.append(tuple("".join(".SBJ"[i] for i in c.which) for c in (started, stopped)))
         there = rest.now.since > 0
         assert np.array_equal(rest.now.boxes[there], world.object_boxes()[there])
-        assert np.array_equal(rest.stopped.boxes, world.object_boxes()[rest.stopped.which])
+        assert np.array_equal(stopped.boxes, world.object_boxes()[stopped.which])
     assert rested == ["SBJ", "SBJ", "B", "", "SJ", "", "SJ", "SBJ", "SBJ"]
     assert changed[:2] == [("", "SBJ"), ("", "")]
     assert changed[2:7] == [("SJ", ""), ("B", ""), ("", "SJ"), ("SJ", ""), ("", "SJ")]
     assert changed[7:] == [("", "B"), ("", "")]
+    before = rest.now
     rest.forget()
-    assert len(rest.started.which) == 3 and not rest.now.since.any()
+    assert len(changes(before, rest.now)[0].which) == 3 and not rest.now.since.any()
 
 
 def test_a_box_is_around_what_started_where_it_rested():
     world, rest = tracer.World(scene(floor(), dynamic=(kite("sails"),), animation=Animation(TRACKS))), Rest(2)
     for time in (0.5, 1.5):
-        world.place(time, rest)
-    assert np.allclose(rest.started.boxes, [[-2.1, -0.6, 5.0, -0.9, 0.6, 5.0]], atol=1e-4)
+        started, _ = place_and_follow(world, rest, time)
+    assert np.allclose(started.boxes, [[-2.1, -0.6, 5.0, -0.9, 0.6, 5.0]], atol=1e-4)
     assert np.allclose(world.object_boxes()[1], [-0.6, -0.6, 5.0, 0.6, 0.6, 5.0], atol=1e-4)
 
 
@@ -74,7 +83,7 @@ def test_what_deforms_does_not_rest(bart: Path):
     deforms, rests, shape = [], [], np.empty(0)
     for number in [*range(0, content.frames, 20), content.frames - 1, content.frames - 1]:
         time, before = content.frame_time(number), shape
-        world.place(time, rest)
+        place_and_follow(world, rest, time)
         shape, _ = deformed(content.objects[index].deformation, time)
         deforms.append(number > 0 and not np.array_equal(shape, before))
         rests.append(bool(rest.now.since[index]))

@@ -15,8 +15,8 @@ from tests.tracing import brute
 from tests.tracing.brute8 import meet_all8
 from tests.tracing.random_worlds import END, quickly, scenes
 from tests.tracing.shoals import shoals
-from tests.tracing.worlds import SomeRest, moved, quadrics, random_corners, scene
-from tracer.geometry.queries import DYNAMIC, STATIC, batch_of
+from tests.tracing.worlds import moved, quadrics, random_corners, scene
+from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, batch_of
 from tracer.geometry.rays import Rays
 from tracer.geometry.world import ACCELERATORS
 from tracer.scene.model import SPHERE
@@ -42,15 +42,19 @@ def assert_same_but_for_what_is_static(
     lies = (still.object_of == 0) | rests[still.object_of]
     static, dynamic = met[:, lies].any(axis=1), met[:, ~lies].any(axis=1)
     n, counts = len(rays.t_min), np.zeros(2, np.int64)
-    for which in (STATIC, DYNAMIC, STATIC | DYNAMIC):
+    for which in (STATIC_GEOMETRY, DYNAMIC_OBJECTS, STATIC_GEOMETRY | DYNAMIC_OBJECTS):
         blocked, occluders = np.empty(n, np.uint8), np.empty(n, np.int32)
         batch = batch_of(rays, blocked=blocked, which=which, occluders=occluders)
         world.structure.any_hit.call(world.placed.data, batch.ctypes.data, 0, n, counts.ctypes.data)
-        asked = np.where(static & bool(which & STATIC), STATIC, np.where(dynamic & bool(which & DYNAMIC), DYNAMIC, 0))
+        asked = np.where(
+            static & bool(which & STATIC_GEOMETRY),
+            STATIC_GEOMETRY,
+            np.where(dynamic & bool(which & DYNAMIC_OBJECTS), DYNAMIC_OBJECTS, 0),
+        )
         assert np.array_equal(blocked, asked)
         assert np.array_equal(occluders >= 0, blocked > 0)
         hit = blocked > 0
-        assert met[hit, occluders[hit]].all() and np.array_equal(lies[occluders[hit]], blocked[hit] == STATIC)
+        assert met[hit, occluders[hit]].all() and np.array_equal(lies[occluders[hit]], blocked[hit] == STATIC_GEOMETRY)
     resting = (met[:, lies & (still.object_of != 0)].any(axis=1)).sum()
     return Counter(static=int(static.sum()), resting=int(resting), moving=int(dynamic.sum()))
 
@@ -64,7 +68,7 @@ def test_queries_answer_the_same_whatever_rests(accelerator):
         rng = np.random.default_rng(seed)
         still, world = (tracer.World(made, time, accelerator) for _ in range(2))
         rests = rng.random(len(made.objects)) < 0.5
-        world.place(time, SomeRest(rests))
+        world.place(time, rests)
         assert world.placed.has_dynamic == (still.object_boxes()[1:, 0] < still.object_boxes()[1:, 3])[~rests[1:]].any()
         assert np.allclose(world.bounds(), still.bounds(), rtol=1e-4)
         for rays in shoals(rng, 60).values():
@@ -91,6 +95,6 @@ def test_many_objects_rest_and_many_move(accelerator, objects):
     still, world = (tracer.World(made, 0.0, accelerator) for _ in range(2))
     for share in (0.0, 0.3, 0.8, 1.0):
         rests = rng.random(1 + objects) < share
-        world.place(0.0, SomeRest(rests))
+        world.place(0.0, rests)
         for rays in shoals(rng, 40).values():
             assert_same_but_for_what_is_static(still, world, rests, rays)

@@ -11,7 +11,7 @@ import tracer
 from tests.tracing import brute
 from tests.tracing.naive_tree import Line, Traversal
 from tests.tracing.random_worlds import END, quickly, scenes
-from tests.tracing.worlds import SomeRest, quad, random_corners, scene
+from tests.tracing.worlds import quad, random_corners, scene
 from tracer.geometry.queries import batch_of
 from tracer.geometry.rays import Hits, Rays
 
@@ -93,7 +93,7 @@ def test_rays_go_the_naive_twins_way_through_random_scenes():
         world, rng = tracer.World(made, time, "kdtree"), np.random.default_rng(seed)
         there = brute.primitives_there(made, time)
         sums += assert_same_way(world, random_rays(rng, 25), there)
-        world.place(time, SomeRest(rng.random(len(made.objects)) < 0.5))
+        world.place(time, rng.random(len(made.objects)) < 0.5)
         sums += assert_same_way(world, random_rays(rng, 25), there)
 
     check()

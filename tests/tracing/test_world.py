@@ -16,7 +16,7 @@ from tests.tracing.random_worlds import END, quickly, scenes
 from tests.tracing.worlds import affine, moved, quadrics, random_corners, scene
 from tracer.geometry.kdtree.build import CANCELLED, build_tree
 from tracer.geometry.primitives import triangle_rows
-from tracer.geometry.queries import DYNAMIC, STATIC, any_hits_by
+from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, any_hits_by
 from tracer.geometry.world import ACCELERATORS
 from tracer.kernels import kernel
 from tracer.scene.model import SPHERE, Cancelled
@@ -129,7 +129,7 @@ def test_occluders_are_met_by_their_rays_alone(accelerator):
 
 @kernel
 def _ask(placed, rays, blocked, occluders, counts):
-    any_hits_by(placed, rays, STATIC | DYNAMIC, blocked, occluders, 0, len(rays.t_min), counts)
+    any_hits_by(placed, rays, STATIC_GEOMETRY | DYNAMIC_OBJECTS, blocked, occluders, 0, len(rays.t_min), counts)
 
 
 def test_kernels_are_told_the_same_occluders(accelerator):
@@ -140,8 +140,10 @@ def test_kernels_are_told_the_same_occluders(accelerator):
     blocked, occluders = np.empty(500, np.uint8), np.empty(500, np.int32)
     _ask(world.placed, rays, blocked, occluders, np.zeros(2, np.int64))
     assert np.array_equal(occluders, world.occluders(rays, 1))
-    assert np.array_equal(blocked, np.where(occluders < 0, 0, np.where(occluders < 30, STATIC, DYNAMIC)))
-    assert set(blocked) == {0, STATIC, DYNAMIC}
+    assert np.array_equal(
+        blocked, np.where(occluders < 0, 0, np.where(occluders < 30, STATIC_GEOMETRY, DYNAMIC_OBJECTS))
+    )
+    assert set(blocked) == {0, STATIC_GEOMETRY, DYNAMIC_OBJECTS}
 
 
 def test_an_object_scaled_to_nothing_is_not_there(accelerator):

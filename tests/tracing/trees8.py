@@ -6,7 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tracer.geometry.bvh8.tree import EMPTY, MAX_DEPTH, NO_PRIMITIVE, PADDING, QUADRIC, Tree
+from tracer.geometry.boxes import PADDING
+from tracer.geometry.bvh8.layout import EMPTY, NO_PRIMITIVE, QUADRIC, Tree
+from tracer.geometry.wide_tree.topology import MAX_DEPTH
 
 NO_BOXES = np.empty((0, 6), np.float32)
 

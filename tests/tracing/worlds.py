@@ -6,8 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from tracer.geometry.poses import Poses
-from tracer.geometry.primitives import Primitives
 from tracer.scene.animation import Animation
 from tracer.scene.model import (
     Camera,
@@ -90,13 +88,3 @@ def random_corners(rng: np.random.Generator, n: int, size: float) -> np.ndarray:
     if n >= 8:
         corners[n // 2] = corners[n // 2 + 1]
     return corners.astype(np.float32)
-
-
-class SomeRest:
-    """Says which objects rest, whatever they do: those of `which`, (objects,) bool, that are there."""
-
-    def __init__(self, which: np.ndarray) -> None:
-        self._which = which
-
-    def follow(self, poses: Poses, primitives: Primitives) -> np.ndarray:
-        return self._which & poses.present & (np.arange(len(self._which)) > 0)

@@ -36,10 +36,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.bvh8.intersect import Triangle, crossing, terms_of
-from tracer.geometry.bvh8.packet import inverse
-from tracer.geometry.bvh8.tree import PADDING
+from tracer.geometry.boxes import PADDING, inverse
 from tracer.geometry.rays import MISS
+from tracer.geometry.triangle_test import Triangle, crossing, terms_of
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.simd import (
     address_of,

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.intersect import hit_triangle
-from tracer.geometry.memory import borrowed, pointer
+from tracer.geometry.memory import borrowed, data_pointer
 from tracer.geometry.queries import hits_alone
 from tracer.geometry.rays import INFINITY, MISS
 from tracer.kernels import inlined, kernel, subkernel
@@ -115,7 +115,7 @@ def hits_unit(world, ray, primitive, first, unit):
     """Whether a ray in world space meets this unit of a primitive, nothing else asked."""
     if len(first) == 0 or first[primitive + 1] - first[primitive] == 1:
         return hits_alone(world, ray, primitive)
-    t, u, v = hit_triangle(ray, pointer(world.triangles), primitive)
+    t, u, v = hit_triangle(ray, data_pointer(world.triangles), primitive)
     return t < INFINITY and cell_at(first, primitive, u, v) == unit
 
 

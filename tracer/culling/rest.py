@@ -55,12 +55,11 @@ def nothing_rests(objects: int) -> Resting:
 class Rest:
     """Follows n objects from frame to frame.
 
-    `now` is what rests; `started` and `stopped` are what has changed in that with the last frame.
+    `now` is what rests.
     """
 
     def __init__(self, objects: int) -> None:
         self.now = nothing_rests(objects)
-        self.started, self.stopped = changes(self.now, self.now)
         self._frame = 0
         self._poses: Poses | None = None
         self._shapes: dict[int, NDArray[np.float32]] = {}
@@ -80,14 +79,10 @@ class Rest:
         since, boxes = np.where(rests, self.now.since, 0), self.now.boxes.copy()
         new = np.flatnonzero(rests & (since == 0))
         since[new], boxes[new] = self._frame, primitives.object_boxes(new, poses)
-        self._turn_to(Resting(since, boxes))
+        self.now = Resting(since, boxes)
         return rests
 
     def forget(self) -> None:
         """A further frame in which nothing is to rest; the next to be followed is a first one again."""
         self._poses, self._shapes = None, {}
-        self._turn_to(nothing_rests(len(self.now.since)))
-
-    def _turn_to(self, resting: Resting) -> None:
-        self.started, self.stopped = changes(self.now, resting)
-        self.now = resting
+        self.now = nothing_rests(len(self.now.since))

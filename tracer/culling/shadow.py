@@ -32,9 +32,8 @@ from tracer.culling.certified.candidates import ask_candidates
 from tracer.culling.certified.view import CertificateView
 from tracer.culling.learning import consult_modes, learn, look_up, trusted, with_modes, words_of
 from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.geometry.bvh8.packet import segments_miss_box
-from tracer.geometry.queries import DYNAMIC as MOVING
-from tracer.geometry.queries import STATIC, any_hits, any_hits_by
+from tracer.geometry.boxes import segments_miss_box
+from tracer.geometry.queries import DYNAMIC_OBJECTS, EVERYTHING, STATIC_GEOMETRY, any_hits, any_hits_by
 from tracer.geometry.rays import MISS
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
@@ -176,7 +175,7 @@ def _ask(world, points, light, vectors, bits, which, answers, counts):
 def _blocked(answers, asked, n):
     """Bits of those lanes, of the bits `asked`, whose rays, from the n-th on, anything blocks; and something static."""
     found = load_spread_bytes16(address_of(answers.blocked) + n, mask16(asked))
-    return bits_of(found > 0), bits_of(found == STATIC)
+    return bits_of(found > 0), bits_of(found == STATIC_GEOMETRY)
 
 
 @inlined
@@ -197,7 +196,7 @@ def _ask_about_known(world, points, light, vectors, answers, counts):
         lit = np.int64(answers.lit[v])
         counts[RAYS] += ones(lit)  # those that miss the box around all that moves are done with that
         answers.asked[v] = 0 if lit == 0 else lit & _towards(world.moving_box, points, light, v)
-    _ask(world, points, light, vectors, answers.asked, MOVING, answers, counts)
+    _ask(world, points, light, vectors, answers.asked, DYNAMIC_OBJECTS, answers, counts)
     _take_blocked(answers.lit, answers.asked, vectors, answers)
 
 
@@ -252,9 +251,9 @@ def _ask_about_others(world, points, light, number, knowledge, vectors, answers,
     if count == 0:
         return
     if cached:
-        any_hits_by(world, answers.rays, STATIC | MOVING, answers.blocked, answers.occluders, 0, count, counts)
+        any_hits_by(world, answers.rays, EVERYTHING, answers.blocked, answers.occluders, 0, count, counts)
     else:
-        any_hits(world, answers.rays, STATIC | MOVING, answers.blocked, 0, count, counts)
+        any_hits(world, answers.rays, EVERYTHING, answers.blocked, 0, count, counts)
     n, learns = 0, knowledge.learn and number < MAX_CULLED_LIGHTS
     gained, units, found = knowledge.gained, with_modes(points, knowledge), answers.modes
     for v in range(vectors):
@@ -276,7 +275,7 @@ def _verify(world, points, light, vectors, answers, counts):
     scratch = np.zeros(RAYS, np.int64)  # steps and tests
     for v in range(vectors):
         answers.truth[v] = answers.due[v]
-    _ask(world, points, light, vectors, answers.due, STATIC | MOVING, answers, scratch)
+    _ask(world, points, light, vectors, answers.due, EVERYTHING, answers, scratch)
     _take_blocked(answers.truth, answers.due, vectors, answers)
     for v in range(vectors):
         counts[WRONG] += ones(np.int64(answers.truth[v] ^ answers.lit[v]))

@@ -9,9 +9,11 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.parallel import for_each_chunk
 from tracer.scene.model import Progress
 
 CANCELLED, DONE = 0, 1  # entries of a build's `control` (2,) int64: set to stop it; how much it has done
+CHUNK = 1 << 12  # blocks or triangles that a thread takes at a time
 LONG = 5000  # primitives; what has fewer is built in no time
 T = TypeVar("T")
 
@@ -32,3 +34,12 @@ def watched(
         finally:
             control[CANCELLED] = 1
     return result.result()
+
+
+def in_chunks(work: Callable[[int, int], None], count: int, control: NDArray[np.int64], threads: int) -> None:
+    """work(first, last) over all numbers below count."""
+
+    def one(chunk: int, worker: int) -> None:
+        work(chunk * CHUNK, min(count, (chunk + 1) * CHUNK))
+
+    for_each_chunk(one, -(-count // CHUNK), threads, lambda: bool(control[CANCELLED]))

@@ -17,30 +17,10 @@ from tracer.scene.model import SPHERE
 
 ZERO = np.float32(0)
 ONE = np.float32(1)
-TINY = np.float32(1e-20)
 NEAR = np.float32(1e-5)  # of the distance of a ray's origin: more than t is wrong by on triangles it does not graze
 
 # Where a quadric's row has these; the map to canonical space fills the first 12 places.
 KIND, R0, R1, INSIDE = 12, 13, 14, 15
-
-
-@inlined
-def inverse(x):
-    """1/x, with a huge number for 0: finite, so that 0 * inverse is 0 and never NaN."""
-    return ONE / (x if abs(x) > TINY else math.copysign(TINY, x))
-
-
-@inlined
-def hit_box(ray, boxes, i):
-    """Interval of t of a ray in the i-th of boxes (lower, upper); empty where first > second (slab test)."""
-    b = 6 * i
-    ix, iy, iz = inverse(ray.dx), inverse(ray.dy), inverse(ray.dz)
-    x0, x1 = (boxes[b] - ray.ox) * ix, (boxes[b + 3] - ray.ox) * ix
-    y0, y1 = (boxes[b + 1] - ray.oy) * iy, (boxes[b + 4] - ray.oy) * iy
-    z0, z1 = (boxes[b + 2] - ray.oz) * iz, (boxes[b + 5] - ray.oz) * iz
-    enter = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), ray.t_min))
-    leave = min(min(max(x0, x1), max(y0, y1)), min(max(z0, z1), ray.t_max))
-    return enter, leave
 
 
 @inlined

@@ -31,7 +31,7 @@ def _intrinsic(function: Callable) -> Any:
 
 
 @_intrinsic
-def pointer(typingctx, array):
+def data_pointer(typingctx, array):
     """Pointer to the first element of a contiguous array, read and written like a flat array."""
     if not isinstance(array, types.Array) or array.layout != "C":
         return None

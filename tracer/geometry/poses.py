@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.scene.arrays import Float64
 from tracer.scene.chains import Chains
-from tracer.scene.model import Float64
 
 
 class Poses(NamedTuple):

@@ -7,13 +7,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.facets import ACROSS, NORMALS, OBJECT, across, facet_rows
+from tracer.geometry.attributes import CORNER_NORMALS, FACE_NORMAL, OBJECT, attribute_rows, edge_products
+from tracer.geometry.boxes import OUTWARDS
 from tracer.geometry.poses import Poses, inverses, products
 from tracer.kernels import kernel
-from tracer.scene.animation import deformed
-from tracer.scene.model import SPHERE, Float32, Float64, Int32, Scene
-
-OUTWARDS = np.array([-1.0, -1.0, -1.0, 1.0, 1.0, 1.0])  # times a number, what makes a box (6,) larger by it
+from tracer.scene.arrays import Float32, Float64, Int32
+from tracer.scene.deformation import deformed
+from tracer.scene.model import SPHERE, Scene
 
 
 def triangle_rows(corners: Float32) -> Float32:
@@ -64,7 +64,7 @@ class WorldTriangles(NamedTuple):
 class Primitives:
     """All primitives of a scene's n objects, in the space of their object.
 
-    triangles (t, 9) float32, corner and two edges; facets (t + q, 16) float32 (`tracer.geometry.facets`), of
+    triangles (t, 9) float32, corner and two edges; attributes (t + q, 16) float32 (`tracer.geometry.attributes`), of
     which normals (t, 9) are the corners'; corners (d, 3, 3) float32 are those of dynamic triangles.
     quadrics (q, 16) float32: map to canonical space, kind, radii and side; the same map in float64 is
     to_canonical (q, 3, 4), its inverse to_object.  Those of object i begin at triangle_starts[i] and
@@ -89,8 +89,8 @@ class Primitives:
         self.quadric_starts: Int32 = scene.quadric_offsets - scene.quadric_offsets[0]
         counts = np.diff(self.triangle_starts), np.diff(self.quadric_starts)
         self.object_of = np.concatenate([np.repeat(np.arange(len(objects)), n) for n in counts]).astype(np.int32)
-        self.facets = facet_rows(scene, self.triangles, self.object_of)
-        self.normals = self.facets[: len(corners), NORMALS:ACROSS]
+        self.attributes = attribute_rows(scene, self.triangles, self.object_of)
+        self.normals = self.attributes[: len(corners), CORNER_NORMALS:FACE_NORMAL]
         self.empty: NDArray[np.bool_] = counts[0] + counts[1] == 0
         self.deformations = {i: o.deformation for i, o in enumerate(objects) if o.deformation is not None}
 
@@ -114,7 +114,7 @@ class Primitives:
             corners, normals = deformed(deformation, time)
             self.corners_of(index)[:] = corners
             self.triangles[rows], self.normals[rows] = triangle_rows(corners), normals.reshape(-1, 9)
-            self.facets[rows, ACROSS:OBJECT] = across(self.triangles[rows])
+            self.attributes[rows, FACE_NORMAL:OBJECT] = edge_products(self.triangles[rows])
 
     def outlines(self, poses: Poses) -> Outlines:
         """All primitives, as they are now."""

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.intersect import hit_quadric, hit_triangle, transform_ray
-from tracer.geometry.memory import pointer
+from tracer.geometry.memory import data_pointer
 from tracer.geometry.rays import INFINITY, Hits, RayPointers, Rays
 from tracer.kernels import inlined, subkernel
 from tracer.simd import address_of, call_entry, f32_at, load_i64, local_memory, store
@@ -32,7 +32,8 @@ from tracer.simd import address_of, call_entry, f32_at, load_i64, local_memory, 
     ORIGIN, DIRECTION, T_MIN, T_MAX, STRIDE, HIT_T, HIT_PRIMITIVE, HIT_U, HIT_V, BLOCKED, WHICH, OCCLUDER,
 ) = range(0, 96, 8)  # fmt: skip
 BATCH = 96  # bytes
-STATIC, DYNAMIC = 1, 2
+STATIC_GEOMETRY, DYNAMIC_OBJECTS = 1, 2
+EVERYTHING = STATIC_GEOMETRY | DYNAMIC_OBJECTS
 STEPS, TESTS = 0, 1  # what a query adds to its counts
 
 
@@ -80,8 +81,9 @@ def closest_hits(world, rays, hits, first, last, counts):
 
 @inlined
 def any_hits(world, rays, which, blocked, first, last, counts):
-    """blocked[i] (uint8) for rays first to last - 1: what lies in their interval, STATIC geometry or DYNAMIC objects,
-    or 0 where nothing does.  Only `which` of these is asked for; for the sum of both, static geometry first."""
+    """blocked[i] (uint8) for rays first to last - 1: what lies in their interval, STATIC_GEOMETRY or
+    DYNAMIC_OBJECTS, or 0 where nothing does.  Only `which` of these is asked for; for EVERYTHING, static
+    geometry first."""
     _any_hits(world, rays, which, blocked, np.int64(0), first, last, counts)
 
 
@@ -120,7 +122,7 @@ def batch_of(
     rays: Rays,
     hits: Hits | None = None,
     blocked: NDArray[np.uint8] | None = None,
-    which: int = STATIC | DYNAMIC,
+    which: int = EVERYTHING,
     occluders: NDArray[np.int32] | None = None,
 ) -> NDArray[np.int64]:
     """The description of a batch for an entry that is called from Python; its arrays must live as long."""
@@ -135,7 +137,7 @@ def hits_alone(world, ray, primitive):
     """Whether a ray in world space meets this primitive, nothing else asked."""
     o = world.object_of[primitive]
     if o != 0:
-        ray = transform_ray(ray, pointer(world.to_object), o, 12)
+        ray = transform_ray(ray, data_pointer(world.to_object), o, 12)
     if primitive < len(world.triangles):
-        return hit_triangle(ray, pointer(world.triangles), primitive)[0] < INFINITY
-    return hit_quadric(ray, pointer(world.quadrics), primitive - len(world.triangles)) < INFINITY
+        return hit_triangle(ray, data_pointer(world.triangles), primitive)[0] < INFINITY
+    return hit_quadric(ray, data_pointer(world.quadrics), primitive - len(world.triangles)) < INFINITY

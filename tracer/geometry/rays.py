@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tracer.geometry.memory import pointer
 from tracer.kernels import inlined
 
 MISS = -1
@@ -78,12 +77,6 @@ class RayPointers(NamedTuple):
     t_min: Any
     t_max: Any
     size: int
-
-
-@inlined
-def ray_pointers(rays):
-    count = len(rays.t_min)
-    return RayPointers(pointer(rays.origin), pointer(rays.direction), pointer(rays.t_min), pointer(rays.t_max), count)
 
 
 @inlined

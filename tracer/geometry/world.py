@@ -1,22 +1,25 @@
-"""The world at a moment: whichever structure is below, placed for the frame, and two queries on batches of rays.
+"""The world at a moment: a scene's geometry in an acceleration structure, placed for a frame.
 
-Building happens once; `place` then only moves what moved since (§3 of the paper).  Rays ask two
-questions in batches: `closest_hits` and `any_hits`.
+Trees are built once.  For every frame objects are posed, and what has moved since is moved in the structure (§3 of the
+paper).  After that batches of rays ask two questions: `closest_hits` and `any_hits`.
 """
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.bvh8 import place as bvh8
-from tracer.geometry.kdtree import place as kdtree
+from tracer.geometry.accelerators import ACCELERATORS, BVH8, KD_TREE
+from tracer.geometry.boxes import NO_BOX
+from tracer.geometry.bvh8.structure import Bvh8
+from tracer.geometry.kdtree.structure import KdTree
 from tracer.geometry.poses import Poses, poses_at
 from tracer.geometry.primitives import Outlines, Primitives, WorldTriangles
 from tracer.geometry.queries import batch_of
 from tracer.geometry.rays import Hits, Rays
+from tracer.geometry.structure import Structure
 from tracer.kernels import Entry
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.chains import Chains
@@ -24,39 +27,30 @@ from tracer.scene.model import Progress, Scene
 
 CHUNK = 8192  # rays a thread takes at a time
 
-STRUCTURES: dict[str, Any] = {"kdtree": kdtree.KdTrees, "bvh8": bvh8.Trees8}
-ACCELERATORS = tuple(STRUCTURES)
-
-
-class Follower(Protocol):
-    """Who says, from one place to the next, which objects rest (`tracer.culling.rest`)."""
-
-    def follow(self, poses: Poses, primitives: Primitives) -> NDArray[np.bool_]:
-        """(objects,) whether each rests, as posed and, where it deforms, shaped now; only what is present may."""
+STRUCTURES: dict[str, Any] = {KD_TREE: KdTree, BVH8: Bvh8}
 
 
 class World:
     """A scene's geometry for rays: `place` it for a time, then ask.
 
     Raises Cancelled if `progress` does while trees are being built, ValueError for an accelerator
-    that does not exist.  `placed` is what kernels are given; `facets` (primitives, 16) float32 what shading
-    reads (`tracer.geometry.facets`), of which `normals` (t, 9) are the corners' normals in the space of each
+    that does not exist.  `placed` is what kernels are given; `attributes` (primitives, 16) float32 what shading
+    reads (`tracer.geometry.attributes`), of which `normals` (t, 9) are the corners' normals in the space of each
     triangle's object; `object_of` (primitives,) int32 tells whose each primitive is.  Placing overwrites what
     was placed before.
     """
 
     def __init__(
-        self, scene: Scene, time: float = 0.0, accelerator: str = "bvh8", progress: Progress | None = None
+        self, scene: Scene, time: float = 0.0, accelerator: str = BVH8, progress: Progress | None = None
     ) -> None:
         if accelerator not in ACCELERATORS:
             raise ValueError(f"there is no accelerator {accelerator!r}; there is {', '.join(ACCELERATORS)}")
         self.accelerator = accelerator
-        self._primitives = Primitives(scene)
-        self.facets, self.normals = self._primitives.facets, self._primitives.normals
-        self.object_of = self._primitives.object_of
-        self.primitives = self._primitives
+        self.primitives = Primitives(scene)
+        self.attributes, self.normals = self.primitives.attributes, self.primitives.normals
+        self.object_of = self.primitives.object_of
         self.scene = scene
-        self.structure = STRUCTURES[accelerator](self._primitives, len(scene.objects), progress)
+        self.structure: Structure = STRUCTURES[accelerator](self.primitives, len(scene.objects), progress)
         self.place(time)
 
     @property
@@ -69,34 +63,50 @@ class World:
         self._scene = scene
         self._chains = Chains(scene.animation, [o.chain for o in scene.objects])
 
-    def place(self, time: float, rest: Follower | None = None) -> None:
-        """Move and deform dynamic objects to where and what they are at `time` seconds.
+    def pose(self, time: float) -> Poses:
+        """Deform objects to their shapes at `time` seconds and return all objects' poses then.
 
-        Those that rest, by what `rest` says, are static geometry to `any_hits`; without it none does."""
-        self._primitives.deform(time)
-        self._poses = poses_at(self._chains, self._primitives.empty, time)
-        resting = np.zeros(len(self._poses.present), np.bool_)
-        if rest is not None:
-            resting[:] = rest.follow(self._poses, self._primitives)
-        self.placed = self.structure.place(self._poses, resting)
+        The structure stays as it is until `place` is called with these poses."""
+        self.primitives.deform(time)
+        return poses_at(self._chains, self.primitives.empty, time)
+
+    def place(self, when: float | Poses, resting: NDArray[np.bool_] | None = None) -> None:
+        """Move dynamic objects to their poses at a time in seconds, or to those that `pose` has returned.
+
+        Objects that are present and rest, by resting (objects,) bool, are static geometry to `any_hits`; without
+        it none is."""
+        self._poses = poses = when if isinstance(when, Poses) else self.pose(when)
+        rest = np.zeros_like(poses.present) if resting is None else poses.present & resting
+        rest[0] = False  # what never moves is in a tree of its own
+        self.placed = self.structure.place(poses, rest)
+
+    @property
+    def hit_padding(self) -> float:
+        """By what part of the largest coordinate boxes that hits must lie in are larger than triangles."""
+        return self.structure.hit_padding
+
+    @property
+    def extent(self) -> float:
+        """The largest coordinate by which the boxes of dynamic objects are padded now; 0 where they are not."""
+        return self.structure.extent
 
     def triangles_of(self, index: int) -> WorldTriangles:
-        """The triangles of an object that is there, as rays meet them."""
+        """The triangles of an object that is present, just as rays meet them."""
         return self.structure.triangles_of(index, self._poses.to_world[index])
 
     def outlines(self) -> Outlines:
         """Where each primitive is."""
-        return self._primitives.outlines(self._poses)
+        return self.primitives.outlines(self._poses)
 
     def object_boxes(self) -> NDArray[np.float32]:
-        """Boxes (objects, 6) around dynamic objects; inverted for those that are not there, and object 0."""
-        boxes = np.tile(np.array([1, 1, 1, -1, -1, -1], np.float32), (len(self._poses.present), 1))
-        there = 1 + np.flatnonzero(self._poses.present[1:])
-        boxes[there] = self._primitives.object_boxes(there, self._poses)
+        """Boxes (objects, 6) around dynamic objects; inverted for those that are not present, and for object 0."""
+        boxes = np.tile(NO_BOX, (len(self._poses.present), 1))
+        present = 1 + np.flatnonzero(self._poses.present[1:])
+        boxes[present] = self.primitives.object_boxes(present, self._poses)
         return boxes
 
     def closest_hits(self, rays: Rays, threads: int = 0) -> Hits:
-        """Nearest hits of a batch (see `tracer.geometry.rays`)."""
+        """Nearest hits of a batch of n rays, (n,) each (see `tracer.geometry.rays`); threads 0 stands for all cores."""
         n = len(rays.t_min)
         hits = Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
         self._ask(self.structure.closest, batch_of(rays, hits), n, threads)

@@ -12,7 +12,8 @@ import numpy as np
 
 from tracer.scene.aff_tokens import AffFile, Cursor, quoted
 from tracer.scene.animation import Keys, TrackSet
-from tracer.scene.model import CONE, SPHERE, Float64
+from tracer.scene.arrays import Float64
+from tracer.scene.model import CONE, SPHERE
 from tracer.scene.pieces import Mesh, Morph, Quadric, TextureName
 
 

@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.scene.model import Float64, SceneError
+from tracer.scene.arrays import Float64
+from tracer.scene.model import SceneError
 
 _COMMENT = re.compile(rb"[#%][^\n]*")
 _SPACE = np.zeros(256, np.bool_)

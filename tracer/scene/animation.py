@@ -19,8 +19,8 @@ from functools import cached_property
 import numpy as np
 
 from tracer.scene import rotations
-from tracer.scene.model import Camera, Deformation, Float32, Float64, Scene
-from tracer.scene.normals import unit_normals
+from tracer.scene.arrays import Float64
+from tracer.scene.camera import Camera
 
 Chain = tuple[Float64 | str, ...]
 
@@ -244,30 +244,3 @@ class Animation:
             direction = tuple((-rotation[:, 2]).tolist())
             up = tuple(rotation[:, 1].tolist())
         return Camera(position, direction, up, base.angle)
-
-
-def light_positions(scene: Scene, time: float) -> Float64:
-    """(L, 3) float64: where the lights are; a moving one is displaced by its translation track."""
-    positions = np.array([light.position for light in scene.lights], np.float64).reshape(-1, 3)
-    for i, light in enumerate(scene.lights):
-        if light.track is not None:
-            positions[i] += scene.animation.translation(light.track, time)
-    return positions
-
-
-def deformed(deformation: Deformation, time: float) -> tuple[Float32, Float32]:
-    """Corners and unit normals, (n, 3, 3) float32 each, of keyframed triangles at a time.
-
-    Linear between keys and clamped at the ends; a normal that comes out as zero becomes the
-    triangle's own.
-    """
-    times = deformation.times
-    rows = np.arange(len(times))
-    index = np.clip(np.sum(times <= time, axis=1) - 1, 0, max(times.shape[1] - 2, 0))
-    after = np.minimum(index + 1, times.shape[1] - 1)
-    length = times[rows, after] - times[rows, index]
-    u = np.clip((time - times[rows, index]) / np.where(length > 0, length, 1.0), 0.0, 1.0)
-    u = np.where(length > 0, u, (time >= times[rows, after]).astype(np.float64)).astype(np.float32)[:, None, None]
-    corners = (1 - u) * deformation.corners[rows, index] + u * deformation.corners[rows, after]
-    normals = (1 - u) * deformation.normals[rows, index] + u * deformation.normals[rows, after]
-    return corners, unit_normals(normals, corners)

@@ -16,16 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.scene.animation import Chain
-from tracer.scene.model import (
-    CONE,
-    Deformation,
-    Float64,
-    Quadrics,
-    SceneObject,
-    Triangles,
-    empty_quadrics,
-    empty_triangles,
-)
+from tracer.scene.arrays import Float64
+from tracer.scene.deformation import Deformation
+from tracer.scene.model import CONE, Quadrics, SceneObject, Triangles, empty_quadrics, empty_triangles
 from tracer.scene.normals import unit_normals
 from tracer.scene.pieces import Mesh, Morph, Piece, Place, Quadric
 

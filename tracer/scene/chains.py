@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.scene.animation import Animation, Chain, TrackSet
-from tracer.scene.model import Float64
+from tracer.scene.arrays import Float64
 
 
 class Chains:

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tracer.scene.animation import Animation, deformed
-from tracer.scene.model import CONE, Camera, Float64, Light, SceneObject
+from tracer.scene.animation import Animation
+from tracer.scene.arrays import Float64
+from tracer.scene.deformation import deformed
+from tracer.scene.model import CONE, Camera, Light, SceneObject
 
 
 def bounds(objects: Sequence[SceneObject], animation: Animation, time: float) -> Float64 | None:

@@ -17,10 +17,11 @@ from typing import Any
 import numpy as np
 
 from tracer.scene.animation import Animation
+from tracer.scene.arrays import Float64
 from tracer.scene.assembly import Geometry
 from tracer.scene.framing import bounds, framing_camera, framing_lights
 from tracer.scene.mesh_materials import MaterialTable
-from tracer.scene.model import Camera, Float64, Progress, Scene, SceneError
+from tracer.scene.model import Camera, Progress, Scene, SceneError
 from tracer.scene.pieces import Mesh, Piece
 from tracer.scene.textures import open_image
 

@@ -15,17 +15,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from tracer.scene.animation import Animation
-
-Float32 = NDArray[np.float32]
-Float64 = NDArray[np.float64]
-Int32 = NDArray[np.int32]
+from tracer.scene.animation import Animation
+from tracer.scene.arrays import Float32, Float64, Int32
+from tracer.scene.camera import Camera
+from tracer.scene.deformation import Deformation
 
 SPHERE = 0
 CONE = 1
@@ -78,52 +75,6 @@ class Light:
 
 
 @dataclass(frozen=True)
-class Camera:
-    """A pinhole: rays through pixel centres, row 0 at the top, `angle` the vertical field of view in degrees."""
-
-    position: tuple[float, float, float]
-    direction: tuple[float, float, float]
-    up: tuple[float, float, float] = (0.0, 1.0, 0.0)
-    angle: float = 45.0
-
-    def basis(self) -> Float64:
-        """Right, up and forward, orthonormal, as the rows of a (3, 3) array."""
-        forward = np.asarray(self.direction, np.float64)
-        forward = forward / np.linalg.norm(forward)
-        right = np.cross(forward, np.asarray(self.up, np.float64))
-        if np.linalg.norm(right) < 1e-9:  # up along the view: any right hand will do
-            right = np.cross(forward, np.eye(3)[np.argmin(np.abs(forward))])
-        right = right / np.linalg.norm(right)
-        return np.stack([right, np.cross(right, forward), forward])
-
-    def to_json(self) -> dict[str, object]:
-        return {
-            "position": list(self.position),
-            "direction": list(self.direction),
-            "up": list(self.up),
-            "angle": self.angle,
-        }
-
-    @staticmethod
-    def from_json(data: dict) -> Camera:
-        """The inverse of `to_json`; raises ValueError, in one line, on anything else."""
-        try:
-            position, direction, up = (
-                tuple(float(x) for x in data.get(key, default))
-                for key, default in (("position", ()), ("direction", ()), ("up", (0, 1, 0)))
-            )
-            angle = float(data.get("angle", 45.0))
-        except (TypeError, ValueError, AttributeError):
-            raise ValueError("a camera needs lists of numbers: position, direction, up; and an angle") from None
-        vectors = (position, direction, up)
-        if any(len(v) != 3 for v in vectors) or not np.all(np.isfinite([*position, *direction, *up, angle])):
-            raise ValueError("a camera's position, direction and up are three finite numbers each")
-        if not 0.0 < angle < 180.0 or not any(direction):
-            raise ValueError("a camera's angle lies between 0 and 180 degrees, and its direction is not zero")
-        return Camera(position, direction, up, angle)  # type: ignore[arg-type]
-
-
-@dataclass(frozen=True)
 class Triangles:
     """n triangles as structure of arrays, corners counter-clockwise seen from outside.
 
@@ -160,19 +111,6 @@ class Quadrics:
 
     def __len__(self) -> int:
         return len(self.kind)
-
-
-@dataclass(frozen=True)
-class Deformation:
-    """Keyframed triangles (AFF `tpa`), all n of one object with the same number of keys.
-
-    times (n, k) float64, ascending; corners and normals (n, k, 3, 3) float32, in the space
-    that the object's transform chain takes to the world.
-    """
-
-    times: Float64
-    corners: Float32
-    normals: Float32
 
 
 @dataclass(frozen=True)
@@ -284,3 +222,11 @@ class Scene:
     def camera_at(self, time: float) -> Camera:
         """The scene's own camera at a time; its fixed one where no track moves it."""
         return self.animation.camera(self.camera, time)
+
+    def light_positions(self, time: float) -> Float64:
+        """(lights, 3) float64: where the lights are; a moving one is displaced by its translation track."""
+        positions = np.array([light.position for light in self.lights], np.float64).reshape(-1, 3)
+        for i, light in enumerate(self.lights):
+            if light.track is not None:
+                positions[i] += self.animation.translation(light.track, time)
+        return positions

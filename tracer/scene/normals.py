@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.scene.model import Float32, Float64
+from tracer.scene.arrays import Float32, Float64
 
 
 def geometric_normals(corners: Float32 | Float64) -> Float64:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
 from tracer.scene.animation import Chain
-from tracer.scene.model import Float64
+from tracer.scene.arrays import Float64
 
 T = TypeVar("T")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.scene.model import Float64
+from tracer.scene.arrays import Float64
 
 
 def from_axes(axes: Float64, degrees: Float64) -> Float64:

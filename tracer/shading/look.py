@@ -17,11 +17,11 @@ MATERIAL_COLUMNS = 16
 
 
 class Look(NamedTuple):
-    """facets (p, 16) float32 (`tracer.geometry.facets`), materials (m, 16) float32, mappings (t, 8) float32,
+    """attributes (p, 16) float32 (`tracer.geometry.attributes`), materials (m, 16) float32, mappings (t, 8) float32,
     texels and texture_levels (`tracer.shading.textures`); lights (l, 3) and light_colors (l, 3); ambient and
     background (3,), float32."""
 
-    facets: NDArray[np.float32]
+    attributes: NDArray[np.float32]
     materials: NDArray[np.float32]
     mappings: NDArray[np.float32]
     texels: NDArray[np.uint32]
@@ -32,8 +32,8 @@ class Look(NamedTuple):
     background: NDArray[np.float32]
 
 
-def make_look(scene: Scene, facets: NDArray[np.float32]) -> Look:
-    """Gather a scene's look; facets (p, 16) are shared with the world, which moves them."""
+def make_look(scene: Scene, attributes: NDArray[np.float32]) -> Look:
+    """Gather a scene's look; attributes (p, 16) are shared with the world, which moves them."""
     materials = aligned_rows(len(scene.materials), MATERIAL_COLUMNS)
     materials[:] = 0
     for row, m in zip(materials, scene.materials, strict=True):
@@ -43,7 +43,7 @@ def make_look(scene: Scene, facets: NDArray[np.float32]) -> Look:
     triangles = [o.triangles for o in scene.objects]
     uvs = np.concatenate([t.uvs for t in triangles]).reshape(-1, 6)
     return Look(
-        facets=facets,
+        attributes=attributes,
         materials=materials,
         mappings=mapping_rows(uvs, np.concatenate([t.texture for t in triangles]), levels, numbers),
         texels=texels,

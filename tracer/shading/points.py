@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.cells import cells_at
-from tracer.culling.certified import shaft
-from tracer.geometry.facets import ACROSS, MATERIAL, NORMALS, OBJECT, TEXTURE
+from tracer.geometry.attributes import CORNER_NORMALS, FACE_NORMAL, MATERIAL, OBJECT, TEXTURE
 from tracer.geometry.intersect import quadric_normal
-from tracer.geometry.memory import pointer
+from tracer.geometry.memory import data_pointer
+from tracer.geometry.offsets import RAY_OFFSET
 from tracer.kernels import inlined, subkernel
 from tracer.shading.look import AMBIENT, DIFFUSE, EXPONENT, IOR, MATERIAL_COLUMNS, SHINE, SPECULAR, TRANSMISSION
 from tracer.shading.textures import MAPPING_COLUMNS, SPANNED, texture_colors
@@ -41,8 +41,7 @@ from tracer.simd import (
     store_three,
 )
 
-OFFSET = np.float32(shaft.OFFSET)  # of the largest coordinate at hand: some 300 float32 roundings
-FACET_COLUMNS = 16
+ATTRIBUTE_COLUMNS = 16
 ZERO, ONE = np.float32(0), np.float32(1)
 
 # Rows of the points' memory.
@@ -128,12 +127,12 @@ def _to_world(maps, objects, a):
 
 
 @inlined
-def _mixed(facet, first, w, u, v):
+def _mixed(attributes, first, w, u, v):
     """Three columns from `first` on, and those three and six after them, weighted by corner."""
     return (
-        w * facet[first] + u * facet[first + 3] + v * facet[first + 6],
-        w * facet[first + 1] + u * facet[first + 4] + v * facet[first + 7],
-        w * facet[first + 2] + u * facet[first + 5] + v * facet[first + 8],
+        w * attributes[first] + u * attributes[first + 3] + v * attributes[first + 6],
+        w * attributes[first + 1] + u * attributes[first + 4] + v * attributes[first + 7],
+        w * attributes[first + 2] + u * attributes[first + 5] + v * attributes[first + 8],
     )
 
 
@@ -157,7 +156,7 @@ def _texture(look, textured, primitive, w, u, v, across, cosine, cone):
 def _quadric_normal(world, rows, lane, primitive):
     """Normal of a quadric, in world space and of any length, at the point whose place is in this lane of three rows
     of vectors; it takes the place of what the next three rows, and those after them, have there."""
-    m, at, value = pointer(world.to_object), 12 * world.object_of[primitive], f32_at(rows)
+    m, at, value = data_pointer(world.to_object), 12 * world.object_of[primitive], f32_at(rows)
     px, py, pz = value[lane], value[16 + lane], value[32 + lane]
     x = m[at] * px + m[at + 1] * py + m[at + 2] * pz + m[at + 3]
     y = m[at + 4] * px + m[at + 5] * py + m[at + 6] * pz + m[at + 7]
@@ -187,13 +186,13 @@ def _quadrics(world, position, there, primitive, geometric, normal):
 
 
 @inlined
-def normals_at(world, facet, there, primitive, position, direction, w, u, v):
+def normals_at(world, attributes, there, primitive, position, direction, w, u, v):
     """Unit normals of a vector of points, the geometric one towards the viewer and the shading one in its half space,
     whether rays of this direction come from outside, and their cosines against the geometric normal that points
-    there; facet are the columns of the primitives' rows, and there the bits of the lanes that mean anything."""
-    geometric = facet[ACROSS], facet[ACROSS + 1], facet[ACROSS + 2]
-    normal = _mixed(facet, NORMALS, w, u, v)
-    objects = as_i32(facet[OBJECT])
+    there; attributes are the columns of the primitives' rows, and there the bits of the lanes that mean anything."""
+    geometric = attributes[FACE_NORMAL], attributes[FACE_NORMAL + 1], attributes[FACE_NORMAL + 2]
+    normal = _mixed(attributes, CORNER_NORMALS, w, u, v)
+    objects = as_i32(attributes[OBJECT])
     moves = objects > np.int32(0)
     if any_lane(moves):
         geometric = _chosen(moves, _to_world(world.to_object, objects, geometric), geometric)
@@ -212,12 +211,12 @@ def normals_at(world, facet, there, primitive, position, direction, w, u, v):
 
 
 @inlined
-def colors_at(look, facet, there, primitive, w, u, v, against, cone):
+def colors_at(look, attributes, there, primitive, w, u, v, against, cone):
     """Colours that a vector of points has by textures, 1 where there are none."""
-    textured = (as_i32(facet[TEXTURE]) > np.int32(-1)) & mask16(there)
+    textured = (as_i32(attributes[TEXTURE]) > np.int32(-1)) & mask16(there)
     if not any_lane(textured):
         return f32x16(ONE), f32x16(ONE), f32x16(ONE)
-    across = facet[ACROSS], facet[ACROSS + 1], facet[ACROSS + 2]
+    across = attributes[FACE_NORMAL], attributes[FACE_NORMAL + 1], attributes[FACE_NORMAL + 2]
     return _texture(look, textured, primitive, w, u, v, across, maximum(against, -against), cone)
 
 
@@ -286,15 +285,15 @@ def points_at(world, look, wave, memory, spread, knowledge):
         at = address_of(points.memory) + 64 * k
         store_three(at + stride * POSITION_ROW, stride, (x, y, z))
         largest = maximum(t, maximum(maximum(x, -x), maximum(maximum(y, -y), maximum(z, -z))))
-        offset = OFFSET * largest
+        offset = np.float32(RAY_OFFSET) * largest
         store(at + stride * OFFSET_ROW, offset)
         store(at + stride * PRIMITIVE_ROW, primitive)
         unit = cells_at(knowledge.first, primitive, u, v) if len(knowledge.first) > 0 else primitive
         store(at + stride * UNIT_ROW, unit)
 
-        facet = load_columns(address_of(look.facets), numbers, FACET_COLUMNS)
+        attributes = load_columns(address_of(look.attributes), numbers, ATTRIBUTE_COLUMNS)
         w = ONE - u - v
-        geometric, normal, entering, against = normals_at(world, facet, there, primitive, (x, y, z), d, w, u, v)
+        geometric, normal, entering, against = normals_at(world, attributes, there, primitive, (x, y, z), d, w, u, v)
         points.entering[k] = bits_of(entering)
         store_three(at + stride * GEOMETRIC_ROW, stride, geometric)
         gx, gy, gz = geometric
@@ -302,6 +301,6 @@ def points_at(world, look, wave, memory, spread, knowledge):
         store_three(at + stride * NORMAL_ROW, stride, normal)
 
         cone = spread * (_hit(wave, REACH, k) + t)
-        color = colors_at(look, facet, there, primitive, w, u, v, against, cone)
-        _put_surface(points, look, k, as_i32(facet[MATERIAL]), color, knowledge.verify)
+        color = colors_at(look, attributes, there, primitive, w, u, v, against, cone)
+        _put_surface(points, look, k, as_i32(attributes[MATERIAL]), color, knowledge.verify)
     return points

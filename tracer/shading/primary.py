@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.geometry.camera import primary_direction
-from tracer.geometry.memory import pointer
+from tracer.geometry.memory import data_pointer
 from tracer.kernels import inlined, subkernel
 from tracer.shading.wave import DIRECTION, ORIGIN, PIXEL, REACH, WEIGHT, row_of, wave_in
 from tracer.simd import (
@@ -89,8 +89,8 @@ def primary_wave(camera, tile, width, lanes, memory, place):
 @inlined
 def keep_hits(wave, place, buffers):
     """Write what primary rays hit into the picture."""
-    depth, primitive = pointer(buffers.depth), pointer(buffers.primitive)
-    u, v = pointer(buffers.u), pointer(buffers.v)
+    depth, primitive = data_pointer(buffers.depth), data_pointer(buffers.primitive)
+    u, v = data_pointer(buffers.u), data_pointer(buffers.v)
     for i in range(wave.size):
         depth[place[i]], primitive[place[i]] = wave.hits.t[i], wave.hits.primitive[i]
         u[place[i]], v[place[i]] = wave.hits.u[i], wave.hits.v[i]
@@ -99,8 +99,8 @@ def keep_hits(wave, place, buffers):
 @inlined
 def recall_hits(wave, place, buffers):
     """Read what primary rays hit from the picture."""
-    depth, primitive = pointer(buffers.depth), pointer(buffers.primitive)
-    u, v = pointer(buffers.u), pointer(buffers.v)
+    depth, primitive = data_pointer(buffers.depth), data_pointer(buffers.primitive)
+    u, v = data_pointer(buffers.u), data_pointer(buffers.v)
     for i in range(wave.size):
         wave.hits.t[i], wave.hits.primitive[i] = depth[place[i]], primitive[place[i]]
         wave.hits.u[i], wave.hits.v[i] = u[place[i]], v[place[i]]

@@ -11,9 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.culling.certified.lookup import find_cells
+from tracer.geometry.attributes import COLUMNS, MATERIAL, OBJECT
 from tracer.geometry.camera import primary_direction
-from tracer.geometry.facets import COLUMNS, MATERIAL, OBJECT
-from tracer.geometry.memory import borrowed, pointer
+from tracer.geometry.memory import borrowed, data_pointer
 from tracer.geometry.rays import MISS
 from tracer.kernels import inlined, kernel
 from tracer.shading.blocks import NORMAL, PLANE, POSITION, SURFACE, UNSHADOWED, block_of, planes_at
@@ -70,7 +70,7 @@ def see_surfaces(world, look, camera, tile, buffers):
     """Normals, surfaces and unshadowed light of a tile (left, top, right, bottom) whose primary hits the buffers
     hold, a block at a time."""
     world, look, buffers = borrowed(world), borrowed(look), borrowed(buffers)
-    planes, normals, width = buffers.planes, pointer(buffers.normal), np.int32(buffers.primitive.shape[1])
+    planes, normals, width = buffers.planes, data_pointer(buffers.normal), np.int32(buffers.primitive.shape[1])
     rows = local_memory(192)
     channel, background = f32_at(rows), look.background
     for number in range(blocks_of(tile)):
@@ -99,14 +99,14 @@ def see_surfaces(world, look, camera, tile, buffers):
 
         # What is there, and its light.
         store(rows, primitive)
-        facet = load_columns(address_of(look.facets), rows, COLUMNS)
+        attributes = load_columns(address_of(look.attributes), rows, COLUMNS)
         w, there = ONE - u - v, bits_of(hit)
-        geometric, normal, _, against = normals_at(world, facet, there, primitive, position, direction, w, u, v)
-        color = colors_at(look, facet, there, primitive, w, u, v, against, camera.spread * t)
-        m = material_at(look, select(hit, as_i32(facet[MATERIAL]), i32x16(0)))
+        geometric, normal, _, against = normals_at(world, attributes, there, primitive, position, direction, w, u, v)
+        color = colors_at(look, attributes, there, primitive, w, u, v, against, camera.spread * t)
+        m = material_at(look, select(hit, as_i32(attributes[MATERIAL]), i32x16(0)))
         r, g, b = _unshadowed(look, m, color, position, geometric, normal, direction, hit)
 
-        surface = as_i32(facet[MATERIAL]) + np.int32(MATERIALS) * as_i32(facet[OBJECT])
+        surface = as_i32(attributes[MATERIAL]) + np.int32(MATERIALS) * as_i32(attributes[OBJECT])
         store(block + PLANE * SURFACE, select(hit, surface, i32x16(MISS)))
         store_three(block + PLANE * NORMAL, PLANE, normal)
         store_three(block + PLANE * POSITION, PLANE, seen)

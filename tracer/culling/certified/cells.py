@@ -29,7 +29,7 @@ OVERFLOW, NOBODY = 0, 1  # the lists of TOO_MANY and of none
 CORNER, ALONG_U, ALONG_V, NORMAL, BEYOND_U, BEYOND_V, ROOTS = 0, 3, 6, 9, 12, 13, 14
 RECEIVER = 16
 ARRAYS = 7  # with a row for each cell
-HIGHEST = 2.0  # times the scene's largest coordinate and OFFSET: rays that end higher above are traced
+HIGHEST = 2.0  # times the scene's largest coordinate and RAY_OFFSET: rays that end higher above are traced
 
 
 class Cells(NamedTuple):

@@ -19,7 +19,7 @@ from tracer.culling.certified.classify import FUNCTIONS, classify_occluders, put
 from tracer.culling.certified.error_bounds import LANES
 from tracer.culling.certified.occluders import BLOCK, BOXES, STACK, children_met, triangles_met
 from tracer.culling.certified.shaft import Shaft, make_shaft
-from tracer.geometry.bvh8.tree import WIDTH
+from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,

@@ -40,7 +40,7 @@ from tracer.culling.certified.error_bounds import (
     seen_from,
     sure_hit_length,
 )
-from tracer.geometry.bvh8.packet import segments_miss_box
+from tracer.geometry.boxes import segments_miss_box
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     any_lane,

@@ -18,8 +18,9 @@ from tracer.culling.certified.cells import (
     RECEIVER,
     ROOTS,
 )
-from tracer.culling.certified.shaft import LOWEST, OFFSET
+from tracer.culling.certified.shaft import LOWEST
 from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.geometry.offsets import RAY_OFFSET
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
@@ -77,7 +78,7 @@ def find_cells(certified, points, count):
         u, v, height = affine(row, ALONG_U, x, y, z), affine(row, ALONG_V, x, y, z), affine(row, NORMAL, x, y, z)
         above = maximum(height, -height)
         largest = maximum(maximum(px, -px), maximum(maximum(py, -py), maximum(pz, -pz)))
-        inside = (above >= np.float32(LOWEST * OFFSET) * largest) & (above <= highest) & (above > ZERO)
+        inside = (above >= np.float32(LOWEST * RAY_OFFSET) * largest) & (above <= highest) & (above > ZERO)
         beyond = row[BEYOND_U] + row[BEYOND_V]
         inside = inside & (u >= -row[BEYOND_U]) & (v >= -row[BEYOND_V]) & (u + v <= ONE + beyond)
         back = height < ZERO

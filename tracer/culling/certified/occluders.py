@@ -25,10 +25,9 @@ from tracer.culling.certified.error_bounds import (
 )
 from tracer.culling.certified.light_space import put_light_space
 from tracer.culling.certified.shaft import PLANES
-from tracer.geometry.bvh8.build import build_shape
-from tracer.geometry.bvh8.collapse import VACANT, Shape
-from tracer.geometry.bvh8.tree import WIDTH
 from tracer.geometry.memory import borrowed
+from tracer.geometry.wide_tree.build import build_topology
+from tracer.geometry.wide_tree.topology import VACANT, WIDTH, Topology
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.simd import (
     address_of,
@@ -58,7 +57,7 @@ class Occluders(NamedTuple):
     """All that is static, for any number of trees back to back.
 
     rows (primitives, ROW) float32, in the world, by number (`error_bounds`), those from first_quadric on of quadrics;
-    children (nodes, 8) int32 as in a `Shape`; blocks (leaves, BLOCK) float32, corners and edges of a leaf's
+    children (nodes, 8) int32 as in a `Topology`; blocks (leaves, BLOCK) float32, corners and edges of a leaf's
     triangles as structure of arrays, and numbers (leaves, 8) int32, NONE for none, or that of a quadric; roots
     (trees,) int32; boxes (lights, nodes, BOXES) float32; error_radii (lights, n) float32, how far from each
     triangle a ray from the light can report a hit, and leaf_radii (lights, leaves, 8), those of a leaf side by side,
@@ -81,13 +80,13 @@ class Occluders(NamedTuple):
 
 def shape_of(
     triangles: NDArray[np.float32], boxes: NDArray[np.float32], numbers: NDArray[np.int32], threads: int
-) -> Shape:
+) -> Topology:
     """The shape of a tree over triangles (t, 9) and boxes (q, 6), whose primitives have these numbers (t + q,)."""
-    shape = build_shape(np.ascontiguousarray(triangles), np.ascontiguousarray(boxes), np.zeros(2, np.int64), threads)
-    return Shape(shape.children, shape.leaves, numbers[shape.order])
+    shape = build_topology(np.ascontiguousarray(triangles), np.ascontiguousarray(boxes), np.zeros(2, np.int64), threads)
+    return Topology(shape.children, shape.leaves, numbers[shape.order])
 
 
-def joined(shapes: list[Shape]) -> tuple[Shape, NDArray[np.int32]]:
+def joined(shapes: list[Topology]) -> tuple[Topology, NDArray[np.int32]]:
     """Several shapes as one, and the roots (n,) int32 of each."""
     children, leaves, order, roots = [], [], [], []
     node = leaf = item = 0
@@ -98,7 +97,7 @@ def joined(shapes: list[Shape]) -> tuple[Shape, NDArray[np.int32]]:
         leaves.append(shape.leaves + np.array([item, 0], np.int32))
         order.append(shape.order)
         node, leaf, item = node + len(shape.children), leaf + len(shape.leaves), item + len(shape.order)
-    whole = Shape(np.concatenate(children), np.concatenate(leaves).astype(np.int32), np.concatenate(order))
+    whole = Topology(np.concatenate(children), np.concatenate(leaves).astype(np.int32), np.concatenate(order))
     return whole, np.array(roots, np.int32)
 
 
@@ -253,7 +252,7 @@ def triangles_met(block, leaf_radii, shaft):
 
 
 def blocks_of(
-    shape: Shape, rows: NDArray[np.float32], first_quadric: int
+    shape: Topology, rows: NDArray[np.float32], first_quadric: int
 ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
     """blocks (leaves, BLOCK) and numbers (leaves, WIDTH) of a shape whose items are numbers of rows (n, ROW)."""
     first, count = shape.leaves.T

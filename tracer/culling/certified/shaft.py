@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.certified.error_bounds import EPSILON, cross, dot, length, row_of
+from tracer.geometry.offsets import RAY_OFFSET
 from tracer.kernels import inlined, subkernel
 
-OFFSET = 2e-5  # of the largest coordinate at hand: how far above a surface its rays end
-LOWEST = 0.5  # of that offset: what ends lower belongs to no cell
+LOWEST = 0.5  # of RAY_OFFSET: what ends lower belongs to no cell
 CORNERS = 6  # of a cell: three below and three above
 PLANES = 4  # three through the light and an edge of the cell, and the cell's own
 
@@ -94,7 +94,7 @@ def put_cell(shaft, rows, i, side, u, v, size, highest, largest):
         for axis in range(3):
             shaft.corners[axis, k] = a[axis] + x * e1[axis] + y * e2[axis]
     # Look-up goes by the largest coordinate of where rays end, which is not quite on the plane.
-    lowest = 0.999 * LOWEST * OFFSET * _least_coordinate(shaft.corners) - wrong
+    lowest = 0.999 * LOWEST * RAY_OFFSET * _least_coordinate(shaft.corners) - wrong
     for axis in range(3):
         for k in range(3):
             at = shaft.corners[axis, k]

@@ -8,11 +8,10 @@ from numpy.typing import NDArray
 from tracer.culling.certified.error_bounds import BLUR, BOX, LANES, LONGEST, ROW, SureHitLength
 from tracer.culling.certified.light_space import LIGHT_ROW
 from tracer.culling.certified.occluders import BOXES, ROUNDED, Occluders, blocks_of, enlarge_boxes, joined, shape_of
-from tracer.geometry.bvh8.collapse import Shape
-from tracer.geometry.bvh8.tree import PADDING, WIDTH
-from tracer.geometry.kdtree.place import triangle_boxes
+from tracer.geometry.boxes import OUTWARDS, PADDING, triangle_boxes
 from tracer.geometry.memory import aligned_rows
-from tracer.geometry.primitives import OUTWARDS, Outlines
+from tracer.geometry.primitives import Outlines
+from tracer.geometry.wide_tree.topology import WIDTH, Topology
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
@@ -34,7 +33,7 @@ class StaticGeometry:
         seen = len(self.rows) if asks else 0
         self._light_space = aligned_rows(lights * seen, LIGHT_ROW).reshape(lights, seen, LIGHT_ROW)
         self.allowed = np.inf  # how large what moves may be for boxes to hold, which are padded by a part of that
-        self._shapes: dict[int, Shape] = {}
+        self._shapes: dict[int, Topology] = {}
         self._bounds_of: dict[int, NDArray[np.float64]] = {}
         self._add(0, world.outlines())
         self._join()
@@ -47,7 +46,7 @@ class StaticGeometry:
         self.rows[quadrics, BOX:] = outlines.boxes[self._primitives.quadrics_of(index)]
         room = 0.0
         if index > 0:
-            extent = GROWTH * self._world.structure.extent
+            extent = GROWTH * self._world.extent
             self.allowed = min(self.allowed, extent)
             there = outlines.to_world[index].reshape(3, 4)[:, 3]
             world = np.abs(self.rows[quadrics, BOX:]).max(initial=0.0)
@@ -113,7 +112,7 @@ class StaticGeometry:
         self.largest = float(np.abs(self.bounds).max())
         extents = [np.abs(bounds).max() for index, bounds in self._bounds_of.items() if index > 0]
         static, resting = np.abs(self._bounds_of[0]).max(), max(extents, default=0.0)
-        padding = self._world.structure.padding / LONGEST  # what never moves and what may are padded apart
+        padding = self._world.hit_padding / LONGEST  # what never moves and what may are padded apart
         farthest = SureHitLength(self._primitives.triangles_of(0).stop, padding * static, padding * resting)
         count = self._lights
         self.occluders = Occluders(

@@ -32,7 +32,6 @@ from tracer.culling.certified.gather_requests import RequestPoints, gather_tasks
 from tracer.culling.certified.invalidate import all_marked, copy_kept, invalidate_certificates
 from tracer.culling.certified.occluders import Occluders
 from tracer.culling.certified.requests import Requests
-from tracer.culling.certified.shaft import OFFSET
 from tracer.culling.certified.static_geometry import StaticGeometry
 from tracer.culling.certified.tasks import KEPT, commit, counters, make_tasks, run_tasks, tasks_in
 from tracer.culling.certified.view import CertificateView
@@ -40,7 +39,9 @@ from tracer.culling.dependence import drop_dependent
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.modes import NON_SHADOW as LIT
 from tracer.culling.rest import Changed, Resting, changes, nothing_rests
-from tracer.geometry.primitives import OUTWARDS, Outlines
+from tracer.geometry.boxes import OUTWARDS
+from tracer.geometry.offsets import RAY_OFFSET
+from tracer.geometry.primitives import Outlines
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
@@ -98,7 +99,7 @@ class CertificateStore:
     def _scale(self) -> None:
         """Let cells be as coarse as the coordinates of all that is static ask for."""
         self._largest = 1.5 * self._static.largest  # with room for what will come to rest
-        self.highest = float(np.float32(HIGHEST * OFFSET * self._largest))
+        self.highest = float(np.float32(HIGHEST * RAY_OFFSET * self._largest))
         self._receive(0)
 
     @property
@@ -123,7 +124,7 @@ class CertificateStore:
         A light is certified once it has stood still for a frame.  From now on work is done by so many threads."""
         self._threads = threads
         self._scratch += [certify.scratch() for _ in range(len(self._scratch), threads)]
-        if self._world.structure.extent > self._static.allowed:  # boxes may have grown beyond those that are known
+        if self._world.extent > self._static.allowed:  # boxes may have grown beyond those that are known
             self._start()
         self._follow_rest(resting)
         lights = lights[: self._count]

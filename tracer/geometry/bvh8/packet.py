@@ -10,29 +10,28 @@ import numpy as np
 from numba.core import types
 from numba.extending import overload
 
-from tracer.geometry.bvh8.intersect import ZERO
+from tracer.geometry.boxes import inverse
 from tracer.geometry.queries import (
     BLOCKED,
     DIRECTION,
-    DYNAMIC,
+    DYNAMIC_OBJECTS,
     HIT_PRIMITIVE,
     HIT_T,
     HIT_U,
     HIT_V,
     OCCLUDER,
     ORIGIN,
-    STATIC,
+    STATIC_GEOMETRY,
     STRIDE,
     T_MAX,
 )
 from tracer.geometry.queries import T_MIN as BATCH_T_MIN
 from tracer.geometry.rays import INFINITY, MISS
+from tracer.geometry.triangle_test import ZERO
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     all_lanes,
     any_lane,
-    as_f32,
-    as_i32,
     f32x16,
     i32x16,
     largest,
@@ -57,7 +56,6 @@ PACKET = 128  # rays
 ROW = 4 * PACKET  # bytes of one number of each ray
 FAR = np.float32(1e30)  # no hit is farther, and every empty child is
 LARGEST = np.float32(1e29)  # of t_max, short of what stands for a blocked ray
-TINY = np.float32(1e-20)
 BLOCKED_T = -FAR  # t of a ray that is known to be blocked
 CLOSED_T = -LARGEST  # of one that asks for nothing
 STATIC_T = np.float32(2) * BLOCKED_T  # of one that something static blocks, once the static tree is done
@@ -89,25 +87,6 @@ def _origin_of(origin, memory, v):
         return origin
 
     return common
-
-
-@inlined
-def inverse(x):
-    """1/x with a huge number for 0."""
-    sign = as_i32(x) & np.int32(-0x80000000)
-    size = maximum(as_f32(as_i32(x) ^ sign), TINY)
-    return as_f32(as_i32(np.float32(1) / size) | sign)
-
-
-@inlined
-def segments_miss_box(start, direction, low, high):
-    """In which lanes the segments from a start (3,), on to t = 1, miss boxes between low (3,) and high (3,)."""
-    enter, leave = f32x16(np.float32(0)), f32x16(np.float32(1))
-    for axis in range(3):
-        backwards = inverse(direction[axis])
-        first, last = (low[axis] - start[axis]) * backwards, (high[axis] - start[axis]) * backwards
-        enter, leave = maximum(enter, minimum(first, last)), minimum(leave, maximum(first, last))
-    return enter > leave
 
 
 @inlined
@@ -231,12 +210,12 @@ def keep_blocked(memory, batch, first, count):
     i = 0
     while i + LANES <= count:
         t = load_f32x16(a + 4 * i)
-        store_bytes(blocked + i, select(t == STATIC_T, STATIC, select(t == BLOCKED_T, DYNAMIC, 0)))
+        store_bytes(blocked + i, select(t == STATIC_T, STATIC_GEOMETRY, select(t == BLOCKED_T, DYNAMIC_OBJECTS, 0)))
         i += LANES
     answers = u8_at(blocked)
     while i < count:
         t = load_f32(a + 4 * i)
-        answers[i] = np.uint8(STATIC if t == STATIC_T else (DYNAMIC if t == BLOCKED_T else 0))
+        answers[i] = np.uint8(STATIC_GEOMETRY if t == STATIC_T else (DYNAMIC_OBJECTS if t == BLOCKED_T else 0))
         i += 1
     occluders = load_i64(batch + OCCLUDER)
     if occluders != 0:

@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tracer.geometry.boxes import TINY
 from tracer.geometry.bvh8.frustum import MARGIN, NO_RAYS, Frustum, axes_of, wider
-from tracer.geometry.bvh8.intersect import ZERO
-from tracer.geometry.bvh8.packet import DX, DY, DZ, FRUSTA, IX, OX, ROW, T_MIN, TINY, T
+from tracer.geometry.bvh8.packet import DX, DY, DZ, FRUSTA, IX, OX, ROW, T_MIN, T
+from tracer.geometry.triangle_test import ZERO
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     bits_of,
@@ -58,7 +59,7 @@ def _along(memory, rows, v, axis):
 def _slopes(memory, v, axis, way):
     """Least and greatest slopes of the v-th vector along the other axes; HUGE where some ray does not go that way.
 
-    A component so small that its inverse is cut short (`packet.inverse`) may count as much as TINY."""
+    A component so small that its inverse is cut short (`boxes.inverse`) may count as much as TINY."""
     if smallest(_along(memory, DX, v, axis) * way) <= TINY:
         return -HUGE, HUGE, -HUGE, HUGE
     scale = _along(memory, IX, v, axis) * way

@@ -9,17 +9,6 @@ import numpy as np
 from numba.core import types
 from numba.extending import overload
 
-from tracer.geometry.bvh8.intersect import (
-    ZERO,
-    Terms,
-    crossing,
-    crossing_ahead,
-    may_cross_ahead,
-    terms_of,
-    towards,
-    triangle_of,
-    triangles_of,
-)
 from tracer.geometry.bvh8.packet import (
     BLOCKED_T,
     DX,
@@ -38,9 +27,10 @@ from tracer.geometry.bvh8.packet import (
     lanes_inside,
     origin_of,
 )
-from tracer.geometry.bvh8.trees import COUNT, NUMBERS, block_planes, child_planes
+from tracer.geometry.bvh8.placed import COUNT, NUMBERS, block_planes, child_planes, triangle_of, triangles_of
 from tracer.geometry.intersect import hit_quadric
 from tracer.geometry.rays import Ray
+from tracer.geometry.triangle_test import ZERO, Terms, crossing, crossing_ahead, may_cross_ahead, terms_of, towards
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     any_lane,

@@ -12,12 +12,13 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.geometry.bvh8.frustum import box_at, boxes_at, entering
+from tracer.geometry.bvh8.layout import QUADRIC
 from tracer.geometry.bvh8.packet import SCRATCH, lanes_inside
 from tracer.geometry.bvh8.packet_group import frusta_of, looking, put_reaches, reaches_of
 from tracer.geometry.bvh8.packet_leaf import any_in_block, closest_in_block, quadric_in_child
-from tracer.geometry.bvh8.tree import MAX_DEPTH, QUADRIC, WIDTH
-from tracer.geometry.bvh8.trees import BLOCK, CHILDREN, NODE, child_planes
+from tracer.geometry.bvh8.placed import BLOCK, CHILDREN, NODE, child_planes
 from tracer.geometry.queries import STEPS, TESTS
+from tracer.geometry.wide_tree.topology import MAX_DEPTH, WIDTH
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     any_lane,

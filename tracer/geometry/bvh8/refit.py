@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.bvh8.tree import BLOCK_SIZE, BOX, COUNT, EMPTY, NODE_SIZE, PRIMITIVES, WIDTH
+from tracer.geometry.bvh8.layout import BLOCK_SIZE, BOX, COUNT, EMPTY, NODE_SIZE, PRIMITIVES
+from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.simd import (
     address_of,

@@ -20,8 +20,8 @@ from tracer.geometry.bvh8.packet import (
 )
 from tracer.geometry.bvh8.packet_group import group_of, lead_of
 from tracer.geometry.bvh8.packet_tree import STACK, any_in_tree, closest_in_tree
-from tracer.geometry.bvh8.single import SINGLE_MEMORY, any_one_by_one, closest_one_by_one
-from tracer.geometry.bvh8.trees import MOVING, TREES, tree_of, trees_asked
+from tracer.geometry.bvh8.placed import MOVING_TREE, TREES, tree_of, trees_asked
+from tracer.geometry.bvh8.single_ray import SINGLE_MEMORY, any_one_by_one, closest_one_by_one
 from tracer.geometry.queries import WHICH
 from tracer.kernels import entry, inlined
 from tracer.simd import i64_at, load_i64, local_memory, lowest_bit, store
@@ -95,7 +95,7 @@ def any_hit(data, batch, first, last, counts):
                 else:
                     occluder = any_in_tree(None, memory, group, tree, stack, occluder, count)
                 store(occluders + 8 * number, occluder)
-                if number != MOVING:
+                if number != MOVING_TREE:
                     mark_static(memory, group.vectors)
             todo &= ~group.vectors
         keep_blocked(memory, batch, start, n)

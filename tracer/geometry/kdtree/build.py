@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from tracer.geometry.boxes import NO_BOX
 from tracer.geometry.building import CANCELLED, DONE
 from tracer.geometry.kdtree.tree import LEAF, MAX_DEPTH, Trees
 from tracer.geometry.memory import float_bits
@@ -276,7 +277,7 @@ def _build(boxes, bounds, triangles, control):
 def bounds_of(boxes: np.ndarray) -> np.ndarray:
     """Box (6,) float32 around boxes (n, 6), a little larger; an inverted one where there are none."""
     if not len(boxes):
-        return np.array([1, 1, 1, -1, -1, -1], np.float32)
+        return NO_BOX.copy()
     lower, upper = boxes[:, :3].min(0), boxes[:, 3:].max(0)
     slack = 1e-5 * np.maximum(np.abs(lower), np.abs(upper)).max() + 1e-30
     return np.concatenate([lower - slack, upper + slack]).astype(np.float32)

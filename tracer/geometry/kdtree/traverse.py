@@ -12,18 +12,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tracer.geometry.intersect import ZERO, hit_box, hit_quadric, hit_triangle, transform_ray
+from tracer.geometry.boxes import hit_box
+from tracer.geometry.intersect import ZERO, hit_quadric, hit_triangle, transform_ray
 from tracer.geometry.kdtree.tree import STACK_SIZE, Stack, Trees, next_leaf, push
 from tracer.geometry.memory import local_float32, local_int32
 from tracer.geometry.queries import (
     BLOCKED,
-    DYNAMIC,
+    DYNAMIC_OBJECTS,
     HIT_PRIMITIVE,
     HIT_T,
     HIT_U,
     HIT_V,
     OCCLUDER,
-    STATIC,
+    STATIC_GEOMETRY,
     STEPS,
     TESTS,
     WHICH,
@@ -238,14 +239,14 @@ def any_hit(data, batch, first, last, counts):
         ray = ray_at(rays, i)
         found, primitive = 0, np.int32(MISS)
         if ray.t_min < ray.t_max:
-            if which & STATIC:
+            if which & STATIC_GEOMETRY:
                 primitive = _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max)
                 if primitive == MISS and s.resting.there:
                     primitive = _any_of(s, s.resting, ray)
-                found = STATIC if primitive != MISS else 0
-            if which & DYNAMIC and s.moving.there and found == 0:
+                found = STATIC_GEOMETRY if primitive != MISS else 0
+            if which & DYNAMIC_OBJECTS and s.moving.there and found == 0:
                 primitive = _any_of(s, s.moving, ray)
-                found = DYNAMIC if primitive != MISS else 0
+                found = DYNAMIC_OBJECTS if primitive != MISS else 0
         blocked[i] = np.uint8(found)
         if named:
             occluders[i] = primitive

@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.intersect import ZERO, inverse
+from tracer.geometry.boxes import inverse
+from tracer.geometry.intersect import ZERO
 from tracer.kernels import inlined
 
 LEAF = 3

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.geometry.bvh8.intersect import ZERO
-from tracer.geometry.bvh8.line import (
+from tracer.geometry.bvh8.eight_wide import (
     Best,
     any_in_block,
     any_quadric,
@@ -18,6 +17,7 @@ from tracer.geometry.bvh8.line import (
     nearest_in_block,
     nearest_quadric,
 )
+from tracer.geometry.bvh8.layout import QUADRIC
 from tracer.geometry.bvh8.packet import (
     BLOCKED_T,
     NUMBER,
@@ -31,10 +31,11 @@ from tracer.geometry.bvh8.packet import (
 )
 from tracer.geometry.bvh8.packet_leaf import quadric_in_child
 from tracer.geometry.bvh8.packet_tree import STACK, code_of, prefetch_child, push_sorted, quadrics_in
-from tracer.geometry.bvh8.tree import QUADRIC, WIDTH
-from tracer.geometry.bvh8.trees import BLOCK, MOVING, NODE, TREES, child_planes, root_of, tree_of, trees_asked
+from tracer.geometry.bvh8.placed import BLOCK, MOVING_TREE, NODE, TREES, child_planes, root_of, tree_of, trees_asked
 from tracer.geometry.queries import STEPS, TESTS
 from tracer.geometry.rays import MISS
+from tracer.geometry.triangle_test import ZERO
+from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     as_f32,
@@ -244,5 +245,5 @@ def any_one_by_one(memory, v, data, which, stack, counts):
                 a = memory + 64 * v + 4 * lane
                 _any_below(a, code_of(root_of(tree), np.int64(load_i32(keys + 4 * lane)) & 7), tree, stack, counts)
             rest = _next_children(memory, v, room, WIDTH)
-        if number != MOVING:
+        if number != MOVING_TREE:
             mark_static(memory, np.int64(1) << v)

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tracer.kernels import inlined
-from tracer.simd import as_f32, as_i32, fma, load_f32, load_f32x8, select
+from tracer.simd import as_f32, as_i32, fma, select
 
 ZERO = np.float32(0)
 ONE = np.float32(1)
@@ -37,27 +37,6 @@ class Triangle(NamedTuple):
     e2x: Any
     e2y: Any
     e2z: Any
-
-
-@inlined
-def triangle_of(block, k):
-    """The k-th triangle of the block at an address."""
-    a = block + 4 * k
-    return Triangle(
-        load_f32(a), load_f32(a + 32), load_f32(a + 64),
-        load_f32(a + 96), load_f32(a + 128), load_f32(a + 160),
-        load_f32(a + 192), load_f32(a + 224), load_f32(a + 256),
-    )  # fmt: skip
-
-
-@inlined
-def triangles_of(block):
-    """All eight triangles of the block at an address."""
-    return Triangle(
-        load_f32x8(block), load_f32x8(block + 32), load_f32x8(block + 64),
-        load_f32x8(block + 96), load_f32x8(block + 128), load_f32x8(block + 160),
-        load_f32x8(block + 192), load_f32x8(block + 224), load_f32x8(block + 256),
-    )  # fmt: skip
 
 
 @inlined

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.building import CANCELLED
-from tracer.geometry.bvh8.tree import WIDTH
+from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.simd import (
     address_of,

@@ -13,23 +13,23 @@ from tracer.scene.model import Scene
 
 # Columns: three corners' normals; the triangle's own, of any length; and, as the bits of int32, the numbers
 # of its object, its material and its texture (-1 for none).
-NORMALS, ACROSS, OBJECT, MATERIAL, TEXTURE = 0, 9, 12, 13, 14
+CORNER_NORMALS, FACE_NORMAL, OBJECT, MATERIAL, TEXTURE = 0, 9, 12, 13, 14
 COLUMNS = 16
 
 
-def across(triangles: NDArray[np.float32]) -> NDArray[np.float32]:
+def edge_products(triangles: NDArray[np.float32]) -> NDArray[np.float32]:
     """Cross product (t, 3) of the edges of triangles (t, 9), corner and edges."""
     a, b = triangles[:, 3:6].T, triangles[:, 6:9].T
     return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]], axis=1)
 
 
-def facet_rows(scene: Scene, triangles: NDArray[np.float32], object_of: NDArray[np.int32]) -> NDArray[np.float32]:
+def attribute_rows(scene: Scene, triangles: NDArray[np.float32], object_of: NDArray[np.int32]) -> NDArray[np.float32]:
     """Rows (p, 16) of all primitives, triangles (t, 9) first; object_of (p,)."""
     count, objects = len(triangles), scene.objects
     rows = aligned_rows(len(object_of), COLUMNS)
     rows[:] = 0
-    rows[:count, NORMALS:ACROSS] = np.concatenate([o.triangles.normals for o in objects]).reshape(-1, 9)
-    rows[:count, ACROSS:OBJECT] = across(triangles)
+    rows[:count, CORNER_NORMALS:FACE_NORMAL] = np.concatenate([o.triangles.normals for o in objects]).reshape(-1, 9)
+    rows[:count, FACE_NORMAL:OBJECT] = edge_products(triangles)
     numbers = rows.view(np.int32)
     numbers[:, OBJECT] = object_of
     numbers[:, MATERIAL] = np.concatenate(

@@ -12,14 +12,16 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.geometry.boxes import OUTWARDS, transform_boxes, triangle_boxes
 from tracer.geometry.building import watched
 from tracer.geometry.kdtree import traverse
 from tracer.geometry.kdtree.build import bounds_of, build_tree
 from tracer.geometry.kdtree.tree import LEAF, Parts, Trees
 from tracer.geometry.poses import Poses
-from tracer.geometry.primitives import OUTWARDS, Primitives, WorldTriangles
+from tracer.geometry.primitives import Primitives, WorldTriangles
 from tracer.geometry.queries import Placed
-from tracer.scene.model import Float32, Float64, Progress
+from tracer.scene.arrays import Float32, Float64
+from tracer.scene.model import Progress
 
 CARRIED = 8 * 2.0**-24  # of the coordinates: rays carried to an object's space may be elsewhere by that
 EVERYWHERE = 3e37
@@ -27,27 +29,12 @@ EVERYWHERE = 3e37
 Tree = tuple[Trees, NDArray[np.float32]]  # with the box around it
 
 
-def triangle_boxes(rows: Float32) -> Float32:
-    """Boxes (n, 6) of triangles (n, 9)."""
-    corners = np.stack([rows[:, :3], rows[:, :3] + rows[:, 3:6], rows[:, :3] + rows[:, 6:]], axis=1)
-    return np.concatenate([corners.min(1), corners.max(1)], axis=1)
-
-
-def transform_boxes(boxes: Float64, affine: Float64) -> Float64:
-    """Boxes (n, 6) around the images of boxes under affine maps (n, 3, 4) (Arvo 1990), a little larger."""
-    middle, half = (boxes[:, 3:] + boxes[:, :3]) * 0.5, (boxes[:, 3:] - boxes[:, :3]) * 0.5
-    centre = (affine[:, :, :3] @ middle[:, :, None])[:, :, 0] + affine[:, :, 3]
-    reach = (np.abs(affine[:, :, :3]) @ half[:, :, None])[:, :, 0]
-    reach = reach + 2e-6 * (np.abs(centre).max(1, initial=0) + reach.max(1, initial=0))[:, None]
-    return np.concatenate([centre - reach, centre + reach], axis=1)
-
-
-class KdTrees:
+class KdTree:
     """Built over all primitives of a scene; raises Cancelled if `progress` does meanwhile."""
 
     closest, any_hit = traverse.closest, traverse.any_hit
     extent = 0.0  # the largest coordinate by a part of which boxes of what moves or rests are padded now: none
-    padding = 1e30  # of the largest coordinate, how far t may be wrong for a hit to count: anything
+    hit_padding = 1e30  # of the largest coordinate, how far t may be wrong for a hit to count: anything
 
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
         self._primitives, self._objects = primitives, objects

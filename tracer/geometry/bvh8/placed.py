@@ -4,24 +4,26 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from tracer.geometry.bvh8 import tree
-from tracer.geometry.queries import DYNAMIC, STATIC
+from tracer.geometry.bvh8 import layout
+from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY
+from tracer.geometry.triangle_test import Triangle
 from tracer.kernels import inlined
-from tracer.simd import f32_at, load_f32, load_i64
+from tracer.simd import f32_at, load_f32, load_f32x8, load_i64
 
-NODE, BLOCK = 4 * tree.NODE_SIZE, 4 * tree.BLOCK_SIZE  # bytes
-CHILDREN = 4 * tree.CHILDREN  # offset of the children's codes in a node
-NUMBERS, BOX, COUNT = 4 * tree.PRIMITIVES, 4 * tree.BOX, 4 * tree.COUNT  # offsets in a block
+NODE, BLOCK = 4 * layout.NODE_SIZE, 4 * layout.BLOCK_SIZE  # bytes
+CHILDREN = 4 * layout.CHILDREN  # offset of the children's codes in a node
+NUMBERS, BOX, COUNT = 4 * layout.PRIMITIVES, 4 * layout.BOX, 4 * layout.COUNT  # offsets in a block
 
 # A placed world: of each of its trees the addresses of nodes and blocks, and the number of its root; the address of
 # the quadrics as seen from the world, the number of triangles, and which trees are to be asked at all, as bits: the
 # first, and of the others those that hold anything.
 NODES, BLOCKS, ROOT, TREE = 0, 8, 16, 24
 QUADRICS, TRIANGLE_COUNT, TREES = range(3 * TREE, 3 * TREE + 24, 8)
-FIXED, RESTING, MOVING = range(3)
+STATIC_TREE, RESTING_TREE, MOVING_TREE = range(3)
+STATIC_TREES, DYNAMIC_TREES = 1 << STATIC_TREE | 1 << RESTING_TREE, 1 << MOVING_TREE  # as bits, by what is asked for
 
 
-class Trees(NamedTuple):
+class PlacedTree(NamedTuple):
     """One of the trees: addresses of nodes and blocks, the root's number, a pointer to quadrics as seen from the
     world, and the number of triangles, which is that of the first quadric."""
 
@@ -36,7 +38,7 @@ class Trees(NamedTuple):
 def tree_of(data, which):
     """One of the three trees of the world at an address."""
     a = data + TREE * which
-    return Trees(
+    return PlacedTree(
         load_i64(a + NODES),
         load_i64(a + BLOCKS),
         load_i64(a + ROOT),
@@ -53,8 +55,9 @@ def root_of(trees):
 
 @inlined
 def trees_asked(data, which):
-    """Bits of the trees that hold STATIC geometry or DYNAMIC objects: what rests counts as static."""
-    asked = (which & STATIC) * ((1 << FIXED | 1 << RESTING) // STATIC) | (which & DYNAMIC) * ((1 << MOVING) // DYNAMIC)
+    """Bits of the trees that hold STATIC_GEOMETRY or DYNAMIC_OBJECTS: an object that rests counts as static."""
+    static, moving = which & STATIC_GEOMETRY, which & DYNAMIC_OBJECTS
+    asked = static * (STATIC_TREES // STATIC_GEOMETRY) | moving * (DYNAMIC_TREES // DYNAMIC_OBJECTS)
     return load_i64(data + TREES) & asked
 
 
@@ -72,3 +75,24 @@ def block_planes(block):
     """Planes of a block's box."""
     a = block + BOX
     return load_f32(a), load_f32(a + 4), load_f32(a + 8), load_f32(a + 12), load_f32(a + 16), load_f32(a + 20)
+
+
+@inlined
+def triangle_of(block, k):
+    """The k-th triangle of the block at an address."""
+    a = block + 4 * k
+    return Triangle(
+        load_f32(a), load_f32(a + 32), load_f32(a + 64),
+        load_f32(a + 96), load_f32(a + 128), load_f32(a + 160),
+        load_f32(a + 192), load_f32(a + 224), load_f32(a + 256),
+    )  # fmt: skip
+
+
+@inlined
+def triangles_of(block):
+    """All eight triangles of the block at an address."""
+    return Triangle(
+        load_f32x8(block), load_f32x8(block + 32), load_f32x8(block + 64),
+        load_f32x8(block + 96), load_f32x8(block + 128), load_f32x8(block + 160),
+        load_f32x8(block + 192), load_f32x8(block + 224), load_f32x8(block + 256),
+    )  # fmt: skip

@@ -7,33 +7,17 @@ Neighbouring leaves are joined to one block where that pays.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
-from numpy.typing import NDArray
 
-from tracer.geometry.bvh8.binary import ITEM, NUMBER, WEIGHT, half_area
-from tracer.geometry.bvh8.tree import WIDTH
+from tracer.geometry.wide_tree.binary import ITEM, NUMBER, WEIGHT, half_area
+from tracer.geometry.wide_tree.topology import VACANT, WIDTH
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.simd import address_of, load_i32, store
 
-VACANT = -0x80000000  # no child
 # What a ray that enters them is expected to spend on a node, on a leaf and on each triangle in it.
 NODE_COST, LEAF_COST, TRIANGLE_COST = 1.0, 0.5, 0.1
 ONE_LEAF = 1  # in a plan: all below becomes one leaf where it has one slot
 SHARE_BITS = 3  # in a plan, from bit SHARE_BITS * slots on: how many of these the lower child gets
-
-
-class Shape(NamedTuple):
-    """A tree without boxes.  Parents come before their children, and leaves in the order of nodes.
-
-    children (n, 8) int32: c >= 0 is node c, c < 0 leaf ~c, VACANT none.  leaves (m, 2) int32: place of
-    the first item, and weight, which is the number of triangles.  order: items as they lie in leaves.
-    """
-
-    children: NDArray[np.int32]
-    leaves: NDArray[np.int32]
-    order: NDArray[np.int32]
 
 
 @inlined

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tracer.geometry.bvh8.intersect import ZERO, crossing, terms_of, triangles_of
+from tracer.geometry.bvh8.layout import QUADRIC
 from tracer.geometry.bvh8.packet import (
     DX,
     DY,
@@ -22,10 +22,10 @@ from tracer.geometry.bvh8.packet import (
     T_MIN,
 )
 from tracer.geometry.bvh8.packet_tree import code_of
-from tracer.geometry.bvh8.tree import QUADRIC
-from tracer.geometry.bvh8.trees import NUMBERS, block_planes
+from tracer.geometry.bvh8.placed import NUMBERS, block_planes, triangles_of
 from tracer.geometry.intersect import hit_quadric
 from tracer.geometry.rays import MISS, Ray
+from tracer.geometry.triangle_test import ZERO, crossing, terms_of
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     any_lane,

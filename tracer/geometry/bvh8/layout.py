@@ -13,13 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-WIDTH = 8  # children of a node, and triangles of a block
 NODE_SIZE, BLOCK_SIZE = 64, 96  # float32 numbers
 QUADRIC = 1 << 30  # in a leaf's code: k < QUADRIC is block k, else quadric k - QUADRIC
 EMPTY = np.float32(3e37)  # every coordinate of the box of an empty slot
 NO_PRIMITIVE = 0x7FFFFFFF  # in the unused lanes of a block
-PADDING = 2e-6  # by this much of a tree's largest coordinate stored boxes are larger than what is in them
-MAX_DEPTH = 64  # nodes between a root and a leaf, both trees of a dynamic world included
 
 # Where a node or a block has these; boxes are lower x of all children, then lower y and so on.
 CHILDREN = 48

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tracer.geometry.bvh8.collapse import VACANT
+from tracer.geometry.bvh8.layout import CHILDREN, COUNT, EMPTY, NO_PRIMITIVE, PRIMITIVES, QUADRIC
 from tracer.geometry.bvh8.refit import BLOCK_BYTES, NODE_BYTES
-from tracer.geometry.bvh8.tree import CHILDREN, COUNT, EMPTY, NO_PRIMITIVE, PRIMITIVES, QUADRIC, WIDTH
+from tracer.geometry.wide_tree.topology import VACANT, WIDTH
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.simd import address_of, f32x8, i32x8, store
 
@@ -51,7 +51,7 @@ def set_child(nodes, link, code):
 
 
 @kernel
-def write_shape(tree, links, shape, triangles, offsets):
+def write_topology(tree, links, shape, triangles, offsets):
     """Write a shape into nodes and blocks that are empty, from `offsets` on, with links to and fro.
 
     The first `triangles` items of the shape are triangles, the others quadrics.

@@ -10,28 +10,31 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.geometry.boxes import NO_BOX, PADDING, union_of
 from tracer.geometry.building import watched
 from tracer.geometry.bvh8 import traverse
-from tracer.geometry.bvh8.build import build_shape, build_tree
-from tracer.geometry.bvh8.collapse import Shape
-from tracer.geometry.bvh8.forest import blocks_of, crown, gather, move, plant
-from tracer.geometry.bvh8.tree import BOX, CHILDREN, PADDING, PRIMITIVES, WIDTH, Tree
-from tracer.geometry.bvh8.trees import FIXED, MOVING, RESTING
+from tracer.geometry.bvh8.build import build_tree
+from tracer.geometry.bvh8.layout import BOX, CHILDREN, PRIMITIVES, Tree
+from tracer.geometry.bvh8.object_trees import blocks_of, build_object_trees, build_top_level, load_corners, move_objects
+from tracer.geometry.bvh8.placed import MOVING_TREE, RESTING_TREE, STATIC_TREE
 from tracer.geometry.poses import Poses, products
 from tracer.geometry.primitives import Primitives, WorldTriangles, triangle_rows
 from tracer.geometry.queries import Placed
+from tracer.geometry.wide_tree.build import build_topology
+from tracer.geometry.wide_tree.topology import WIDTH, Topology
 from tracer.parallel import thread_count
-from tracer.scene.animation import deformed
-from tracer.scene.model import Float32, Float64, Progress
+from tracer.scene.arrays import Float32, Float64
+from tracer.scene.deformation import deformed
+from tracer.scene.model import Progress
 
 STEPS, MOST_KEYS = 8, 64  # from a key of a deforming object to the next; in all
 
 
-class Trees8:
+class Bvh8:
     """Built over all primitives of a scene; raises Cancelled if `progress` does meanwhile."""
 
     closest, any_hit = traverse.closest, traverse.any_hit
-    padding = PADDING  # of the largest coordinate, by how much boxes are larger that t must lie in
+    hit_padding = PADDING  # of the largest coordinate, by how much boxes are larger that t must lie in
 
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
         self._primitives, self._objects = primitives, objects
@@ -47,12 +50,12 @@ class Trees8:
         )
         self._keys = {index: _keys(d.times) for index, d in primitives.deformations.items()}
         self._at = dict.fromkeys(self._keys, 0)
-        self._shapes: dict[tuple[int, int], Shape] = {}
-        self._plant(progress)
+        self._shapes: dict[tuple[int, int], Topology] = {}
+        self._build_object_trees(progress)
         self.world_quadrics = primitives.quadrics.copy()
         self._quadric_boxes = np.zeros((len(primitives.quadrics), 6), np.float32)
 
-    def _shape(self, index: int, progress: Progress | None = None) -> Shape:
+    def _shape(self, index: int, progress: Progress | None = None) -> Topology:
         """The shape of a dynamic object's tree; of one that deforms, at the key it is at."""
         known = (index, self._at.get(index, 0))
         if known not in self._shapes:
@@ -64,7 +67,7 @@ class Trees8:
             boxes = primitives.quadric_boxes(quadrics, primitives.to_object[quadrics])
             count = len(rows) + len(boxes)
             self._shapes[known] = watched(
-                lambda control: build_shape(rows, boxes, control, thread_count()),
+                lambda control: build_topology(rows, boxes, control, thread_count()),
                 "building the tree",
                 count,
                 1.2 * count,
@@ -72,20 +75,20 @@ class Trees8:
             )
         return self._shapes[known]
 
-    def _plant(self, progress: Progress | None = None) -> None:
+    def _build_object_trees(self, progress: Progress | None = None) -> None:
         """Put all objects' trees together."""
         primitives = self._primitives
         shapes = [self._shape(index, progress) for index in range(1, self._objects)]
-        self._forest = plant(shapes, primitives.triangle_starts, primitives.quadric_starts)
-        gather(self._forest, primitives.corners.reshape(-1, 9), 1, self._objects)
+        self._object_trees = build_object_trees(shapes, primitives.triangle_starts, primitives.quadric_starts)
+        load_corners(self._object_trees, primitives.corners.reshape(-1, 9), 1, self._objects)
 
     def _deform(self, time: float) -> None:
         at = {index: int(np.argmin(np.abs(keys - time))) for index, keys in self._keys.items()}
         if at != self._at:
             self._at = at
-            self._plant()
+            self._build_object_trees()
         for index in self._keys:
-            gather(self._forest, self._primitives.corners.reshape(-1, 9), index, index + 1)
+            load_corners(self._object_trees, self._primitives.corners.reshape(-1, 9), index, index + 1)
 
     def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
         """Move all that is present, as the primitives are now, to where it is."""
@@ -95,15 +98,15 @@ class Trees8:
         self._deform(poses.time)
         self._move_quadrics(poses)
         to_world = poses.to_world.reshape(-1, 12).astype(np.float32)
-        move(self._forest, to_world, present, self._quadric_boxes)
-        self.resting_root = crown(self._forest, moving, 0)
-        crown(self._forest, resting, self.resting_root)
-        self.dynamic = self._forest.tree
+        move_objects(self._object_trees, to_world, present, self._quadric_boxes)
+        self.resting_root = build_top_level(self._object_trees, moving, 0)
+        build_top_level(self._object_trees, resting, self.resting_root)
+        self.dynamic = self._object_trees.tree
         there_now = [tree_box(self.dynamic, root) for root in (0, self.resting_root)]
         self.extent = float(np.abs(there_now).max())  # by a part of which boxes of what moves or rests are padded
         roots = ((self.static, 0), (self.dynamic, self.resting_root), (self.dynamic, 0))
         trees = [number for tree, root in roots for number in (tree.nodes.ctypes.data, tree.blocks.ctypes.data, root)]
-        there = 1 << FIXED | bool(resting.any()) << RESTING | bool(moving.any()) << MOVING
+        there = 1 << STATIC_TREE | bool(resting.any()) << RESTING_TREE | bool(moving.any()) << MOVING_TREE
         triangles, quadrics = len(primitives.triangles), self.world_quadrics.ctypes.data
         self._data = np.array([*trees, quadrics, triangles, there], np.int64)
         return Placed(
@@ -132,7 +135,7 @@ class Trees8:
     def triangles_of(self, index: int, to_world: Float64) -> WorldTriangles:
         """The triangles of an object where it is placed: just what is intersected, and the boxes of their blocks."""
         triangles = self._primitives.triangles_of(index)
-        blocks = self.static.blocks if index == 0 else blocks_of(self._forest, index)
+        blocks = self.static.blocks if index == 0 else blocks_of(self._object_trees, index)
         numbers = blocks.view(np.int32)[:, PRIMITIVES : PRIMITIVES + WIDTH]
         block, lane = np.nonzero((numbers >= triangles.start) & (numbers < triangles.stop))
         where, count = numbers[block, lane] - triangles.start, triangles.stop - triangles.start
@@ -143,11 +146,8 @@ class Trees8:
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""
-        boxes = np.stack([tree_box(self.static), *(tree_box(self.dynamic, root) for root in (0, self.resting_root))])
-        boxes = boxes[boxes[:, 0] <= boxes[:, 3]]
-        if not len(boxes):
-            return np.array([1, 1, 1, -1, -1, -1], np.float32)
-        return np.concatenate([boxes[:, :3].min(0), boxes[:, 3:].max(0)])
+        roots = (0, self.resting_root)
+        return union_of(np.stack([tree_box(self.static), *(tree_box(self.dynamic, root) for root in roots)]))
 
 
 def _keys(times: Float64) -> Float64:
@@ -162,6 +162,6 @@ def tree_box(tree: Tree, root: int = 0) -> NDArray[np.float32]:
     """Box (6,) around all below a node of a tree; inverted where there is nothing in it."""
     used = tree.nodes.view(np.int32)[root, CHILDREN : CHILDREN + WIDTH] != ~0
     if not used.any():
-        return np.array([1, 1, 1, -1, -1, -1], np.float32)
+        return NO_BOX.copy()
     boxes = tree.nodes[root, : 6 * WIDTH].reshape(6, WIDTH)[:, used]
     return np.concatenate([boxes[:3].min(1), boxes[3:].max(1)])

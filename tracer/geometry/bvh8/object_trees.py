@@ -1,4 +1,4 @@
-"""Trees of all dynamic objects: a sub-tree for each, and small ones over those that rest, and those that move.
+"""Trees of all dynamic objects: a sub-tree for each, and small ones over those that rest, and those that move_objects.
 
 The shape of a sub-tree is made once, in its object's space.  For a frame its triangles are moved to
 the world, its boxes found from the bottom up, and the small trees written anew into the first nodes.
@@ -12,18 +12,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.bvh8.build import CROWN_DEPTH, build_shape, count_blocks, empty_tree
-from tracer.geometry.bvh8.collapse import VACANT, Shape
+from tracer.geometry.boxes import PADDING
+from tracer.geometry.bvh8.build import count_blocks, empty_tree
+from tracer.geometry.bvh8.layout import BOX, Tree
 from tracer.geometry.bvh8.refit import BLOCK_BYTES, Links, gather_corners, make_links, move_blocks, pad_box, unite
-from tracer.geometry.bvh8.shape import Offsets, clear_nodes, set_child, write_shape
-from tracer.geometry.bvh8.tree import BOX, PADDING, WIDTH, Tree
+from tracer.geometry.bvh8.write import Offsets, clear_nodes, set_child, write_topology
+from tracer.geometry.wide_tree.build import build_topology
+from tracer.geometry.wide_tree.topology import TOP_LEVEL_DEPTH, VACANT, WIDTH, Topology
 from tracer.kernels import kernel
 from tracer.simd import address_of, load_i32
 
 NODE, BLOCK, TRIANGLE, QUADRIC = 0, 1, 2, 3  # columns of `starts`
 
 
-class Forest(NamedTuple):
+class ObjectTrees(NamedTuple):
     """Sub-trees of n objects back to back, with room for trees over them before.
 
     corners (m, 72) float32 are those of the triangles in each block, in their object's space, as
@@ -38,8 +40,10 @@ class Forest(NamedTuple):
     starts: NDArray[np.int32]
 
 
-def plant(shapes: Sequence[Shape], triangles: NDArray[np.int32], quadrics: NDArray[np.int32]) -> Forest:
-    """A forest of objects 1 to n - 1, without triangles yet, whose numbers start at triangles and quadrics (n + 1,)."""
+def build_object_trees(
+    shapes: Sequence[Topology], triangles: NDArray[np.int32], quadrics: NDArray[np.int32]
+) -> ObjectTrees:
+    """A trees of objects 1 to n - 1, without triangles yet, whose numbers start at triangles and quadrics (n + 1,)."""
     counts = np.diff(triangles)
     sizes = [(len(s.children), count_blocks(s, n)) for s, n in zip(shapes, counts[1:], strict=True)]
     starts = np.zeros((len(triangles), 4), np.int32)
@@ -50,31 +54,31 @@ def plant(shapes: Sequence[Shape], triangles: NDArray[np.int32], quadrics: NDArr
     links = make_links(len(tree.nodes), len(tree.blocks), quadrics[-1], len(counts))
     for i, shape in enumerate(shapes, 1):
         node, block, triangle, quadric = starts[i].tolist()
-        write_shape(tree, links, shape, counts[i], Offsets(node, block, triangle, quadric, i))
-    return Forest(tree, links, np.empty((len(tree.blocks), 9 * WIDTH), np.float32), starts)
+        write_topology(tree, links, shape, counts[i], Offsets(node, block, triangle, quadric, i))
+    return ObjectTrees(tree, links, np.empty((len(tree.blocks), 9 * WIDTH), np.float32), starts)
 
 
-def blocks_of(forest: Forest, index: int) -> NDArray[np.float32]:
+def blocks_of(trees: ObjectTrees, index: int) -> NDArray[np.float32]:
     """The blocks (n, BLOCK_SIZE) of an object."""
-    return forest.tree.blocks[forest.starts[index, BLOCK] : forest.starts[index + 1, BLOCK]]
+    return trees.tree.blocks[trees.starts[index, BLOCK] : trees.starts[index + 1, BLOCK]]
 
 
 @kernel
-def gather(forest, corners, first, last):
+def load_corners(trees, corners, first, last):
     """Take the corners of objects first to last - 1 from corners (d, 9) of the triangles of objects 1 to n - 1."""
-    start, end = forest.starts[first, BLOCK], forest.starts[last, BLOCK]
-    gather_corners(forest.corners, forest.tree.blocks, corners, forest.starts[1, TRIANGLE], start, end)
+    start, end = trees.starts[first, BLOCK], trees.starts[last, BLOCK]
+    gather_corners(trees.corners, trees.tree.blocks, corners, trees.starts[1, TRIANGLE], start, end)
 
 
 @kernel
-def move(forest, matrices, present, boxes):
+def move_objects(trees, matrices, present, boxes):
     """Move what is present to the world and find all boxes.
 
     matrices (n, 12) float32, present (n,) bool; boxes (q, 6) float32 of quadrics, in the world already.
     """
-    nodes, blocks, roots = address_of(forest.tree.nodes), address_of(forest.tree.blocks), address_of(forest.links.roots)
-    node_links, block_links = address_of(forest.links.nodes), address_of(forest.links.blocks)
-    starts, corners, extent = forest.starts, address_of(forest.corners), np.float32(0)
+    nodes, blocks, roots = address_of(trees.tree.nodes), address_of(trees.tree.blocks), address_of(trees.links.roots)
+    node_links, block_links = address_of(trees.links.nodes), address_of(trees.links.blocks)
+    starts, corners, extent = trees.starts, address_of(trees.corners), np.float32(0)
     for i in range(1, len(present)):
         if present[i]:
             matrix = address_of(matrices) + 48 * i
@@ -90,15 +94,15 @@ def move(forest, matrices, present, boxes):
                 box = blocks + BLOCK_BYTES * b + 4 * BOX
                 pad_box(nodes, roots, load_i32(block_links + 4 * b), box, padding)
             for q in range(starts[i, QUADRIC], starts[i + 1, QUADRIC]):
-                pad_box(nodes, roots, forest.links.quadrics[q], address_of(boxes) + 24 * q, padding)
+                pad_box(nodes, roots, trees.links.quadrics[q], address_of(boxes) + 24 * q, padding)
             unite(nodes, roots, node_links, starts[i, NODE], starts[i + 1, NODE])
 
 
 @kernel
-def _crown(forest, shape, objects, first):
+def _write_top_level(trees, shape, objects, first):
     """Write a tree over objects (p,), its nodes from `first` on, all others before the sub-trees' being empty."""
-    nodes, roots, links = address_of(forest.tree.nodes), address_of(forest.links.roots), forest.links.nodes
-    clear_nodes(nodes, first, forest.starts[1, NODE])
+    nodes, roots, links = address_of(trees.tree.nodes), address_of(trees.links.roots), trees.links.nodes
+    clear_nodes(nodes, first, trees.starts[1, NODE])
     links[first] = ~0
     for i in range(len(shape.children)):
         for slot in range(WIDTH):
@@ -108,16 +112,16 @@ def _crown(forest, shape, objects, first):
                 links[first + child] = link
             elif child != VACANT:
                 item = objects[shape.order[shape.leaves[~child, 0]]]
-                set_child(nodes, link, forest.starts[item, NODE])
+                set_child(nodes, link, trees.starts[item, NODE])
                 pad_box(nodes, roots, link, roots + 24 * item, np.float32(0))
     unite(nodes, roots, address_of(links), first, first + len(shape.children))
 
 
-def crown(forest: Forest, objects: NDArray[np.bool_], first: int) -> int:
+def build_top_level(trees: ObjectTrees, objects: NDArray[np.bool_], first: int) -> int:
     """Make a tree over objects, (n,) bool, that have been moved; its root is node `first`, and what is returned the
     first node after it."""
     numbers = np.flatnonzero(objects)
-    boxes = forest.links.roots[numbers]
-    shape = build_shape(np.empty((0, 9), np.float32), boxes, np.zeros(2, np.int64), depth=CROWN_DEPTH)
-    _crown(forest, shape, numbers, first)
+    boxes = trees.links.roots[numbers]
+    shape = build_topology(np.empty((0, 9), np.float32), boxes, np.zeros(2, np.int64), depth=TOP_LEVEL_DEPTH)
+    _write_top_level(trees, shape, numbers, first)
     return first + len(shape.children)

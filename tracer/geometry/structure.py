@@ -1,0 +1,42 @@
+"""What an acceleration structure is to the rest of the program: built once, placed for a frame, asked by address.
+
+`tracer.geometry.bvh8` and `tracer.geometry.kdtree` are two such structures.  `World` picks one by its name; nobody
+else knows which, or looks inside.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.geometry.poses import Poses
+from tracer.geometry.primitives import WorldTriangles
+from tracer.geometry.queries import Placed
+from tracer.kernels import Entry
+from tracer.scene.arrays import Float64
+
+
+class Structure(Protocol):
+    """Made from the primitives of a scene, the number of its objects, and who is told of the build's progress.
+
+    `closest` and `any_hit` are its queries (`tracer.geometry.queries`).  Two numbers say where hits are reported at
+    all, which certificates need to know: a hit on a triangle counts only where t lies inside a box around it, which
+    is larger than the triangle by the part `hit_padding` of the largest coordinate in the triangle's tree; `extent`
+    is that coordinate for the trees of dynamic objects as they are placed now, 0 where their boxes are not padded.
+    """
+
+    closest: Entry
+    any_hit: Entry
+    hit_padding: float
+    extent: float
+
+    def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
+        """Move all present objects to their poses; `resting` (objects,) tells which count as static geometry."""
+
+    def triangles_of(self, index: int, to_world: Float64) -> WorldTriangles:
+        """The triangles of the object of this number where to_world (3, 4) takes it, just as rays meet them."""
+
+    def bounds(self) -> NDArray[np.float32]:
+        """Box (6,) around everything that is placed; inverted for an empty world."""
