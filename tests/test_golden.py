@@ -93,13 +93,13 @@ def test_a_picture_brighter_by_one_level_is_found_out() -> None:
 @pytest.mark.parametrize("golden", [STUDY, FIGURE3], ids=lambda g: g.name)
 def test_culling_that_takes_no_notice_of_what_is_hidden_is_found_out(golden: Golden, monkeypatch) -> None:
     """With an occlusion test that finds nothing, everything in view counts as seen whole."""
-    right = tracer.renderer.set_occlusion_modes
+    right = tracer.culling.mode_history.set_occlusion_modes
 
     def blind(words, hidden, *rest):
         hidden[:] = False
         right(words, hidden, *rest)
 
-    monkeypatch.setattr(tracer.renderer, "set_occlusion_modes", blind)
+    monkeypatch.setattr(tracer.culling.mode_history, "set_occlusion_modes", blind)
     world = world_of(golden.scene)
     wrong = views_out_of_tolerance(golden, golden.frame(world.scene, world=world))
     assert "occlusion" in wrong

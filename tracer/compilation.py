@@ -29,13 +29,14 @@ from tracer.culling.certified.requests import make_requests
 from tracer.culling.certified.store import Budget
 from tracer.culling.modes import word_type
 from tracer.estimate import Estimate
-from tracer.frame import Settings
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
 from tracer.geometry.queries import HIT_PRIMITIVE, HIT_T, Placed
 from tracer.geometry.rays import INFINITY, MISS
 from tracer.geometry.world import STRUCTURES
 from tracer.kernels import cache_folder, entry
+from tracer.methods.certified import CertifiedCells
+from tracer.methods.interface import StageTable
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation
 from tracer.scene.model import (
@@ -49,6 +50,7 @@ from tracer.scene.model import (
     Triangles,
     empty_quadrics,
 )
+from tracer.settings import Settings
 from tracer.shading.screen import to_screen
 from tracer.simd import f32_at, i32_at, load_i64
 
@@ -147,12 +149,13 @@ def _trees(lights: int, accelerator: str) -> Iterator[str]:
 
 def _frame(lights: int, accelerator: str) -> Iterator[str]:
     yield "the builder"
-    frame = _renderer(lights, accelerator).begin(0.0, in_parts=True)
+    frame = _renderer(lights, accelerator).begin(0.0, progressive=True)
     frame.place_objects_and_lights()
     for name, phase in (
         ("primary rays", frame.trace_primary_rays),
         ("occlusion testing", frame.test_occlusion),
         ("surfaces", frame.see_surfaces),
+        ("surfaces", frame.find_first),
         ("shading and shadow testing", frame.shade),
         ("filling", lambda: to_screen(frame.so_far().color.reshape(-1, 3), np.empty((16, 4), np.uint8))),
         ("mode setting", frame.set_modes),
@@ -167,15 +170,15 @@ def _certificates(lights: int, accelerator: str) -> Iterator[str]:
     renderer = _renderer(lights, accelerator, "certified+cache+rest")
     frame = renderer.begin(0.0)
     frame.place_objects_and_lights()  # an object has come to rest: what that darkens is looked for
-    frame._buffers.primitive.fill(MISS)
-    frame.certify_cells()
-    frame.see_cells()
-    certificates = renderer.certificates
-    assert certificates is not None
+    frame.buffers.primitive.fill(MISS)
+    frame.prepare_culling()
+    certified = frame.methods[0]
+    assert isinstance(certified, CertifiedCells) and certified.store is not None
+    StageTable(certified.stages(frame, 0, learns=True), verify=False)
     requests = make_requests(1)
     requests.key[0, 0], requests.u[0, 0], requests.v[0, 0], requests.of[0, 0] = -1, 0.25, 0.25, 1
-    certificates.certify([requests], Budget(), CostModel(1, 1, 8, 8, True, 1), None)
-    certificates.keep_within(0.0, np.zeros(1, np.int32))
+    certified.store.certify([requests], Budget(), CostModel(1, 1, 8, 8, True, 1), None)
+    certified.store.keep_within(0.0, np.zeros(1, np.int32))
 
 
 def _renderer(lights: int, accelerator: str, method: str = "cells+cache+rest") -> Renderer:

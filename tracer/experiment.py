@@ -15,7 +15,7 @@ import numpy as np
 
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
-from tracer.method import choice, is_method
+from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled, Progress, Scene
 from tracer.statistics import FrameStatistics
@@ -141,8 +141,7 @@ def path_times(scene: Scene, frames: int | None = None) -> list[float]:
 def with_reference(methods: list[str]) -> list[str]:
     """The methods, each once, the reference first; raises ValueError for one that does not exist."""
     for method in methods:
-        if not is_method(method):
-            raise ValueError(f"there is no method {method!r}: it is {choice()}")
+        Method.parse(method)  # raises where there is no such method
     return list(dict.fromkeys([REFERENCE, *methods]))
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.shadow import LIGHT_MARGIN
+from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.attributes import FACE_NORMAL, OBJECT
 from tracer.geometry.camera import pinhole
 from tracer.geometry.offsets import RAY_OFFSET
@@ -66,13 +66,12 @@ def explain(renderer: Renderer, frame: Frame, x: int, y: int) -> tuple[Explanati
     met = np.full(len(lights), -1)
     reach = np.zeros(len(lights))
     met[asked], reach[asked] = hits.primitive, hits.t
-    certificates = getattr(renderer, "certificates", None) if getattr(renderer, "certificates_hold", True) else None
     explanations = []
     for light in range(len(lights)):
         certificate = NO_CERTIFICATE
         named: tuple[int, ...] = ()
-        if due[light] and certificates is not None:
-            certificate, named = certificates.describe(primitive, point, light)
+        if due[light] and (answer := renderer.explain(primitive, point, light)) is not None:
+            certificate, named = answer
         blocked = met[light] >= 0
         explanations.append(
             Explanation(
@@ -102,7 +101,7 @@ def _surface(world: World, frame: Frame, x: int, y: int) -> tuple[Float32, Float
         across = world.attributes[primitive, FACE_NORMAL:OBJECT] @ _to_object(world, primitive)[:, :3]
         across /= max(float(np.linalg.norm(across)), 1e-300)
     normal: Float32 = (-across if across @ direction > 0 else across).astype(np.float32)
-    offset = np.float32(RAY_OFFSET) * max(depth, np.abs(position).max())
+    offset = RAY_OFFSET * max(depth, np.abs(position).max())
     return position, normal, position + offset * normal
 
 

@@ -30,7 +30,7 @@ from numba import njit, types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
 from numba.core.ccallback import CFunc
 
-_KERNEL_FOLDERS = ("simd", "geometry", "culling", "shading")
+_KERNEL_FOLDERS = ("simd", "geometry", "culling", "shading", "methods")
 _ROOM = 1 << 25  # bytes; all kernels take a tenth of it
 _KEPT = 16  # folders of as many sources, some 3 MB each
 

@@ -196,6 +196,14 @@ register(
         adaptive=True,
     )
 )
+register(
+    Kind(
+        "free",
+        "Replays the answers of the same frame: no culling can be faster.",
+        "tracer.methods.free:Free",
+        measures=True,
+    )
+)
 register(Kind("cache", "Tests what blocked a light before first.", "tracer.methods.cache:OccluderCache", addition=True))
 register(Kind("rest", "Counts objects that rest as static.", "tracer.methods.rest:Resting", culls=False, addition=True))
 

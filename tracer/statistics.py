@@ -7,8 +7,7 @@ from dataclasses import asdict, dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling import shadow
-from tracer.shading.whitted import PRIMARY, SECONDARY, SHADOW
+from tracer.culling.counters import BY_LIGHT, PRIMARY, RAYS, SECONDARY, SHADOW, STEPS, TESTS, ShadowCounter
 
 
 @dataclass
@@ -78,25 +77,19 @@ class FrameStatistics:
         return asdict(self)
 
 
+def shadow_counts(counts: NDArray[np.int64]) -> ShadowCounts:
+    """The shadow counters (SHADOW_COUNTERS,) of one worker, or their sum, by name."""
+    return ShadowCounts(**{counter.name.lower(): int(counts[counter]) for counter in ShadowCounter})
+
+
 def gather(counts: NDArray[np.int64], occlusion_tests: int, lights_with_modes: int) -> FrameStatistics:
     """Sum the counters (workers, COUNTERS) of all workers."""
-    total = [int(x) for x in counts.sum(0)]
+    total = counts.sum(0)
 
     def rays_from(start: int) -> RayCounts:
-        return RayCounts(total[start + shadow.RAYS], total[start + shadow.STEPS], total[start + shadow.TESTS])
+        return RayCounts(int(total[start + RAYS]), int(total[start + STEPS]), int(total[start + TESTS]))
 
-    shadow_rays = ShadowCounts(
-        rays=total[SHADOW + shadow.RAYS],
-        traversal_steps=total[SHADOW + shadow.STEPS],
-        intersection_tests=total[SHADOW + shadow.TESTS],
-        due=total[SHADOW + shadow.DUE],
-        culled=total[SHADOW + shadow.CULLED],
-        dynamic_only=total[SHADOW + shadow.DYNAMIC_ONLY],
-        candidates_only=total[SHADOW + shadow.CANDIDATES_ONLY],
-        cache_hits=total[SHADOW + shadow.CACHE_HITS],
-        wrong=total[SHADOW + shadow.WRONG],
-    )
-    by_light = range(SHADOW + shadow.BY_LIGHT, len(total), 3)[:lights_with_modes]
-    statistics = FrameStatistics(rays_from(PRIMARY), rays_from(SECONDARY), shadow_rays, occlusion_tests)
-    statistics.by_modes = [SaidByModes(*total[at : at + 3]) for at in by_light]
-    return statistics
+    rays = rays_from(PRIMARY), rays_from(SECONDARY), shadow_counts(total[SHADOW:])
+    by_light = range(SHADOW + BY_LIGHT, len(total), 3)[:lights_with_modes]
+    by_modes = [SaidByModes(*(int(number) for number in total[at : at + 3])) for at in by_light]
+    return FrameStatistics(*rays, occlusion_tests, by_modes=by_modes)

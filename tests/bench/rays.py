@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.shadow import LIGHT_MARGIN
+from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.camera import pinhole
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.rays import Hits, Rays, ray_batch

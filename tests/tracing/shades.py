@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from tests.tracing.worlds import quad, triangles
+from tests.tracing.worlds import quad, scene, triangles
 from tracer.scene.animation import Keys, TrackSet
 from tracer.scene.model import Camera, SceneObject, empty_quadrics
 
@@ -26,6 +26,11 @@ def floor(n: int = 8) -> list:
 
 def roof(z: float, half: float) -> list:
     return quad((-half, -half, z), (half, -half, z), (half, half, z), (-half, half, z))
+
+
+def shadow_scene(**extra):
+    """A floor lit from above, a roof between the light and its middle; seen from the side, below the roof."""
+    return scene(floor() + roof(6.0, 1.0), lights=[(0.0, 0.0, 20.0)], camera=BEHIND, **extra)
 
 
 def going(stops: list[tuple[float, float]]) -> TrackSet:

@@ -14,8 +14,8 @@ import tracer
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.worlds import affine, moved, quad, quadrics, scene
 from tracer.culling import cells
-from tracer.culling.cache import OccluderCache, merge_occluders, surely_blocked
-from tracer.culling.shadow import LIGHT_MARGIN
+from tracer.culling.occluder_cache import OccluderSlots, merge_occluders, surely_blocked
+from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.world import ACCELERATORS
 from tracer.kernels import kernel
 from tracer.scene.model import SPHERE
@@ -37,7 +37,7 @@ def believed(triangles: np.ndarray, light: np.ndarray, ends: np.ndarray, numbers
     directions, asked = np.zeros((3, -(-n // 16) * 16), F), np.zeros(-(-n // 16) * 16, np.int32)
     directions[:, :n], asked[:n] = (ends - light).T, numbers
     sure = np.zeros(len(asked) // 16, np.int32)
-    padding = OccluderCache(triangles, len(triangles)).of_worker(0, learns=False).padding
+    padding = np.float32(OccluderSlots(triangles, len(triangles)).padding)
     _ask(triangles, light, directions, asked, padding, sure)
     return np.array([(sure[i >> 4] >> (i & 15)) & 1 for i in range(n)], np.bool_)
 

@@ -11,9 +11,7 @@ import pytest
 
 import tracer
 from tests.tracing.shades import BEHIND, floor, roof
-from tests.tracing.worlds import scene
-from tracer import renderer as rendering
-from tracer.culling.certified import cost_model
+from tests.tracing.worlds import certificates_of, scene
 from tracer.culling.certified import store as certifying
 from tracer.culling.certified.cells import ALONG_U, CANDIDATES, CORNER, FULL, LIT, NORMAL, ROOTS, TOO_MANY
 from tracer.culling.certified.cost_model import CostModel
@@ -22,7 +20,7 @@ from tracer.culling.certified.requests import make_requests
 from tracer.culling.certified.store import Budget, CertificateStore
 from tracer.culling.certified.tasks import KEPT, commit, make_tasks, tasks_in
 from tracer.culling.modes import FULLY_RENDERED
-from tracer.geometry.world import ACCELERATORS
+from tracer.methods import certified
 
 # The last light is below the floor: no cell there waits for it.
 LIGHTS = [(0.0, 0.0, 11.0), (1.0, -1.0, 10.0), (0.0, 0.0, -4.0)]
@@ -30,19 +28,18 @@ SQUARES = scene(floor() + roof(6.0, 1.0), lights=LIGHTS, camera=BEHIND)
 SETTINGS = tracer.Settings(96, 64, 2, "certified", threads=1)
 
 
-@pytest.fixture(autouse=True)
-def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cost_model, "COST_MODELS", dict.fromkeys(ACCELERATORS, CostModel(2, 4, 2, 8, True, 1)))
+EAGER = CostModel(2, 4, 2, 8, True, 1)
 
 
 @pytest.fixture
 def certificates() -> CertificateStore:
     """Of squares, with a quadtree on each that rays have asked for."""
-    renderer = tracer.Renderer(SQUARES, SETTINGS)
+    renderer = tracer.Renderer(SQUARES, SETTINGS, cost_model=EAGER)
     for _ in range(4):
         renderer.render()
-    assert renderer.certificates is not None
-    return renderer.certificates
+    store = certificates_of(renderer)
+    assert store is not None
+    return store
 
 
 def _first_untried(c: CertificateStore, cell: int) -> int:
@@ -98,15 +95,14 @@ def test_points_are_gathered_by_the_cell_to_begin_with(certificates: Certificate
 def test_what_a_frame_has_no_time_to_look_at_is_looked_at_in_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
     ticks = count()
     settings = replace(SETTINGS, width=640, height=320, certificate_seconds=1.0)
-    renderer, calls = tracer.Renderer(SQUARES, settings), []
-    request_in_tiles = rendering.request_in_tiles
+    renderer = tracer.Renderer(SQUARES, settings, cost_model=EAGER, clock=lambda: 0.2 * next(ticks))
+    request_in_tiles, calls = certified.request_in_tiles, []
 
-    def noted(rays, tiles, numbers, *rest) -> None:
+    def noted(view, rays, tiles, numbers, *rest) -> None:
         calls.append(set(numbers.tolist()))
-        request_in_tiles(rays, tiles, numbers, *rest)
+        request_in_tiles(view, rays, tiles, numbers, *rest)
 
-    monkeypatch.setattr(rendering, "request_in_tiles", noted)
-    monkeypatch.setattr(rendering, "clock", SimpleNamespace(perf_counter=lambda: 0.2 * next(ticks)))
+    monkeypatch.setattr(certified, "request_in_tiles", noted)
     frames = []
     for _ in range(8):
         calls.clear()

@@ -12,7 +12,7 @@ import pytest
 import tracer
 from tests.tracing.brute import meet_all
 from tests.tracing.shades import BEHIND, GOING, MIDDLES, floor, going, kite, roof
-from tests.tracing.worlds import quad, scene
+from tests.tracing.worlds import certificates_of, quad, scene
 from tracer.culling.certified import cost_model
 from tracer.culling.certified.cells import CANDIDATES, FINAL, FULL, LIT, NOBODY, SETTLED, make_cells, named_by
 from tracer.culling.certified.cost_model import CostModel
@@ -58,8 +58,9 @@ def _pair(made: tracer.Scene, settings: tracer.Settings) -> tuple[tracer.Rendere
 
 
 def _certificates(renderer: tracer.Renderer) -> CertificateStore:
-    assert renderer.certificates is not None
-    return renderer.certificates
+    store = certificates_of(renderer)
+    assert store is not None
+    return store
 
 
 def _states(renderer: tracer.Renderer) -> np.ndarray:
@@ -158,10 +159,10 @@ def test_frames_of_a_kitchen_in_which_things_start_and_stop(bart: Path):
     changed = 0
     for number in range(116, 125):
         time = made.frame_time(number)
-        before = certified.rest.now
+        before = certified.state.rest.now
         expected, frame = none.render(time), certified.render(time)
         assert expected.color.tobytes() == frame.color.tobytes(), f"frame {number}"
-        changed += number > 117 and any(len(objects.which) for objects in changes(before, certified.rest.now))
+        changed += number > 117 and any(len(objects.which) for objects in changes(before, certified.state.rest.now))
     assert changed > 0 and frame.statistics.shadow.culled > 0
 
 

@@ -8,18 +8,13 @@ import numpy as np
 import pytest
 
 import tracer
-from tests.tracing.shades import BEHIND, floor, roof
+from tests.tracing.shades import BEHIND, floor, roof, shadow_scene
 from tests.tracing.worlds import moved, scene
 from tracer.culling.modes import OcclusionMode, ShadowMode, occlusion_mode, shadow_mode
 from tracer.scene.model import Camera
 
 SETTINGS = tracer.Settings(width=48, height=48, depth=2, threads=1, verify=True)
 LIGHT = (0.0, 0.0, 20.0)
-
-
-def shadow_scene(**extra):
-    """A floor lit from above, a roof between the light and its middle; seen from the side, below the roof."""
-    return scene(floor() + roof(6.0, 1.0), lights=[LIGHT], camera=BEHIND, **extra)
 
 
 def test_what_is_seen_whole_is_culled_in_the_next_frame():
@@ -129,7 +124,7 @@ def test_of_many_resolutions_the_latest_are_remembered():
         renderer.settings = replace(SETTINGS, width=width, height=8)
         renderer.render()
     assert renderer.render().statistics.shadow.dynamic_only > 0
-    assert len(renderer._memories) == 16
+    assert len(renderer.state._histories) == 16
     renderer.settings = SETTINGS
     assert renderer.render().statistics.shadow.culled == 0
 

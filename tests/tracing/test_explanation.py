@@ -89,17 +89,16 @@ def test_certificates_are_asked_about_lights_that_are_due(seen) -> None:
     renderer, frame, explained = seen
     asked = []
 
-    class Certificates:
-        def describe(self, primitive: int, point: np.ndarray, light: int) -> tuple[str, tuple[int, ...]]:
-            asked.append((primitive, tuple(point.tolist()), light))
-            return "CANDIDATES", (1, 0, 1)
+    def certificates(primitive: int, point: np.ndarray, light: int) -> tuple[str, tuple[int, ...]]:
+        asked.append((primitive, tuple(point.tolist()), light))
+        return "CANDIDATES", (1, 0, 1)
 
-    renderer.certificates, renderer.certificates_hold = Certificates(), True
+    renderer.explain = certificates
     try:
         at = next(at for at, found in explained.items() if any(e.blocked_at and e.blocker > 1 for e in found))
         found = explain(renderer, frame, at[1], at[0])
     finally:
-        del renderer.certificates
+        del renderer.explain
     assert asked == [(frame.primitive[at], e.point, e.light) for e in found if e.due]
     for e, before in zip(found, explained[at], strict=True):
         if e.due:

@@ -13,7 +13,7 @@ from tests.tracing.random_worlds import quickly
 from tests.tracing.worlds import random_corners, scene
 from tracer.culling import modes
 from tracer.culling.cells import primitives_are_units
-from tracer.culling.memory import Memory
+from tracer.culling.mode_history import ModeHistory
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.culling.occlusion import occlusion_testing, set_occlusion_modes
 from tracer.geometry.camera import pinhole
@@ -83,7 +83,7 @@ UNITS = 4
 @given(st.sampled_from([1, 15, 16, 31, 40]), st.lists(st.booleans(), min_size=UNITS, max_size=UNITS), st.data())
 def test_words_over_many_frames_are_what_the_naive_twin_says(lights, dynamic, data):
     """Lights move, units are hidden or not and cover more or fewer pixels, and workers learn side by side."""
-    memory = Memory(np.array(dynamic), lights, workers=3, first=primitives_are_units())
+    memory = ModeHistory(np.array(dynamic), lights, workers=3, first=primitives_are_units())
     twin = naive.Modes(dynamic, lights)
     positions = np.zeros((lights, 3), np.float32)
     light, unit = st.integers(0, lights - 1), st.integers(0, UNITS - 1)

@@ -108,6 +108,10 @@ def under(x: float) -> np.ndarray:
     return (np.abs(MIDDLES[:, 0] - 4 / 3 * x) < 1.4) & (np.abs(MIDDLES[:, 1]) < 1.4)
 
 
+def _words(renderer: tracer.Renderer) -> np.ndarray:
+    return renderer.state.history(renderer.settings, np.empty(0, np.int32), 1).words
+
+
 def test_what_depends_on_an_object_is_forgotten_and_nothing_else(accelerator):
     renderer = tracer.Renderer(SAILING, replace(SETTINGS, accelerator=accelerator))
     first = [renderer.render(t) for t in (0.0, 0.3, 0.6)][-1]
@@ -116,7 +120,7 @@ def test_what_depends_on_an_object_is_forgotten_and_nothing_else(accelerator):
     shadowed = (shadow_mode(first.modes, 0)[SQUARES] & ShadowMode.FULL_SHADOW) > 0
     assert (shadowed & under(-1.5)).sum() >= 8 and first.statistics.shadow.culled > 0
     renderer.begin(1.5).place_objects_and_lights()
-    started = renderer._memory(renderer.settings, 1).words.copy()
+    started = _words(renderer).copy()
     assert (started[kite_units] == OcclusionMode.DYNAMIC).all()
     kept = started[SQUARES] == first.modes[SQUARES]
     assert not kept[shadowed & under(-1.5)].any() and kept[~under(-1.5)].all()
@@ -128,7 +132,7 @@ def test_what_depends_on_an_object_is_forgotten_and_nothing_else(accelerator):
     non = (shadow_mode(moving.modes, 0)[SQUARES] & ShadowMode.NON_SHADOW) > 0
     assert (non & under(1.5)).sum() >= 8
     renderer.begin(2.6).place_objects_and_lights()
-    stopped = renderer._memory(renderer.settings, 1).words.copy()
+    stopped = _words(renderer).copy()
     assert (stopped[kite_units] == 0).all()
     kept = stopped[SQUARES] == moving.modes[SQUARES]
     assert kept[~under(1.5)].all() and not kept[non & under(1.5)].all()
@@ -199,8 +203,8 @@ def test_pictures_are_those_without_culling_in_random_scenes():
         for time, camera in walk.frames:
             none, resting, paper = (renderer.render(time, camera) for renderer in renderers)
             assert np.array_equal(none.color, resting.color) and np.array_equal(none.color, paper.reference)
-            assert renderers[2].rest.now.since.any() == renderers[1].rest.now.since.any()
-            rested += int(renderers[1].rest.now.since.any())
+            assert renderers[2].state.rest.now.since.any() == renderers[1].state.rest.now.since.any()
+            rested += int(renderers[1].state.rest.now.since.any())
 
     check()
     assert rested > 20
@@ -226,5 +230,5 @@ def test_kitchens_car_starts_and_stops_and_no_picture_differs(bart: Path, accele
         expected, frame, culled = none.render(time), resting.render(time), paper.render(time)
         assert np.array_equal(frame.color, expected.color) and np.array_equal(frame.lit, expected.lit)
         assert np.array_equal(culled.reference, expected.color)
-        rests.append(bool(paper.rest.now.since[1]))
+        rests.append(bool(paper.state.rest.now.since[1]))
     assert rests == still and 0 < sum(np.diff(np.int8(rests)) > 0) < sum(np.diff(np.int8(rests)) != 0)

@@ -9,21 +9,21 @@ from tracer.geometry.camera import pinhole
 from tracer.kernels import kernel
 from tracer.scene.model import Camera
 from tracer.shading.blocks import all_blocks
-from tracer.shading.octants import sorted_by_octant
-from tracer.shading.places import CELLS, FEWEST, sorted_by_place
+from tracer.shading.direction_sort import sorted_by_direction
 from tracer.shading.primary import primary_wave
-from tracer.shading.wave import DIRECTION, HIT_T, MOVED, MOVING, ORIGIN, PIXEL, WAVE_ROWS, wave_in
+from tracer.shading.spatial_sort import CELLS, FEWEST, sorted_by_position
+from tracer.shading.wave import DIRECTION, HIT_ROWS, HIT_T, ORIGIN, PIXEL, RAY_ROWS, WAVE_ROWS, wave_in
 
 
 @kernel
-def _by_place(memory, n, spare):
-    wave, left = sorted_by_place(wave_in(memory, n), spare)
+def _by_position(memory, n, spare):
+    wave, left = sorted_by_position(wave_in(memory, n), spare)
     return wave.memory, left
 
 
 @kernel
-def _by_octant(memory, n, target):
-    return sorted_by_octant(memory, n, target)
+def _by_direction(memory, n, target):
+    return sorted_by_direction(memory, n, target)
 
 
 @kernel
@@ -34,7 +34,7 @@ def _primary(camera, tile, width, lanes, memory, place):
 def _wave(rng: np.random.Generator, n: int, rest: float) -> np.ndarray:
     """Rows of n rays far from the world's origin, with `rest` in the lanes past them."""
     memory = np.full((WAVE_ROWS, n // 16 * 16 + 32), rest, np.float32)
-    memory[:MOVED, :n] = rng.uniform(-1, 1, (MOVED, n))
+    memory[:HIT_ROWS, :n] = rng.uniform(-1, 1, (HIT_ROWS, n))
     memory[ORIGIN:DIRECTION, :n] += 50
     memory[HIT_T, :n] = rng.uniform(0, 2, n)
     memory[PIXEL].view(np.int32)[:n] = rng.permutation(n)
@@ -56,13 +56,13 @@ def _cells(memory: np.ndarray, n: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("n", [FEWEST + 1, 500, 1600])
-def test_points_are_sorted_by_place_whatever_lies_past_them(n: int):
+def test_points_are_sorted_by_position_whatever_lies_past_them(n: int):
     orders = []
     for rest in (0.0, np.nan, 3e38):
         memory = _wave(np.random.default_rng(3), n, rest)
         before, keys = memory.copy(), _cells(memory, n)
-        sorted_memory, left = _by_place(memory, n, np.full_like(memory, np.nan))
-        assert np.array_equal(_columns(sorted_memory, MOVED, n), _columns(before, MOVED, n))
+        sorted_memory, left = _by_position(memory, n, np.full_like(memory, np.nan))
+        assert np.array_equal(_columns(sorted_memory, HIT_ROWS, n), _columns(before, HIT_ROWS, n))
         assert np.array_equal(_cells(sorted_memory, n), np.sort(keys)) and len(np.unique(keys)) > 50
         assert np.array_equal(left, before, equal_nan=True)
         orders.append(sorted_memory[PIXEL, :n].view(np.int32).tolist())
@@ -73,19 +73,19 @@ def test_points_are_sorted_by_place_whatever_lies_past_them(n: int):
 def test_a_small_wave_is_left_as_it_is():
     memory = _wave(np.random.default_rng(4), FEWEST, 0.0)
     before = memory.copy()
-    same, _ = _by_place(memory, FEWEST, np.zeros_like(memory))
+    same, _ = _by_position(memory, FEWEST, np.zeros_like(memory))
     assert np.array_equal(same, before)
 
 
 @pytest.mark.parametrize("n", [1, 15, 16, 17, 700])
-def test_rays_are_sorted_by_octant_in_the_order_they_had(n: int):
+def test_rays_are_sorted_by_direction_in_the_order_they_had(n: int):
     memory = _wave(np.random.default_rng(5), n, -1.0)
     target = np.full_like(memory, np.nan)
     octants = (memory[DIRECTION : DIRECTION + 3, :n] < 0).T @ [1, 2, 4]
-    assert _by_octant(memory, n, target) == (len(np.unique(octants)) > 1)
+    assert _by_direction(memory, n, target) == (len(np.unique(octants)) > 1)
     if n > 1:
         order = np.argsort(octants, kind="stable")
-        assert np.array_equal(target[:MOVING, :n].view(np.int32), memory[:MOVING, order].view(np.int32))
+        assert np.array_equal(target[:RAY_ROWS, :n].view(np.int32), memory[:RAY_ROWS, order].view(np.int32))
 
 
 @pytest.mark.parametrize("tile", [(0, 0, 64, 64), (64, 0, 65, 3), (0, 64, 37, 65), (5, 6, 22, 70)])

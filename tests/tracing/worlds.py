@@ -6,6 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from tracer.culling.certified.store import CertificateStore
+from tracer.methods.certified import CertifiedCells
+from tracer.renderer import Renderer
 from tracer.scene.animation import Animation
 from tracer.scene.model import (
     Camera,
@@ -88,3 +91,10 @@ def random_corners(rng: np.random.Generator, n: int, size: float) -> np.ndarray:
     if n >= 8:
         corners[n // 2] = corners[n // 2 + 1]
     return corners.astype(np.float32)
+
+
+def certificates_of(renderer: Renderer) -> CertificateStore | None:
+    """The certificates that a renderer has made, if any."""
+    method = renderer.state.method("certified")
+    assert isinstance(method, CertifiedCells)
+    return method.store

@@ -14,6 +14,7 @@ from enum import IntEnum
 import numpy as np
 
 from tracer.kernels import inlined, kernel
+from tracer.simd import i32_at, i64_at
 
 MAX_CULLED_LIGHTS = 31
 
@@ -71,8 +72,14 @@ def occlusion_bits(word):
 
 @inlined
 def add_shadow(words, unit, light, mode):
-    """OR a shadow mode into a unit's word."""
-    words[unit] = np.uint64(words[unit]) | (np.uint64(mode) << np.uint64(2 + 2 * light))
+    """OR a shadow mode into a unit's word (`tracer.culling.shadow_modes.Words`)."""
+    bits = np.uint64(mode) << np.uint64(2 + 2 * light)
+    if words.size == 4:
+        word = i32_at(words.address)
+        word[unit] |= np.int32(bits)
+    else:
+        wide = i64_at(words.address)
+        wide[unit] |= np.int64(bits)
 
 
 @kernel

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.kernels import inlined, subkernel
-from tracer.shading.octants import sorted_by_octant
+from tracer.shading.direction_sort import sorted_by_direction
 from tracer.shading.points import IOR_ROW, OFFSET_ROW, SPECULAR_ROW, TRANSMISSION_ROW
-from tracer.shading.wave import DIRECTION, HIT_T, ORIGIN, PIXEL, REACH, WEIGHT, room, row_of, wave_in
+from tracer.shading.wave import DIRECTION, HIT_T, ORIGIN, PATH_LENGTH, PIXEL, WEIGHT, room, row_of, wave_in
 from tracer.simd import (
     any_lane,
     bits_of,
@@ -59,13 +59,15 @@ def _send(wave, v, out, n, going, origin, direction, scale):
     if not any_lane(going):
         return n
     length = square_root(_dot(direction, direction))
-    reach = load_f32x16(row_of(wave.memory, REACH) + 64 * v) + load_f32x16(row_of(wave.memory, HIT_T) + 64 * v)
+    path_length = load_f32x16(row_of(wave.memory, PATH_LENGTH) + 64 * v) + load_f32x16(
+        row_of(wave.memory, HIT_T) + 64 * v
+    )
     at, stride = row_of(out, 0) + 4 * n, 4 * out.shape[1]
     direction = (direction[0] / length, direction[1] / length, direction[2] / length)
     store_three(at + stride * ORIGIN, stride, pack_three(origin, going))
     store_three(at + stride * DIRECTION, stride, pack_three(direction, going))
     store_three(at + stride * WEIGHT, stride, pack_three(weight, going))
-    store(at + stride * REACH, pack(reach, going))
+    store(at + stride * PATH_LENGTH, pack(path_length, going))
     store(at + stride * PIXEL, pack(load_f32x16(row_of(wave.memory, PIXEL) + 64 * v), going))
     return n + ones(bits_of(going))
 
@@ -92,7 +94,7 @@ def _refract(points, wave, out):
             continue
         ior = load_f32x16(row_of(points.memory, IOR_ROW) + 64 * v)
         eta = select(mask16(np.int64(points.entering[v])), ONE / ior, ior)
-        passes, direction = _refracted(load_three(wave.rays.direction, v), load_three(points.normal, v), eta)
+        passes, direction = _refracted(load_three(wave.direction, v), load_three(points.normal, v), eta)
         n = _send(wave, v, out, n, transmits & passes, _sunk(points, v), direction, (through, through, through))
         share = select(transmits, select(passes, ZERO, through), ZERO)
         for c in range(3):
@@ -105,7 +107,7 @@ def _refract(points, wave, out):
 def _reflect(points, wave, out, n):
     """Reflected rays, scaled by the specular colour, after the n that there are; how many there are then."""
     for v in range((wave.size + 15) // 16):
-        direction = _reflected(load_three(wave.rays.direction, v), load_three(points.normal, v))
+        direction = _reflected(load_three(wave.direction, v), load_three(points.normal, v))
         there = mask16(lanes_below(wave.size, v))
         n = _send(wave, v, out, n, there, load_three(points.lifted, v), direction, load_three(points.specular, v))
     return n
@@ -113,12 +115,12 @@ def _reflect(points, wave, out, n):
 
 @inlined
 def next_wave(points, wave, memory):
-    """The rays sent on from here, refracted ones first, octant by octant; and memory for the wave after them.
+    """The rays sent on from here, refracted ones first, sorted by direction; and memory for the wave after them.
 
     They lie in this memory or in the wave's own, or in more where they are too many."""
     out = room(memory, 2 * wave.size)
     n = _reflect(points, wave, out, _refract(points, wave, out))
     spare = room(wave.memory, n)
-    if sorted_by_octant(out, n, spare):
+    if sorted_by_direction(out, n, spare):
         out, spare = spare, out
     return wave_in(out, n), spare

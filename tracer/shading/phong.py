@@ -53,15 +53,15 @@ def highlight(reached, shine, exponent, mirrored):
 
 
 @subkernel
-def add_light(points, look, number, lit, wave, light):
+def add_light(points, shading, number, lit, wave, light):
     """Add light `number` to light (3, n) where bits of lit (n / 16,) say so: diffuse N.L, and (R.V)^exponent
     (Phong 1975)."""
-    place, strength = look.lights[number], look.light_colors[number]
+    place, strength = shading.lights[number], shading.light_colors[number]
     for v in range((wave.size + 15) // 16):
         if lit[v] == 0:
             continue
         position, normal = load_three(points.position, v), load_three(points.normal, v)
-        direction = load_three(wave.rays.direction, v)
+        direction = load_three(wave.direction, v)
         cosine, reached, mirrored = toward(place, position, normal, direction, mask16(np.int64(lit[v])))
         if not any_lane(reached):
             continue

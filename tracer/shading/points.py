@@ -5,17 +5,15 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tracer.culling.cells import cells_at
 from tracer.geometry.attributes import CORNER_NORMALS, FACE_NORMAL, MATERIAL, OBJECT, TEXTURE
 from tracer.geometry.intersect import quadric_normal
 from tracer.geometry.memory import data_pointer
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.kernels import inlined, subkernel
-from tracer.shading.look import AMBIENT, DIFFUSE, EXPONENT, IOR, MATERIAL_COLUMNS, SHINE, SPECULAR, TRANSMISSION
+from tracer.shading.shading_data import AMBIENT, DIFFUSE, EXPONENT, IOR, MATERIAL_COLUMNS, SHINE, SPECULAR, TRANSMISSION
 from tracer.shading.textures import MAPPING_COLUMNS, SPANNED, texture_colors
-from tracer.shading.wave import HIT_PRIMITIVE, HIT_T, HIT_U, HIT_V, REACH, room, row_of
+from tracer.shading.wave import HIT_PRIMITIVE, HIT_T, HIT_U, HIT_V, PATH_LENGTH, room, row_of
 from tracer.simd import (
     address_of,
     any_lane,
@@ -40,56 +38,51 @@ from tracer.simd import (
     store,
     store_three,
 )
+from tracer.simd.records import IntRow, Memory, Row, Row3, row_count, row_number, rows_of
 
 ATTRIBUTE_COLUMNS = 16
 ZERO, ONE = np.float32(0), np.float32(1)
 
-# Rows of the points' memory.
-POSITION_ROW, GEOMETRIC_ROW, NORMAL_ROW, DIFFUSE_ROW, SPECULAR_ROW, LIGHT_ROW, REFERENCE_ROW = range(0, 21, 3)
-EXPONENT_ROW, SHINE_ROW, TRANSMISSION_ROW, IOR_ROW, OFFSET_ROW, UNIT_ROW, ENTERING_ROW = range(21, 28)
-LIFTED_ROW, SPOT_ROW, PRIMITIVE_ROW, POINT_ROWS = 28, 31, 34, 35
-
 
 class Points(NamedTuple):
-    """n points, in rows of `memory` (POINT_ROWS, n) float32: position, geometric normal (towards the viewer), shading
-    normal (in the geometric one's half space), the material's diffuse colour under the texture's, its specular colour,
-    and the light that goes from there to the viewer, of which there is the ambient at first, each (3, n); reference
-    like light; offset (n,), how far above the surface rays start; primitive and unit (n,) int32; entering
-    (n / 16,) int32, the bits of those whose ray came from outside; lifted (3, n), the points that far above the
-    surface; spots (3, n), of which `tracer.culling.certified.lookup` tells."""
+    """n surface points, in rows of `memory` (POINT_ROWS, n) float32.
 
-    memory: NDArray[np.float32]
-    position: NDArray[np.float32]
-    geometric: NDArray[np.float32]
-    normal: NDArray[np.float32]
-    specular: NDArray[np.float32]
-    light: NDArray[np.float32]
-    reference: NDArray[np.float32]
-    offset: NDArray[np.float32]
-    primitive: NDArray[np.int32]
-    unit: NDArray[np.int32]
-    entering: NDArray[np.int32]
-    lifted: NDArray[np.float32]
-    spots: NDArray[np.float32]
+    position, geometric normal (towards the viewer), shading normal (in the geometric one's half space), the material's
+    diffuse colour under the texture's, its specular colour, and the light that goes from there to the viewer, which is
+    the ambient light at first, each (3, n); reference like light; exponent, shine, transmission and ior of the
+    material; offset (n,), how far above the surface rays start; primitive (n,) int32; entering (n / 16,) int32, the
+    bits of those whose ray came from outside; lifted (3, n), the points that far above the surface."""
+
+    memory: Memory
+    position: Row3
+    geometric: Row3
+    normal: Row3
+    diffuse: Row3
+    specular: Row3
+    light: Row3
+    reference: Row3
+    exponent: Row
+    shine: Row
+    transmission: Row
+    ior: Row
+    offset: Row
+    primitive: IntRow
+    entering: IntRow
+    lifted: Row3
 
 
-@inlined
-def _points_in(memory):
-    return Points(
-        memory,
-        memory[POSITION_ROW:GEOMETRIC_ROW],
-        memory[GEOMETRIC_ROW:NORMAL_ROW],
-        memory[NORMAL_ROW:DIFFUSE_ROW],
-        memory[SPECULAR_ROW:LIGHT_ROW],
-        memory[LIGHT_ROW:REFERENCE_ROW],
-        memory[REFERENCE_ROW:EXPONENT_ROW],
-        memory[OFFSET_ROW],
-        memory[PRIMITIVE_ROW].view(np.int32),
-        memory[UNIT_ROW].view(np.int32),
-        memory[ENTERING_ROW].view(np.int32),
-        memory[LIFTED_ROW:SPOT_ROW],
-        memory[SPOT_ROW:PRIMITIVE_ROW],
+points_in = rows_of(Points)
+POINT_ROWS = row_count(Points)
+(
+    POSITION_ROW, GEOMETRIC_ROW, NORMAL_ROW, DIFFUSE_ROW, SPECULAR_ROW, LIGHT_ROW, REFERENCE_ROW, EXPONENT_ROW,
+    SHINE_ROW, TRANSMISSION_ROW, IOR_ROW, OFFSET_ROW, PRIMITIVE_ROW, LIFTED_ROW,
+) = (
+    row_number(Points, field)
+    for field in (
+        "position", "geometric", "normal", "diffuse", "specular", "light", "reference", "exponent",
+        "shine", "transmission", "ior", "offset", "primitive", "lifted",
     )
+)  # fmt: skip
 
 
 @inlined
@@ -137,18 +130,19 @@ def _mixed(attributes, first, w, u, v):
 
 
 @subkernel
-def _texture(look, textured, primitive, w, u, v, across, cosine, cone):
+def _texture(shading, textured, primitive, w, u, v, across, cosine, cone):
     """Colours that textures have in the lanes of a mask, 1 in the others.
 
     across spans twice the triangle; cosine is that of the rays against it, and cone their width.
     """
     rows = local_memory(64)
     store(rows, select(textured, primitive, i32x16(0)))
-    m = load_columns(address_of(look.mappings), rows, MAPPING_COLUMNS)
+    m = load_columns(address_of(shading.mappings), rows, MAPPING_COLUMNS)
     cosine = maximum(cosine, np.float32(1e-3))
     area = _length(across) * cosine * square_root(cosine)
     covered = select(area > ZERO, cone * cone * m[SPANNED] / area, ZERO)
-    red, green, blue = texture_colors(look, m, w * m[0] + u * m[2] + v * m[4], w * m[1] + u * m[3] + v * m[5], covered)
+    s, t = w * m[0] + u * m[2] + v * m[4], w * m[1] + u * m[3] + v * m[5]
+    red, green, blue = texture_colors(shading, m, s, t, covered)
     return select(textured, red, ONE), select(textured, green, ONE), select(textured, blue, ONE)
 
 
@@ -211,30 +205,30 @@ def normals_at(world, attributes, there, primitive, position, direction, w, u, v
 
 
 @inlined
-def colors_at(look, attributes, there, primitive, w, u, v, against, cone):
+def colors_at(shading, attributes, there, primitive, w, u, v, against, cone):
     """Colours that a vector of points has by textures, 1 where there are none."""
     textured = (as_i32(attributes[TEXTURE]) > np.int32(-1)) & mask16(there)
     if not any_lane(textured):
         return f32x16(ONE), f32x16(ONE), f32x16(ONE)
     across = attributes[FACE_NORMAL], attributes[FACE_NORMAL + 1], attributes[FACE_NORMAL + 2]
-    return _texture(look, textured, primitive, w, u, v, across, maximum(against, -against), cone)
+    return _texture(shading, textured, primitive, w, u, v, across, maximum(against, -against), cone)
 
 
 @inlined
-def material_at(look, material):
+def material_at(shading, material):
     """The columns of the rows of materials."""
     rows = local_memory(64)
     store(rows, material)
-    return load_columns(address_of(look.materials), rows, MATERIAL_COLUMNS)
+    return load_columns(address_of(shading.materials), rows, MATERIAL_COLUMNS)
 
 
 @inlined
-def ambient_at(look, m, color):
+def ambient_at(shading, m, color):
     """Ambient light of materials, given by their columns, seen through textures' colours."""
     return (
-        look.ambient[0] * m[AMBIENT] * color[0],
-        look.ambient[1] * m[AMBIENT + 1] * color[1],
-        look.ambient[2] * m[AMBIENT + 2] * color[2],
+        shading.ambient[0] * m[AMBIENT] * color[0],
+        shading.ambient[1] * m[AMBIENT + 1] * color[1],
+        shading.ambient[2] * m[AMBIENT + 2] * color[2],
     )
 
 
@@ -245,12 +239,12 @@ def diffuse_at(m, color):
 
 
 @inlined
-def _put_surface(points, look, v, material, color, verify):
+def _put_surface(points, shading, v, material, color, verify):
     """What the materials are made of, seen through the textures' colours."""
-    m = material_at(look, material)
+    m = material_at(shading, material)
     stride = 4 * points.memory.shape[1]
     at = address_of(points.memory) + 64 * v
-    ambient = ambient_at(look, m, color)
+    ambient = ambient_at(shading, m, color)
     store_three(at + stride * LIGHT_ROW, stride, ambient)
     if verify:
         store_three(at + stride * REFERENCE_ROW, stride, ambient)
@@ -268,16 +262,16 @@ def _hit(wave, row, v):
 
 
 @subkernel
-def points_at(world, look, wave, memory, spread, knowledge):
+def points_at(world, shading, wave, memory, spread, verify):
     """The surface points of a wave each of whose rays hits something, in this memory or, where they are many, in more.
 
-    spread is the width of a pixel at distance 1.  Where knowledge asks to verify, there is a reference for the light.
+    spread is the width of a pixel at distance 1.  Where answers are verified, there is a reference for the light.
     """
-    points = _points_in(room(memory, wave.size))
+    points = points_in(room(memory, wave.size))
     stride = 4 * points.memory.shape[1]
     for k in range((wave.size + 15) // 16):
         there = lanes_below(wave.size, k)
-        o, d = load_three(wave.rays.origin, k), load_three(wave.rays.direction, k)
+        o, d = load_three(wave.origin, k), load_three(wave.direction, k)
         t, u, v = _hit(wave, HIT_T, k), _hit(wave, HIT_U, k), _hit(wave, HIT_V, k)
         numbers = row_of(wave.memory, HIT_PRIMITIVE) + 64 * k
         primitive = load_i32x16(numbers)
@@ -288,10 +282,8 @@ def points_at(world, look, wave, memory, spread, knowledge):
         offset = np.float32(RAY_OFFSET) * largest
         store(at + stride * OFFSET_ROW, offset)
         store(at + stride * PRIMITIVE_ROW, primitive)
-        unit = cells_at(knowledge.first, primitive, u, v) if len(knowledge.first) > 0 else primitive
-        store(at + stride * UNIT_ROW, unit)
 
-        attributes = load_columns(address_of(look.attributes), numbers, ATTRIBUTE_COLUMNS)
+        attributes = load_columns(address_of(shading.attributes), numbers, ATTRIBUTE_COLUMNS)
         w = ONE - u - v
         geometric, normal, entering, against = normals_at(world, attributes, there, primitive, (x, y, z), d, w, u, v)
         points.entering[k] = bits_of(entering)
@@ -300,7 +292,7 @@ def points_at(world, look, wave, memory, spread, knowledge):
         store_three(at + stride * LIFTED_ROW, stride, (x + offset * gx, y + offset * gy, z + offset * gz))
         store_three(at + stride * NORMAL_ROW, stride, normal)
 
-        cone = spread * (_hit(wave, REACH, k) + t)
-        color = colors_at(look, attributes, there, primitive, w, u, v, against, cone)
-        _put_surface(points, look, k, as_i32(attributes[MATERIAL]), color, knowledge.verify)
+        cone = spread * (_hit(wave, PATH_LENGTH, k) + t)
+        color = colors_at(shading, attributes, there, primitive, w, u, v, against, cone)
+        _put_surface(points, shading, k, as_i32(attributes[MATERIAL]), color, verify)
     return points

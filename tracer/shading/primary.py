@@ -11,7 +11,7 @@ import numpy as np
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import data_pointer
 from tracer.kernels import inlined, subkernel
-from tracer.shading.wave import DIRECTION, ORIGIN, PIXEL, REACH, WEIGHT, row_of, wave_in
+from tracer.shading.wave import DIRECTION, ORIGIN, PATH_LENGTH, PIXEL, WEIGHT, row_of, wave_in
 from tracer.simd import (
     address_of,
     any_lane,
@@ -79,7 +79,7 @@ def primary_wave(camera, tile, width, lanes, memory, place):
             store(at + stride * (ORIGIN + axis), f32x16(camera.origin[axis]))
             store(at + stride * (WEIGHT + axis), f32x16(np.float32(1)))
         store_three(at + stride * DIRECTION, stride, pack_three(direction, inside))
-        store(at + stride * REACH, f32x16(np.float32(0)))
+        store(at + stride * PATH_LENGTH, f32x16(np.float32(0)))
         store(at + stride * PIXEL, lane_numbers_x16() + np.int32(n))
         store(address_of(place) + 4 * n, pack(y * np.int32(width) + x, inside))
         n += ones(bits_of(inside))
@@ -87,20 +87,20 @@ def primary_wave(camera, tile, width, lanes, memory, place):
 
 
 @inlined
-def keep_hits(wave, place, buffers):
+def write_hits(wave, place, buffers):
     """Write what primary rays hit into the picture."""
     depth, primitive = data_pointer(buffers.depth), data_pointer(buffers.primitive)
     u, v = data_pointer(buffers.u), data_pointer(buffers.v)
     for i in range(wave.size):
-        depth[place[i]], primitive[place[i]] = wave.hits.t[i], wave.hits.primitive[i]
-        u[place[i]], v[place[i]] = wave.hits.u[i], wave.hits.v[i]
+        depth[place[i]], primitive[place[i]] = wave.t[i], wave.primitive[i]
+        u[place[i]], v[place[i]] = wave.u[i], wave.v[i]
 
 
 @inlined
-def recall_hits(wave, place, buffers):
+def read_hits(wave, place, buffers):
     """Read what primary rays hit from the picture."""
     depth, primitive = data_pointer(buffers.depth), data_pointer(buffers.primitive)
     u, v = data_pointer(buffers.u), data_pointer(buffers.v)
     for i in range(wave.size):
-        wave.hits.t[i], wave.hits.primitive[i] = depth[place[i]], primitive[place[i]]
-        wave.hits.u[i], wave.hits.v[i] = u[place[i]], v[place[i]]
+        wave.t[i], wave.primitive[i] = depth[place[i]], primitive[place[i]]
+        wave.u[i], wave.v[i] = u[place[i]], v[place[i]]

@@ -1,6 +1,6 @@
-"""What primary hits look like before any shadow ray is traced, at every pixel.
+"""What primary hits shading like before any shadow ray is traced, at every pixel.
 
-A picture that is shaded in parts knows each pixel's surface from the start: its normal, its material,
+A picture that is refined progressively knows each pixel's surface from the start: its normal, its material,
 and the local light it would have if nothing stood in the way (ambient, and Phong of every light it
 faces, textures included).  Shading then finds out what part of that light arrives, and what mirrors and
 glass send besides; `tracer.shading.filling` needs no more than that from a pixel's neighbours.
@@ -10,19 +10,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.culling.certified.lookup import find_cells
 from tracer.geometry.attributes import COLUMNS, MATERIAL, OBJECT
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import borrowed, data_pointer
 from tracer.geometry.rays import MISS
 from tracer.kernels import inlined, kernel
 from tracer.shading.blocks import NORMAL, PLANE, POSITION, SURFACE, UNSHADOWED, block_of, planes_at
-from tracer.shading.look import EXPONENT, SHINE, SPECULAR
 from tracer.shading.phong import highlight, toward
-from tracer.shading.points import ambient_at, colors_at, diffuse_at, material_at, normals_at, points_at
-from tracer.shading.primary import BLOCK, block_at, blocks_of, primary_wave, recall_hits
-from tracer.shading.wave import without_misses
-from tracer.shading.whitted import record_cells, tile_in
+from tracer.shading.points import ambient_at, colors_at, diffuse_at, material_at, normals_at
+from tracer.shading.primary import BLOCK, block_at, blocks_of
+from tracer.shading.shading_data import EXPONENT, SHINE, SPECULAR
 from tracer.simd import (
     address_of,
     any_lane,
@@ -47,12 +44,12 @@ ZERO, ONE = np.float32(0), np.float32(1)
 
 
 @inlined
-def _unshadowed(look, m, color, position, geometric, normal, direction, hit):
+def _unshadowed(shading, m, color, position, geometric, normal, direction, hit):
     """The light that points of these materials and colours send to the viewer where nothing is in the way."""
-    r, g, b = ambient_at(look, m, color)
+    r, g, b = ambient_at(shading, m, color)
     red, green, blue = diffuse_at(m, color)
-    for number in range(len(look.lights)):
-        place, strength = look.lights[number], look.light_colors[number]
+    for number in range(len(shading.lights)):
+        place, strength = shading.lights[number], shading.light_colors[number]
         x, y, z = place[0] - position[0], place[1] - position[1], place[2] - position[2]
         faces = hit & (geometric[0] * x + geometric[1] * y + geometric[2] * z > ZERO)
         cosine, reached, mirrored = toward(place, position, normal, direction, faces)
@@ -66,13 +63,13 @@ def _unshadowed(look, m, color, position, geometric, normal, direction, hit):
 
 
 @kernel
-def see_surfaces(world, look, camera, tile, buffers):
+def see_surfaces(world, shading, camera, tile, buffers):
     """Normals, surfaces and unshadowed light of a tile (left, top, right, bottom) whose primary hits the buffers
     hold, a block at a time."""
-    world, look, buffers = borrowed(world), borrowed(look), borrowed(buffers)
+    world, shading, buffers = borrowed(world), borrowed(shading), borrowed(buffers)
     planes, normals, width = buffers.planes, data_pointer(buffers.normal), np.int32(buffers.primitive.shape[1])
     rows = local_memory(192)
-    channel, background = f32_at(rows), look.background
+    channel, background = f32_at(rows), shading.background
     for number in range(blocks_of(tile)):
         x, y, inside = block_at(tile, number)
         if not any_lane(inside):
@@ -99,12 +96,12 @@ def see_surfaces(world, look, camera, tile, buffers):
 
         # What is there, and its light.
         store(rows, primitive)
-        attributes = load_columns(address_of(look.attributes), rows, COLUMNS)
+        attributes = load_columns(address_of(shading.attributes), rows, COLUMNS)
         w, there = ONE - u - v, bits_of(hit)
         geometric, normal, _, against = normals_at(world, attributes, there, primitive, position, direction, w, u, v)
-        color = colors_at(look, attributes, there, primitive, w, u, v, against, camera.spread * t)
-        m = material_at(look, select(hit, as_i32(attributes[MATERIAL]), i32x16(0)))
-        r, g, b = _unshadowed(look, m, color, position, geometric, normal, direction, hit)
+        color = colors_at(shading, attributes, there, primitive, w, u, v, against, camera.spread * t)
+        m = material_at(shading, select(hit, as_i32(attributes[MATERIAL]), i32x16(0)))
+        r, g, b = _unshadowed(shading, m, color, position, geometric, normal, direction, hit)
 
         surface = as_i32(attributes[MATERIAL]) + np.int32(MATERIALS) * as_i32(attributes[OBJECT])
         store(block + PLANE * SURFACE, select(hit, surface, i32x16(MISS)))
@@ -118,17 +115,3 @@ def see_surfaces(world, look, camera, tile, buffers):
                 pixel = 3 * np.int64(lane_of(place, lane))
                 for axis in range(3):
                     normals[pixel + axis] = channel[16 * axis + lane]
-
-
-@kernel
-def see_cells(world, look, camera, tile, lanes, knowledge, buffers, space):
-    """The certified cells of a tile's primary hits, into the buffers, which hold the hits."""
-    world, look, knowledge = borrowed(world), borrowed(look), borrowed(knowledge)
-    buffers, space = borrowed(buffers), borrowed(space)
-    pixels = tile_in(space.tile)
-    wave = primary_wave(camera, tile, buffers.primitive.shape[1], lanes, space.wave, pixels.place)
-    recall_hits(wave, pixels.place, buffers)
-    wave = without_misses(wave, look.background, pixels.light, pixels.reference)
-    points = points_at(world, look, wave, space.points, camera.spread, knowledge)
-    find_cells(knowledge.certified, points, wave.size)
-    record_cells(wave, points, pixels, buffers.cell)

@@ -97,7 +97,7 @@ def _across(u, size):
 
 
 @inlined
-def _bilinear(look, level, column, u, v):
+def _bilinear(shading, level, column, u, v):
     """(r, g, b) in 0 to 255 of one level each, described from `column` on; v = 0 is the bottom of the picture."""
     start, width, height = (
         as_i32(level[column + START]),
@@ -106,7 +106,7 @@ def _bilinear(look, level, column, u, v):
     )
     left, right, fx = _across(u, width)
     upper, lower, fy = _across(-v, height)
-    texels = address_of(look.texels)
+    texels = address_of(shading.texels)
     upper, lower = start + upper * width, start + lower * width
     a, b = gather_i32x16(texels, upper + left), gather_i32x16(texels, upper + right)
     c, d = gather_i32x16(texels, lower + left), gather_i32x16(texels, lower + right)
@@ -125,7 +125,7 @@ def _channel(texels, shift):
 
 
 @subkernel
-def texture_colors(look, mapping, u, v, covered):
+def texture_colors(shading, mapping, u, v, covered):
     """(r, g, b) in 0 to 1 at (u, v) of textures, averaged over so many texels of their first level; mapping holds
     columns."""
     numbers = as_i32(mapping[LEVELS])
@@ -135,10 +135,10 @@ def texture_colors(look, mapping, u, v, covered):
     mix = size - to_f32(whole)  # 0 at the last level
     rows = local_memory(64)
     store(rows, (numbers >> np.int32(5)) + whole)
-    level = load_columns(address_of(look.texture_levels), rows, LEVEL_COLUMNS)
+    level = load_columns(address_of(shading.texture_levels), rows, LEVEL_COLUMNS)
     scale = np.float32(1 / 255)
-    red, green, blue = _bilinear(look, level, 0, u, v)
+    red, green, blue = _bilinear(shading, level, 0, u, v)
     if any_lane(mix > ZERO):
-        r, g, b = _bilinear(look, level, AFTER, u, v)
+        r, g, b = _bilinear(shading, level, AFTER, u, v)
         red, green, blue = red + mix * (r - red), green + mix * (g - green), blue + mix * (b - blue)
     return scale * red, scale * green, scale * blue

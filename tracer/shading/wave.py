@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracer.geometry.queries import closest_hits
 from tracer.geometry.rays import INFINITY, MISS, Hits, Rays, padded
@@ -24,48 +23,48 @@ from tracer.simd import (
     pack,
     store,
 )
+from tracer.simd.records import IntRow, Memory, Row, Row3, row_count, row_number, rows_of
 
-# Rows of a wave's memory: MOVING of a ray on its way, MOVED with what it hit, which change places with it.
-ORIGIN, DIRECTION, WEIGHT, REACH, PIXEL, MOVING = 0, 3, 6, 9, 10, 11
-HIT_T, HIT_U, HIT_V, HIT_PRIMITIVE, MOVED = 11, 12, 13, 14, 15
-T_MIN, T_MAX = 15, 16
-WAVE_ROWS = 17
 ZERO = np.float32(0)
 
 
 class Wave(NamedTuple):
-    """`size` rays in rows of `memory` (WAVE_ROWS, n): what they hit, the pixel (n,) int32 of their tile that they
-    count for, with which weight (3, n), and reach (n,), the length of the path from the eye to where they start.
+    """`size` rays, in rows of `memory` (WAVE_ROWS, n): origin and direction (3, n); the pixel (n,) int32 of their tile
+    that they count for, and with which weight (3, n); path_length (n,) from the eye to where they start; what they hit,
+    t, u, v and primitive (n,); and the interval of t.
 
     Lanes past the size, to the end of its vector, are rays that mean nothing but can be computed with."""
 
-    memory: NDArray[np.float32]
-    rays: Rays
-    hits: Hits
-    pixel: NDArray[np.int32]
-    weight: NDArray[np.float32]
-    reach: NDArray[np.float32]
+    memory: Memory
+    origin: Row3
+    direction: Row3
+    weight: Row3
+    path_length: Row
+    pixel: IntRow
+    t: Row
+    u: Row
+    v: Row
+    primitive: IntRow
+    t_min: Row
+    t_max: Row
     size: int
+
+
+wave_in = rows_of(Wave)
+WAVE_ROWS = row_count(Wave)
+ORIGIN, DIRECTION, WEIGHT, PATH_LENGTH, PIXEL, HIT_T, HIT_U, HIT_V, HIT_PRIMITIVE, T_MIN, T_MAX = (
+    row_number(Wave, field)
+    for field in (
+        "origin", "direction", "weight", "path_length", "pixel", "t", "u", "v", "primitive", "t_min", "t_max",
+    )
+)  # fmt: skip
+RAY_ROWS, HIT_ROWS = HIT_T, T_MIN  # the first rows: of a ray on its way, and with what it hit
 
 
 @inlined
 def room(memory, n):
     """Memory of as many rows as this, for n rays and a vector to spare: this, where it will do."""
     return memory if memory.shape[1] >= padded(n) + 16 else np.empty((memory.shape[0], padded(n) + 16), np.float32)
-
-
-@inlined
-def wave_in(memory, size):
-    """A wave of so many rays, whose rows the caller has filled, or will."""
-    return Wave(
-        memory,
-        Rays(memory[ORIGIN:DIRECTION], memory[DIRECTION:WEIGHT], memory[T_MIN], memory[T_MAX]),
-        Hits(memory[HIT_T], memory[HIT_PRIMITIVE].view(np.int32), memory[HIT_U], memory[HIT_V]),
-        memory[PIXEL].view(np.int32),
-        memory[WEIGHT:REACH],
-        memory[REACH],
-        size,
-    )
 
 
 @inlined
@@ -81,12 +80,13 @@ def trace(world, wave, counts):
     for at in range(0, 4 * wave.size, 64):
         store(t_min + at, f32x16(ZERO))
         store(t_max + at, f32x16(INFINITY))
-    closest_hits(world, wave.rays, wave.hits, 0, wave.size, counts)
+    rays = Rays(wave.origin, wave.direction, wave.t_min, wave.t_max)
+    closest_hits(world, rays, Hits(wave.t, wave.primitive, wave.u, wave.v), 0, wave.size, counts)
 
 
 @subkernel
-def without_misses(wave, background, light, reference):
-    """The wave's rays that hit; the others bring the background (3,) home, to light and reference (3, pixels)."""
+def drop_misses(wave, background, light, reference):
+    """The wave's rays that hit; those that miss add the background (3,) to light and reference (3, pixels)."""
     n, start, stride = 0, address_of(wave.memory), 4 * wave.memory.shape[1]
     for v in range((wave.size + 15) // 16):
         there = lanes_below(wave.size, v)
@@ -100,7 +100,7 @@ def without_misses(wave, background, light, reference):
                 light[c, wave.pixel[i]] += coming
                 reference[c, wave.pixel[i]] += coming
         if n < 16 * v or hit != 0xFFFF:
-            for row in range(MOVED):
+            for row in range(HIT_ROWS):
                 store(start + stride * row + 4 * n, pack(load_f32x16(start + stride * row + 64 * v), mask16(hit)))
         n += ones(hit)
     # Lanes past the end look up a primitive too: any will do.
@@ -109,7 +109,7 @@ def without_misses(wave, background, light, reference):
 
 
 @subkernel
-def bring_home(wave, from_points, light):
+def accumulate(wave, from_points, light):
     """Add what comes from a wave's points, (3, n), to the light (3, pixels) of their pixels."""
     for c in range(3):
         weight, coming = row_of(wave.memory, WEIGHT + c), row_of(from_points, c)

@@ -62,8 +62,9 @@ def _loading(kind: types.Type) -> Any:
     return load
 
 
-load_f32x8, load_f32x16, load_f64x8, load_i32x8, load_i32x16, load_f32, load_i32, load_i64 = (
-    _loading(kind) for kind in (F32x8, F32x16, F64x8, I32x8, I32x16, types.float32, types.int32, types.int64)
+load_f32x8, load_f32x16, load_f64x8, load_i32x8, load_i32x16, load_f32, load_f64, load_i32, load_i64 = (
+    _loading(kind)
+    for kind in (F32x8, F32x16, F64x8, I32x8, I32x16, types.float32, types.float64, types.int32, types.int64)
 )
 
 
@@ -157,4 +158,6 @@ def _pointing(kind: types.Type) -> Any:
     return pointer_at
 
 
-f32_at, i32_at, i64_at, u8_at = (_pointing(kind) for kind in (types.float32, types.int32, types.int64, types.uint8))
+f32_at, f64_at, i32_at, i64_at, u8_at = (
+    _pointing(kind) for kind in (types.float32, types.float64, types.int32, types.int64, types.uint8)
+)

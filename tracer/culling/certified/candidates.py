@@ -51,15 +51,14 @@ def _prefetch_lanes(table, size, numbers):
 
 
 @subkernel
-def _open(certified, points, number, asked, count, room, stride):
+def _open(certified, points, found, number, count, room, stride):
     """Open questions, at an address, of those of `count` points that have a few candidates; how many."""
-    cells = certified.cells
-    lists, names = address_of(cells.lists), address_of(cells.names)
+    lists, names, asked = address_of(certified.lists), address_of(certified.names), address_of(found.asked)
     light_space = address_of(certified.light_space[number])
-    lights, at, step = np.int32(cells.lists.shape[1]), address_of(points.lifted), 4 * points.lifted.shape[1]
+    lights, at, step = np.int32(certified.lists.shape[1]), address_of(points.lifted), 4 * points.lifted.shape[1]
     for k in range((count + 15) // 16):
-        which = select(mask16(lanes_below(count, k)), load_i32x16(address_of(asked) + 64 * k), i32x16(0))
-        cell = gather_i32x16(address_of(points.unit), which)
+        which = select(mask16(lanes_below(count, k)), load_i32x16(asked + 64 * k), i32x16(0))
+        cell = gather_i32x16(address_of(found.unit), which)
         store(room + NEXT * stride + 64 * k, gather_i32x16(lists, cell * lights + np.int32(number)))
         _prefetch_lanes(names, 4, room + NEXT * stride + 64 * k)
     n = 0
@@ -69,7 +68,7 @@ def _open(certified, points, number, asked, count, room, stride):
         few = (remaining > np.int32(0)) & (remaining <= np.int32(certified.max_asked)) & mask16(lanes_below(count, k))
         if bits_of(few) == 0:
             continue
-        which = select(few, load_i32x16(address_of(asked) + 64 * k), i32x16(0))
+        which = select(few, load_i32x16(asked + 64 * k), i32x16(0))
         name = gather_i32x16(names, select(few, first + np.int32(1), i32x16(0)))
         end = gather_f32x16(at, which), gather_f32x16(at + step, which), gather_f32x16(at + 2 * step, which)
         _keep(room + 4 * n, stride, few, which, first + np.int32(1), remaining, name, end)
@@ -148,15 +147,16 @@ def _answer(points, hit, free, live, lit):
 
 
 @subkernel
-def ask_candidates(certified, points, light, number, asked, count, questions, live, lit):
-    """Ask the candidates of `count` points, whose numbers are `asked`, about light `number` at light (3,).
+def ask_candidates(certified, points, found, light, number, count, live, lit):
+    """Ask the candidates of `count` points, whose numbers are `found.asked` (`lookup.CellPoints`), about light `number`
+    at light (3,).
 
     Points of which these are certain are taken out of the bits `live`, and put into the bits `lit` where the light
-    reaches them.  `questions` (QUESTION_ROWS, n) float32 is memory.  (how many are known, tests made)."""
-    room, stride = address_of(questions), 4 * questions.shape[1]
-    names, light_space = address_of(certified.cells.names), address_of(certified.light_space[number])
+    reaches them.  (how many are known, tests made)."""
+    room, stride = address_of(found.questions), 4 * found.questions.shape[1]
+    names, light_space = address_of(certified.names), address_of(certified.light_space[number])
     tests, known = np.int64(0), np.int64(0)
-    count = _open(certified, points, number, asked, count, room, stride)
+    count = _open(certified, points, found, number, count, room, stride)
     while count > 0:
         tests += count
         count, answered = _ask_next(names, light_space, light, count, room, stride, live, lit)

@@ -18,6 +18,7 @@ from tracer.culling.certified.cells import (
 )
 from tracer.culling.certified.lookup import NOWHERE, affine, descend
 from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.culling.stages import vectors
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
@@ -62,28 +63,28 @@ def make_requests(tiles: int) -> Requests:
     return Requests(np.empty(shape, np.int32), np.empty(shape, np.float32), np.empty(shape, np.float32), of)
 
 
-def no_requests() -> Requests:
-    """Room for nothing."""
-    return Requests(np.empty(0, np.int32), np.empty(0, np.float32), np.empty(0, np.float32), np.zeros(3, np.int64))
+@inlined
+def requests_of(rows, tile):
+    """The requests of one tile, of those of all (`RequestRows`)."""
+    return Requests(rows.key[tile], rows.u[tile], rows.v[tile], rows.of[tile])
 
 
 @subkernel
-def request_at_points(certified, points, count, untried, doubtful):
-    """Note the points of which something could be certified: bits, 16 to an int32, of those with a light of
-    which nothing is known yet (`untried`), and of those with one of which a part of the cell may tell more."""
-    cells, requests, spots = certified.cells, certified.requests, points.spots
-    for k in range(certified.first_vector, (count + 15) // 16, certified.stride):
-        bits = np.int64(untried[k] | doubtful[k])
+def request_at_points(certified, requests, found, count):
+    """Request what could be certified for points of a wave (`CellPoints`): those with a light of which nothing is known
+    yet, and those with one of which a part of the cell may tell more."""
+    for k in range(certified.first_vector, vectors(count), certified.stride):
+        bits = np.int64(found.untried[k] | found.doubtful[k])
         if bits == 0:
             continue
-        cell = load_i32x16(address_of(points.unit) + 64 * k)
-        leaf = bits_of(gather_i32x16(address_of(cells.child), cell) == np.int32(LEAF))
-        somewhere = bits_of(as_i32(load_f32x16(address_of(spots) + 8 * spots.shape[1] + 64 * k)) > np.int32(NOWHERE))
-        bits = (np.int64(untried[k]) | (np.int64(doubtful[k]) & leaf)) & somewhere & lanes_below(count, k)
+        cell = load_i32x16(address_of(found.unit) + 64 * k)
+        leaf = bits_of(gather_i32x16(address_of(certified.child), cell) == np.int32(LEAF))
+        somewhere = bits_of(load_i32x16(address_of(found.owner) + 64 * k) > np.int32(NOWHERE))
+        bits = (np.int64(found.untried[k]) | (np.int64(found.doubtful[k]) & leaf)) & somewhere & lanes_below(count, k)
         while bits != 0:
             i = 16 * k + lowest_bit(bits)
             bits &= bits - 1
-            _add_request(requests, _key(points.unit[i], spots[2].view(np.int32)[i]), spots[0, i], spots[1, i])
+            _add_request(requests, _key(found.unit[i], found.owner[i]), found.u[i], found.v[i])
 
 
 @inlined
@@ -111,16 +112,16 @@ def _add_request(requests, key, u, v):
 
 
 @subkernel
-def _with_requests(cells, stationary, cell, facing):
+def _with_requests(certified, cell, facing):
     """Bits of the cells of sixteen points in which a light of which more could be known faces them; facing
     (lights, 16) are more than 0 where it does."""
-    words, size = address_of(cells.words), cells.words.itemsize
+    words, size = certified.words.address, certified.words.size
     low = gather_i32x16(words, cell if size == 4 else cell << np.int32(1))
     high = low if size == 4 else gather_i32x16(words + 4, cell << np.int32(1))
-    leaf = bits_of(gather_i32x16(address_of(cells.child), cell) == np.int32(LEAF))
+    leaf = bits_of(gather_i32x16(address_of(certified.child), cell) == np.int32(LEAF))
     bits = np.int64(0)
-    for number in range(len(stationary)):
-        if not stationary[number]:
+    for number in range(len(certified.stationary)):
+        if certified.stationary[number] == 0:
             continue
         faces = bits_of(load_f32x16(facing + 64 * number) > ZERO)
         field, shift = (low if 2 + 2 * number < 32 else high), (2 + 2 * number) % 32
@@ -135,7 +136,7 @@ def request_at_hits(certified, requests, lights, origin, hits, place, there):
 
     Rays come from origin (3,) and, where they are `there`, have hit what pixels at `place` of pictures say: primitive,
     u and v (height, width)."""
-    cells, receivers, child = certified.cells, address_of(certified.cells.receivers), address_of(certified.cells.child)
+    receivers, child = address_of(certified.receivers), address_of(certified.child)
     facing, numbers = local_memory(FACING), local_memory(64)
     primitive = gather_i32x16(address_of(hits[0]), place)
     u, v = gather_f32x16(address_of(hits[1]), place), gather_f32x16(address_of(hits[2]), place)
@@ -155,7 +156,7 @@ def request_at_hits(certified, requests, lights, origin, hits, place, there):
     root = select(back, as_i32(row[ROOTS + 1]), as_i32(row[ROOTS]))
     cell = descend(child, select(with_cells, root, i32x16(0)), u, v)
     # A root that is not there yet is cell 0, of which nothing is known: requested where any light faces it.
-    bits = _with_requests(cells, certified.stationary, cell, facing) & bits_of(with_cells)
+    bits = _with_requests(certified, cell, facing) & bits_of(with_cells)
     while bits != 0:
         lane = lowest_bit(bits)
         bits &= bits - 1

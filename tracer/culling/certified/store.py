@@ -34,11 +34,12 @@ from tracer.culling.certified.occluders import Occluders
 from tracer.culling.certified.requests import Requests
 from tracer.culling.certified.static_geometry import StaticGeometry
 from tracer.culling.certified.tasks import KEPT, commit, counters, make_tasks, run_tasks, tasks_in
-from tracer.culling.certified.view import CertificateView
+from tracer.culling.certified.view import CertificateView, RequestRows
 from tracer.culling.dependence import drop_dependent
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.modes import NON_SHADOW as LIT
 from tracer.culling.rest import Changed, Resting, changes, nothing_rests
+from tracer.culling.shadow_modes import words_at
 from tracer.geometry.boxes import OUTWARDS
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.primitives import Outlines
@@ -53,6 +54,9 @@ LEAST = 5e-4  # seconds: less time is not worth a batch
 SORTING = 0.5  # of the time that is left, at most, is spent on sorting points by their cells
 MANY = 1 << 14  # points, as which fewer are timed
 SHARES, CHUNK = 4, (32, 256)  # of a batch that each thread takes, one at a time; least and most tasks of one
+
+
+NOT_RECORDED = np.empty(0, np.int32)  # where nobody wants to know which cells primary hits see
 
 
 @dataclass(frozen=True)
@@ -213,14 +217,28 @@ class CertificateStore:
         """A frame has made so many certificates, with so many shadow rays due."""
         self._rate = made / due if due else np.inf
 
-    def view(self, requests: Requests, tiles: int) -> CertificateView:
-        """What one of so many tiles is given, which puts its requests there.  In small pictures more of the points
-        request: each stands for many of a large one."""
-        usual, light_space = self._cost_model, self.occluders.light_space
-        stride = min(usual.stride, max(1, tiles // FEW_TILES))
-        often = stride, self._frame % stride
+    def view(self, tiles: int, requests: Requests, cell: NDArray[np.int32] = NOT_RECORDED) -> CertificateView:
+        """What kernels are given that shade a picture of so many tiles: their requests go to `requests`, a row for each
+        tile, and the cells of primary hits to cell (pixels,).  In small pictures more of the points request: each
+        stands for many of a large one."""
+        model, cells = self._cost_model, self.cells
+        stride = min(model.stride, max(1, tiles // FEW_TILES))
         return CertificateView(
-            self.cells, light_space, self.stationary, self.highest, usual.max_asked, usual.costly_rays, *often, requests
+            words=words_at(cells.words),
+            child=cells.child,
+            receivers=cells.receivers,
+            rooted=cells.rooted,
+            lists=cells.lists,
+            names=cells.names,
+            light_space=self.occluders.light_space,
+            stationary=self.stationary,
+            highest=self.highest,
+            max_asked=model.max_asked,
+            costly_rays=model.costly_rays,
+            stride=stride,
+            first_vector=self._frame % stride,
+            requests=RequestRows(*requests),
+            cell=cell,
         )
 
     def certify(

@@ -1,46 +1,53 @@
-"""What the kernels that shade are given of certificates."""
+"""What kernels are given of certificates."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
+from tracer.culling.shadow_modes import Words
+from tracer.simd.records import I32, Bytes, F32x2D, F32x3D, I32x2D, I64x2D, reading
 
-from tracer.culling.certified.cells import (
-    Cells,
-    make_cells,
-)
-from tracer.culling.certified.light_space import LIGHT_ROW
-from tracer.culling.certified.requests import Requests, no_requests
+
+class RequestRows(NamedTuple):
+    """Where requests go: `tracer.culling.certified.requests.Requests`, a row for each tile, or without rows where none
+    are made."""
+
+    key: I32x2D
+    u: F32x2D
+    v: F32x2D
+    of: I64x2D
 
 
 class CertificateView(NamedTuple):
-    """What a tile is given of certificates, and where its requests go.
+    """All certificates, as kernels that are called by address read them.
 
     Attributes:
-        cells: all cells.
+        words, child, receivers, rooted, lists, names: of all cells (`tracer.culling.certified.cells.Cells`).
         light_space: (lights, n, LIGHT_ROW) float32, rows of the primitives that certificates name.
         stationary: (lights,) bool, which lights are certified.
         highest: how high above a cell a ray may end, in units of the scene.
         max_asked: candidates that a ray tests at most (`CostModel`).
         costly_rays: whether rays cost so much that every look-up pays (`CostModel`).
         stride, first_vector: one in `stride` vectors of points makes requests, from that one on.
-        requests: of this tile.
+        requests: of all tiles.
+        cell: (pixels,) int32, gets the cell at each primary hit; empty where nobody wants to know.
     """
 
-    cells: Cells
-    light_space: NDArray[np.float32]
-    stationary: NDArray[np.bool_]
+    words: Words
+    child: I32
+    receivers: F32x2D
+    rooted: I32
+    lists: I32x2D
+    names: I32
+    light_space: F32x3D
+    stationary: Bytes
     highest: float
     max_asked: int
     costly_rays: bool
     stride: int
     first_vector: int
-    requests: Requests
+    requests: RequestRows
+    cell: I32
 
 
-def empty_view(lights: int) -> CertificateView:
-    """What tiles are given where nothing is certified."""
-    light_space, stationary = np.empty((0, 0, LIGHT_ROW), np.float32), np.empty(0, np.bool_)
-    return CertificateView(make_cells(1, lights, 1), light_space, stationary, 0.0, 0, False, 1, 0, no_requests())
+view_at = reading(CertificateView)

@@ -1,4 +1,4 @@
-"""How surfaces look: materials, textures and lights as flat arrays, made once per scene."""
+"""What shading reads: materials, textures and lights as flat arrays, made once per scene."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ AMBIENT, DIFFUSE, SPECULAR, EXPONENT, TRANSMISSION, IOR, SHINE = 0, 3, 6, 9, 10,
 MATERIAL_COLUMNS = 16
 
 
-class Look(NamedTuple):
+class ShadingData(NamedTuple):
     """attributes (p, 16) float32 (`tracer.geometry.attributes`), materials (m, 16) float32, mappings (t, 8) float32,
     texels and texture_levels (`tracer.shading.textures`); lights (l, 3) and light_colors (l, 3); ambient and
     background (3,), float32."""
@@ -32,8 +32,8 @@ class Look(NamedTuple):
     background: NDArray[np.float32]
 
 
-def make_look(scene: Scene, attributes: NDArray[np.float32]) -> Look:
-    """Gather a scene's look; attributes (p, 16) are shared with the world, which moves them."""
+def make_shading_data(scene: Scene, attributes: NDArray[np.float32]) -> ShadingData:
+    """Gather what shading reads of a scene; attributes (p, 16) are shared with the world, which moves them."""
     materials = aligned_rows(len(scene.materials), MATERIAL_COLUMNS)
     materials[:] = 0
     for row, m in zip(materials, scene.materials, strict=True):
@@ -42,7 +42,7 @@ def make_look(scene: Scene, attributes: NDArray[np.float32]) -> Look:
     texels, levels, numbers = pack_textures(scene.textures)
     triangles = [o.triangles for o in scene.objects]
     uvs = np.concatenate([t.uvs for t in triangles]).reshape(-1, 6)
-    return Look(
+    return ShadingData(
         attributes=attributes,
         materials=materials,
         mappings=mapping_rows(uvs, np.concatenate([t.texture for t in triangles]), levels, numbers),

@@ -13,8 +13,8 @@ import tracer
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.worlds import quad, quadrics, scene
 from tracer.geometry.world import ACCELERATORS
-from tracer.investor import Investor
-from tracer.parts import HALVES, LEVELS, Parts, after
+from tracer.methods.payoff import Payoff
+from tracer.progressive import HALVES, LEVELS, Parts, after
 from tracer.scene.model import SPHERE, Camera, Cancelled, Material, Texture
 from tracer.shading.blocks import BAYER, EDGE, TURNS, all_blocks, lanes_of, make_planes, pixels_of
 from tracer.shading.filling import nearest
@@ -242,11 +242,11 @@ def test_what_is_cancelled_in_a_further_sample_teaches_nothing():
         assert_whole(list(left.refine(0.0, near))[-1], straight.render(0.0, near), "after a sample was cut short")
 
 
-def test_who_invests_in_certificates_is_told_of_each_picture_once(monkeypatch):
+def test_what_decides_about_certificates_hears_of_each_picture_once(monkeypatch):
     world = scene(quad((-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)), lights=[(3, 4, 20)], camera=ABOVE)
     renderer = tracer.Renderer(world, replace(SETTINGS, method="auto", verify=False, record_work=False))
     told: list[float] = []
-    monkeypatch.setattr(Investor, "finish", lambda self, seconds, *rest, **more: told.append(seconds))
+    monkeypatch.setattr(Payoff, "finish", lambda self, seconds, *rest, **more: told.append(seconds))
     list(renderer.refine(parts=(4, 16), samples=3))
     assert len(told) == 1
     left = renderer.refine(parts=(4, 16))

@@ -53,16 +53,16 @@ class Plan:
 
 @dataclass(frozen=True)
 class Trial:
-    """A tile shaded both ways: seconds without look-ups (`plain`) and with (`told`), shadow rays due, and how many of
-    these were known."""
+    """A tile shaded both ways: seconds without certificates (`plain`) and with (`certified`), shadow rays due, and how
+    many of these were known."""
 
     plain: float
-    told: float
+    certified: float
     due: int
     known: int
 
 
-class Investor:
+class Payoff:
     """Decides for one renderer.  `price` is about what setting certificates up takes, in seconds; where rays are
     `dear`, certificates pay as a rule, and are made and looked up from the second frame on."""
 
@@ -184,10 +184,10 @@ def _saving(pairs: list[Trial]) -> tuple[float, float]:
     was disturbed, counts as less."""
     if len(pairs) < FEW:
         return 0.0, math.inf
-    ratios = sorted(trial.told / trial.plain for trial in pairs)
+    ratios = sorted(trial.certified / trial.plain for trial in pairs)
     low, high = ratios[len(ratios) // 10], ratios[-1 - len(ratios) // 10]
-    told = [trial.plain * min(max(trial.told / trial.plain, low), high) for trial in pairs]
+    certified = [trial.plain * min(max(trial.certified / trial.plain, low), high) for trial in pairs]
     whole = sum(trial.plain for trial in pairs)
-    saved = 1.0 - sum(told) / whole
-    apart = sum((trial.plain * (1.0 - saved) - t) ** 2 for trial, t in zip(pairs, told))
+    saved = 1.0 - sum(certified) / whole
+    apart = sum((trial.plain * (1.0 - saved) - t) ** 2 for trial, t in zip(pairs, certified))
     return saved, math.sqrt(apart) / whole

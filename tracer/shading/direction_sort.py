@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.kernels import inlined, subkernel
-from tracer.shading.wave import DIRECTION, MOVING, row_of
+from tracer.shading.wave import DIRECTION, RAY_ROWS, row_of
 from tracer.simd import (
     as_i32,
     bits_of,
@@ -57,7 +57,7 @@ def _starts(memory, n, starts):
 
 
 @subkernel
-def sorted_by_octant(source, n, target):
+def sorted_by_direction(source, n, target):
     """Put the n rays in the rows of `source` into those of `target`, octant by octant; whether there was need to."""
     starts, numbers = i64_at(local_memory(64)), local_memory(64)
     if _starts(source, n, starts):
@@ -72,7 +72,7 @@ def sorted_by_octant(source, n, target):
             count, start = ones(these), starts[octant]
             taken, kept = mask16(these), mask16((np.int64(1) << count) - 1)
             starts[octant] = start + count
-            for row in range(MOVING):
+            for row in range(RAY_ROWS):
                 ray = load_f32x16(row_of(source, row) + 64 * v)
                 store_where(row_of(target, row) + 4 * start, pack(ray, taken), kept)
     return True

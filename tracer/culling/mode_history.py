@@ -1,6 +1,6 @@
-"""What culling remembers between frames: words, counts, where the lights stood, and what rested.
+"""The modes and pixel counts of all units, from one frame to the next (§2.2 of the paper).
 
-A pixel count means nothing at another resolution, so each resolution has a memory of its own.
+A pixel count means nothing at another resolution, so each resolution has a history of its own.
 """
 
 from __future__ import annotations
@@ -11,11 +11,12 @@ import numpy as np
 
 from tracer.culling import modes
 from tracer.culling.dependence import drop_dependent
+from tracer.culling.occlusion import set_occlusion_modes
 from tracer.culling.rest import Resting, changes, nothing_rests
 from tracer.geometry.primitives import Outlines
 
 
-class Memory:
+class ModeHistory:
     """Modes and counts of all units at one resolution.
 
     words (units,) uint32 or uint64 (`tracer.culling.modes`), pixel_count and highest_count (units,)
@@ -35,6 +36,11 @@ class Memory:
         self.gained = np.zeros((workers, units), word)
         self.light_positions: np.ndarray | None = None
         self._object_of, self._resting = object_of, nothing_rests(0)
+
+    def make_room(self, workers: int) -> None:
+        """For what so many workers gain."""
+        if len(self.gained) < workers:
+            self.gained = np.zeros((workers, len(self.words)), self.words.dtype)
 
     def follow_lights(self, positions: np.ndarray) -> None:
         """Forget what is known of lights that are not where the last frame had them; positions (lights, 3)."""
@@ -72,6 +78,13 @@ class Memory:
         lost = self.words & ~np.repeat(kept | word(3), self._units_of)
         self.words ^= lost
         self.words[(lost != 0) & (modes.occlusion_mode(self.words) == modes.FULLY_RENDERED)] &= ~word(3)
+
+    def keep_frame(self, zoom_factor: float) -> None:
+        """§2.6: take what workers have gained into the words, and say what has been seen whole; pixels have been
+        counted."""
+        modes.merge_words(self.words, self.gained)
+        zoom = np.float64(zoom_factor)
+        set_occlusion_modes(self.words, self.hidden, self.pixel_count, self.highest_count, zoom)
 
     def discard_frame(self) -> None:
         """Drop what an unfinished frame has gathered."""

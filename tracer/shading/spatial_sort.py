@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.kernels import inlined, subkernel
-from tracer.shading.wave import DIRECTION, HIT_T, MOVED, ORIGIN, T_MAX, T_MIN, room, row_of, wave_in
+from tracer.shading.wave import DIRECTION, HIT_ROWS, HIT_T, ORIGIN, T_MAX, T_MIN, room, row_of, wave_in
 from tracer.simd import (
     gather_f32x16,
     i32_at,
@@ -87,7 +87,7 @@ def _put_order(keys, n, order):
 
 
 @subkernel
-def sorted_by_place(wave, spare):
+def sorted_by_position(wave, spare):
     """The wave with its points sorted, and the memory that is now to spare."""
     n, vectors = wave.size, (wave.size + 15) // 16
     if n <= FEWEST:
@@ -98,6 +98,6 @@ def sorted_by_place(wave, spare):
     _put_order(row_of(target, T_MIN), n, order)
     for v in range(vectors):
         which = load_i32x16(order + 64 * v)
-        for row in range(MOVED):
+        for row in range(HIT_ROWS):
             store(row_of(target, row) + 64 * v, gather_f32x16(row_of(wave.memory, row), which))
     return wave_in(target, n), wave.memory

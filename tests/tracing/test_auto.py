@@ -3,7 +3,7 @@ whatever it decides."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -11,11 +11,13 @@ import pytest
 
 import tracer
 from tests.tracing.nasty_worlds import nasty_walk
-from tracer import renderer
-from tracer.culling.certified import cost_model
+from tests.tracing.worlds import certificates_of
 from tracer.culling.certified.cost_model import CostModel
 from tracer.geometry.world import ACCELERATORS
-from tracer.investor import Investor, Plan, Trial
+from tracer.method import Kind, register, unregister
+from tracer.methods.auto import Auto
+from tracer.methods.interface import Services
+from tracer.methods.payoff import Payoff, Plan, Trial
 
 TILES = 64
 LEARNT = 3.0  # frames' time of certifying after which all is known
@@ -23,7 +25,7 @@ LEARNT = 3.0  # frames' time of certifying after which all is known
 
 @dataclass
 class Machine:
-    """Frames of 0.1 s by `none`, and how an investor fares with them: what look-ups save, as a part, of the known and
+    """Frames of 0.1 s by `none`, and how a method fares with them: what look-ups save, as a part, of the known and
     the unknown, how noisy times are, and what setting up takes."""
 
     saves: Callable[[float], float]
@@ -36,24 +38,24 @@ class Machine:
 
     def run(self, frames: int, seed: int = 1) -> Machine:
         rng = np.random.default_rng(seed)
-        investor, ready, invested = Investor(self.setup, self.dear), False, 0.0
+        payoff, ready, invested = Payoff(self.setup, self.dear), False, 0.0
         for _ in range(frames):
-            plan = investor.plan(TILES)
+            plan = payoff.plan(TILES)
             spent, frame = 0.0, 0.1 * (1.0 + 0.3 * rng.random())
             if plan.needs_certificates and not ready:
                 ready, spent = True, self.setup * (0.7 + 0.6 * rng.random())
-                investor.spend(spent)
-                investor.made_ready()
+                payoff.spend(spent)
+                payoff.made_ready()
             certified = min(plan.seconds * (1.0 + 0.5 * rng.random()), max(0.0, 0.1 * LEARNT - invested))
-            investor.spend(certified)
+            payoff.spend(certified)
             invested += certified
             known = min(1.0, invested / (0.1 * LEARNT))
             shading = frame * (1.0 - self.saves(known) if plan.looks_up else 1.0)
             trials = [self._trial(frame / TILES, known, rng) for _ in range(plan.trials)]
-            tried = sum(t.plain if plan.looks_up else t.told for t in trials)
-            investor.spend(tried, trying=True)
+            tried = sum(t.plain if plan.looks_up else t.certified for t in trials)
+            payoff.spend(tried, trying=True)
             whole = shading + spent + certified + tried
-            investor.finish(whole, shading, trials)
+            payoff.finish(whole, shading, trials)
             self.none.append(frame)
             self.auto.append(whole)
             self.looked_up.append(plan.looks_up)
@@ -101,34 +103,34 @@ def test_where_rays_are_dear_they_are_made_from_the_start():
 def test_when_they_no_longer_pay_they_are_left():
     pays = [True]
     machine = Machine(lambda known: (0.3 if pays[0] else -0.1) * known, 0.05)
-    investor = Investor(0.01, False)
-    investor.made_ready()
+    payoff = Payoff(0.01, False)
+    payoff.made_ready()
     rng, wrong = np.random.default_rng(3), 0
     for frame in range(600):
         pays[0] = frame < 300
-        plan = investor.plan(TILES)
+        plan = payoff.plan(TILES)
         trials = [machine._trial(0.1 / TILES, 1.0, rng) for _ in range(plan.trials)]
         for trial in trials:
-            investor.spend(trial.plain, trying=True)
-        investor.finish(0.1, 0.1, trials)
+            payoff.spend(trial.plain, trying=True)
+        payoff.finish(0.1, 0.1, trials)
         wrong += plan.looks_up and not pays[0]
         assert frame != 299 or plan.looks_up
-    assert wrong < 30 and not investor.looks_up and "longer" in investor.reason
+    assert wrong < 30 and not payoff.looks_up and "longer" in payoff.reason
 
 
 def test_nothing_is_bought_that_the_purse_cannot_pay():
-    investor = Investor(10.0, False)
+    payoff = Payoff(10.0, False)
     for _ in range(1000):
-        assert investor.plan(TILES) == Plan()
-        investor.finish(0.1, 0.1, [])
-    assert "setting certificates up" in investor.reason
-    assert investor.plan(TILES, patience=0.4) == Plan(False, 0.4, 8), "where nobody waits it costs nothing"
+        assert payoff.plan(TILES) == Plan()
+        payoff.finish(0.1, 0.1, [])
+    assert "setting certificates up" in payoff.reason
+    assert payoff.plan(TILES, patience=0.4) == Plan(False, 0.4, 8), "where nobody waits it costs nothing"
 
 
 # --- frames ------------------------------------------------------------------------------------------
 
 
-class Whimsical(Investor):
+class ByLot(Payoff):
     """Decides by lot."""
 
     def __init__(self, *_: object) -> None:
@@ -140,18 +142,37 @@ class Whimsical(Investor):
         return Plan(bool(looks_up), 10.0 * certifies, int(trials))
 
 
+class Whimsical(Auto):
+    """Looks certificates up, makes some and tries tiles as the lot falls."""
+
+    def __init__(self, services: Services) -> None:
+        super().__init__(services)
+        self.payoff = ByLot()
+
+
+@pytest.fixture
+def whimsical() -> Iterator[str]:
+    register(Kind("whimsical", "By lot.", Whimsical, has_certificates=True, adaptive=True))
+    yield "whimsical"
+    unregister("whimsical")
+
+
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
-def test_pictures_and_modes_are_right_whatever_is_decided(monkeypatch: pytest.MonkeyPatch, accelerator: str):
-    monkeypatch.setattr(cost_model, "COST_MODELS", dict.fromkeys(ACCELERATORS, CostModel(2, 4, 3, 48, True, 1)))
-    monkeypatch.setattr(renderer, "Investor", Whimsical)
+def test_pictures_and_modes_are_right_whatever_is_decided(whimsical: str, accelerator: str):
+    model = CostModel(2, 4, 3, 48, True, 1)
     plain, told, tried = 0, 0, 0
     for seed in range(20):
         walk = nasty_walk(seed, frames=8)
         world = tracer.World(walk.scene, accelerator=accelerator)
         settings = {"width": 70, "height": 20, "depth": 2, "accelerator": accelerator, "modes": bool(seed % 2)}
         none, auto = (
-            tracer.Renderer(walk.scene, tracer.Settings(method=m, threads=1 + seed % 2, **settings), world=world)
-            for m in ("none", "auto")
+            tracer.Renderer(
+                walk.scene,
+                tracer.Settings(method=m, threads=1 + seed % 2, **settings),
+                world=world,
+                cost_model=model,
+            )
+            for m in ("none", whimsical)
         )
         for number, (time, camera) in enumerate(walk.frames):
             expected, frame = none.render(time, camera), auto.render(time, camera)
@@ -162,7 +183,7 @@ def test_pictures_and_modes_are_right_whatever_is_decided(monkeypatch: pytest.Mo
             assert shadow.due == other.due and frame.statistics.secondary.rays == expected.statistics.secondary.rays
             assert (frame.certificates is not None) >= (shadow.culled > 0)
             plain, told = plain + (frame.certificates is None), told + (shadow.culled > 0)
-        tried += len(auto._investor._trials)
+        tried += len(auto.begin(0.0).methods[0].payoff._trials)
     assert min(plain, told, tried) > 20
 
 
@@ -176,7 +197,7 @@ def test_auto_says_what_it_does_and_why():
         )
     assert tracer.Renderer(walk.scene, tracer.Settings(8, 8, 1, "none")).render().statistics.decision == ""
     auto.reset_modes()
-    assert auto._investor is None and auto.certificates is None
+    assert certificates_of(auto) is None
 
 
 def test_a_frame_that_nobody_waits_for_certifies_as_long_as_it_may():

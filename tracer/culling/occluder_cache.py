@@ -31,11 +31,12 @@ Only triangles that never move are cached.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.counters import CACHE_HITS, TESTS
+from tracer.culling.shadow_testing import LIGHT_MARGIN
+from tracer.culling.stages import vectors
 from tracer.geometry.boxes import PADDING, inverse
 from tracer.geometry.rays import MISS
 from tracer.geometry.triangle_test import Triangle, crossing, terms_of
@@ -44,14 +45,19 @@ from tracer.simd import (
     address_of,
     as_f32,
     as_i32,
+    bits_of,
     gather_f32x16,
     gather_i32x16,
+    i32x16,
     load_i32x16,
+    load_three,
     lowest_bit,
     maximum,
     minimum,
     ones,
+    select,
     size_of,
+    store,
     to_i32,
 )
 
@@ -62,48 +68,31 @@ SMALLEST, LARGEST = np.float32(1e-30), np.float32(1e12)  # volumes and lengths o
 ZERO, ONE = np.float32(0), np.float32(1)
 
 
-class Cache(NamedTuple):
-    """What a worker is given: the occluder in each slot (slots,) int32 as the last frame left it, MISS for none, and
-    what is found for the next, of the same shape; how many triangles never move; and by how much the boxes of
-    the 8-wide trees are larger than these, at least.  Without a cache occluders is empty, and found where nothing
-    is to be learnt."""
+class OccluderSlots:
+    """The slots of a scene whose first `static` triangles of (t, 9) never move: occluders (SLOTS,) int32 as the last
+    frame left them, MISS for none, and found (workers, SLOTS) for the next.
 
-    occluders: NDArray[np.int32]
-    found: NDArray[np.int32]
-    triangles: int
-    padding: np.float32
-
-
-_NOTHING = np.empty(0, np.int32)
-NO_CACHE = Cache(_NOTHING, _NOTHING, 0, np.float32(0))
-
-
-class OccluderCache:
-    """The slots of a scene whose first `static` triangles of (t, 9) never move."""
+    `padding` is by how much the boxes of the 8-wide trees are larger than those of triangles, at least."""
 
     def __init__(self, triangles: NDArray[np.float32], static: int) -> None:
         corner, *edges = np.split(triangles[:static], 3, axis=1)
         extent = max(float(np.abs(part).max(initial=0.0)) for part in (corner, *(corner + edge for edge in edges)))
-        self._static, self._padding = static, np.float32(PADDING * np.float32(extent))
-        self._occluders = np.full(SLOTS, MISS, np.int32)
-        self._found = np.full((0, SLOTS), MISS, np.int32)
+        self.static, self.padding = static, float(np.float32(PADDING * np.float32(extent)))
+        self.occluders = np.full(SLOTS, MISS, np.int32)
+        self.found = np.full((0, SLOTS), MISS, np.int32)
 
     def make_room(self, workers: int) -> None:
         """For what so many workers find."""
-        if len(self._found) < workers:
-            self._found = np.full((workers, SLOTS), MISS, np.int32)
-
-    def of_worker(self, worker: int, learns: bool = True) -> Cache:
-        """What a worker is given."""
-        return Cache(self._occluders, self._found[worker] if learns else _NOTHING, self._static, self._padding)
+        if len(self.found) < workers:
+            self.found = np.full((workers, SLOTS), MISS, np.int32)
 
     def keep_found(self) -> None:
-        """What has been found is in its slots from now on."""
-        merge_occluders(self._occluders, self._found)
+        """Put what has been found into its slots, for the next frame."""
+        merge_occluders(self.occluders, self.found)
 
     def discard_found(self) -> None:
         """Drop what an unfinished frame has found."""
-        self._found[:] = MISS
+        self.found[:] = MISS
 
 
 @kernel
@@ -172,21 +161,42 @@ def surely_blocked(triangles, light, direction, t_min, numbers, padding):
     return sure & inside & (t > t_min) & (t < ONE)
 
 
-@inlined
-def occluders_in(cache, slots):
-    """What the last frame left in these slots."""
-    return gather_i32x16(address_of(cache.occluders), slots)
+@subkernel
+def test_slots(cache, points, light, number, count, batch, slots, counts):
+    """Test the points that are to be traced against what blocked their light before; `slots` (n,) get theirs."""
+    for v in range(vectors(count)):
+        live = np.int64(batch.live[v])
+        if live == 0:
+            continue
+        x, y, z = load_three(points.lifted, v)
+        direction = x - light[0], y - light[1], z - light[2]
+        mine = slots_of(points, v, direction, number)
+        store(address_of(slots) + 64 * v, mine)
+        known = gather_i32x16(address_of(cache.occluders), mine)
+        there = known > np.int32(MISS)
+        tested = bits_of(there) & live
+        if tested == 0:
+            continue
+        names, padding = select(there, known, i32x16(0)), np.float32(cache.padding)
+        hit = bits_of(surely_blocked(cache.triangles, light, direction, LIGHT_MARGIN, names, padding)) & tested
+        counts[TESTS] += ones(tested)
+        counts[CACHE_HITS] += ones(hit)
+        batch.live[v] = live & ~hit
 
 
 @subkernel
-def remember(cache, slots, v, occluders, n, asked, blocked):
-    """Note for the next frame what has blocked rays of the v-th vector, given as bits: those asked have their
-    `occluders` one after the other, from the n-th on."""
-    last = np.int32(MISS), np.int32(MISS)
-    while blocked != 0:
-        lane = lowest_bit(blocked)
-        blocked &= blocked - 1
-        this = slots[16 * v + lane], occluders[n + ones(asked & ((1 << lane) - 1))]
-        if this != last and this[1] < cache.triangles:
-            cache.found[this[0]] = max(cache.found[this[0]], this[1])
-        last = this
+def remember(cache, slots, count, batch):
+    """Note for the next frame what static geometry has blocked the traced rays."""
+    n = np.int64(0)
+    for v in range(vectors(count)):
+        asked = np.int64(batch.live[v])
+        blocked = asked & ~np.int64(batch.unblocked[v])
+        last = np.int32(MISS), np.int32(MISS)
+        while blocked != 0:
+            lane = lowest_bit(blocked)
+            blocked &= blocked - 1
+            this = slots[16 * v + lane], batch.occluders[n + ones(asked & ((1 << lane) - 1))]
+            if this != last and this[1] < cache.static:
+                cache.found[this[0]] = max(cache.found[this[0]], this[1])
+            last = this
+        n += ones(asked)

@@ -1,0 +1,141 @@
+"""What a method is: one file, one line in the registry, and nothing else that knows of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import tracer
+from tests.tracing.nasty_worlds import nasty_walk
+from tests.tracing.shades import shadow_scene
+from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.stages import call_at, vectors
+from tracer.geometry.world import ACCELERATORS
+from tracer.kernels import entry
+from tracer.method import Kind, Method, bases, register, unregister
+from tracer.methods.interface import ShadowMethod, Stage
+
+SETTINGS = tracer.Settings(width=64, height=48, depth=1, method="none", threads=2, record_lights=True)
+
+
+# A method of ten lines: it takes every point for lit.
+
+
+@entry
+def choose(data, call, light, count, counts):
+    batch = shadow_batch_in(call_at(call).shadows)
+    for v in range(vectors(count)):
+        batch.lit[v], batch.live[v] = batch.live[v], 0
+
+
+class Daylight(ShadowMethod):
+    def stages(self, frame, worker, learns):
+        return [Stage(choose=choose)]
+
+
+@pytest.fixture
+def daylight() -> Iterator[str]:
+    register(Kind("daylight", "Takes every point for lit.", Daylight, exact=False))
+    yield "daylight"
+    unregister("daylight")
+
+
+def test_a_method_of_ten_lines_culls_is_verified_and_composes(daylight: str) -> None:
+    scene = shadow_scene()
+    none = tracer.Renderer(scene, SETTINGS).render()
+    for name in (daylight, f"{daylight}+cache"):
+        frame = tracer.Renderer(scene, replace(SETTINGS, method=name, verify=True)).render()
+        assert np.array_equal(frame.lit, none.due) and not np.array_equal(none.lit, none.due)
+        assert frame.reference is not None and frame.reference.tobytes() == none.color.tobytes()
+        assert frame.wrong is not None and frame.wrong.sum() == (none.due & ~none.lit).sum() > 0
+        assert frame.statistics.shadow.rays == 0 == frame.statistics.shadow.traversal_steps
+    modes = tracer.Renderer(scene, replace(SETTINGS, method=daylight, modes=True)).render()
+    assert (modes.shadow_mode[none.due] == 2).all(), "modes learn from whoever answers"
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_what_is_free_is_what_none_shows_without_a_ray(accelerator: str) -> None:
+    for seed in range(4):
+        walk = nasty_walk(seed, frames=5)
+        settings = replace(SETTINGS, width=130, height=70, accelerator=accelerator, threads=1 + seed % 2, modes=True)
+        none = tracer.Renderer(walk.scene, settings)
+        free = tracer.Renderer(walk.scene, replace(settings, method="free", verify=True))
+        for time, camera in walk.frames:
+            expected, frame = none.render(time, camera), free.render(time, camera)
+            assert frame.color.tobytes() == expected.color.tobytes()
+            assert np.array_equal(frame.due, expected.due) and np.array_equal(frame.lit, expected.lit)
+            assert np.array_equal(frame.modes, expected.modes)
+            shadow = frame.statistics.shadow
+            assert (shadow.due, shadow.rays, shadow.wrong) == (expected.statistics.shadow.due, 0, 0)
+            assert frame.statistics.secondary == expected.statistics.secondary
+            assert frame.statistics.seconds > 0.0
+
+
+def test_where_there_is_too_little_room_answers_are_recorded_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    from tracer.methods import free
+
+    walk = nasty_walk(1, frames=2)
+    expected = [tracer.Renderer(walk.scene, SETTINGS).render(*at) for at in walk.frames]
+    monkeypatch.setattr(free, "ROOM", 1)
+    renderer = tracer.Renderer(walk.scene, replace(SETTINGS, method="free"))
+    for (time, camera), right in zip(walk.frames, expected, strict=True):
+        assert renderer.render(time, camera).color.tobytes() == right.color.tobytes()
+    assert renderer.memory_bytes > 0
+
+
+def test_refining_and_sampling_by_free_are_those_of_none() -> None:
+    walk = nasty_walk(3, frames=1)
+    pictures = []
+    for name in ("none", "free"):
+        renderer = tracer.Renderer(walk.scene, replace(SETTINGS, method=name))
+        frames = list(renderer.refine(*walk.frames[0], parts=(2, 16), samples=2))
+        pictures.append([frame.color.tobytes() for frame in frames])
+    assert pictures[0] == pictures[1]
+
+
+def test_methods_that_are_not_used_are_dropped_once_the_scene_moves_on() -> None:
+    walk = nasty_walk(2, frames=4)
+    renderer = tracer.Renderer(walk.scene, replace(SETTINGS, method="certified"))
+    (first, camera), (second, _), (third, _) = walk.frames[:3]
+    renderer.render(first, camera)
+    point, light = np.zeros(3, np.float32), 0
+    assert renderer.memory_bytes > 0 and renderer.explain(0, point, light) is not None
+    store = renderer.state.method("certified").store
+
+    renderer.settings = replace(SETTINGS, method="paper")
+    renderer.render(first, camera)
+    assert renderer.explain(0, point, light) is None, "what the last frame did not follow says nothing"
+    renderer.settings = replace(SETTINGS, method="auto")
+    renderer.render(first, camera)
+    assert renderer.state.method("certified").store is store, "all of it holds still"
+
+    renderer.settings = replace(SETTINGS, method="paper")
+    renderer.render(second, camera)
+    assert renderer.memory_bytes == 0
+    renderer.settings = replace(SETTINGS, method="certified")
+    renderer.render(third, camera)
+    assert renderer.state.method("certified").store is not store
+
+
+def test_the_accelerator_is_that_of_the_settings_and_frames_tell_the_truth() -> None:
+    scene = shadow_scene()
+    renderer = tracer.Renderer(scene, SETTINGS)
+    fast = renderer.render()
+    renderer.settings = replace(SETTINGS, accelerator="kdtree")
+    counted = renderer.render()
+    assert (fast.settings.accelerator, counted.settings.accelerator) == ("bvh8", "kdtree")
+    expected = tracer.Renderer(scene, replace(SETTINGS, accelerator="kdtree")).render().statistics
+    assert counted.statistics.shadow == expected.shadow != fast.statistics.shadow
+    shared = tracer.Renderer(scene, SETTINGS, world=tracer.World(scene, accelerator="kdtree"))
+    frame = shared.render()
+    assert frame.settings.accelerator == "kdtree" and frame.statistics.shadow == expected.shadow
+
+
+def test_every_base_is_made_from_its_name_alone() -> None:
+    scene = shadow_scene()
+    for kind in bases(measures=True):
+        frame = tracer.Renderer(scene, replace(SETTINGS, method=kind.name)).render()
+        assert frame.settings.method == kind.name and Method.parse(kind.name).kind is kind

@@ -1,0 +1,197 @@
+"""Shadow testing (§2.4 of the paper): which points does a light reach?
+
+A shadow ray is *due* where the light is on the viewer's side of the surface.  Then, for the points of a wave:
+
+1. the stages of the method choose which of the due rays they can answer (`tracer.culling.stages`);
+2. rays that static geometry is known to leave unblocked ask dynamic objects alone;
+3. all others ask static geometry and, where nothing static blocks the light, dynamic objects;
+4. the stages learn from the answers (§2.5).
+
+Shadow rays start at the light.  They end a little above the surface (`lifted`), so that it does not shadow itself.
+
+Points come in vectors of sixteen.  Rays are packed, so that batches shrink with what is not due and what is culled;
+what is found is kept as bits, one for each point.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracer.culling.counters import DUE, RAYS, WRONG
+from tracer.culling.stages import CHOOSE, LEARN, run_stages, vectors
+from tracer.geometry.boxes import segments_miss_box
+from tracer.geometry.queries import DYNAMIC_OBJECTS, EVERYTHING, STATIC_GEOMETRY, any_hits, any_hits_by
+from tracer.geometry.rays import Rays
+from tracer.kernels import inlined, subkernel
+from tracer.simd import (
+    address_of,
+    bits_of,
+    f32x16,
+    lanes_below,
+    load_spread_bytes16,
+    load_three,
+    mask16,
+    ones,
+    pack_three,
+    store,
+    store_three,
+)
+
+LIGHT_MARGIN = np.float32(1e-5)  # of the way from the light: what lies nearer to it is the lamp itself
+ROUNDED = np.float32(1e-5)  # of coordinates
+ZERO, ONE = np.float32(0), np.float32(1)
+
+
+@subkernel
+def shadow_testing(world, points, count, light, number, stages, call, batch, counts):
+    """Which of `count` points are due to light `number` at light (3,), and which does it reach?  Into the batch."""
+    _find_due(points, light, count, batch, counts)
+    run_stages(stages, CHOOSE, call, number, count, counts)
+    _ask_dynamic(world, points, light, count, batch, counts)
+    _trace_live(world, points, light, count, stages.occluders, batch, counts)
+    run_stages(stages, LEARN, call, number, count, counts)
+    if stages.verify:
+        _verify(world, points, light, count, batch, counts)
+
+
+@inlined
+def faces(points, light, v):
+    """Bits of the points whose surface faces the light."""
+    px, py, pz = load_three(points.position, v)
+    gx, gy, gz = load_three(points.geometric, v)
+    return bits_of(gx * (light[0] - px) + gy * (light[1] - py) + gz * (light[2] - pz) > ZERO)
+
+
+@subkernel
+def _find_due(points, light, count, batch, counts):
+    """Find the rays that are due, about which nothing is known yet."""
+    for v in range(vectors(count)):
+        due = faces(points, light, v) & lanes_below(count, v)
+        batch.due[v] = batch.live[v] = due
+        batch.lit[v] = batch.settled[v] = 0
+        counts[DUE] += ones(due)
+
+
+@subkernel
+def _ask_dynamic(world, points, light, count, batch, counts):
+    """Note what is known to be lit by all that is static, and ask dynamic objects alone about it."""
+    # Take note of what static geometry leaves unblocked, and of what is to be asked.
+    some = np.int64(0)
+    for v in range(vectors(count)):
+        lit = np.int64(batch.lit[v])
+        batch.unblocked[v] = lit
+        batch.asked[v] = lit & ~np.int64(batch.settled[v])
+        some |= np.int64(batch.asked[v])
+    if some == 0 or not world.has_dynamic:
+        return
+    # Rays that miss the box around all that moves have their answer already.
+    for v in range(vectors(count)):
+        asked = np.int64(batch.asked[v])
+        counts[RAYS] += ones(asked)
+        batch.asked[v] = 0 if asked == 0 else asked & _towards(world.moving_box, points, light, v)
+    _trace(world, points, light, count, batch.asked, DYNAMIC_OBJECTS, batch, counts)
+    _drop_blocked(batch.lit, batch.asked, count, batch)
+
+
+@subkernel
+def _trace_live(world, points, light, count, occluders, batch, counts):
+    """Ask everything about the points of which nothing is known."""
+    n = _rays_from_light(points, light, count, batch.live, batch)
+    counts[RAYS] += n
+    if n == 0:
+        return
+    if occluders:
+        any_hits_by(world, shadow_rays(batch), EVERYTHING, batch.blocked, batch.occluders, 0, n, counts)
+    else:
+        any_hits(world, shadow_rays(batch), EVERYTHING, batch.blocked, 0, n, counts)
+    # Spread the answers of the packed rays to their points.
+    n = 0
+    for v in range(vectors(count)):
+        asked = np.int64(batch.live[v])
+        if asked == 0:
+            continue
+        blocked, for_good = _blocked(batch, asked, n)
+        batch.lit[v] |= asked & ~blocked
+        batch.unblocked[v] |= asked & ~for_good
+        n += ones(asked)
+
+
+@subkernel
+def _verify(world, points, light, count, batch, counts):
+    """Trace every due ray, its steps uncounted, and count the answers that differ."""
+    uncounted = np.zeros(RAYS, np.int64)  # steps and tests
+    for v in range(vectors(count)):
+        batch.truth[v] = batch.due[v]
+    _trace(world, points, light, count, batch.due, EVERYTHING, batch, uncounted)
+    _drop_blocked(batch.truth, batch.due, count, batch)
+    for v in range(vectors(count)):
+        counts[WRONG] += ones(np.int64(batch.truth[v] ^ batch.lit[v]))
+
+
+@inlined
+def shadow_rays(batch):
+    """The batch's rays, as queries take them."""
+    return Rays(batch.origin, batch.direction, batch.t_min, batch.t_max)
+
+
+@subkernel
+def _rays_from_light(points, light, count, bits, batch):
+    """Pack the shadow rays from the light to the points that `bits` names; how many there are.
+
+    At t = 1 is the point."""
+    stride, n = 4 * batch.origin.shape[1], 0
+    for v in range(vectors(count)):
+        live = np.int64(bits[v])
+        if live == 0:
+            continue
+        x, y, z = load_three(points.lifted, v)
+        direction = pack_three((x - light[0], y - light[1], z - light[2]), mask16(live))
+        store_three(address_of(batch.direction) + 4 * n, stride, direction)
+        n += ones(live)
+    for at in range(0, 4 * n, 64):
+        store_three(address_of(batch.origin) + at, stride, (f32x16(light[0]), f32x16(light[1]), f32x16(light[2])))
+        store(address_of(batch.t_min) + at, f32x16(LIGHT_MARGIN))
+        store(address_of(batch.t_max) + at, f32x16(ONE))
+    return n
+
+
+@inlined
+def _trace(world, points, light, count, bits, which, batch, counts):
+    """Ask `which` geometry is between the light and the points that `bits` names."""
+    n = _rays_from_light(points, light, count, bits, batch)
+    if n > 0:
+        any_hits(world, shadow_rays(batch), which, batch.blocked, 0, n, counts)
+
+
+@inlined
+def _blocked(batch, asked, n):
+    """Bits of those lanes, of the bits `asked`, whose rays, from the n-th on, anything blocks; and something static."""
+    found = load_spread_bytes16(address_of(batch.blocked) + n, mask16(asked))
+    return bits_of(found > 0), bits_of(found == STATIC_GEOMETRY)
+
+
+@inlined
+def _drop_blocked(bits, asked, count, batch):
+    """Clear the bits of those points, of the bits `asked`, whose rays were blocked."""
+    n = 0
+    for v in range(vectors(count)):
+        lanes = np.int64(asked[v])
+        blocked, _ = _blocked(batch, lanes, n)
+        bits[v] &= ~blocked
+        n += ones(lanes)
+
+
+@inlined
+def _towards(box, points, light, v):
+    """Bits of the points of a vector between which and the light a box (6,) may lie.
+
+    The box is made larger by more than roundings, so that none is left out that a tree with this box at its root would
+    let in."""
+    x, y, z = load_three(points.lifted, v)
+    rx, ry, rz = (
+        ROUNDED * (abs(light[0]) + abs(box[0]) + abs(box[3])),
+        ROUNDED * (abs(light[1]) + abs(box[1]) + abs(box[4])),
+        ROUNDED * (abs(light[2]) + abs(box[2]) + abs(box[5])),
+    )
+    low, high = (box[0] - rx, box[1] - ry, box[2] - rz), (box[3] + rx, box[4] + ry, box[5] + rz)
+    return bits_of(~segments_miss_box(light, (x - light[0], y - light[1], z - light[2]), low, high))

@@ -1,0 +1,86 @@
+"""Stages: how a method takes part in shadow testing, as kernels that are called by address.
+
+Shading knows no method.  It is given a table of stages, and calls up to four kernels of each:
+
+    find(data, call, 0, count, counts)          once for a wave: what is known of these points?
+    choose(data, call, light, count, counts)    for each light: answers rays, so that they need not be traced
+    learn(data, call, light, count, counts)     for each light: told of all answers
+    finish(data, call, 0, count, counts)        once for a wave, after all lights
+
+`data` is the address of the stage's own block, and `call` that of a `Call`; `count` is the number of points, and
+`counts` the address of the shadow counters (`tracer.culling.counters`).  A kernel that chooses takes points out of
+`live` and, where static geometry leaves them lit, puts them into `lit`; dynamic objects are asked about those
+unless it puts them into `settled` too.
+
+Stages run in the order of the table: a later one chooses among what an earlier one left live.  So methods compose,
+shading is compiled once for all of them, and kernels of methods that nobody chose are never compiled.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.kernels import inlined
+from tracer.simd import address_of, call_entry, store
+from tracer.simd.records import I32, F32x2D, block_size, reading, writing
+
+# Columns of the table: addresses of the four kernels, 0 for none, and of the stage's data, and the first of its rows
+# in the memory that stages work in.
+FIND, CHOOSE, LEARN, FINISH, DATA, FIRST_ROW = range(6)
+
+
+class Stages(NamedTuple):
+    """table (k, 6) int64; how many rows of memory all stages need; whether one wants to know what blocks the rays that
+    are traced; and whether answers are verified."""
+
+    table: NDArray[np.int64]
+    rows: int
+    occluders: bool
+    verify: bool
+
+
+class Call(NamedTuple):
+    """What a stage is given: the stage's first row in `scratch`; the number of the tile; the bounce, 0 for primary
+    hits; the memory of the surface points, of the rays that hit them, of the shadow batch, and of the stages,
+    (rows, n) float32 each; light positions (l, 3) float32; and place (n,) int32, where in the picture the pixels of the
+    tile are, by their numbers in the wave."""
+
+    first_row: int
+    tile: int
+    bounce: int
+    points: F32x2D
+    rays: F32x2D
+    shadows: F32x2D
+    scratch: F32x2D
+    lights: F32x2D
+    place: I32
+
+
+call_at = reading(Call)
+write_call = writing(Call)
+CALL = block_size(Call)
+
+
+@inlined
+def run_stages(stages, which, call, light, count, counts):
+    """Call one of the four kernels of every stage that has it."""
+    for k in range(len(stages.table)):
+        entry = stages.table[k, which]
+        if entry != 0:
+            store(call, stages.table[k, FIRST_ROW])
+            call_entry(entry, stages.table[k, DATA], call, np.int64(light), np.int64(count), address_of(counts))
+
+
+@inlined
+def scratch_of(given):
+    """A stage's own rows of memory."""
+    return given.scratch[given.first_row :]
+
+
+@inlined
+def vectors(count):
+    """Vectors of sixteen that hold so many points."""
+    return (count + 15) // 16

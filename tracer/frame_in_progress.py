@@ -1,0 +1,387 @@
+"""A frame under way: what each phase of Figure 1 does, over whole pictures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.cells import units_of
+from tracer.culling.counters import COUNTERS
+from tracer.culling.occlusion import count_pixels, occlusion_testing
+from tracer.frame import Frame
+from tracer.geometry.camera import Pinhole, pinhole
+from tracer.methods.interface import Stage, StageTable
+from tracer.parallel import for_each_chunk, thread_count
+from tracer.progressive import Parts
+from tracer.scene.model import Camera
+from tracer.settings import Settings
+from tracer.shading.blocks import NO_PLANES, TURNS, all_blocks
+from tracer.shading.buffers import TILE, Buffers, empty_buffers
+from tracer.shading.surfaces import see_surfaces
+from tracer.shading.whitted import find_in_tile, shade_tile, trace_primary
+from tracer.state import State
+from tracer.statistics import gather
+
+FEW = 4  # pixels of each block, at most, that are shaded in larger tiles
+EACH = 3  # larger tiles, at least, for each thread
+ROWS = 32  # of pixels, which a thread tests for occlusion at a time
+GOLDEN = 1.32471795724474602596  # the powers of its inverse step through the plane evenly (Roberts 2018)
+
+Cancel = Callable[[], bool] | None
+Tile = tuple[int, int, int, int, int]  # left, top, right, bottom, number
+
+
+class FrameInProgress:
+    """The phases of `tracer.Renderer`, each a method, and the buffers that they fill.
+
+    Public names are those of `tracer.methods.interface.FrameView`, which methods are given.
+    """
+
+    def __init__(
+        self, state: State, settings: Settings, camera: Camera, time: float, cancel: Cancel, progressive: bool = False
+    ) -> None:
+        self._state, self._camera, self._time = state, camera, time
+        self.settings, self.cancel = settings, cancel
+        self.workers = thread_count(settings.threads)
+        self._started = state.clock()
+        self.phases: dict[str, float] = {}
+        self.progressive = progressive
+        self.methods = state.methods(settings, time)
+        self._base, *self._others = self.methods
+
+        # What is seen, and by which rays.
+        self.rays = pinhole(camera, settings.width, settings.height)
+        self._tiles = tiles_of(settings.width, settings.height, TILE)
+        self.tiles = np.array(self._tiles, np.int64)
+        self._everywhere = all_blocks(settings.width, settings.height)
+        self._focus: tuple[float, float] | None = None
+        self.buffers = self._empty_buffers(progressive)
+
+        # What is known, and learnt.
+        self.first = self._base.first_units()
+        self.history = state.history(settings, self.first, self.workers)
+        self.words = self.history.words
+        self.units = np.empty_like(self.buffers.primitive) if len(self.first) else self.buffers.primitive
+        self.lights, self.resting = state.shading.lights, state.rest.now
+        self._counts = np.zeros((self.workers, COUNTERS), np.int64)
+        self._occlusion_tests = np.zeros(self.workers, np.int64)
+        self._begun = False  # shading
+        self._parts: Parts | None = None
+        for method in self.methods:
+            method.begin(self)
+
+    @property
+    def seconds(self) -> float:
+        """Seconds since the frame began."""
+        return self._state.clock() - self._started
+
+    @contextmanager
+    def phase(self, name: str) -> Iterator[None]:
+        """Time one phase, which may come in several parts."""
+        start = self._state.clock()
+        yield
+        self.phases[name] = self.phases.get(name, 0.0) + self._state.clock() - start
+
+    def _empty_buffers(self, progressive: bool = False) -> Buffers:
+        s = self.settings
+        planes = self._state.planes(s.width, s.height) if progressive else NO_PLANES
+        asked = {"record_lights": s.record_lights, "verify": s.verify, "record_work": s.record_work}
+        return empty_buffers(s.width, s.height, len(self._state.scene.lights), planes=planes, **asked)
+
+    # --- phases, in the order of Figure 1 ------------------------------------------------------------
+
+    def place_objects_and_lights(self) -> None:
+        """Where is everything that moves?  Drop what is known of a light that moved, and what depends on an object that
+        has come to rest, or rests no longer."""
+        state = self._state
+        poses = state.world.pose(self._time)
+        if any([method.follows_rest() for method in self.methods]):
+            state.world.place(poses, state.rest.follow(poses, state.world.primitives))
+        else:
+            state.rest.forget()
+            state.world.place(poses)
+        self.lights[:] = state.scene.light_positions(self._time)
+        self.resting = state.rest.now
+        self.history.follow_lights(self.lights)
+        self.history.follow_rest(self.resting, state.world.outlines, self.workers)
+        for method in self.methods:
+            method.follow(self)
+
+    def trace_primary_rays(self) -> None:
+        """What does each pixel see?"""
+        self._trace_primary(self.rays, self.buffers, self._counts)
+        if len(self.first) > 0:
+            seen = (self.buffers.primitive, self.buffers.u, self.buffers.v, self.units)
+            units_of(self.first, *(pixels.reshape(-1) for pixels in seen))
+
+    def _trace_primary(self, rays: Pinhole, buffers: Buffers, counts: NDArray[np.int64]) -> None:
+        placed, spaces = self._state.world.placed, self._state.workspaces(self.workers)
+
+        def work(tile: Tile, worker: int) -> None:
+            trace_primary(placed, rays, tile, self._everywhere, buffers, counts[worker], spaces[worker])
+
+        self._for_each_tile(work)
+
+    def test_occlusion(self) -> None:
+        """§2.3: what does a neighbouring pixel show to be hidden?"""
+        if not self.settings.keeps_modes:
+            return
+        height, history = self.settings.height, self.history
+        units = self.buffers.primitive, self.first, self.units
+        seen = self._state.world.placed, self.rays, *units, self.settings.symmetric
+
+        def work(chunk: int, worker: int) -> None:
+            rows = chunk * ROWS, min(height, (chunk + 1) * ROWS)
+            self._occlusion_tests[worker] += occlusion_testing(*seen, *rows, history.words, history.hidden)
+
+        for_each_chunk(work, -(-height // ROWS), self.workers, self.cancel)
+
+    def prepare_culling(self) -> None:
+        """What methods do before shading: certify cells, say."""
+        for method in self.methods:
+            method.prepare(self)
+
+    def shade(self, lanes: NDArray[np.int32] | None = None) -> None:
+        """§2.4, §2.5: Whitted shading, with shadow testing and shadow-mode setting; of these pixels of each block
+        (`tracer.shading.primary`), or of all."""
+        self._shade(self.rays, self.buffers, self._counts, self._everywhere if lanes is None else lanes)
+        self._begun = True
+        for sample in range(1, self.settings.samples):
+            self.add_sample(sample)
+
+    def _shade(
+        self, rays: Pinhole, buffers: Buffers, counts: NDArray[np.int64], lanes: NDArray[np.int32], learns: bool = True
+    ) -> None:
+        tables = self._stage_tables(learns)
+
+        # Of larger tiles where few of their pixels are shaded, lest packets of rays remain half empty, unless there are
+        # too few for all threads.
+        few = int(np.bitwise_count(lanes).sum()) <= FEW * np.count_nonzero(lanes)
+        side = 2 * TILE if few and len(self._tiles) >= 4 * EACH * self.workers else TILE
+        tiles = tiles_of(self.settings.width, self.settings.height, side)
+        self._base.begin_shading(self, len(tiles), first_pass=learns and not self._begun)
+        shade_one = self._tile_shader(rays, lanes, buffers, tables[True])
+
+        def work(tile: Tile, worker: int) -> None:
+            def shade(culls: bool, counts: NDArray[np.int64]) -> None:
+                shade_one(tile, worker, tables[culls][worker], counts)
+
+            self._base.shade(shade, tile[4], counts[worker])
+
+        self._for_each_tile(work, tiles)
+
+    def _tile_shader(
+        self, rays: Pinhole, lanes: NDArray[np.int32], buffers: Buffers, tables: list[StageTable]
+    ) -> Callable[[Tile, int, StageTable, NDArray[np.int64]], None]:
+        """What shades a tile, with a table of stages that needs no more memory than these."""
+        placed, shading, depth = self._state.world.placed, self._state.shading, self.settings.depth
+        spaces = self._state.workspaces(self.workers, max(table.given.rows for table in tables))
+
+        def shade(tile: Tile, worker: int, table: StageTable, counts: NDArray[np.int64]) -> None:
+            shade_tile(placed, shading, rays, tile, lanes, depth, table.given, buffers, counts, spaces[worker])
+
+        return shade
+
+    def rehearse(self, stages: list[Stage]) -> None:
+        """Shade the whole picture with these stages alone; nothing is shown or counted."""
+        seen = {name: getattr(self.buffers, name) for name in ("depth", "primitive", "u", "v")}
+        table, buffers = StageTable(stages, verify=False), self._empty_buffers()._replace(**seen)
+        shade, uncounted = self._tile_shader(self.rays, self._everywhere, buffers, [table]), np.zeros_like(self._counts)
+        self._for_each_tile(lambda tile, worker: shade(tile, worker, table, uncounted[worker]))
+
+    def _stage_tables(self, learns: bool) -> dict[bool, list[StageTable]]:
+        """The stages of each worker, with those of the base and without."""
+        tables: dict[bool, list[StageTable]] = {True: [], False: []}
+        for worker in range(self.workers):
+            others = [stage for method in self._others for stage in method.stages(self, worker, learns)]
+            base = self._base.stages(self, worker, learns)
+            tables[True].append(StageTable([*base, *others], self.settings.verify))
+            tables[False].append(StageTable(others, self.settings.verify))
+        return tables
+
+    def set_modes(self, samples_follow: bool = False) -> None:
+        """§2.5, §2.6: keep what was learnt, and say what has been seen whole."""
+        if samples_follow:  # which are shaded by what was known before
+            self.words = self.words.copy()
+        count_pixels(self.units, self.history.pixel_count)
+        if self.settings.keeps_modes:
+            self.history.keep_frame(self.settings.zoom_factor)
+        else:
+            self.history.discard_frame()
+        for method in self.methods:
+            method.keep(self)
+
+    def discard(self) -> None:
+        """Learn nothing from this frame."""
+        self.history.discard_frame()
+        for method in self.methods:
+            method.discard(self, self._begun)
+
+    # --- pictures that are refined progressively -------------------------------------------------------
+
+    def begin_at(self, focus: tuple[float, float] | None) -> None:
+        """Let tiles near this point of the picture come first; it is given in parts of width and height."""
+        if focus is not None:
+            self._focus = focus[0] * self.settings.width, focus[1] * self.settings.height
+
+    def see_surfaces(self, first: int = 0) -> None:
+        """What do all primary hits look like before any shadow ray is traced?  `first` says which pixels
+        are to be shaded first (`tracer.progressive`)."""
+        placed, shading, rays, buffers = self._state.world.placed, self._state.shading, self.rays, self.buffers
+        self._parts = Parts(self.settings.width, self.settings.height, buffers.planes, float(rays.spread), first)
+        self._for_each_tile(lambda tile, worker: see_surfaces(placed, shading, rays, tile, buffers))
+        if any(method.finds_first for method in self.methods):
+            self.find_first()
+
+    def find_first(self) -> None:
+        """Let methods find out what they know of all primary hits, before any is shaded."""
+        placed, shading, rays, buffers = self._state.world.placed, self._state.shading, self.rays, self.buffers
+        tables = self._stage_tables(learns=True)[True]
+        spaces = self._state.workspaces(self.workers, max(table.given.rows for table in tables))
+
+        def work(tile: Tile, worker: int) -> None:
+            stages = tables[worker].given
+            find_in_tile(placed, shading, rays, tile, self._everywhere, stages, buffers, spaces[worker])
+
+        self._for_each_tile(work)
+
+    def shade_part(self, part: float) -> None:
+        """Shade what is left until so many sixteenths of the pixels are shaded."""
+        if self._parts is None:
+            with self.phase("shading"):
+                self.shade()
+            return
+        if part == TURNS:  # nobody will be filled in
+            self.buffers = self.buffers._replace(planes=NO_PLANES)
+        for lanes in self._parts.left_up_to(part, self._fill):
+            with self.phase("shading"):
+                self.shade(lanes)
+
+    def _fill(self) -> None:
+        """Fill in the pixels that have not been shaded."""
+        if self._parts is not None:
+            with self.phase("filling"):
+                color = self.buffers.color.reshape(*self.buffers.primitive.shape, 3)
+                self._parts.fill(color, self.workers, self.cancel)
+
+    def so_far(self) -> Frame:
+        """A frame of which some pixels have not been shaded: these are filled in from the others."""
+        assert self._parts is not None, "a progressive picture"
+        self._fill()
+        frame = self._frame()
+        shaded, frame.color = frame.color, self._parts.give()
+        with self.phase("filling"):
+            _stretch_records(frame, shaded, self._parts)
+        frame.statistics.phases = dict(self.phases)
+        return frame
+
+    # --- further samples -------------------------------------------------------------------------------
+
+    def add_sample(self, number: int) -> None:
+        """Mix in a further sample of each pixel, placed by the R2 sequence; it uses modes but counts nothing."""
+        shift = ((0.5 + number / GOLDEN) % 1.0, (0.5 + number / GOLDEN**2) % 1.0)
+        rays = pinhole(self._camera, self.settings.width, self.settings.height, shift)
+        buffers, counts = self._empty_buffers(), np.zeros_like(self._counts)
+        self._trace_primary(rays, buffers, counts)
+        self._shade(rays, buffers, counts, self._everywhere, learns=False)
+        if number == 1:
+            self._sum, self._reference_sum = self.buffers.color, self.buffers.reference
+        self._sum, self._reference_sum = self._sum + buffers.color, self._reference_sum + buffers.reference
+        taken = np.float32(number + 1)
+        self.buffers = self.buffers._replace(
+            color=self._sum / taken, reference=self._reference_sum / taken, wrong=self.buffers.wrong + buffers.wrong
+        )
+
+    def sampled(self, whole: Frame, samples: int) -> Iterator[Frame]:
+        """The finished frame, `whole`, with 2, 3, ... samples a pixel."""
+        for number in range(1, samples):
+            self.add_sample(number)
+            yield replace(
+                whole,
+                settings=replace(self.settings, samples=number + 1),
+                color=self.buffers.color.reshape(whole.color.shape),
+                reference=None if whole.reference is None else self.buffers.reference.reshape(whole.color.shape),
+                wrong=None if whole.wrong is None else self.buffers.wrong.reshape(whole.wrong.shape),
+            )
+
+    # --- the result --------------------------------------------------------------------------------------
+
+    def finished(self) -> Frame:
+        """The frame, all phases of which are done."""
+        frame = self._frame()
+        for method in self.methods:
+            method.finish(self, frame.statistics)
+        return frame
+
+    def _frame(self) -> Frame:
+        buffers, history, settings = self.buffers, self.history, self.settings
+        shape, lights = buffers.primitive.shape, len(self._state.scene.lights)
+        statistics = gather(self._counts, int(self._occlusion_tests.sum()), lights if settings.keeps_modes else 0)
+        statistics.part = 1.0 if self._parts is None else self._parts.share
+        statistics.phases, statistics.seconds = dict(self.phases), self.seconds
+        layers: dict[str, NDArray] = {}
+        for method in self.methods:
+            method.report(statistics)
+            layers |= method.layers(self)
+
+        def per_pixel(rows: NDArray, recorded: bool) -> NDArray | None:
+            return rows.reshape(*shape, *rows.shape[1:]) if recorded else None
+
+        return Frame(
+            time=self._time,
+            camera=self._camera,
+            settings=replace(settings),
+            color=buffers.color.reshape(*shape, 3),
+            depth=buffers.depth,
+            primitive=buffers.primitive,
+            normal=buffers.normal.reshape(*shape, 3),
+            modes=history.words.copy(),
+            pixel_count=history.pixel_count.copy(),
+            highest_count=history.highest_count.copy(),
+            lights=lights,
+            due=per_pixel(buffers.due, settings.record_lights),
+            lit=per_pixel(buffers.lit, settings.record_lights),
+            reference=per_pixel(buffers.reference, settings.verify),
+            wrong=per_pixel(buffers.wrong, settings.verify),
+            cells=layers.pop("cells", None),
+            certificates=layers.pop("certificates", None),
+            saved=per_pixel(buffers.saved, settings.record_work),
+            cost=per_pixel(buffers.cost, settings.record_work),
+            due_rays=per_pixel(buffers.due_rays, settings.record_work),
+            layers=layers,
+            statistics=statistics,
+        )
+
+    # --- tiles ---------------------------------------------------------------------------------------------
+
+    def _for_each_tile(self, work: Callable[[Tile, int], None], tiles: list[Tile] | None = None) -> None:
+        """Call work(tile, worker) for every tile, those near the focus first, where there is one."""
+        tiles = tiles or self._tiles
+        if self._focus is not None:
+            x, y = self._focus[0] - TILE / 2, self._focus[1] - TILE / 2
+            tiles = sorted(tiles, key=lambda tile: math.hypot(tile[0] - x, tile[1] - y))
+        for_each_chunk(lambda chunk, worker: work(tiles[chunk], worker), len(tiles), self.workers, self.cancel)
+
+
+def tiles_of(width: int, height: int, side: int) -> list[Tile]:
+    """The squares that make a picture, and their numbers."""
+    corners = [(x, y) for y in range(0, height, side) for x in range(0, width, side)]
+    return [(x, y, min(x + side, width), min(y + side, height), number) for number, (x, y) in enumerate(corners)]
+
+
+def _stretch_records(frame: Frame, shaded: NDArray[np.float32], parts: Parts) -> None:
+    """Let pixels that have not been shaded show what is recorded of the nearest that have; wrong ones do not.
+
+    shaded (height, width, 3) are the colours before the others were filled in."""
+    if frame.reference is not None and frame.wrong is not None:
+        frame.reference = frame.color + parts.stretched(frame.reference - shaded)
+        frame.wrong = frame.wrong.copy()
+    if frame.saved is not None and frame.cost is not None and frame.due_rays is not None:
+        frame.saved, frame.cost, frame.due_rays = (
+            parts.stretched(work) for work in (frame.saved, frame.cost, frame.due_rays)
+        )

@@ -1,0 +1,205 @@
+"""Certified cells: shadow rays are culled by what is proven of the cells in which they end (docs/certified-cells.md).
+
+Before shading, certificates are made for what the primary hits are about to need and what other rays requested in the
+last frame (`tracer.culling.certified`).  In shadow testing `find` leads each point to its cell, `choose` answers the
+rays that the cell's certificates say all about, and tests the candidates of those that they say much about, and
+`finish` notes what reflected and refracted rays have missed.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.certified.certify import CERTIFICATES, COUNTERS, STEPS, TESTS
+from tracer.culling.certified.lookup import (
+    CELL_POINT_ROWS,
+    cell_points_in,
+    cull_by_certificates,
+    find_cells,
+    record_cells,
+)
+from tracer.culling.certified.requests import (
+    Requests,
+    make_requests,
+    request_at_hits,
+    request_at_points,
+    requests_of,
+)
+from tracer.culling.certified.store import Budget, CertificateStore
+from tracer.culling.certified.view import view_at
+from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.stages import call_at, scratch_of
+from tracer.geometry.memory import borrowed
+from tracer.kernels import entry, kernel
+from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.parallel import for_each_chunk
+from tracer.shading.points import points_in
+from tracer.shading.primary import block_at, blocks_of
+from tracer.shading.wave import wave_in
+from tracer.simd import any_lane, i32x16, i64_at, select
+from tracer.simd.records import pack
+from tracer.statistics import FrameStatistics
+
+SHARES, SHARE = 8, 6  # of all tiles that each thread takes to look for requests; tiles of one, at least
+SEEKING = 0.5  # of the time for certificates, at most, is spent on looking for what primary hits need
+
+
+@entry
+def find(data, call, light, count, counts):
+    """In which cell does the shadow ray of each point end?"""
+    given, certified = call_at(call), view_at(data)
+    found = cell_points_in(scratch_of(given))
+    find_cells(certified, points_in(given.points), count, found)
+    if given.bounce == 0 and len(certified.cell) > 0:
+        record_cells(wave_in(given.rays, count), found, given.place, certified.cell)
+
+
+@entry
+def choose(data, call, light, count, counts):
+    """Answer rays by certificates; candidates are asked where packets of primary hits' rays are not quicker."""
+    given, certified = call_at(call), view_at(data)
+    points, batch, found = points_in(given.points), shadow_batch_in(given.shadows), cell_points_in(scratch_of(given))
+    asks = given.bounce > 0 or certified.costly_rays
+    cull_by_certificates(certified, points, found, given.lights[light], light, count, asks, batch, i64_at(counts))
+
+
+@entry
+def finish(data, call, light, count, counts):
+    """Note what a wave has missed; what primary hits miss is requested before they are shaded."""
+    given, certified = call_at(call), view_at(data)
+    if given.bounce > 0:
+        found = cell_points_in(scratch_of(given))
+        request_at_points(certified, requests_of(certified.requests, given.tile), found, count)
+
+
+@kernel
+def request_in_tiles(view, camera, tiles, numbers, lights, buffers):
+    """Request the certificates that the primary hits of some tiles are about to need.
+
+    Tiles have `numbers` (k,) among all (n, 5); their hits are in the buffers; `view` is the address of the
+    certificates (`CertificateView`)."""
+    certified, buffers = view_at(view), borrowed(buffers)
+    width, hits = np.int32(buffers.primitive.shape[1]), (buffers.primitive, buffers.u, buffers.v)
+    for number in numbers:
+        tile = tiles[number]
+        requests = requests_of(certified.requests, number)
+        for block in range(certified.first_vector, blocks_of(tile), certified.stride):
+            x, y, inside = block_at(tile, block)
+            if any_lane(inside):
+                place = select(inside, y * width + x, i32x16(0))
+                request_at_hits(certified, requests, lights, camera.origin, hits, place, inside)
+
+
+class CertifiedCells(ShadowMethod):
+    """Makes certificates, within a budget, and culls by them."""
+
+    def __init__(self, services: Services) -> None:
+        super().__init__(services)
+        self.store: CertificateStore | None = None
+        self.made_now = False  # whether the store has been set up in this frame
+        self._clear()
+
+    def _clear(self) -> None:
+        """Nothing is known of a frame yet."""
+        self._requests: Requests | None = None
+        self._cell = np.empty(0, np.int32)
+        self._words: NDArray[np.unsignedinteger] | None = None
+        self._counts = np.zeros(COUNTERS, np.int64)
+
+    def begin(self, frame: FrameView) -> None:
+        self._clear()
+        self._cell = np.zeros(frame.settings.width * frame.settings.height, np.int32)
+
+    def follows_rest(self) -> bool:
+        return True
+
+    def follow(self, frame: FrameView) -> None:
+        self.made_now = self.store is None
+        if self.store is None:
+            self.store = CertificateStore(
+                self.services.world, len(frame.lights), frame.workers, self.services.cost_model
+            )
+        self.store.follow(frame.lights, frame.resting, frame.workers)
+
+    def prepare(self, frame: FrameView) -> None:
+        self.certify(frame, frame.settings.certificate_seconds)
+        self.take_requests(frame)
+
+    def take_requests(self, frame: FrameView) -> None:
+        """Make room for what this frame's rays request."""
+        self._requests = make_requests(len(frame.tiles))
+
+    def certify(self, frame: FrameView, seconds: float) -> None:
+        """Certify for so many seconds, at most, what is requested."""
+        store, clock = self.store, self.services.clock
+        assert store is not None, "followed before"
+        start, tiles = clock(), frame.tiles
+        requests = make_requests(len(tiles))
+        view = pack(store.view(len(tiles), requests))
+        order = (store.next_tile + np.arange(len(tiles))) % len(tiles)
+        shares = np.array_split(order, max(1, min(SHARES * frame.workers, len(tiles) // SHARE)))
+        looked_at: list[int] = []
+
+        def work(chunk: int, worker: int) -> None:
+            if clock() - start < SEEKING * seconds:
+                request_in_tiles(view.ctypes.data, frame.rays, tiles, shares[chunk], frame.lights, frame.buffers)
+                looked_at.append(len(shares[chunk]))
+
+        for_each_chunk(work, len(shares), frame.workers, frame.cancel)
+        store.next_tile += sum(looked_at)  # where time was short, others are the first in the next frame
+        budget = Budget(frame.settings.certificates, start + seconds)
+        lists, store.pending = [requests, *store.pending], []
+        self._counts = store.certify(lists, budget, store.cost_model, frame.cancel)
+
+    @property
+    def finds_first(self) -> bool:
+        return True
+
+    def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
+        assert self.store is not None, "followed before"
+        requests = self._requests if learns and self._requests is not None else make_requests(0)
+        view = self.store.view(len(frame.tiles), requests, self._cell if learns else np.empty(0, np.int32))
+        return [Stage(view, find, choose, finish=finish if len(requests.key) else None, rows=CELL_POINT_ROWS)]
+
+    def keep(self, frame: FrameView) -> None:
+        self._words = self._words_seen()  # cells may get other numbers now
+        self._leave(frame)
+
+    def discard(self, frame: FrameView, begun: bool) -> None:
+        """What the frame's rays have requested stays requested."""
+        if begun:
+            self._leave(frame)
+
+    def _leave(self, frame: FrameView) -> None:
+        if self.store is not None and self._requests is not None:
+            self.store.pending = [self._requests]
+            self.store.keep_within(1e6 * frame.settings.certificate_memory, self._cell)
+
+    def _words_seen(self) -> NDArray[np.unsignedinteger]:
+        assert self.store is not None, "followed before"
+        return self.store.at_pixels(self._cell)
+
+    def layers(self, frame: FrameView) -> dict[str, NDArray]:
+        shape = frame.buffers.primitive.shape
+        cell, words = self._cell.reshape(shape), self._words_seen() if self._words is None else self._words
+        return {"cells": np.where(cell > 0, cell, np.int32(-1)), "certificates": words.reshape(shape)}
+
+    def report(self, statistics: FrameStatistics) -> None:
+        statistics.certificates = int(self._counts[CERTIFICATES])
+        statistics.certificate_steps = int(self._counts[STEPS])
+        statistics.certificate_tests = int(self._counts[TESTS])
+
+    def finish(self, frame: FrameView, statistics: FrameStatistics) -> None:
+        if self.store is not None:
+            self.store.finish_frame(statistics.certificates, statistics.shadow.due)
+
+    def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
+        return None if self.store is None else self.store.describe(primitive, point, light)
+
+    def forget(self) -> None:
+        self.store = None
+
+    @property
+    def memory_bytes(self) -> int:
+        return 0 if self.store is None else self.store.bytes

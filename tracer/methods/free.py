@@ -1,0 +1,106 @@
+"""The method `free`: shadow rays that cost nothing, a measuring stick.
+
+The picture is shaded twice.  The first time every shadow ray is traced and its answer recorded, tile by tile in the
+order in which rays are asked about; the second time, which alone is counted and timed, the answers are replayed.  No
+method can be faster, so that the speed-up of any other is a part of this one's.
+
+It replays whole pictures with one sample a pixel.  A picture that is refined progressively, and further samples, are
+traced as by `none`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.stages import call_at, vectors
+from tracer.kernels import entry
+from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.simd.records import I32x2D, I64x2D, reading
+from tracer.statistics import FrameStatistics
+
+ROOM = 1024  # vectors of answers of a tile and a light, to begin with
+
+
+class Answers(NamedTuple):
+    """Of each tile the bits of lit points, vector by vector, (tiles, n) int32; and how many vectors have been written,
+    or read, (tiles, 1) int64."""
+
+    lit: I32x2D
+    at: I64x2D
+
+
+answers_at = reading(Answers)
+
+
+@entry
+def find(data, call, light, count, counts):
+    """A tile's first wave begins at the first of its answers."""
+    given, answers = call_at(call), answers_at(data)
+    if given.bounce == 0:
+        answers.at[given.tile, 0] = 0
+
+
+@entry
+def record(data, call, light, count, counts):
+    """Write the answers of a wave; where there is no room only their number is kept."""
+    given, answers = call_at(call), answers_at(data)
+    batch, first = shadow_batch_in(given.shadows), answers.at[given.tile, 0]
+    if first + vectors(count) <= answers.lit.shape[1]:
+        for v in range(vectors(count)):
+            answers.lit[given.tile, first + v] = batch.lit[v]
+    answers.at[given.tile, 0] = first + vectors(count)
+
+
+@entry
+def replay(data, call, light, count, counts):
+    """Answer all rays of a wave, dynamic objects included."""
+    given, answers = call_at(call), answers_at(data)
+    batch, first = shadow_batch_in(given.shadows), answers.at[given.tile, 0]
+    for v in range(vectors(count)):
+        batch.live[v] = 0
+        batch.settled[v] = batch.due[v]
+        batch.lit[v] = answers.lit[given.tile, first + v]
+    answers.at[given.tile, 0] = first + vectors(count)
+
+
+class Free(ShadowMethod):
+    """Replays the answers of the same frame."""
+
+    def __init__(self, services: Services) -> None:
+        super().__init__(services)
+        self._make_room(0, 0)
+        self._replays, self._seconds = False, 0.0
+
+    def prepare(self, frame: FrameView) -> None:
+        """Trace the picture once, and record the answers."""
+        self._replays, start = not frame.progressive, self.services.clock()
+        if self._replays:
+            tiles = len(frame.tiles)
+            if len(self._lit) != tiles:
+                self._make_room(tiles, ROOM * len(frame.lights))
+            while not self._recorded(frame):
+                self._make_room(tiles, int(self._at.max()))
+        self._seconds = self.services.clock() - start
+
+    def _make_room(self, tiles: int, room: int) -> None:
+        self._lit, self._at = np.empty((tiles, room), np.int32), np.zeros((tiles, 1), np.int64)
+
+    def _recorded(self, frame: FrameView) -> bool:
+        """Whether there was room for all answers."""
+        frame.rehearse([Stage(Answers(self._lit, self._at), find=find, learn=record)])
+        return int(self._at.max(initial=0)) <= self._lit.shape[1]
+
+    def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
+        return [Stage(Answers(self._lit, self._at), find=find, choose=replay)] if self._replays and learns else []
+
+    def report(self, statistics: FrameStatistics) -> None:
+        """Leave out the time of recording."""
+        statistics.seconds -= self._seconds
+        statistics.phases["certification"] = statistics.phases.get("certification", 0.0) - self._seconds
+
+    @property
+    def memory_bytes(self) -> int:
+        return int(self._lit.nbytes)

@@ -1,0 +1,115 @@
+"""What a renderer keeps from one frame to the next: the world, modes, methods, and memory to work in."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.certified.cost_model import CostModel, cost_model_for
+from tracer.culling.mode_history import ModeHistory
+from tracer.culling.rest import Rest
+from tracer.geometry.world import World
+from tracer.method import Kind, Method
+from tracer.methods.interface import Services, ShadowMethod
+from tracer.methods.paper import ModesBeside
+from tracer.scene.model import Progress, Scene
+from tracer.settings import Settings
+from tracer.shading.blocks import Planes, make_planes
+from tracer.shading.buffers import Workspace, workspace
+from tracer.shading.shading_data import SHINE, TRANSMISSION, make_shading_data
+
+HISTORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
+
+MODES_BESIDE = Kind("modes", "Keeps the paper's modes.", ModesBeside, addition=True)
+
+
+class State:
+    """Made with the clocks that it measures by, `clock` of seconds that pass, `thread_clock` of seconds that the
+    calling thread has had a processor; and with what certificates are worth, if not what is usual for the world."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        world: World,
+        clock: Callable[[], float] = time.perf_counter,
+        thread_clock: Callable[[], float] = time.thread_time,
+        cost_model: CostModel | None = None,
+    ) -> None:
+        self.scene, self.world, self.clock = scene, world, clock
+        self.rest = Rest(len(scene.objects))
+        self.shading = make_shading_data(scene, world.attributes)
+        materials = self.shading.materials
+        bounces = bool((materials[:, SHINE] > 0.0).any() or (materials[:, TRANSMISSION] > 0.0).any())
+        model = cost_model or cost_model_for(world.accelerator, bounces)
+        self._services = Services(world, self.shading, model, clock, thread_clock, self.method)
+        self._methods: dict[Kind, ShadowMethod] = {}
+        self._histories: dict[tuple[int, int, bool], ModeHistory] = {}
+        self._workspaces: list[Workspace] = []
+        self._planes: tuple[tuple[int, int], Planes] | None = None
+        self._time: float | None = None
+
+    def forget(self) -> None:
+        """Forget all modes, at every resolution, and all that methods have learnt."""
+        self._histories.clear()
+        for method in self._methods.values():
+            method.forget()
+
+    def method(self, name: str) -> ShadowMethod:
+        """The method that is a base or an addition of this name, with all that it has learnt."""
+        return self._of_kind(next(kind for kind in Method.parse(name).kinds))
+
+    def _of_kind(self, kind: Kind) -> ShadowMethod:
+        if kind not in self._methods:
+            self._methods[kind] = kind.load()(self._services)
+        return self._methods[kind]
+
+    def methods(self, settings: Settings, time: float) -> list[ShadowMethod]:
+        """The base, its additions, and what keeps modes beside them, for a frame at `time`.
+
+        Methods that are not used are dropped, with all that they know, once the scene has moved on: they have not
+        followed it."""
+        method = Method.parse(settings.method)
+        beside = (MODES_BESIDE,) if settings.modes and not method.uses_modes else ()
+        chosen = [self._of_kind(kind) for kind in (*method.kinds, *beside)]
+        if time != self._time:
+            used = {*chosen, *(part for one in chosen for part in one.parts)}
+            self._methods = {kind: one for kind, one in self._methods.items() if one in used}
+            self._time = time
+        return chosen
+
+    def history(self, settings: Settings, first: NDArray[np.int32], workers: int) -> ModeHistory:
+        """The modes at this resolution, of primitives or of cells; made, or given room for more workers, where need
+        be.  first (primitives + 1,) are the first units of primitives, or empty."""
+        key = settings.width, settings.height, len(first) > 0
+        history = self._histories.pop(key, None)
+        if history is None:
+            history = ModeHistory(self.world.object_of, len(self.scene.lights), workers, first)
+        self._histories[key] = history  # the newest last
+        if len(self._histories) > HISTORIES:
+            del self._histories[next(iter(self._histories))]
+        history.make_room(workers)
+        return history
+
+    def workspaces(self, workers: int, stage_rows: int = 0) -> list[Workspace]:
+        """One for each worker at least, with so many rows for stages."""
+        self._workspaces += [workspace() for _ in range(len(self._workspaces), workers)]
+        for number, space in enumerate(self._workspaces):
+            if len(space.scratch) < stage_rows:
+                self._workspaces[number] = space._replace(
+                    scratch=np.empty((stage_rows, space.scratch.shape[1]), np.float32)
+                )
+        return self._workspaces
+
+    def planes(self, width: int, height: int) -> Planes:
+        """Room for what pixels know of each other, the same for every progressive frame of a size."""
+        if self._planes is None or self._planes[0] != (width, height):
+            self._planes = (width, height), make_planes(width, height)
+        return self._planes[1]
+
+
+def open_world(scene: Scene, settings: Settings, progress: Progress | None = None) -> World:
+    """A world for a scene at its start, with the accelerator that the settings name."""
+    return World(scene, scene.time_range[0], settings.accelerator, progress)
