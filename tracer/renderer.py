@@ -50,13 +50,21 @@ class Renderer:
         thread_clock: Callable[[], float] = clocks.thread_time,
         cost_model: CostModel | None = None,
     ) -> None:
-        self.scene = scene
         self.settings = (settings or Settings()).validated()
         self._shared, self._measures = world is not None, (clock, thread_clock, cost_model)
         self.world = world or open_world(scene, self.settings, progress)
         self.state = State(scene, self.world, *self._measures)
         self._turn = 0
         self._last: Sequence[ShadowMethod] = ()
+
+    @property
+    def scene(self) -> Scene:
+        """What is rendered: may be exchanged for a scene of the same objects and lights that moves them otherwise."""
+        return self.state.scene
+
+    @scene.setter
+    def scene(self, scene: Scene) -> None:
+        self.state.scene = scene
 
     def reset_modes(self) -> None:
         """Forget all modes, at every resolution, and all that methods have learnt."""

@@ -46,14 +46,14 @@ class State:
         model = cost_model or cost_model_for(world.accelerator, bounces)
         self._services = Services(world, self.shading, model, clock, thread_clock, self.method)
         self._methods: dict[Kind, ShadowMethod] = {}
-        self._histories: dict[tuple[int, int, bool], ModeHistory] = {}
+        self.histories: dict[tuple[int, int, bool], ModeHistory] = {}
         self._workspaces: list[Workspace] = []
         self._planes: tuple[tuple[int, int], Planes] | None = None
         self._time: float | None = None
 
     def forget(self) -> None:
         """Forget all modes, at every resolution, and all that methods have learnt."""
-        self._histories.clear()
+        self.histories.clear()
         for method in self._methods.values():
             method.forget()
 
@@ -84,12 +84,12 @@ class State:
         """The modes at this resolution, of primitives or of cells; made, or given room for more workers, where need
         be.  first (primitives + 1,) are the first units of primitives, or empty."""
         key = settings.width, settings.height, len(first) > 0
-        history = self._histories.pop(key, None)
+        history = self.histories.pop(key, None)
         if history is None:
             history = ModeHistory(self.world.object_of, len(self.scene.lights), workers, first)
-        self._histories[key] = history  # the newest last
-        if len(self._histories) > HISTORIES:
-            del self._histories[next(iter(self._histories))]
+        self.histories[key] = history  # the newest last
+        if len(self.histories) > HISTORIES:
+            del self.histories[next(iter(self.histories))]
         history.make_room(workers)
         return history
 

@@ -15,7 +15,7 @@ import tracer
 from tests.tracing.certified_twin import NAMES, Twin
 from tests.tracing.nasty_worlds import nasty_walk, static_part
 from tests.tracing.random_worlds import quickly
-from tests.tracing.worlds import quad, scene
+from tests.tracing.worlds import certificates_of, quad, scene
 from tracer.culling.certified import cost_model
 from tracer.culling.certified.cells import CANDIDATES, FULL, LIT
 from tracer.culling.certified.cost_model import CostModel
@@ -43,8 +43,9 @@ def _certified(made: tracer.Scene, size: int, frames: Sequence[tuple[float, Came
     certified = tracer.Renderer(made, settings)
     for time, camera in frames:
         certified.render(time, camera)
-    assert certified.certificates is not None
-    return Twin(made, certified.certificates, made.light_positions(frames[-1][0]))
+    store = certificates_of(certified)
+    assert store is not None
+    return Twin(made, store, made.light_positions(frames[-1][0]))
 
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)

@@ -13,6 +13,7 @@ import pytest
 import tracer
 from tests.tracing.nasty_worlds import NastyWalk, nasty_walk
 from tests.tracing.same import contents
+from tests.tracing.worlds import certificates_of
 from tracer.culling.certified import cost_model
 from tracer.culling.certified.cost_model import CostModel
 from tracer.geometry.world import ACCELERATORS
@@ -103,8 +104,9 @@ def _everything(walk: NastyWalk, threads: int, accelerator: str) -> list[dict]:
     certified, result = tracer.Renderer(walk.scene, settings), []
     for time, camera in walk.frames:
         held = contents(certified.render(time, camera))
-        assert certified.certificates is not None
-        cells = certified.certificates.cells
+        store = certificates_of(certified)
+        assert store is not None
+        cells = store.cells
         used, named = int(cells.used[0]), int(cells.named[0])
         for name in ("words", "child", "parent", "owner", "place", "lists"):
             held[f"cells: {name}"] = getattr(cells, name)[1:used].copy()

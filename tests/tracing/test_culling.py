@@ -124,7 +124,7 @@ def test_of_many_resolutions_the_latest_are_remembered():
         renderer.settings = replace(SETTINGS, width=width, height=8)
         renderer.render()
     assert renderer.render().statistics.shadow.dynamic_only > 0
-    assert len(renderer.state._histories) == 16
+    assert len(renderer.state.histories) == 16
     renderer.settings = SETTINGS
     assert renderer.render().statistics.shadow.culled == 0
 

@@ -80,7 +80,7 @@ def test_the_last_frame_of_a_run_is_shown_though_the_window_was_late(desk: Desk)
 def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
     session = desk.c.session
     renderer = desk.c.render._renderer
-    memories = {size: memory.words.copy() for size, memory in renderer._memories.items()}
+    histories = {size: history.words.copy() for size, history in renderer.state.histories.items()}
     desk.runner.experiment_plan.frames = 5000
     desk.runner.start_experiment()
     desk.until(lambda: desk.runner.experiment.traced > 2)
@@ -111,7 +111,7 @@ def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
     desk.until(lambda: desk.runner.experiment.traced > many)
     assert not asked, "a frame was traced beside the run"
     del renderer.refine
-    assert all(np.array_equal(memory.words, memories[size]) for size, memory in renderer._memories.items())
+    assert all(np.array_equal(history.words, histories[size]) for size, history in renderer.state.histories.items())
     desk.runner.stop()
     desk.run_to_its_end()
     desk.c.move(ELSEWHERE)

@@ -133,11 +133,7 @@ def test_a_run_has_the_world_to_itself(desk: Desk):
 
 
 def test_every_named_occluder_is_drawn_up_to_a_number_and_what_blocks_stands_out(desk: Desk):
-    class Certificates:
-        def describe(self, primitive: int, point: np.ndarray, light: int) -> tuple[str, tuple[int, ...]]:
-            return "CANDIDATES", (0, 1) * 10
-
-    desk.renderer.certificates = Certificates()
+    desk.renderer.explain = lambda primitive, point, light: ("CANDIDATES", (0, 1) * 10)
     desk.c.select(desk.shadow)
     answer = desk.answered()
     stopped = next(one for one in answer.lights if one.blocked_at is not None)
