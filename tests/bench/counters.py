@@ -72,19 +72,19 @@ EDITS = (
             ("packet_tree", 8, "TESTS", "1", 1),
             ("packet_tree", 8, "STEPS", "1", 2),
             ("packet_tree", 4, "TESTS", "1", 1),
-            ("single", 16, "TESTS", "1", 1),
-            ("single", 12, "TESTS", "1", 4),
-            ("single", 12, "STEPS", "1", 1),
-            ("single", 12, "STEPS", "rays", 1),
-            ("single", 8, "STEPS", "1", 1),
-            ("single", 8, "STEPS", "rays", 1),
+            ("single_ray", 16, "TESTS", "1", 1),
+            ("single_ray", 12, "TESTS", "1", 4),
+            ("single_ray", 12, "STEPS", "1", 1),
+            ("single_ray", 12, "STEPS", "rays", 1),
+            ("single_ray", 8, "STEPS", "1", 1),
+            ("single_ray", 8, "STEPS", "rays", 1),
         )
     ),
     *(  # likewise
         Edit(f"tracer/culling/{file}.py", f"{indent * ' '}counts[{what}] += {by}\n", 1)
         for file, indent, what, by in (
-            ("shadow", 8, "TESTS", "tests"),
-            ("shadow", 8, "TESTS", "ones(tested)"),
+            ("certified/lookup", 8, "TESTS", "tests"),
+            ("occluder_cache", 8, "TESTS", "ones(tested)"),
             ("certified/certify", 16, "STEPS", "1"),
             ("certified/certify", 12, "STEPS", "1"),
             ("certified/certify", 4, "TESTS", "n"),
