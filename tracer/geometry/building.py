@@ -1,4 +1,4 @@
-"""Long builds: run where they can be watched and stopped."""
+"""Long builds: they report their progress, can be stopped, and share their work among threads."""
 
 from __future__ import annotations
 
@@ -21,7 +21,9 @@ T = TypeVar("T")
 def watched(
     build: Callable[[NDArray[np.int64]], T], what: str, primitives: int, work: float, progress: Progress | None
 ) -> T:
-    """build(control), while `progress` is told what and how much of `work` is done; what it raises stops the build."""
+    """Return build(control); meanwhile `progress` is told what is done and the fraction of `work` done so far.
+
+    What `progress` raises stops the build and passes through.  A build over few primitives is not watched."""
     control = np.zeros(2, np.int64)
     if progress is None or primitives < LONG:
         return build(control)
@@ -37,7 +39,7 @@ def watched(
 
 
 def in_chunks(work: Callable[[int, int], None], count: int, control: NDArray[np.int64], threads: int) -> None:
-    """work(first, last) over all numbers below count."""
+    """Call work(first, last) for chunks of the numbers below count, in threads, until control[CANCELLED] is set."""
 
     def one(chunk: int, worker: int) -> None:
         work(chunk * CHUNK, min(count, (chunk + 1) * CHUNK))

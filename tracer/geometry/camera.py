@@ -15,9 +15,9 @@ from tracer.simd import square_root
 
 
 class Pinhole(NamedTuple):
-    """A camera for a picture of a given size, all (3,) float32: its place, the direction through the
-    picture's upper left corner, and the steps from there to the next column and the next row; and spread,
-    the width of a pixel at distance 1."""
+    """A camera for a picture of a given size: its position, the direction through the picture's upper left corner, and
+    the steps from there to the next column and the next row, (3,) float32 each; and spread, the width of a pixel at
+    distance 1."""
 
     origin: NDArray[np.float32]
     corner: NDArray[np.float32]

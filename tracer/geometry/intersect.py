@@ -1,8 +1,8 @@
-"""Ray against box, triangle, sphere and cone: the leaf functions that everything else calls.
+"""One ray against a triangle, a sphere or a cone: the scalar tests, as the kd-tree makes them.
 
-A triangle is stored as corner and two edges (9 floats), a quadric as a canonical sphere or cone
-seen through the affine map that leads there (16 floats), so that any transform fits both.  Memory is
-read through flat pointers (`tracer.geometry.memory`).
+A triangle is stored as a corner and two edges (9 float32).  A quadric is stored as a canonical sphere or cone and the
+affine map that takes the world there (16 float32), so that any transform fits both.  Memory is read through flat
+pointers (`tracer.geometry.memory`).
 """
 
 from __future__ import annotations
@@ -17,18 +17,19 @@ from tracer.scene.model import SPHERE
 
 ZERO = np.float32(0)
 ONE = np.float32(1)
-NEAR = np.float32(1e-5)  # of the distance of a ray's origin: more than t is wrong by on triangles it does not graze
+NEAR = np.float32(1e-5)  # of the distance of a ray's origin: more than the error of t on triangles it does not graze
 
-# Where a quadric's row has these; the map to canonical space fills the first 12 places.
+# Columns of a quadric's row; the map to canonical space fills the first 12.
 KIND, R0, R1, INSIDE = 12, 13, 14, 15
 
 
 @inlined
 def hit_triangle(ray, triangles, i):
-    """(t, u, v) of a ray on the i-th triangle, t = inf for a miss, two-sided: the triple products of Moeller and
-    Trumbore (1997), by one normal for det and t, so that what lies just above a triangle is seen there.
+    """(t, u, v) of a ray on the i-th triangle, seen from both sides; t = inf for a miss.
 
-    Where a ray runs in the triangle's plane these are noise; so a hit counts only near the triangle (`_is_near`)."""
+    These are the triple products of Moeller and Trumbore (1997), with one normal for det and t, so that what lies just
+    above a triangle is seen there.  For a ray in the triangle's plane they are noise; so a hit counts only near the
+    triangle (`_is_near`)."""
     r = 9 * i
     e1x, e1y, e1z = triangles[r + 3], triangles[r + 4], triangles[r + 5]
     e2x, e2y, e2z = triangles[r + 6], triangles[r + 7], triangles[r + 8]
@@ -54,8 +55,8 @@ def hit_triangle(ray, triangles, i):
 
 @inlined
 def _is_near(x, y, z, away, triangles, r):
-    """Whether (x, y, z) from a triangle's corner lies no further outside the box around the triangle than that is wide,
-    and a little of the ray's origin's distance."""
+    """Whether a point, (x, y, z) from the triangle's corner, lies no further outside the triangle's box than that is
+    wide, plus a little of the distance from the ray's origin, which is `away` from the corner."""
     x1, y1, z1, x2, y2, z2 = (triangles[r + 3], triangles[r + 4], triangles[r + 5],
                               triangles[r + 6], triangles[r + 7], triangles[r + 8])  # fmt: skip
     low_x, low_y, low_z = min(ZERO, min(x1, x2)), min(ZERO, min(y1, y2)), min(ZERO, min(z1, z2))
@@ -70,7 +71,9 @@ def _is_near(x, y, z, away, triangles, r):
 
 @inlined
 def transform_ray(ray, maps, i, stride):
-    """A ray under the i-th affine map, 12 numbers row by row; the direction is not normalised, so t means the same."""
+    """A ray under the i-th affine map, 12 numbers row by row.
+
+    The direction is not normalised, so that t stays the same."""
     m = stride * i
     return Ray(
         maps[m] * ray.ox + maps[m + 1] * ray.oy + maps[m + 2] * ray.oz + maps[m + 3],

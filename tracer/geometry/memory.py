@@ -1,9 +1,9 @@
 """Memory without reference counts, for kernels.
 
-numba counts references to arrays, atomically, wherever one is passed along or taken out of a tuple;
-in an inner loop that costs more than a step through a tree, and threads fight over shared counts.
-`borrowed` gives the same arrays uncounted, `pointer` their bare memory.  Either is valid only as
-long as somebody else keeps the arrays alive: a kernel borrows what it was called with.
+numba counts references to arrays, atomically, wherever one is passed on or taken out of a tuple.  In an inner loop that
+costs more than a step through a tree, and threads fight over shared counts.  `borrowed` gives the same arrays
+uncounted, and `data_pointer` an array's bare memory.  Either is valid only as long as somebody else keeps the arrays
+alive: a kernel may borrow what it was called with.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 
 def aligned_rows(rows: int, columns: int) -> NDArray[np.float32]:
-    """Uninitialised (rows, columns) float32 whose memory begins at a multiple of 64 bytes: a line of the cache."""
+    """Uninitialised (rows, columns) float32 whose memory begins at a multiple of 64 bytes, the size of a cache line."""
     memory = np.empty(4 * rows * columns + 64, np.uint8)
     start = -memory.ctypes.data % 64
     return memory[start : start + 4 * rows * columns].view(np.float32).reshape(rows, columns)

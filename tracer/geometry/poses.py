@@ -14,7 +14,8 @@ from tracer.scene.chains import Chains
 class Poses(NamedTuple):
     """Where n objects are at `time` seconds: maps (n, 3, 4) float64 to the world and back, and present (n,) bool.
 
-    Absent is what is empty, hidden, or scaled to nothing: no ray can be carried there.  Its maps are 0.
+    An object is absent if it is empty, hidden, or scaled to nothing, so that no ray can be transformed to its space.
+    Its maps are 0 then.
     """
 
     time: float

@@ -1,4 +1,4 @@
-"""A scene's primitives as kernels want them: what every structure is built over."""
+"""A scene's primitives as kernels read them: what every acceleration structure is built over."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tracer.scene.model import SPHERE, Scene
 
 
 def triangle_rows(corners: Float32) -> Float32:
-    """Corner and two edges, (n, 9) float32, of corners (n, 3, 3)."""
+    """Triangles as rows (n, 9) float32, a corner and two edges, from their corners (n, 3, 3)."""
     first = corners[:, 0].astype(np.float64)
     edges = [corners[:, i] - first for i in (1, 2)]
     return np.concatenate([first, *edges], axis=1).astype(np.float32)
@@ -52,9 +52,9 @@ class Outlines(NamedTuple):
 
 
 class WorldTriangles(NamedTuple):
-    """What a structure intersects, as the world sees it: rows (n, 9) float32, corner and edges; blurs (n,), how far
-    their corners may truly be elsewhere; and boxes (n, 6), outside of which no hit on them is reported, but for
-    roundings no larger than 4e-5 of the distance between ray origin and corner."""
+    """Triangles in the world, just as a structure intersects them: rows (n, 9) float32, corner and edges; blurs (n,),
+    how far from there their corners may truly be; and boxes (n, 6), outside of which no hit on them is reported, but
+    for roundings of no more than 4e-5 of the distance between ray origin and corner."""
 
     rows: Float32
     blurs: Float32
@@ -95,11 +95,11 @@ class Primitives:
         self.deformations = {i: o.deformation for i, o in enumerate(objects) if o.deformation is not None}
 
     def triangles_of(self, index: int) -> slice:
-        """Where an object's are."""
+        """The numbers of an object\'s triangles."""
         return slice(int(self.triangle_starts[index]), int(self.triangle_starts[index + 1]))
 
     def quadrics_of(self, index: int) -> slice:
-        """Where an object's are."""
+        """The rows of an object\'s quadrics, counted from the first quadric on."""
         return slice(int(self.quadric_starts[index]), int(self.quadric_starts[index + 1]))
 
     def corners_of(self, index: int) -> Float32:
@@ -108,7 +108,7 @@ class Primitives:
         return self.corners[rows.start - first_dynamic : rows.stop - first_dynamic]
 
     def deform(self, time: float) -> None:
-        """Take all deforming objects to a time."""
+        """Give all objects that deform their shape at a time in seconds."""
         for index, deformation in self.deformations.items():
             rows = self.triangles_of(index)
             corners, normals = deformed(deformation, time)
@@ -117,12 +117,12 @@ class Primitives:
             self.attributes[rows, FACE_NORMAL:OBJECT] = edge_products(self.triangles[rows])
 
     def outlines(self, poses: Poses) -> Outlines:
-        """All primitives, as they are now."""
+        """Where all primitives are in these poses."""
         boxes = self.placed_quadric_boxes(slice(0, len(self.quadrics)), poses)
         return Outlines(self.triangles, poses.to_world.reshape(-1, 12), self.object_of, boxes)
 
     def object_boxes(self, which: NDArray[np.int64], poses: Poses) -> NDArray[np.float32]:
-        """Boxes (k, 6) around objects (k,) that are present, but object 0, where they are."""
+        """Boxes (k, 6) in the world around dynamic objects (k,) that are present."""
         boxes = np.empty((len(which), 6))
         _bound(self.corners.reshape(-1, 3), self.triangle_starts, poses.to_world.reshape(-1, 12), which, boxes)
         for k in np.flatnonzero(np.diff(self.quadric_starts)[which]):
@@ -133,12 +133,12 @@ class Primitives:
         return (boxes + slack * OUTWARDS).astype(np.float32)
 
     def placed_quadric_boxes(self, which: slice, poses: Poses) -> NDArray[np.float32]:
-        """Boxes (n, 6) around quadrics where they are in the world."""
+        """Boxes (n, 6) in the world around quadrics."""
         owners = self.object_of[len(self.triangles) :][which]
         return self.quadric_boxes(which, products(poses.to_world[owners], self.to_object[which]))
 
     def quadric_boxes(self, which: slice, maps: Float64) -> NDArray[np.float32]:
-        """Boxes (n, 6) around quadrics whose canonical space is taken by maps (n, 3, 4) to where they are wanted."""
+        """Boxes (n, 6) around quadrics in the space to which maps (n, 3, 4) take their canonical spaces."""
         kinds, radii = self.quadrics[which, 12, None], np.abs(self.quadrics[which, 13:15].astype(np.float64))
         sphere, axis, start = kinds == SPHERE, maps[:, :, 2], maps[:, :, 3]
         across = maps[:, :, 0] ** 2 + maps[:, :, 1] ** 2

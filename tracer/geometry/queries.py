@@ -1,14 +1,14 @@
-"""The queries that everything above geometry asks of a placed world, whichever structure is below.
+"""The two queries on a placed world, closest hits and any hits, whichever acceleration structure is below.
 
-A structure's queries are machine code, compiled once for all who ask, and called by address: shading
-is compiled without them, and does not know which it calls.  A structure gives two entries
+The queries of a structure are machine code.  They are compiled once and called by address, so that shading is compiled
+without them and need not know which structure it calls.  A structure has two entries,
 
     closest(data, batch, first, last, counts)
     any_hit(data, batch, first, last, counts)
 
-of int64 each: data is the address of whatever describes the structure to itself, batch that of the
-addresses listed below, first and last say which of the batch's rays are meant, and counts is the
-address of two int64, of steps and tests, that grow.
+whose arguments are int64: data is the address of the structure's own description of the placed world, batch the address
+of a table of addresses (below), first and last - 1 are the first and the last ray to trace, and counts is the address
+of two int64 to which traversal steps and intersection tests are added.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from tracer.geometry.rays import INFINITY, Hits, RayPointers, Rays
 from tracer.kernels import inlined, subkernel
 from tracer.simd import address_of, call_entry, f32_at, load_i64, local_memory, store
 
-# A batch as entries get it: addresses of origins and directions, (3, stride) float32, of t_min and t_max, of
-# what is asked for (t, primitive, u and v of the nearest hits, or what kind of thing there is any hit with), and the
-# stride; whether static geometry, dynamic objects or both are asked for any hit; and the address of the occluders'
-# numbers, or 0 where nobody wants to know them.
+# The table of a batch, as offsets in bytes.  Rays: the addresses of origins and directions, (3, stride) float32, of
+# t_min and t_max, and the stride.  Results of closest hits: the addresses of t, primitive, u and v.  Any hits: the
+# address of the flags for what blocks each ray; which of STATIC_GEOMETRY and DYNAMIC_OBJECTS to ask; and the address of
+# the occluders' numbers, or 0 where nobody wants them.
 (
     ORIGIN, DIRECTION, T_MIN, T_MAX, STRIDE, HIT_T, HIT_PRIMITIVE, HIT_U, HIT_V, BLOCKED, WHICH, OCCLUDER,
 ) = range(0, 96, 8)  # fmt: skip
@@ -38,13 +38,13 @@ STEPS, TESTS = 0, 1  # what a query adds to its counts
 
 
 class Placed(NamedTuple):
-    """What rays can meet, placed for one moment.
+    """A world placed for one moment, as kernels get it.
 
-    triangles (t, 9) and quadrics (q, 16) float32 are in the space of their object, to which to_object
-    (objects, 12) float32 leads from the world: triangle i is primitive i, quadric j primitive t + j, and
-    object_of (t + q,) int32 tells whose they are; object 0 is static.  closest and any_hit are the
-    addresses of a structure's entries, and data what they are given.  moving_box (6,) float32 is around all that
-    moves, where has_dynamic says that anything does.
+    triangles (t, 9) and quadrics (q, 16) float32 are in the space of their object; to_object (objects, 12)
+    float32 takes the world there.  Triangle i is primitive i, and quadric j is primitive t + j; object_of
+    (t + q,) int32 tells the object of each primitive, and object 0 is static.  closest and any_hit are the
+    addresses of the structure's entries, and data is their first argument.  has_dynamic says whether any
+    object moves (and does not rest), and moving_box (6,) float32 is around all that do.
     """
 
     triangles: NDArray[np.float32]
@@ -81,18 +81,17 @@ def closest_hits(world, rays, hits, first, last, counts):
 
 @inlined
 def any_hits(world, rays, which, blocked, first, last, counts):
-    """blocked[i] (uint8) for rays first to last - 1: what lies in their interval, STATIC_GEOMETRY or
-    DYNAMIC_OBJECTS, or 0 where nothing does.  Only `which` of these is asked for; for EVERYTHING, static
-    geometry first."""
+    """What lies in the intervals of rays first to last - 1, into blocked (n,) uint8: STATIC_GEOMETRY, DYNAMIC_OBJECTS,
+    or 0 for nothing.  Only `which` of the two is asked; for EVERYTHING, static geometry is asked first."""
     _any_hits(world, rays, which, blocked, np.int64(0), first, last, counts)
 
 
 @inlined
 def any_hits_by(world, rays, which, blocked, occluders, first, last, counts):
-    """As `any_hits`; occluders[i] (int32) is the number of a primitive that blocks ray i, MISS where nothing does.
+    """As `any_hits`; occluders (n,) int32 gets the number of a primitive that blocks each ray, MISS where nothing does.
 
-    It need not be the nearest: it is the first that was found.  The kd-tree's depends on the ray alone, that of the
-    8-wide trees on the rays before it from `first` on as well, and on nothing else."""
+    This is the first that was found, not always the nearest.  In the kd-tree it depends on the ray alone; in the 8-wide
+    trees also on the rays before it, from `first` on."""
     _any_hits(world, rays, which, blocked, address_of(occluders), first, last, counts)
 
 
@@ -125,7 +124,7 @@ def batch_of(
     which: int = EVERYTHING,
     occluders: NDArray[np.int32] | None = None,
 ) -> NDArray[np.int64]:
-    """The description of a batch for an entry that is called from Python; its arrays must live as long."""
+    """The table of a batch, (12,) int64, for an entry that Python calls; the arrays must live as long as it does."""
     arrays = [rays.origin, rays.direction, rays.t_min, rays.t_max]
     results = [0, 0, 0, 0] if hits is None else [a.ctypes.data for a in (hits.t, hits.primitive, hits.u, hits.v)]
     answer, names = (0 if a is None else a.ctypes.data for a in (blocked, occluders))
@@ -134,7 +133,7 @@ def batch_of(
 
 @subkernel
 def hits_alone(world, ray, primitive):
-    """Whether a ray in world space meets this primitive, nothing else asked."""
+    """Whether a ray in world space hits this primitive."""
     o = world.object_of[primitive]
     if o != 0:
         ray = transform_ray(ray, data_pointer(world.to_object), o, 12)

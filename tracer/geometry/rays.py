@@ -14,8 +14,8 @@ INFINITY = np.float32(np.inf)
 
 
 class Ray(NamedTuple):
-    """One ray, float32: origin, direction (of any length: t is in its units) and the open interval of t, which
-    begins at 0 or later."""
+    """One ray, float32: its origin, its direction (of any length, which is the unit of t), and the open interval of t,
+    which begins at 0 or later."""
 
     ox: Any
     oy: Any

@@ -1,13 +1,13 @@
-"""Ray against triangle and box, for lanes: any of the numbers may be scalars or vectors.
+"""The ray-triangle test of the vector kernels: any of its numbers may be scalars or vectors.
 
-The same text serves one ray against eight triangles and sixteen rays against one, and every lane
-computes exactly what the others would, so that an answer never depends on who asks along.
+The same code tests one ray against eight triangles and sixteen rays against one triangle.  Every lane computes exactly
+what a scalar would, so that an answer never depends on which rays are tested together.
 
-A hit counts only where the ray is inside the stored box of the triangle's block, at a t within the
-box's interval.  Boxes are padded beyond the rounding of t, so nothing is lost; but what a ray meets is
-then the same whichever boxes were opened for its sake or another's: if it passes a block's box it passes
-all boxes around that one (float32 subtraction and multiplication are monotone), and a block pruned for
-beginning behind the nearest hit could only have held hits behind it.
+In the 8-wide trees a hit counts only where the ray is inside the stored box of the triangle's block: at a t within the
+box's interval.  Boxes are padded beyond the rounding of t, so that nothing is lost.  What a ray hits is then the same
+whichever boxes were opened for its sake or another ray's: if it enters a block's box it enters all boxes around that
+one (float32 subtraction and multiplication are monotone), and a block that was skipped for beginning behind the nearest
+hit could only have held hits behind it.
 """
 
 from __future__ import annotations
@@ -41,6 +41,7 @@ class Triangle(NamedTuple):
 
 @inlined
 def dot(ax, ay, az, bx, by, bz):
+    """The dot product of two vectors."""
     return fma(ax, bx, fma(ay, by, az * bz))
 
 
@@ -50,8 +51,8 @@ def _cross(ax, ay, az, bx, by, bz):
 
 
 class Terms(NamedTuple):
-    """What Moeller and Trumbore's triple products (1997) take from origin and triangle alone, arranged
-    around the direction: of rays from one point, it is common."""
+    """What Moeller and Trumbore's triple products (1997) take from origin and triangle alone, without the direction:
+    common to all rays from one point."""
 
     nx: Any
     ny: Any
@@ -67,6 +68,7 @@ class Terms(NamedTuple):
 
 @inlined
 def terms_of(ox, oy, oz, triangle):
+    """The terms of an origin and a triangle."""
     x, y, z, e1x, e1y, e1z, e2x, e2y, e2z = triangle
     nx, ny, nz = _cross(e1x, e1y, e1z, e2x, e2y, e2z)
     sx, sy, sz = ox - x, oy - y, oz - z
@@ -98,7 +100,7 @@ def _least_and_greatest(low, high, x, y, z):
 
 @inlined
 def towards(m):
-    """Terms of triangles whose normals point to the origin of the rays: what lies ahead of them has a positive area."""
+    """The terms of triangles turned so that their normals point to the origin: ahead of a ray, areas are positive."""
     sign = as_i32(m.height) & SIGN
     return Terms(
         as_f32(as_i32(m.nx) ^ sign), as_f32(as_i32(m.ny) ^ sign), as_f32(as_i32(m.nz) ^ sign),
@@ -119,7 +121,7 @@ def crossing_ahead(dx, dy, dz, m):
 
 @inlined
 def may_cross_ahead(low, high, m):
-    """Of which triangles some ray with a direction between low and high may make `crossing_ahead` true.
+    """Mask of the triangles for which `crossing_ahead` may be true of some direction between low and high.
 
     Rounding is monotone, so bounds computed in the order of the exact test bound its results exactly.
     """

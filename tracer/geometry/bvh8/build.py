@@ -16,9 +16,9 @@ from tracer.geometry.wide_tree.topology import Topology
 from tracer.scene.arrays import Float32
 
 
-def count_blocks(shape: Topology, triangles: int) -> int:
+def count_blocks(topology: Topology, triangles: int) -> int:
     """How many leaves of a topology are blocks, where the first so many items are triangles."""
-    return int(np.count_nonzero(shape.order[shape.leaves[:, 0]] < triangles))
+    return int(np.count_nonzero(topology.order[topology.leaves[:, 0]] < triangles))
 
 
 def build_tree(rows: Float32, boxes: Float32, control: NDArray[np.int64] | None = None, threads: int = 1) -> Tree:
@@ -28,10 +28,10 @@ def build_tree(rows: Float32, boxes: Float32, control: NDArray[np.int64] | None 
     control[CANCELLED] is set, and counts items that have found their leaf in control[DONE].
     """
     control = np.zeros(2, np.int64) if control is None else control
-    shape = build_topology(rows, boxes, control, threads)
-    tree = empty_tree(len(shape.children), count_blocks(shape, len(rows)))
+    topology = build_topology(rows, boxes, control, threads)
+    tree = empty_tree(len(topology.children), count_blocks(topology, len(rows)))
     links = make_links(len(tree.nodes), len(tree.blocks), len(boxes), 1)
-    write_topology(tree, links, shape, len(rows), Offsets(0, 1, 0, 0, 0))
+    write_topology(tree, links, topology, len(rows), Offsets(0, 1, 0, 0, 0))
     count = len(tree.blocks) - 1  # without the empty one
     extents = np.zeros(1 + -(-count // CHUNK), np.float32)
     extents[-1] = np.abs(boxes).max(initial=0)
@@ -48,7 +48,7 @@ def build_tree(rows: Float32, boxes: Float32, control: NDArray[np.int64] | None 
 
 
 def empty_tree(nodes: int, blocks: int) -> Tree:
-    """A tree over nothing, with room for so many nodes, one at least, and blocks beside the empty one."""
+    """A tree over nothing, with room for so many nodes (one at least) and for so many blocks besides the empty one."""
     tree = Tree(aligned_rows(nodes, NODE_SIZE), aligned_rows(1 + blocks, BLOCK_SIZE))
     clear(tree)
     return tree

@@ -1,4 +1,4 @@
-"""One ray against eight: the children of a node, the triangles of a block.  They are the lanes."""
+"""One ray against eight boxes or eight triangles at once: the children of a node, or a block.  They are the lanes."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ from tracer.simd import (
 NOBODY = np.int32(0x7FFFFFFF)
 
 
-class Line(NamedTuple):
-    """A ray with its inverse direction and the offsets of near planes in a node."""
+class SingleRay(NamedTuple):
+    """One ray, with the inverse of its direction and the offsets in a node of the planes that it meets first."""
 
     ox: Any
     oy: Any
@@ -77,15 +77,15 @@ class Best(NamedTuple):
 
 @inlined
 def _near(inverse):
-    """Offset, from a box's low plane, of the plane that is met first."""
+    """Offset, from a box's lower plane, of the plane that is met first."""
     return np.int64(as_i32(inverse) >> 31) & 96
 
 
 @inlined
-def line_at(a):
+def single_ray_at(a):
     """The ray whose column in a packet's memory begins at an address."""
     ix, iy, iz = load_f32(a + IX * ROW), load_f32(a + IY * ROW), load_f32(a + IZ * ROW)
-    return Line(
+    return SingleRay(
         load_f32(a + OX * ROW), load_f32(a + OY * ROW), load_f32(a + OZ * ROW),
         load_f32(a + DX * ROW), load_f32(a + DY * ROW), load_f32(a + DZ * ROW), ix, iy, iz,
         _near(ix), _near(iy), _near(iz), load_f32(a + T_MIN * ROW),
@@ -94,7 +94,7 @@ def line_at(a):
 
 @inlined
 def children_of(node, r, far):
-    """Where a ray enters and leaves eight children."""
+    """t where a ray enters and leaves each of a node's eight children."""
     ax, bx = (load_f32x8(node + r.near_x) - r.ox) * r.ix, (load_f32x8(node + 96 - r.near_x) - r.ox) * r.ix
     ay, by = (load_f32x8(node + 32 + r.near_y) - r.oy) * r.iy, (load_f32x8(node + 128 - r.near_y) - r.oy) * r.iy
     az, bz = (load_f32x8(node + 64 + r.near_z) - r.oz) * r.iz, (load_f32x8(node + 160 - r.near_z) - r.oz) * r.iz
@@ -103,7 +103,7 @@ def children_of(node, r, far):
 
 @inlined
 def _inside_block(block, r, t):
-    """Which of eight distances lie where a ray is in a block's box."""
+    """Mask of those of eight t that lie where a ray is in a block's box."""
     x0, y0, z0, x1, y1, z1 = block_planes(block)
     ax, bx = (x0 - r.ox) * r.ix, (x1 - r.ox) * r.ix
     ay, by = (y0 - r.oy) * r.iy, (y1 - r.oy) * r.iy
@@ -115,7 +115,7 @@ def _inside_block(block, r, t):
 
 @inlined
 def _first_lane(block, t, bits):
-    """The nearest of several lanes, given as bits; of equals that of the lowest number."""
+    """The lane with the least t of several, given as bits; of equal ones that of the lowest number."""
     if bits & (bits - 1) == 0:
         return lowest_bit(bits)
     mask = mask8(bits)
@@ -126,6 +126,7 @@ def _first_lane(block, t, bits):
 
 @inlined
 def nearest_in_block(block, r, best):
+    """The nearer of `best` and the nearest hit on a block's triangles."""
     m = terms_of(r.ox, r.oy, r.oz, triangles_of(block))
     crosses, sign, u, v, area = crossing(r.dx, r.dy, r.dz, m)
     if not any_lane(crosses):
@@ -144,7 +145,7 @@ def nearest_in_block(block, r, best):
 
 @inlined
 def any_in_block(block, r, far):
-    """The first triangle of a block that a ray meets nearer than far, or MISS."""
+    """The number of the first triangle in a block that a ray hits nearer than far, or MISS."""
     m = terms_of(r.ox, r.oy, r.oz, triangles_of(block))
     crosses, sign, _u, _v, area = crossing(r.dx, r.dy, r.dz, m)
     if not any_lane(crosses):
@@ -163,7 +164,7 @@ def _quadric(r, trees, i, enter, leave):
 
 @subkernel
 def nearest_quadric(r, best, trees, node, quadrics, enter, leave):
-    """The nearest of best and those children of a node that are quadrics, given as bits."""
+    """The nearer of `best` and the nearest hit on those children of a node, given as bits, that are quadrics."""
     while quadrics != 0:
         c = lowest_bit(quadrics)
         quadrics &= quadrics - 1
@@ -176,7 +177,8 @@ def nearest_quadric(r, best, trees, node, quadrics, enter, leave):
 
 @subkernel
 def any_quadric(r, far, trees, node, quadrics, enter, leave):
-    """The first of those children of a node that are quadrics that a ray meets nearer than far, or MISS."""
+    """The number of the first quadric, of those children of a node given as bits, that a ray hits nearer than far; or
+    MISS."""
     while quadrics != 0:
         c = lowest_bit(quadrics)
         quadrics &= quadrics - 1

@@ -1,14 +1,14 @@
-"""What rays that travel together may enter at all: a frustum against boxes.
+"""A frustum against boxes: which boxes rays that travel together may enter at all.
 
-Sixteen rays whose directions agree in sign along one axis are bounded, at every distance along it, by
-the intervals in which they start and the intervals of their slopes, du/dk and dv/dk, along the other
-two (after Reshetov, Soupikov, Hurley 2005, and Overbeck, Ramamoorthi, Mark 2008).  Unlike bounds of
-where rays meet the six planes of a box, this knows no mixed signs and no lengths of directions.
+Take sixteen rays whose directions have the same sign along one axis k.  At every distance along k they are bounded by
+the intervals in which they start and the intervals of their slopes du/dk and dv/dk along the other two axes u and v
+(after Reshetov, Soupikov, Hurley 2005, and Overbeck, Ramamoorthi, Mark 2008).  Unlike bounds on where rays meet the six
+planes of a box, this has no cases for mixed signs, and lengths of directions do not matter.
 
-One text serves one frustum against eight boxes and one box against eight frusta: either are vectors.
+The same code tests one frustum against eight boxes and one box against eight frusta: either may be vectors.
 
-What is refused, every ray refuses: slopes and distances are wider by MARGIN than rounding can make a
-ray's own test (`packet.lanes_inside`), whose differences and products err by a few 1e-7 of themselves.
+A box that is refused is one that every ray refuses: slopes and distances are wider by MARGIN than rounding can make a
+ray's own test (`packet.lanes_inside`), whose differences and products are wrong by a few 1e-7 of themselves.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ class Axes(NamedTuple):
 
 
 class Frustum(NamedTuple):
-    """Bounds of rays: where they start, along the axis the way they go, and along the other two; slopes;
-    and from which distance along the axis they look."""
+    """Bounds of rays: where they start, along the axis in the way they go and along the other two axes; their slopes;
+    and the distance along the axis from which on they look."""
 
     start0: Any
     start1: Any
@@ -91,7 +91,7 @@ def boxes_at(a, axes):
 
 @inlined
 def entering(planes, f, reach):
-    """(least distance along the axis, mask): which boxes some ray of which frustum may enter, that looks as far as
+    """(least distance along the axis, mask): which boxes some ray of which frustum may enter, if it looks as far as
     `reach` along the axis."""
     near, far, low_u, high_u, low_v, high_v = planes
     enter, leave = maximum(near - f.start1, f.near), minimum(far - f.start0, reach)

@@ -1,7 +1,8 @@
-"""Trees of all dynamic objects: a sub-tree for each, and small ones over those that rest, and those that move_objects.
+"""The trees of all dynamic objects, and two top-level BVHs over them: of the objects that rest, and of those that move.
 
-The shape of a sub-tree is made once, in its object's space.  For a frame its triangles are moved to
-the world, its boxes found from the bottom up, and the small trees written anew into the first nodes.
+The topology of an object's tree is built once, in the object's space.  For a frame its triangles are moved to the
+world and its boxes found from the leaves up.  Then the top-level BVHs, whose leaves are the roots of objects' trees,
+are built anew, in the first nodes.
 """
 
 from __future__ import annotations
@@ -26,12 +27,12 @@ NODE, BLOCK, TRIANGLE, QUADRIC = 0, 1, 2, 3  # columns of `starts`
 
 
 class ObjectTrees(NamedTuple):
-    """Sub-trees of n objects back to back, with room for trees over them before.
+    """The trees of n objects side by side in one array, after room for the top-level BVHs.
 
-    corners (m, 72) float32 are those of the triangles in each block, in their object's space, as
+    corners (m, 72) float32 are those of the triangles in each of m blocks, in their object's space, as
     structure of arrays; starts (n + 1, 4) int32 tell where each object's nodes, blocks, triangles and
-    quadrics begin.  Row i of links.roots is the box of object i, but row 0 of everything: object 0 is
-    static, and not in here.
+    quadrics begin.  Row i of links.roots is the box of object i, and row 0 the box of everything: object 0
+    never moves, and is not in here.
     """
 
     tree: Tree
@@ -41,40 +42,42 @@ class ObjectTrees(NamedTuple):
 
 
 def build_object_trees(
-    shapes: Sequence[Topology], triangles: NDArray[np.int32], quadrics: NDArray[np.int32]
+    topologies: Sequence[Topology], triangles: NDArray[np.int32], quadrics: NDArray[np.int32]
 ) -> ObjectTrees:
-    """A trees of objects 1 to n - 1, without triangles yet, whose numbers start at triangles and quadrics (n + 1,)."""
+    """Lay out trees of objects 1 to n - 1, without triangles yet.
+
+    The triangles and quadrics of object i begin at triangles[i] and quadrics[i], (n + 1,) each."""
     counts = np.diff(triangles)
-    sizes = [(len(s.children), count_blocks(s, n)) for s, n in zip(shapes, counts[1:], strict=True)]
+    sizes = [(len(s.children), count_blocks(s, n)) for s, n in zip(topologies, counts[1:], strict=True)]
     starts = np.zeros((len(triangles), 4), np.int32)
-    starts[:2, :2] = max(2, 1 + len(shapes)), 1  # two crowns share these nodes, and either may be empty
+    starts[:2, :2] = max(2, 1 + len(topologies)), 1  # two top-level BVHs share these nodes, and either may be empty
     starts[2:, :2] = starts[1, :2] + np.cumsum(sizes, axis=0).reshape(-1, 2)
     starts[:, TRIANGLE], starts[:, QUADRIC] = triangles, quadrics
     tree = empty_tree(starts[-1, NODE], starts[-1, BLOCK] - 1)
     links = make_links(len(tree.nodes), len(tree.blocks), quadrics[-1], len(counts))
-    for i, shape in enumerate(shapes, 1):
+    for i, topology in enumerate(topologies, 1):
         node, block, triangle, quadric = starts[i].tolist()
-        write_topology(tree, links, shape, counts[i], Offsets(node, block, triangle, quadric, i))
+        write_topology(tree, links, topology, counts[i], Offsets(node, block, triangle, quadric, i))
     return ObjectTrees(tree, links, np.empty((len(tree.blocks), 9 * WIDTH), np.float32), starts)
 
 
 def blocks_of(trees: ObjectTrees, index: int) -> NDArray[np.float32]:
-    """The blocks (n, BLOCK_SIZE) of an object."""
+    """The blocks (m, BLOCK_SIZE) of an object."""
     return trees.tree.blocks[trees.starts[index, BLOCK] : trees.starts[index + 1, BLOCK]]
 
 
 @kernel
 def load_corners(trees, corners, first, last):
-    """Take the corners of objects first to last - 1 from corners (d, 9) of the triangles of objects 1 to n - 1."""
+    """Copy the corners of objects first to last - 1 from corners (d, 9) of the triangles of objects 1 to n - 1."""
     start, end = trees.starts[first, BLOCK], trees.starts[last, BLOCK]
     gather_corners(trees.corners, trees.tree.blocks, corners, trees.starts[1, TRIANGLE], start, end)
 
 
 @kernel
 def move_objects(trees, matrices, present, boxes):
-    """Move what is present to the world and find all boxes.
+    """Move the objects that are present to the world, by matrices (n, 12) float32, and find all boxes.
 
-    matrices (n, 12) float32, present (n,) bool; boxes (q, 6) float32 of quadrics, in the world already.
+    present (n,) bool; boxes (q, 6) float32 are around quadrics, in the world already.
     """
     nodes, blocks, roots = address_of(trees.tree.nodes), address_of(trees.tree.blocks), address_of(trees.links.roots)
     node_links, block_links = address_of(trees.links.nodes), address_of(trees.links.blocks)
@@ -99,29 +102,29 @@ def move_objects(trees, matrices, present, boxes):
 
 
 @kernel
-def _write_top_level(trees, shape, objects, first):
-    """Write a tree over objects (p,), its nodes from `first` on, all others before the sub-trees' being empty."""
+def _write_top_level(trees, topology, objects, first):
+    """Write a top-level BVH over objects (p,) into nodes from `first` on; the rest of its room is emptied."""
     nodes, roots, links = address_of(trees.tree.nodes), address_of(trees.links.roots), trees.links.nodes
     clear_nodes(nodes, first, trees.starts[1, NODE])
     links[first] = ~0
-    for i in range(len(shape.children)):
+    for i in range(len(topology.children)):
         for slot in range(WIDTH):
-            child, link = shape.children[i, slot], WIDTH * (first + i) + slot
+            child, link = topology.children[i, slot], WIDTH * (first + i) + slot
             if child >= 0:
                 set_child(nodes, link, first + child)
                 links[first + child] = link
             elif child != VACANT:
-                item = objects[shape.order[shape.leaves[~child, 0]]]
+                item = objects[topology.order[topology.leaves[~child, 0]]]
                 set_child(nodes, link, trees.starts[item, NODE])
                 pad_box(nodes, roots, link, roots + 24 * item, np.float32(0))
-    unite(nodes, roots, address_of(links), first, first + len(shape.children))
+    unite(nodes, roots, address_of(links), first, first + len(topology.children))
 
 
 def build_top_level(trees: ObjectTrees, objects: NDArray[np.bool_], first: int) -> int:
-    """Make a tree over objects, (n,) bool, that have been moved; its root is node `first`, and what is returned the
-    first node after it."""
+    """Build the top-level BVH over those of n objects, (n,) bool, that have been moved: its root becomes node `first`;
+    the number of the first node after it."""
     numbers = np.flatnonzero(objects)
     boxes = trees.links.roots[numbers]
-    shape = build_topology(np.empty((0, 9), np.float32), boxes, np.zeros(2, np.int64), depth=TOP_LEVEL_DEPTH)
-    _write_top_level(trees, shape, numbers, first)
-    return first + len(shape.children)
+    topology = build_topology(np.empty((0, 9), np.float32), boxes, np.zeros(2, np.int64), depth=TOP_LEVEL_DEPTH)
+    _write_top_level(trees, topology, numbers, first)
+    return first + len(topology.children)

@@ -1,7 +1,7 @@
 """A packet: up to 128 rays in local memory, as eight vectors of sixteen.
 
-Each of a ray's numbers has a row.  What is found is written into the rows too, whether the rays go
-through a tree together (`packet_tree`) or one by one (`single`), so that `traverse` need not know.
+Each number of a ray has a row: its direction, its interval and so on.  Hits are written into rows as well, whether the
+rays go through a tree together (`packet_tree`) or one by one (`single_ray`), so that `traverse` need not know.
 """
 
 from __future__ import annotations
@@ -57,10 +57,10 @@ ROW = 4 * PACKET  # bytes of one number of each ray
 FAR = np.float32(1e30)  # no hit is farther, and every empty child is
 LARGEST = np.float32(1e29)  # of t_max, short of what stands for a blocked ray
 BLOCKED_T = -FAR  # t of a ray that is known to be blocked
-CLOSED_T = -LARGEST  # of one that asks for nothing
-STATIC_T = np.float32(2) * BLOCKED_T  # of one that something static blocks, once the static tree is done
+CLOSED_T = -LARGEST  # t of a ray with nothing to ask
+STATIC_T = np.float32(2) * BLOCKED_T  # t of a ray that something static blocks, once the static tree is done
 
-# Rows of a packet's memory: of all rays, of their eight frusta (`packet_group`), and room to work in.
+# Rows of a packet's memory: the numbers of all rays, their eight frusta (`packet_group`), and scratch.
 DX, DY, DZ, IX, IY, IZ, T_MIN, T, NUMBER, U, V, ENTER, LEAVE, OX, OY, OZ = range(16)
 FRUSTA = 16 * ROW
 SCRATCH = FRUSTA + 12 * 32  # twelve rows of eight
@@ -69,7 +69,7 @@ MEMORY = TERMS + 320
 
 
 def origin_of(origin, memory, v):
-    """Origins of a packet's v-th vector: the point they share, or from the packet's memory."""
+    """Origins of the rays of a packet's v-th vector: the point that all share, or what the packet's memory holds."""
     raise NotImplementedError("only kernels call this")
 
 
@@ -91,8 +91,8 @@ def _origin_of(origin, memory, v):
 
 @inlined
 def _row(memory, row, source, count, rest):
-    """Copy a row of `count` numbers into a packet's memory, and fill its last vector up with `rest`; what the
-    next packet will copy is asked for."""
+    """Copy `count` numbers into a row of a packet's memory, and fill the last vector up with `rest`; the numbers of the
+    next packet are fetched into the cache."""
     for line in range(ROW, 2 * ROW, 64):
         prefetch(source + line)
     i = 0
@@ -109,8 +109,8 @@ def _row(memory, row, source, count, rest):
 
 @subkernel
 def fill(memory, batch, first, count):
-    """Rays first to first + count - 1 as a packet; how many vectors they are, the box of their origins, and whether
-    all are finite: of others no bounds can be told."""
+    """Read rays first to first + count - 1 into a packet; how many vectors they are, the lower and upper corner of the
+    box around their origins, and whether all numbers are finite: rays that are not have no frustum."""
     n, at, last = 4 * load_i64(batch + STRIDE), 4 * first, 4 * (count - 1)
     o, d = load_i64(batch + ORIGIN) + at, load_i64(batch + DIRECTION) + at
     t_min, t_max = load_i64(batch + BATCH_T_MIN) + at, load_i64(batch + T_MAX) + at
@@ -144,7 +144,7 @@ def fill(memory, batch, first, count):
 
 @inlined
 def open_vectors(memory, vectors):
-    """The vectors, of so many, that hold a ray to trace."""
+    """Which of so many vectors, as bits, hold a ray to trace."""
     result = np.int64(0)
     for v in range(vectors):
         a = memory + 64 * v
@@ -154,7 +154,7 @@ def open_vectors(memory, vectors):
 
 @inlined
 def lanes_inside(origin, memory, v, planes):
-    """Where the sixteen rays of the v-th vector enter and leave a box, given by its six planes."""
+    """t where each of the sixteen rays of the v-th vector enters and leaves a box, given by its six planes."""
     x0, y0, z0, x1, y1, z1 = planes
     ox, oy, oz = origin_of(origin, memory, v)
     a = memory + 64 * v
@@ -169,7 +169,7 @@ def lanes_inside(origin, memory, v, planes):
 
 @subkernel
 def keep_hits(memory, batch, first, count):
-    """Write a packet's hits to where the batch wants them."""
+    """Write a packet's hits to the arrays that the batch names."""
     at = 4 * first
     t, primitive = load_i64(batch + HIT_T) + at, load_i64(batch + HIT_PRIMITIVE) + at
     u, v = load_i64(batch + HIT_U) + at, load_i64(batch + HIT_V) + at
@@ -195,7 +195,7 @@ def keep_hits(memory, batch, first, count):
 
 @subkernel
 def mark_static(memory, vectors):
-    """Note of the rays of these vectors, given as bits, that are blocked that it was by something static."""
+    """Note that the blocked rays of these vectors, given as bits, are blocked by static geometry."""
     while vectors != 0:
         a = memory + T * ROW + 64 * lowest_bit(vectors)
         vectors &= vectors - 1
@@ -205,7 +205,7 @@ def mark_static(memory, vectors):
 
 @subkernel
 def keep_blocked(memory, batch, first, count):
-    """Write what blocks the rays of a packet, and its number, to where the batch wants them."""
+    """Write what blocks the rays of a packet, and its number, to the arrays that the batch names."""
     blocked, a = load_i64(batch + BLOCKED) + first, memory + T * ROW
     i = 0
     while i + LANES <= count:

@@ -1,7 +1,7 @@
-"""Which vectors of a packet go through a tree together, and the frusta that bound them.
+"""Groups: which vectors of a packet go through a tree together, and the frusta that bound them.
 
-The first vector chooses an axis, and all go with it whose rays head the same way along it and do not
-spread too far.  A frustum ends where the last of its rays stops looking, and so shrinks as they hit.
+The first vector chooses an axis.  All vectors join it whose rays head the same way along that axis and do not spread
+too far.  A frustum ends where the last of its rays stops looking, and so shrinks as rays hit.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ WIDE = np.float32(4)  # slopes of sixteen rays that differ by more are not worth
 NARROW = np.float32(0.02)  # by less, and the frustum alone will do
 HUGE = np.float32(1e18)
 
-# Rows of eight numbers, one for each vector: six of starts, four of slopes, and between which distances it looks.
+# Rows of eight numbers, one for each vector: six of starts, four of slopes, and the distances it looks from and to.
 START, SLOPE, NEAR, REACH = 0, 6, 10, 11
 
 
 class Group(NamedTuple):
-    """Vectors of a packet that go together: which, as bits, and which of those have so wide a frustum that
-    rays had better be asked too; their frusta's axes, a frustum around them all but for where it ends, and
-    the box of their directions."""
+    """Vectors of a packet that go together: which, as bits, and which of those have so wide a frustum that their rays
+    had better be tested too; the axes of their frusta; a frustum around them all, but for where it ends; and the lower
+    and upper corner of the box around their directions."""
 
     vectors: Any
     wide: Any
@@ -51,13 +51,13 @@ class Group(NamedTuple):
 
 @inlined
 def _along(memory, rows, v, axis):
-    """The v-th vector's numbers along an axis, of three rows."""
+    """The v-th vector's numbers in that of three rows which belongs to an axis."""
     return load_f32x16(memory + (rows + axis) * ROW + 64 * v)
 
 
 @inlined
 def _slopes(memory, v, axis, way):
-    """Least and greatest slopes of the v-th vector along the other axes; HUGE where some ray does not go that way.
+    """Least and greatest slopes of the v-th vector along the other two axes; HUGE where some ray goes the other way.
 
     A component so small that its inverse is cut short (`boxes.inverse`) may count as much as TINY."""
     if smallest(_along(memory, DX, v, axis) * way) <= TINY:
@@ -71,13 +71,13 @@ def _slopes(memory, v, axis, way):
 
 @inlined
 def _width(u0, u1, v0, v1):
-    """By how much slopes differ; HUGE for more than is worth a frustum, or for no number at all."""
+    """By how much slopes differ; HUGE if that is too much for a frustum, or not a number."""
     return maximum(u1 - u0, v1 - v0) if u1 - u0 <= WIDE and v1 - v0 <= WIDE else HUGE
 
 
 @subkernel
 def lead_of(memory, v):
-    """The axis, and which way along it, that suit the v-th vector best; whether its frustum is worth having."""
+    """The axis that suits the v-th vector best, the way along it (1 or -1), and whether its frustum is worth having."""
     best, axis, way = ZERO, 0, ZERO
     for k in range(3):
         d = _along(memory, DX, v, k)
@@ -97,14 +97,14 @@ def _put(memory, row, v, value):
 
 @inlined
 def _put_bounds(memory, row, v, x):
-    """The least of sixteen numbers into a row of the v-th vector's, the greatest into the next."""
+    """Store the least of sixteen numbers in a row for the v-th vector, and the greatest in the next row."""
     _put(memory, row, v, smallest(x))
     _put(memory, row + 1, v, largest(x))
 
 
 @inlined
 def _put_starts(memory, v, axes):
-    """Where the rays of the v-th vector start."""
+    """Store where the rays of the v-th vector start."""
     _put_bounds(memory, START, v, _along(memory, OX, v, axes.along) * axes.way)
     _put_bounds(memory, START + 2, v, _along(memory, OX, v, (axes.along + 1) % 3))
     _put_bounds(memory, START + 4, v, _along(memory, OX, v, (axes.along + 2) % 3))
@@ -112,14 +112,14 @@ def _put_starts(memory, v, axes):
 
 @inlined
 def _put_reach(memory, v, axes):
-    """Note up to where along the axis the rays of the v-th vector are still looking."""
+    """Store how far along the axis the rays of the v-th vector still look."""
     reach = largest(load_f32x16(memory + T * ROW + 64 * v) * _along(memory, DX, v, axes.along) * axes.way)
     _put(memory, REACH, v, reach + MARGIN * reach)
 
 
 @subkernel
 def put_reaches(memory, vectors, axes):
-    """The same for several vectors, given as bits."""
+    """Store how far the rays of several vectors, given as bits, still look."""
     while vectors != 0:
         _put_reach(memory, lowest_bit(vectors), axes)
         vectors &= vectors - 1
@@ -127,7 +127,7 @@ def put_reaches(memory, vectors, axes):
 
 @inlined
 def _put_frustum(memory, v, axes):
-    """Bound the v-th vector along an axis, if that is worth it; by how much its slopes differ."""
+    """Store the frustum of the v-th vector if it is worth having; by how much its slopes differ."""
     u0, u1, v0, v1 = _slopes(memory, v, axes.along, axes.way)
     width = _width(u0, u1, v0, v1)
     if width > WIDE:
@@ -179,7 +179,7 @@ def _least_and_greatest(memory, row, vectors):
 
 @subkernel
 def group_of(memory, vectors, axis, way):
-    """Those of these vectors (bits) that can go together along an axis; at least one."""
+    """The group of those vectors, of some given as bits, that can go together along an axis; at least one can."""
     for row in (START, START + 2, START + 4, SLOPE, SLOPE + 2):  # bounds of no ray: they leave others' as they are
         store(memory + FRUSTA + 32 * row, f32x8(HUGE))
         store(memory + FRUSTA + 32 * row + 32, f32x8(-HUGE))
@@ -202,11 +202,11 @@ def group_of(memory, vectors, axis, way):
 
 @inlined
 def reaches_of(memory):
-    """Up to where along the axis each of the eight vectors is still looking."""
+    """How far along the axis each of the eight vectors still looks."""
     return load_f32x8(memory + FRUSTA + 32 * REACH)
 
 
 @inlined
 def looking(memory, distance):
-    """The vectors that are still looking beyond a distance along the axis."""
+    """The vectors, as bits, that still look beyond a distance along the axis."""
     return bits_of(reaches_of(memory) >= distance)

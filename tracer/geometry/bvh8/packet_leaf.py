@@ -1,6 +1,7 @@
 """Leaves for a packet: a block of eight triangles, or a quadric, against the vectors that come to it.
 
-Rays from one point are by far the cheaper: what is subtracted from that point is subtracted once.
+Rays from one point are by far cheaper, since what the test takes from origin and triangle alone is found once a block.
+So whatever depends on the origins has two versions: `origin` is the point that all rays share, or None.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ from tracer.simd import (
 
 @inlined
 def _inside_block(origin, memory, block, active):
-    """Note where the rays of active vectors are in a block's box; the vectors of which some lane is."""
+    """Find where the rays of active vectors enter and leave a block's box; the vectors of which some ray enters."""
     planes = block_planes(block)
     result = np.int64(0)
     while active != 0:
@@ -67,7 +68,7 @@ def _inside_block(origin, memory, block, active):
 
 
 def prepare(origin, group, memory, block):
-    """What can be done once for a block; the triangles, as bits, that may be hit."""
+    """Do what can be done once for a block; the triangles, as bits, that may be hit."""
     raise NotImplementedError("only kernels call this")
 
 
@@ -133,7 +134,7 @@ def _directions(memory, v):
 
 @inlined
 def _distance(memory, v, crosses, height, area):
-    """(mask, t, 1 / area) of those crossings that lie where the rays are in the block's box."""
+    """(mask, t, 1 / area) of those crossings that lie inside the block's box."""
     a = memory + 64 * v
     scale = np.float32(1) / area
     t = height * scale
@@ -141,9 +142,11 @@ def _distance(memory, v, crosses, height, area):
     return mask & (t > load_f32x16(a + T_MIN * ROW)), t, scale
 
 
-@subkernel
-def closest_in_block(origin, memory, group, block, active):
-    """Nearest hits in a block of triangles; the vectors in which there were nearer ones."""
+@inlined
+def _meet_block(origin, memory, group, block, active, nearest):
+    """Test the active vectors against a block's triangles, for the nearest hits or else for any; the vectors that hit.
+
+    `nearest` is a constant, so that each of the two is compiled without the other."""
     active = _inside_block(origin, memory, block, active)
     found = np.int64(0)
     if active == 0:
@@ -163,44 +166,34 @@ def closest_in_block(origin, memory, group, block, active):
                 continue
             mask, t, scale = _distance(memory, v, crosses, height, area)
             best = load_f32x16(a + T * ROW)
-            mask = mask & ((t < best) | ((t == best) & (i32x16(number) < load_i32x16(a + NUMBER * ROW))))
-            if any_lane(mask):
-                found |= np.int64(1) << v
+            nearer = t < best
+            if nearest:
+                nearer = nearer | ((t == best) & (i32x16(number) < load_i32x16(a + NUMBER * ROW)))
+            mask = mask & nearer
+            if not any_lane(mask):
+                continue
+            found |= np.int64(1) << v
+            store_where(a + NUMBER * ROW, i32x16(number), mask)
+            if nearest:
                 store(a + T * ROW, select(mask, t, best))
-                store_where(a + NUMBER * ROW, i32x16(number), mask)
                 store_where(a + U * ROW, u * scale, mask)
                 store_where(a + V * ROW, w * scale, mask)
+            else:
+                store_where(a + T * ROW, f32x16(BLOCKED_T), mask)
     return found
 
 
 @subkernel
+def closest_in_block(origin, memory, group, block, active):
+    """Keep the nearest hits on a block's triangles; the vectors with rays that hit nearer than before."""
+    return _meet_block(origin, memory, group, block, active, True)
+
+
+@subkernel
 def any_in_block(origin, memory, group, block, active):
-    """Rays that meet any of a block's triangles: their t becomes BLOCKED_T, their number that of the triangle; the
-    vectors they are in."""
-    active = _inside_block(origin, memory, block, active)
-    found = np.int64(0)
-    if active == 0:
-        return found
-    triangles = prepare(origin, group, memory, block)
-    while triangles != 0:
-        k = lowest_bit(triangles)
-        triangles &= triangles - 1
-        rest = active
-        while rest != 0:
-            v = lowest_bit(rest)
-            rest &= rest - 1
-            a = memory + 64 * v
-            crosses, height, _u, _w, area = crossing_of(origin, memory, block, v, k)
-            if not any_lane(crosses):
-                continue
-            mask, t, _scale = _distance(memory, v, crosses, height, area)
-            before = load_f32x16(a + T * ROW)
-            mask = mask & (t < before)
-            if any_lane(mask):
-                found |= np.int64(1) << v
-                store_where(a + T * ROW, f32x16(BLOCKED_T), mask)
-                store_where(a + NUMBER * ROW, i32x16(load_i32(block + NUMBERS + 4 * k)), mask)
-    return found
+    """Mark the rays that hit any of a block's triangles: their t becomes BLOCKED_T, their number that of the triangle;
+    the vectors they are in."""
+    return _meet_block(origin, memory, group, block, active, False)
 
 
 @inlined
@@ -213,8 +206,8 @@ def _lane_origin(origin, memory, lane):
 
 @subkernel
 def quadric_in_child(origin, memory, a, active, trees, i, nearest):
-    """Rays on a quadric, the planes of whose box lie 32 bytes apart from an address on, one by one; the
-    vectors in which any hit (nearer than before, if the nearest is asked for)."""
+    """Test rays against a quadric, one by one; the vectors with rays that hit it (nearer than before, where `nearest`
+    hits are asked for).  The planes of its box lie 32 bytes apart from the address `a` on."""
     found = np.int64(0)
     while active != 0:
         v = lowest_bit(active)

@@ -1,10 +1,10 @@
-"""A packet through a BVH8: what one of its rays has read, all have.
+"""A packet of rays through an 8-wide tree: a node is read once for all its rays.
 
-At a node the frustum around the packet is tested against the eight children at once, then each child
-that it may enter against the frusta of the packet's eight vectors at once.  Rays themselves are tested
-where something hangs on it, in leaves.  A pending child is one int64: above, the bits of the distance
-where the packet may enter it, their lowest eight replaced by the set of vectors that may (which only makes
-the distance less); below, its code.
+At a node the frustum around the packet is tested against all eight children at once, and then each child that it may
+enter against the frusta of the packet's eight vectors at once.  Rays themselves are tested only where the answer
+depends on it: in leaves.  A pending child is one int64.  Its upper half has the bits of the distance where the packet
+may enter the child, the lowest eight replaced by the set of vectors that may (which only makes the distance less); its
+lower half has the child's code.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def code_of(node, c):
 
 @inlined
 def prefetch_child(trees, code):
-    """Have a child's memory brought near before it is needed."""
+    """Fetch a child's memory into the cache before it is needed."""
     if code < 0:
         a = trees.blocks + BLOCK * ~code
         prefetch(a + 320)
@@ -64,7 +64,7 @@ def prefetch_child(trees, code):
 
 @inlined
 def push_sorted(stack, pending, bottom, entry):
-    """Put an entry among those from bottom on, which lie nearest last; the new number of pending ones."""
+    """Insert an entry among those from `bottom` on, which are sorted, the nearest last; how many are pending then."""
     at = pending
     while at > bottom and load_i64(stack + 8 * (at - 1)) < entry:
         store(stack + 8 * at, load_i64(stack + 8 * (at - 1)))
@@ -75,7 +75,7 @@ def push_sorted(stack, pending, bottom, entry):
 
 @inlined
 def _open(memory, node, group):
-    """(distances, bits) of the children of a node that some ray of the packet may enter."""
+    """(distances, bits) of the children of a node that some ray of the group may enter."""
     enter, mask = entering(boxes_at(node, group.axes), group.frustum, largest(reaches_of(memory)))
     return enter, bits_of(mask)
 
@@ -97,7 +97,7 @@ def _vectors_entering(origin, memory, group, box, active):
 
 @subkernel
 def _ask_quadrics(origin, memory, group, trees, node, quadrics, active, nearest, counts):
-    """Those children of a node that are quadrics, given as bits; for the nearest hits, or for any."""
+    """Test the group against children of a node, given as bits, that are quadrics: for the nearest hits or for any."""
     while quadrics != 0:
         c = lowest_bit(quadrics)
         quadrics &= quadrics - 1
@@ -107,85 +107,79 @@ def _ask_quadrics(origin, memory, group, trees, node, quadrics, active, nearest,
         put_reaches(memory, found, group.axes)
 
 
-@subkernel
-def closest_in_tree(origin, memory, group, trees, stack, counts):
-    """Nearest hits of a packet in a tree."""
+@inlined
+def _walk(origin, memory, group, trees, stack, occluder, nearest, counts):
+    """Send a packet through a tree, for the nearest hits, nearer children first, or for any; the block hit last.
+
+    `nearest` is a constant, so that either walk is compiled without the other."""
     store(stack, (group.vectors << 32) | trees.root)
     pending = 1
     while pending > 0:
+        # Take the nearest pending child, and the vectors that may enter it and still look that far.
         pending -= 1
         entry = load_i64(stack + 8 * pending)
         above = entry >> 32
-        active = above & looking(memory, as_f32(np.int32(above & 0xFFFFFF00)))
+        active = above & looking(memory, as_f32(np.int32(above & 0xFFFFFF00)) if nearest else np.float32(0))
         if active == 0:
             continue
+        # Test the triangles of a leaf.
         code = np.int64(np.int32(entry & 0xFFFFFFFF))
         if code < 0:
             counts[TESTS] += 1
-            found = closest_in_block(origin, memory, group, trees.blocks + BLOCK * ~code, active)
+            block = trees.blocks + BLOCK * ~code
+            if nearest:
+                found = closest_in_block(origin, memory, group, block, active)
+            else:
+                found = any_in_block(origin, memory, group, block, active)
             if found != 0:
+                occluder = ~code
                 put_reaches(memory, found, group.axes)
             continue
+        # Open a node: test its quadrics right away.
         counts[STEPS] += 1
         node = trees.nodes + NODE * code
         enter, children = _open(memory, node, group)
         quadrics = children & quadrics_in(node)
         children ^= quadrics
         if quadrics != 0:
-            _ask_quadrics(origin, memory, group, trees, node, quadrics, active, True, counts)
-        store(memory + SCRATCH, enter)
+            _ask_quadrics(origin, memory, group, trees, node, quadrics, active, nearest, counts)
+        # Put the other children that some vector may enter on the stack.
+        if nearest:
+            store(memory + SCRATCH, enter)
         bottom = pending
         while children != 0:
             c = lowest_bit(children)
             children &= children - 1
             on = _vectors_entering(origin, memory, group, node + 4 * c, active)
-            if on != 0:
-                prefetch_child(trees, code_of(node, c))
+            if on == 0:
+                continue
+            prefetch_child(trees, code_of(node, c))
+            below = code_of(node, c) & 0xFFFFFFFF
+            if nearest:
                 above = (np.int64(load_i32(memory + SCRATCH + 4 * c)) & 0x7FFFFF00) | on
-                pending = push_sorted(stack, pending, bottom, (above << 32) | (code_of(node, c) & 0xFFFFFFFF))
+                pending = push_sorted(stack, pending, bottom, (above << 32) | below)
+            else:
+                store(stack + 8 * pending, (on << 32) | below)
+                pending += 1
+    return occluder
+
+
+@subkernel
+def closest_in_tree(origin, memory, group, trees, stack, counts):
+    """Nearest hits of a packet in a tree."""
+    _walk(origin, memory, group, trees, stack, np.int64(0), True, counts)
 
 
 @subkernel
 def any_in_tree(origin, memory, group, trees, stack, occluder, counts):
-    """Which rays of a packet meet anything in a tree: their t becomes BLOCKED_T.
+    """Find the rays of a packet that hit anything in a tree: their t becomes BLOCKED_T.
 
-    The block `occluder`, which the rays before these met, is asked first (Haines and Greenberg 1986); the
-    one that the next had better ask is returned."""
+    The block `occluder`, which the rays before these hit, is tested first (Haines and Greenberg 1986); the
+    block that the next rays had better test first is returned."""
     counts[TESTS] += 1
     found = any_in_block(origin, memory, group, trees.blocks + BLOCK * occluder, group.vectors)
     if found != 0:
         put_reaches(memory, found, group.axes)
         if looking(memory, np.float32(0)) == 0:
             return occluder
-    store(stack, (group.vectors << 32) | trees.root)
-    pending = 1
-    while pending > 0:
-        pending -= 1
-        entry = load_i64(stack + 8 * pending)
-        active = (entry >> 32) & looking(memory, np.float32(0))
-        if active == 0:
-            continue
-        code = np.int64(np.int32(entry & 0xFFFFFFFF))
-        if code < 0:
-            counts[TESTS] += 1
-            found = any_in_block(origin, memory, group, trees.blocks + BLOCK * ~code, active)
-            if found != 0:
-                occluder = ~code
-                put_reaches(memory, found, group.axes)
-            continue
-        counts[STEPS] += 1
-        node = trees.nodes + NODE * code
-        _enter, children = _open(memory, node, group)
-        quadrics = children & quadrics_in(node)
-        children ^= quadrics
-        if quadrics != 0:
-            _ask_quadrics(origin, memory, group, trees, node, quadrics, active, False, counts)
-        while children != 0:
-            c = lowest_bit(children)
-            children &= children - 1
-            on = _vectors_entering(origin, memory, group, node + 4 * c, active)
-            if on != 0:
-                prefetch_child(trees, code_of(node, c))
-                store(stack + 8 * pending, (on << 32) | (code_of(node, c) & 0xFFFFFFFF))
-                pending += 1
-    return occluder
+    return _walk(origin, memory, group, trees, stack, occluder, False, counts)

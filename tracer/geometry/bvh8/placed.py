@@ -1,4 +1,4 @@
-"""The three trees of a placed world as queries get them: of what never moves, of what rests, of what moves."""
+"""The three trees of a placed world as queries get them: of what never moves, of what rests, and of what moves."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ NODE, BLOCK = 4 * layout.NODE_SIZE, 4 * layout.BLOCK_SIZE  # bytes
 CHILDREN = 4 * layout.CHILDREN  # offset of the children's codes in a node
 NUMBERS, BOX, COUNT = 4 * layout.PRIMITIVES, 4 * layout.BOX, 4 * layout.COUNT  # offsets in a block
 
-# A placed world: of each of its trees the addresses of nodes and blocks, and the number of its root; the address of
-# the quadrics as seen from the world, the number of triangles, and which trees are to be asked at all, as bits: the
-# first, and of the others those that hold anything.
+# A placed world, as offsets in bytes: for each of its trees the addresses of nodes and blocks and the number of the
+# root; then the address of the quadrics as seen from the world, the number of triangles, and the trees that are worth
+# asking, as bits: the static one, and those of the others that hold anything.
 NODES, BLOCKS, ROOT, TREE = 0, 8, 16, 24
 QUADRICS, TRIANGLE_COUNT, TREES = range(3 * TREE, 3 * TREE + 24, 8)
 STATIC_TREE, RESTING_TREE, MOVING_TREE = range(3)
@@ -24,8 +24,8 @@ STATIC_TREES, DYNAMIC_TREES = 1 << STATIC_TREE | 1 << RESTING_TREE, 1 << MOVING_
 
 
 class PlacedTree(NamedTuple):
-    """One of the trees: addresses of nodes and blocks, the root's number, a pointer to quadrics as seen from the
-    world, and the number of triangles, which is that of the first quadric."""
+    """One of the three trees: the addresses of its nodes and blocks, its root's number, a pointer to the quadrics as
+    seen from the world, and the number of triangles, which is also the number of the first quadric."""
 
     nodes: Any
     blocks: Any
@@ -36,7 +36,7 @@ class PlacedTree(NamedTuple):
 
 @inlined
 def tree_of(data, which):
-    """One of the three trees of the world at an address."""
+    """One of the three trees of the world that `data` is the address of."""
     a = data + TREE * which
     return PlacedTree(
         load_i64(a + NODES),
@@ -48,9 +48,9 @@ def tree_of(data, which):
 
 
 @inlined
-def root_of(trees):
+def root_of(tree):
     """Address of a tree's root."""
-    return trees.nodes + NODE * trees.root
+    return tree.nodes + NODE * tree.root
 
 
 @inlined

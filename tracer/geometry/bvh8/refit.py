@@ -1,8 +1,8 @@
-"""Filling a tree whose shape is known: triangles into blocks, and boxes from the blocks up to the root.
+"""Filling a tree whose topology is known: triangles go into blocks, and boxes up from the blocks to the root.
 
-Boxes of blocks and quadrics are padded and handed to their parents; a node's box is the union of
-what the node holds, exactly.  So a stored box always contains its children's stored boxes, and a
-ray that meets those, in float32 arithmetic, meets it too.
+The boxes of blocks and quadrics are padded and stored in their parents.  A node's box is exactly the union of the
+boxes in it.  So a stored box always contains its children's stored boxes, and a ray that meets one of those, in
+float32 arithmetic, meets it too.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ ROW = 4 * 9  # bytes of a triangle
 
 
 class Links(NamedTuple):
-    """Where the box of each node, block and quadric of a tree is stored: 8 * parent + child, or ~r in row r of `roots`.
+    """Where the box of each node, block and quadric is stored: 8 * parent + child, or ~r for row r of `roots`.
 
     nodes (n,), blocks (m,) and quadrics (q,) int32; roots (r, 6) float32.
     """
@@ -48,7 +48,7 @@ class Links(NamedTuple):
 
 
 def make_links(nodes: int, blocks: int, quadrics: int, roots: int) -> Links:
-    """Uninitialised links of a tree with so many of each."""
+    """Uninitialised links for a tree of so many nodes, blocks, quadrics and roots."""
     return Links(
         np.empty(nodes, np.int32),
         np.empty(blocks, np.int32),
@@ -59,7 +59,7 @@ def make_links(nodes: int, blocks: int, quadrics: int, roots: int) -> Links:
 
 @kernel
 def fill_blocks(blocks, rows, first, last):
-    """Copy triangles (t, 9) to blocks first to last - 1, by the numbers there; their largest absolute coordinate.
+    """Copy the triangles that blocks first to last - 1 name from rows (t, 9); their largest absolute coordinate.
 
     The boxes that are stored are exact.
     """
@@ -106,7 +106,7 @@ def _image(local, m0, m1, m2, m3):
 
 @subkernel
 def move_blocks(blocks, local, matrix, first, last):
-    """Take blocks first to last - 1 to the world from their corners, by matrix (12,); the largest absolute coordinate.
+    """Move the triangles of blocks first to last - 1 to the world by matrix (12,); the largest absolute coordinate.
 
     Each corner is moved by itself, so that triangles that share it still do.  Boxes are exact.  All
     arrays are given as addresses.
@@ -133,8 +133,8 @@ def move_blocks(blocks, local, matrix, first, last):
 
 
 @inlined
-def _hand_up(nodes, roots, link):
-    """Where a box is to be stored, and how far apart its numbers."""
+def _place_of(nodes, roots, link):
+    """The address that the box of a link is stored at, and the distance in bytes between its six numbers."""
     if link >= 0:
         return nodes + NODE_BYTES * (link // WIDTH) + 4 * (link % WIDTH), LANES
     return roots + 24 * ~link, 4
@@ -142,8 +142,8 @@ def _hand_up(nodes, roots, link):
 
 @subkernel
 def pad_box(nodes, roots, link, box, padding):
-    """Let a box (6,) grow, and hand it to its parent."""
-    place, stride = _hand_up(nodes, roots, link)
+    """Pad a box (6,), and store it in its parent as well."""
+    place, stride = _place_of(nodes, roots, link)
     for k in range(6):
         value = load_f32(box + 4 * k) + (padding if k >= 3 else -padding)
         store(box + 4 * k, value)
@@ -152,10 +152,10 @@ def pad_box(nodes, roots, link, box, padding):
 
 @subkernel
 def unite(nodes, roots, links, first, last):
-    """Hand the boxes of nodes first to last - 1 to their parents, children before parents."""
+    """Store the boxes around nodes first to last - 1 in their parents, children before parents."""
     for i in range(last - 1, first - 1, -1):
         node = nodes + NODE_BYTES * i
-        place, stride = _hand_up(nodes, roots, load_i32(links + 4 * i))
+        place, stride = _place_of(nodes, roots, load_i32(links + 4 * i))
         for k in range(3):
             upper = load_f32x8(node + LANES * (k + 3))
             store(place + stride * k, smallest(load_f32x8(node + LANES * k)))
@@ -164,7 +164,7 @@ def unite(nodes, roots, links, first, last):
 
 @kernel
 def pad_blocks(tree, links, padding, first, last):
-    """Let the boxes of blocks first to last - 1 grow, and hand them to their parents."""
+    """Pad the boxes of blocks first to last - 1, and store them in their parents as well."""
     nodes, blocks, roots = address_of(tree.nodes), address_of(tree.blocks), address_of(links.roots)
     parents = address_of(links.blocks)
     for i in range(first, last):
@@ -173,7 +173,7 @@ def pad_blocks(tree, links, padding, first, last):
 
 @kernel
 def pad_quadrics(tree, links, boxes, padding, first, last):
-    """Let boxes first to last - 1 of quadrics (q, 6) grow, and hand them to their parents."""
+    """Pad boxes first to last - 1 of quadrics (q, 6), and store them in their parents."""
     nodes, roots = address_of(tree.nodes), address_of(links.roots)
     for i in range(first, last):
         pad_box(nodes, roots, links.quadrics[i], address_of(boxes) + 24 * i, padding)
@@ -181,5 +181,5 @@ def pad_quadrics(tree, links, boxes, padding, first, last):
 
 @kernel
 def unite_nodes(tree, links, first, last):
-    """As `unite`, of nodes all of whose leaves' boxes are known."""
+    """As `unite`, called from Python; the boxes of all leaves are known."""
     unite(address_of(tree.nodes), address_of(links.roots), address_of(links.nodes), first, last)

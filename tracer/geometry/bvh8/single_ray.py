@@ -1,7 +1,8 @@
-"""Rays through a BVH8 one by one, where they have nothing in common but where they begin: at the roots.
+"""Rays through 8-wide trees one by one, where their directions have nothing in common.
 
-Sixteen rays choose among the roots' children together, and each then goes below the one it chose alone,
-until none has one left that could matter.  The answers are those of `packet_tree`, bit for bit.
+They do share the root.  So the sixteen rays of a vector are tested together against the root's children, and then each
+ray goes alone below the nearest child that it has not visited, until no child is left that could change its answer.
+The answers are those of `packet_tree`, bit for bit.
 """
 
 from __future__ import annotations
@@ -13,9 +14,9 @@ from tracer.geometry.bvh8.eight_wide import (
     any_in_block,
     any_quadric,
     children_of,
-    line_at,
     nearest_in_block,
     nearest_quadric,
+    single_ray_at,
 )
 from tracer.geometry.bvh8.layout import QUADRIC
 from tracer.geometry.bvh8.packet import (
@@ -69,10 +70,11 @@ def _entry(distance, code):
 
 @inlined
 def _open_root(memory, v, trees, first, room, nearest, counts):
-    """Sixteen rays into the children of a root, at which all begin: into rows of keys, one for each child.
+    """Test sixteen rays against the children of a root and write a row of keys for each child.
 
-    A key is the bits of the distance, the lowest four replaced by first and the child's number (which only makes
-    the distance less), or CLOSED.  Quadrics among the children are asked at once."""
+    A key is the bits of the distance at which the ray enters the child, the lowest four replaced by the child's
+    number, counted from `first` (which only makes the distance less); or CLOSED.  Quadrics among the children are
+    tested right away."""
     root = root_of(trees)
     quadrics = quadrics_in(root)
     for c in range(WIDTH):
@@ -89,8 +91,8 @@ def _open_root(memory, v, trees, first, room, nearest, counts):
 
 @inlined
 def _next_children(memory, v, room, children):
-    """Of sixteen rays, one after `room`'s rows of keys, the next nearest child of the roots that each has still to
-    visit: into the row after them; the rays that have one, as bits."""
+    """Find the nearest child that each of sixteen rays has still to visit, and write its key into the row after the
+    keys of all children; the rays that have such a child, as bits."""
     last, best = load_i32x16(room + 64 * children), i32x16(CLOSED)
     for c in range(children):
         key = load_i32x16(room + 64 * c)
@@ -101,8 +103,11 @@ def _next_children(memory, v, room, children):
 
 @subkernel
 def _closest_below(a, code, trees, stack, counts):
-    """Into the column of a packet's memory that begins at an address: what its ray meets first below a child."""
-    r = line_at(a)
+    """The nearest hit of one ray below a child; `a` is the address of the ray's column in the packet's memory.
+
+    `_any_below` is no variant of this: to find the nearest hit, children are visited in order of distance, and the
+    nearest of them is never put on the stack."""
+    r = single_ray_at(a)
     best = Best(load_f32(a + T * ROW), load_i32(a + NUMBER * ROW), load_f32(a + U * ROW), load_f32(a + V * ROW))
     pending, scratch = np.int64(0), stack - 64
     while code != NOTHING:
@@ -158,9 +163,9 @@ def _block(a, number):
 
 @subkernel
 def _any_below(a, code, trees, stack, counts):
-    """Into the column of a packet's memory that begins at an address: whether its ray meets anything below a child, and
-    what."""
-    r, far = line_at(a), load_f32(a + T * ROW)
+    """Whether one ray meets anything below a child, and what; `a` is the address of the ray's column in the packet's
+    memory."""
+    r, far = single_ray_at(a), load_f32(a + T * ROW)
     store(stack, code)
     pending = np.int64(1)
     while pending > 0:
@@ -198,20 +203,27 @@ def _open_rays(memory, v):
     return ones(bits_of(load_f32x16(a + T * ROW) > load_f32x16(a + T_MIN * ROW)))
 
 
-@subkernel
-def closest_one_by_one(memory, v, data, stack, counts):
-    """Nearest hits of the rays of a packet's v-th vector."""
-    room, rays, todo = stack - 64 - ROOM, _open_rays(memory, v), load_i64(data + TREES)
-    while todo != 0:  # two trees at a time: a key has room for no more
+@inlined
+def _one_by_one(memory, v, data, todo, stack, counts, nearest):
+    """The rays of a packet's v-th vector through the trees `todo`, bits, for the nearest hits or else for any.
+
+    `nearest` is a constant, so that each of the two is compiled without the other."""
+    room, rays = stack - 64 - ROOM, _open_rays(memory, v)
+    while todo != 0:
+        # Take two trees at a time for the nearest hits: a key has room for the children of no more.
         first = lowest_bit(todo)
         todo &= todo - 1
-        last = lowest_bit(todo) if todo != 0 else first
-        todo &= todo - 1
+        last = first
+        if nearest and todo != 0:
+            last = lowest_bit(todo)
+            todo &= todo - 1
+        # Test all sixteen rays against the children of the roots.
         children = 0
         for which in range(first, last + 1, max(1, last - first)):
             counts[STEPS] += rays
-            _open_root(memory, v, tree_of(data, which), children, room, True, counts)
+            _open_root(memory, v, tree_of(data, which), children, room, nearest, counts)
             children += WIDTH
+        # Send each ray below the nearest child that it has not visited yet, until none could matter.
         keys = room + 64 * children
         store(keys, i32x16(-1))
         rest = _next_children(memory, v, room, children)
@@ -219,31 +231,25 @@ def closest_one_by_one(memory, v, data, stack, counts):
             while rest != 0:
                 lane = lowest_bit(rest)
                 rest &= rest - 1
-                key = np.int64(load_i32(keys + 4 * lane))
+                a, key = memory + 64 * v + 4 * lane, np.int64(load_i32(keys + 4 * lane))
                 tree = tree_of(data, first if key & WIDTH == 0 else last)
-                _closest_below(memory + 64 * v + 4 * lane, code_of(root_of(tree), key & 7), tree, stack, counts)
+                code = code_of(root_of(tree), key & 7)
+                if nearest:
+                    _closest_below(a, code, tree, stack, counts)
+                else:
+                    _any_below(a, code, tree, stack, counts)
             rest = _next_children(memory, v, room, children)
+        if not nearest and first != MOVING_TREE:
+            mark_static(memory, np.int64(1) << v)
+
+
+@subkernel
+def closest_one_by_one(memory, v, data, stack, counts):
+    """Nearest hits of the rays of a packet's v-th vector."""
+    _one_by_one(memory, v, data, load_i64(data + TREES), stack, counts, True)
 
 
 @subkernel
 def any_one_by_one(memory, v, data, which, stack, counts):
-    """Which rays of a packet's v-th vector meet what is asked for: t tells it."""
-    room, rays, todo = stack - 64 - ROOM, _open_rays(memory, v), trees_asked(data, which)
-    while todo != 0:
-        number = lowest_bit(todo)
-        todo &= todo - 1
-        tree = tree_of(data, number)
-        counts[STEPS] += rays
-        _open_root(memory, v, tree, 0, room, False, counts)
-        keys = room + 64 * WIDTH
-        store(keys, i32x16(-1))
-        rest = _next_children(memory, v, room, WIDTH)
-        while rest != 0:
-            while rest != 0:
-                lane = lowest_bit(rest)
-                rest &= rest - 1
-                a = memory + 64 * v + 4 * lane
-                _any_below(a, code_of(root_of(tree), np.int64(load_i32(keys + 4 * lane)) & 7), tree, stack, counts)
-            rest = _next_children(memory, v, room, WIDTH)
-        if number != MOVING_TREE:
-            mark_static(memory, np.int64(1) << v)
+    """Which rays of a packet's v-th vector meet what is asked for; their t says so."""
+    _one_by_one(memory, v, data, trees_asked(data, which), stack, counts, False)

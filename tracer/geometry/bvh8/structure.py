@@ -1,8 +1,8 @@
-"""The 8-wide trees of a scene: one of what never moves, and those of all dynamic objects, placed for a frame.
+"""The 8-wide trees of a scene as an acceleration structure: one of what never moves, and one for each dynamic object.
 
-Rays are traced in the world alone: what moves is moved there for each frame.  What deforms has a tree of
-the shape that was best at the nearest of some times along its animation.  Shapes are kept; so they
-stay good, are seldom made, and do not depend on which frames came before.
+Rays are traced in the world only, and so the triangles of dynamic objects are moved there for each frame.  Topologies
+are built once and kept.  An object that deforms has a topology for each of some times along its animation, and uses
+that of the nearest.  So topologies stay good, and do not depend on which frames came before.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ from tracer.scene.arrays import Float32, Float64
 from tracer.scene.deformation import deformed
 from tracer.scene.model import Progress
 
-STEPS, MOST_KEYS = 8, 64  # from a key of a deforming object to the next; in all
+STEPS, MOST_KEYS = 8, 64  # topologies from one key of a deforming object to the next, and of one object at most
 
 
 class Bvh8:
-    """Built over all primitives of a scene; raises Cancelled if `progress` does meanwhile."""
+    """See `tracer.geometry.structure`; raises Cancelled if `progress` does while trees are being built."""
 
     closest, any_hit = traverse.closest, traverse.any_hit
-    hit_padding = PADDING  # of the largest coordinate, by how much boxes are larger that t must lie in
+    hit_padding = PADDING
 
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
         self._primitives, self._objects = primitives, objects
@@ -50,15 +50,15 @@ class Bvh8:
         )
         self._keys = {index: _keys(d.times) for index, d in primitives.deformations.items()}
         self._at = dict.fromkeys(self._keys, 0)
-        self._shapes: dict[tuple[int, int], Topology] = {}
+        self._topologies: dict[tuple[int, int], Topology] = {}
         self._build_object_trees(progress)
         self.world_quadrics = primitives.quadrics.copy()
         self._quadric_boxes = np.zeros((len(primitives.quadrics), 6), np.float32)
 
-    def _shape(self, index: int, progress: Progress | None = None) -> Topology:
-        """The shape of a dynamic object's tree; of one that deforms, at the key it is at."""
+    def _topology(self, index: int, progress: Progress | None = None) -> Topology:
+        """The topology of a dynamic object's tree; of one that deforms, that for the time it is nearest to."""
         known = (index, self._at.get(index, 0))
-        if known not in self._shapes:
+        if known not in self._topologies:
             primitives, quadrics = self._primitives, self._primitives.quadrics_of(index)
             rows = primitives.triangles[primitives.triangles_of(index)]
             if index in self._keys:
@@ -66,20 +66,20 @@ class Bvh8:
                 rows = triangle_rows(deformed(primitives.deformations[index], time)[0])
             boxes = primitives.quadric_boxes(quadrics, primitives.to_object[quadrics])
             count = len(rows) + len(boxes)
-            self._shapes[known] = watched(
+            self._topologies[known] = watched(
                 lambda control: build_topology(rows, boxes, control, thread_count()),
                 "building the tree",
                 count,
                 1.2 * count,
                 progress,
             )
-        return self._shapes[known]
+        return self._topologies[known]
 
     def _build_object_trees(self, progress: Progress | None = None) -> None:
-        """Put all objects' trees together."""
+        """Lay out the trees of all dynamic objects side by side."""
         primitives = self._primitives
-        shapes = [self._shape(index, progress) for index in range(1, self._objects)]
-        self._object_trees = build_object_trees(shapes, primitives.triangle_starts, primitives.quadric_starts)
+        topologies = [self._topology(index, progress) for index in range(1, self._objects)]
+        self._object_trees = build_object_trees(topologies, primitives.triangle_starts, primitives.quadric_starts)
         load_corners(self._object_trees, primitives.corners.reshape(-1, 9), 1, self._objects)
 
     def _deform(self, time: float) -> None:
@@ -91,7 +91,7 @@ class Bvh8:
             load_corners(self._object_trees, self._primitives.corners.reshape(-1, 9), index, index + 1)
 
     def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
-        """Move all that is present, as the primitives are now, to where it is."""
+        """Move all objects that are present, as the primitives are now, to their poses."""
         primitives, present = self._primitives, poses.present.copy()
         present[0] = False
         moving = present & ~resting
@@ -103,9 +103,9 @@ class Bvh8:
         build_top_level(self._object_trees, resting, self.resting_root)
         self.dynamic = self._object_trees.tree
         there_now = [tree_box(self.dynamic, root) for root in (0, self.resting_root)]
-        self.extent = float(np.abs(there_now).max())  # by a part of which boxes of what moves or rests are padded
+        self.extent = float(np.abs(there_now).max())
         roots = ((self.static, 0), (self.dynamic, self.resting_root), (self.dynamic, 0))
-        trees = [number for tree, root in roots for number in (tree.nodes.ctypes.data, tree.blocks.ctypes.data, root)]
+        trees = [word for tree, root in roots for word in (tree.nodes.ctypes.data, tree.blocks.ctypes.data, root)]
         there = 1 << STATIC_TREE | bool(resting.any()) << RESTING_TREE | bool(moving.any()) << MOVING_TREE
         triangles, quadrics = len(primitives.triangles), self.world_quadrics.ctypes.data
         self._data = np.array([*trees, quadrics, triangles, there], np.int64)
@@ -122,7 +122,7 @@ class Bvh8:
         )
 
     def _move_quadrics(self, poses: Poses) -> None:
-        """Maps and boxes, in the world, of dynamic quadrics."""
+        """Find maps from the world and boxes in the world for dynamic quadrics."""
         primitives = self._primitives
         which = slice(primitives.quadrics_of(0).stop, len(primitives.quadrics))
         if which.start == which.stop:
@@ -133,7 +133,7 @@ class Bvh8:
         self._quadric_boxes[which] = primitives.placed_quadric_boxes(which, poses)
 
     def triangles_of(self, index: int, to_world: Float64) -> WorldTriangles:
-        """The triangles of an object where it is placed: just what is intersected, and the boxes of their blocks."""
+        """The triangles of an object in the world, just as they are intersected, with the boxes of their blocks."""
         triangles = self._primitives.triangles_of(index)
         blocks = self.static.blocks if index == 0 else blocks_of(self._object_trees, index)
         numbers = blocks.view(np.int32)[:, PRIMITIVES : PRIMITIVES + WIDTH]
@@ -151,7 +151,7 @@ class Bvh8:
 
 
 def _keys(times: Float64) -> Float64:
-    """STEPS times from each of an animation's keys to the next; where that were too many, evenly spaced ones."""
+    """STEPS times from each key of an animation to the next; MOST_KEYS evenly spaced times where those were more."""
     keys = np.unique(times)
     if STEPS * len(keys) > MOST_KEYS:
         return np.linspace(keys[0], keys[-1], MOST_KEYS)
@@ -159,7 +159,7 @@ def _keys(times: Float64) -> Float64:
 
 
 def tree_box(tree: Tree, root: int = 0) -> NDArray[np.float32]:
-    """Box (6,) around all below a node of a tree; inverted where there is nothing in it."""
+    """Box (6,) around everything below a node of a tree; inverted where there is nothing."""
     used = tree.nodes.view(np.int32)[root, CHILDREN : CHILDREN + WIDTH] != ~0
     if not used.any():
         return NO_BOX.copy()

@@ -1,8 +1,8 @@
-"""The queries on a placed world: batches cut into packets, and these traced together or ray by ray.
+"""The two queries on a placed world: batches are cut into packets, and a packet is traced together or ray by ray.
 
-Vectors of a packet whose rays head the same way go through the trees together, the others ray by ray.
-Which is which their directions say; as a ray's answer does not depend on who it travels with, nothing
-but time hangs on that.
+The rays of a packet lie in vectors of sixteen.  Vectors whose rays head the same way go through the trees together, as
+one group (`packet_tree`); the rays of the others go one by one (`single_ray`).  The directions decide which.  A ray's
+answer does not depend on the company it travels in, so that only time is at stake.
 """
 
 from __future__ import annotations
@@ -28,74 +28,85 @@ from tracer.simd import i64_at, load_i64, local_memory, lowest_bit, store
 
 
 @inlined
-def _from_one_point(low, high):
+def _closest_in_group(low, high, memory, group, tree, stack, count):
+    """Nearest hits of a group of vectors in a tree; rays from one point share much of the work."""
+    if _is_one_point(low, high):
+        closest_in_tree(low, memory, group, tree, stack, count)
+    else:
+        closest_in_tree(None, memory, group, tree, stack, count)
+
+
+@inlined
+def _any_in_group(low, high, memory, group, tree, stack, occluder, count):
+    """Whether the rays of a group meet anything in a tree; the block that the next group had better ask first."""
+    if _is_one_point(low, high):
+        return any_in_tree(low, memory, group, tree, stack, occluder, count)
+    return any_in_tree(None, memory, group, tree, stack, occluder, count)
+
+
+@inlined
+def _is_one_point(low, high):
     return low[0] == high[0] and low[1] == high[1] and low[2] == high[2]
 
 
-@entry
-def closest(data, batch, first, last, counts):
-    """Nearest hits of rays first to last - 1."""
-    memory, stack, count = local_memory(MEMORY), local_memory(STACK), i64_at(counts)
-    single_stack = local_memory(SINGLE_MEMORY) + SINGLE_MEMORY - STACK
-    trees = load_i64(data + TREES)
-    for start in range(first, last, PACKET):
-        n = min(PACKET, last - start)
-        vectors, low, high, finite = fill(memory, batch, start, n)
-        todo = open_vectors(memory, vectors)
-        while todo != 0:
-            v = lowest_bit(todo)
-            axis, way, together = lead_of(memory, v)
-            if not (finite and together):
-                closest_one_by_one(memory, v, data, single_stack, count)
-                todo &= todo - 1
-                continue
-            group = group_of(memory, todo, axis, way)
-            rest = trees
-            while rest != 0:
-                tree = tree_of(data, lowest_bit(rest))
-                rest &= rest - 1
-                if _from_one_point(low, high):
-                    closest_in_tree(low, memory, group, tree, stack, count)
-                else:
-                    closest_in_tree(None, memory, group, tree, stack, count)
-            todo &= ~group.vectors
-        keep_hits(memory, batch, start, n)
+@inlined
+def _trace(data, batch, first, last, counts, nearest):
+    """Trace rays first to last - 1, for the nearest hits or else for any; the results go where the batch says.
 
-
-@entry
-def any_hit(data, batch, first, last, counts):
-    """What of that which is asked for lies in the interval of rays first to last - 1."""
+    `nearest` is a constant, so that either query is compiled without the other."""
     memory, stack, count = local_memory(MEMORY), local_memory(STACK), i64_at(counts)
     single_stack = local_memory(SINGLE_MEMORY) + SINGLE_MEMORY - STACK
     which = load_i64(batch + WHICH)
-    trees = trees_asked(data, which)
+    trees = load_i64(data + TREES) if nearest else trees_asked(data, which)
     occluders = local_memory(24)  # the last block met in each tree; block 0 is empty
     for number in range(3):
         store(occluders + 8 * number, np.int64(0))
     for start in range(first, last, PACKET):
+        # Read the packet, and see which of its vectors hold a ray to trace.
         n = min(PACKET, last - start)
         vectors, low, high, finite = fill(memory, batch, start, n)
         todo = open_vectors(memory, vectors)
         while todo != 0:
+            # Trace the rays of the first vector one by one where they have no direction in common.
             v = lowest_bit(todo)
             axis, way, together = lead_of(memory, v)
             if not (finite and together):
-                any_one_by_one(memory, v, data, which, single_stack, count)
+                if nearest:
+                    closest_one_by_one(memory, v, data, single_stack, count)
+                else:
+                    any_one_by_one(memory, v, data, which, single_stack, count)
                 todo &= todo - 1
                 continue
+            # Send it through each tree, with all vectors that go the same way.
             group = group_of(memory, todo, axis, way)
             rest = trees
             while rest != 0:
                 number = lowest_bit(rest)
                 rest &= rest - 1
                 tree = tree_of(data, number)
-                occluder = load_i64(occluders + 8 * number)
-                if _from_one_point(low, high):
-                    occluder = any_in_tree(low, memory, group, tree, stack, occluder, count)
+                if nearest:
+                    _closest_in_group(low, high, memory, group, tree, stack, count)
                 else:
-                    occluder = any_in_tree(None, memory, group, tree, stack, occluder, count)
-                store(occluders + 8 * number, occluder)
-                if number != MOVING_TREE:
-                    mark_static(memory, group.vectors)
+                    occluder = load_i64(occluders + 8 * number)
+                    occluder = _any_in_group(low, high, memory, group, tree, stack, occluder, count)
+                    store(occluders + 8 * number, occluder)
+                    if number != MOVING_TREE:
+                        mark_static(memory, group.vectors)
             todo &= ~group.vectors
-        keep_blocked(memory, batch, start, n)
+        # Write the answers.
+        if nearest:
+            keep_hits(memory, batch, start, n)
+        else:
+            keep_blocked(memory, batch, start, n)
+
+
+@entry
+def closest(data, batch, first, last, counts):
+    """Nearest hits of rays first to last - 1."""
+    _trace(data, batch, first, last, counts, True)
+
+
+@entry
+def any_hit(data, batch, first, last, counts):
+    """What of that which is asked for lies in the interval of rays first to last - 1."""
+    _trace(data, batch, first, last, counts, False)

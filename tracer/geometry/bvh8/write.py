@@ -1,4 +1,4 @@
-"""Writing the shape of a tree, all but the boxes and triangles, into nodes and blocks."""
+"""Writing a topology into the nodes and blocks of a tree; boxes and triangles come later (`refit`)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Offsets(NamedTuple):
 
 @subkernel
 def clear_nodes(nodes, first, last):
-    """Nodes with eight empty slots; all arrays are given as addresses."""
+    """Give nodes first to last - 1 eight empty slots each; `nodes` is an address."""
     for node in range(nodes + NODE_BYTES * first, nodes + NODE_BYTES * last, NODE_BYTES):
         for k in range(6):
             store(node + 32 * k, f32x8(EMPTY))
@@ -35,7 +35,7 @@ def clear_nodes(nodes, first, last):
 
 @kernel
 def clear(tree):
-    """Make all nodes and blocks empty ones."""
+    """Empty all nodes and blocks of a tree."""
     clear_nodes(address_of(tree.nodes), 0, len(tree.nodes))
     blocks = address_of(tree.blocks)
     for block in range(blocks, blocks + BLOCK_BYTES * len(tree.blocks), BLOCK_BYTES):
@@ -46,36 +46,36 @@ def clear(tree):
 
 @inlined
 def set_child(nodes, link, code):
-    """Let the child at a link (see Links) be another."""
+    """Set the code of the child at a link (see Links); `nodes` is an address."""
     store(nodes + NODE_BYTES * (link // WIDTH) + 4 * (CHILDREN + link % WIDTH), np.int32(code))
 
 
 @kernel
-def write_topology(tree, links, shape, triangles, offsets):
-    """Write a shape into nodes and blocks that are empty, from `offsets` on, with links to and fro.
+def write_topology(tree, links, topology, triangles, offsets):
+    """Write a topology into empty nodes and blocks of a tree, from `offsets` on, and the links to parents.
 
-    The first `triangles` items of the shape are triangles, the others quadrics.
+    The first `triangles` items of the topology are triangles, the others quadrics.
     """
     nodes, block = address_of(tree.nodes), offsets.block
     links.nodes[offsets.node] = ~offsets.root
-    for i in range(len(shape.children)):
+    for i in range(len(topology.children)):
         for slot in range(WIDTH):
-            child, link = shape.children[i, slot], WIDTH * (offsets.node + i) + slot
+            child, link = topology.children[i, slot], WIDTH * (offsets.node + i) + slot
             if child == VACANT:
                 continue
             if child >= 0:
                 set_child(nodes, link, offsets.node + child)
                 links.nodes[offsets.node + child] = link
                 continue
-            first, count = shape.leaves[~child, 0], shape.leaves[~child, 1]
-            if shape.order[first] >= triangles:
-                quadric = offsets.quadric + shape.order[first] - triangles
+            first, count = topology.leaves[~child, 0], topology.leaves[~child, 1]
+            if topology.order[first] >= triangles:
+                quadric = offsets.quadric + topology.order[first] - triangles
                 set_child(nodes, link, ~(QUADRIC + quadric))
                 links.quadrics[quadric] = link
                 continue
             place = address_of(tree.blocks) + BLOCK_BYTES * block
             for lane in range(count):
-                store(place + 4 * (PRIMITIVES + lane), np.int32(offsets.triangle + shape.order[first + lane]))
+                store(place + 4 * (PRIMITIVES + lane), np.int32(offsets.triangle + topology.order[first + lane]))
             store(place + 4 * COUNT, np.int32(count))
             set_child(nodes, link, ~block)
             links.blocks[block] = link

@@ -1,8 +1,8 @@
-"""The kd-trees of a scene: one for what never moves, one per dynamic object, placed for a frame.
+"""The kd-trees of a scene as an acceleration structure: one of what never moves, and one for each dynamic object.
 
-A rigid object's tree is built once, and rays are carried into the object's space; only the trees of
-objects that deform are built again, and the small ones over where the objects are (§3 of the paper;
-Hunt, Mark, Stoll 2006): one over those that rest, and one over those that move.
+The tree of a rigid object is built once, and rays are transformed to the object's space.  Built anew for each frame are
+only the trees of objects that deform and two small ones over the boxes of objects where they are now: one over the
+objects that rest, and one over those that move (§3 of the paper; Hunt, Mark, Stoll 2006).
 """
 
 from __future__ import annotations
@@ -23,27 +23,27 @@ from tracer.geometry.queries import Placed
 from tracer.scene.arrays import Float32, Float64
 from tracer.scene.model import Progress
 
-CARRIED = 8 * 2.0**-24  # of the coordinates: rays carried to an object's space may be elsewhere by that
+TRANSFORMED = 8 * 2.0**-24  # of the coordinates: by so much rays are wrong that are transformed to an object's space
 EVERYWHERE = 3e37
 
 Tree = tuple[Trees, NDArray[np.float32]]  # with the box around it
 
 
 class KdTree:
-    """Built over all primitives of a scene; raises Cancelled if `progress` does meanwhile."""
+    """See `tracer.geometry.structure`; raises Cancelled if `progress` does while trees are being built."""
 
     closest, any_hit = traverse.closest, traverse.any_hit
-    extent = 0.0  # the largest coordinate by a part of which boxes of what moves or rests are padded now: none
-    hit_padding = 1e30  # of the largest coordinate, how far t may be wrong for a hit to count: anything
+    extent = 0.0  # boxes of dynamic objects are not padded
+    hit_padding = 1e30  # and a hit need not lie in any
 
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
         self._primitives, self._objects = primitives, objects
         self._trees = [self._build(index, progress) for index in range(objects)]
-        self._static = self._globalised([0])[0]
-        self._dynamic, self._roots = self._globalised(range(1, objects))
+        self._static = self._side_by_side([0])[0]
+        self._dynamic, self._roots = self._side_by_side(range(1, objects))
 
     def _build(self, index: int, progress: Progress | None = None) -> Tree:
-        """The tree of one object; its items count the object's own primitives."""
+        """Build the tree of one object; its items are numbers of the object's own primitives."""
         primitives, quadrics = self._primitives, self._primitives.quadrics_of(index)
         rows = primitives.triangles[primitives.triangles_of(index)]
         boxes = np.concatenate(
@@ -57,8 +57,8 @@ class KdTree:
             progress,
         )
 
-    def _globalised(self, indices: Iterable[int]) -> tuple[Trees, NDArray[np.int32]]:
-        """Trees of several objects back to back, their items numbers of the whole scene; and all objects' roots."""
+    def _side_by_side(self, indices: Iterable[int]) -> tuple[Trees, NDArray[np.int32]]:
+        """Trees of several objects side by side, with the items of the whole scene; and the roots of all objects."""
         words, items = [], []
         roots = np.zeros(self._objects, np.int32)
         node_offset = item_offset = 0
@@ -80,19 +80,19 @@ class KdTree:
         return Trees(flat, flat.view(np.float32), np.concatenate(items) if items else np.empty(0, np.int32)), roots
 
     def _top(self, which: NDArray[np.bool_], boxes: Float32, poses: Poses) -> Tree:
-        """A tree over some objects, (n,) bool, where they are; boxes (n, 6) are in their own spaces."""
+        """Build a tree over some of n objects, (n,) bool, where they are; boxes (n, 6) are in their own spaces."""
         numbers = np.flatnonzero(which)
         placed = transform_boxes(boxes[numbers].astype(np.float64), poses.to_world[numbers]).astype(np.float32)
         tree, box = build_tree(placed, self._primitives.triangles[:0])
         return Trees(tree.words, tree.planes, numbers.astype(np.int32)[tree.items]), box
 
     def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
-        """Build what deforms again, from the primitives as they are, and place all that is present."""
+        """Build the trees of objects that deform anew, and those over the objects that are present."""
         primitives = self._primitives
         for index in primitives.deformations:
             self._trees[index] = self._build(index)
         if primitives.deformations:
-            self._dynamic, self._roots = self._globalised(range(1, self._objects))
+            self._dynamic, self._roots = self._side_by_side(range(1, self._objects))
         moving = poses.present & ~resting
         moving[0] = False
         boxes = np.stack([box for _, box in self._trees])
@@ -127,7 +127,7 @@ class KdTree:
         )
 
     def triangles_of(self, index: int, to_world: Float64) -> WorldTriangles:
-        """The triangles of an object that is at to_world (3, 4): rays are carried to its space, in float32."""
+        """The triangles of an object that to_world (3, 4) takes to the world; rays go to its space in float32."""
         local = self._primitives.triangles[self._primitives.triangles_of(index)]
         near = triangle_boxes(local).astype(np.float64)  # a hit lies no further outside than the box is wide
         near += (near[:, 3:] - near[:, :3]).max(1, initial=0.0)[:, None] * 1.0001 * OUTWARDS
@@ -139,12 +139,12 @@ class KdTree:
         scales = np.linalg.svd(linear, compute_uv=False)
         reach = np.abs(local).max(initial=0.0) * 2 * scales[0]
         reach += np.abs(to_world[:, 3]).max() + np.abs(world).max(initial=0.0)
-        blurs = np.full(len(local), CARRIED * reach, np.float32)
+        blurs = np.full(len(local), TRANSFORMED * reach, np.float32)
         if scales[0] > 1.1 * scales[-1]:  # a little in the object's space may be much here
             boxes = np.broadcast_to(EVERYWHERE * OUTWARDS, (len(local), 6))
         else:
             boxes = transform_boxes(near, np.broadcast_to(to_world, (len(local), 3, 4)))
-            boxes = boxes + CARRIED * reach * OUTWARDS
+            boxes = boxes + TRANSFORMED * reach * OUTWARDS
         return WorldTriangles(world.reshape(-1, 9).astype(np.float32), blurs, boxes.astype(np.float32))
 
     def bounds(self) -> Float32:

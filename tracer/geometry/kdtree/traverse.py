@@ -1,9 +1,9 @@
 """The two queries on a placed world, one ray at a time, every step counted.
 
-Static geometry has one tree.  Each dynamic object has its own, in its own space, and two small trees
-over the objects' boxes, of those that rest and of those that move, lead to them; a ray is carried into
-an object's space rather than the object into the world's (Hunt, Mark, Stoll 2006; §3 of the paper).  A
-step is a node entered, inner or leaf, in any of these trees; a test is a ray against a primitive.
+Static geometry has one tree.  Each dynamic object has its own, in its own space.  Two small trees over the objects'
+boxes lead to them: one over the objects that rest, and one over those that move.  The ray is transformed to an object's
+space rather than the object to the world (Hunt, Mark, Stoll 2006; §3 of the paper).  A step is a node entered, inner or
+leaf, in any of these trees; a test is a ray against a primitive.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ from tracer.geometry.rays import INFINITY, MISS, Ray, ray_at
 from tracer.kernels import entry, inlined, subkernel
 from tracer.simd import f32_at, i32_at, i64_at, load_i64, u8_at
 
-SLACK = np.float32(1e-5)  # relative; by so much an object's interval is wider than that of its leaf
+SLACK = np.float32(1e-5)  # relative: by so much a ray's interval in an object is wider than in the leaf that names it
 
 
-# A placed world as the entries get it: addresses, each an int64, of all that Parts has; then the number of triangles,
-# and whether there is anything that rests, and anything that moves.
+# A placed world as the entries get it: the address, an int64 each, of everything in Parts; then the number of
+# triangles, whether anything rests, and whether anything moves.
 (
     TRIANGLES, QUADRICS, STATIC_WORDS, STATIC_ITEMS, DYNAMIC_WORDS, DYNAMIC_ITEMS, RESTING_WORDS, RESTING_ITEMS,
     MOVING_WORDS, MOVING_ITEMS, ROOTS, BOXES, TO_OBJECT, RESTING_BOX, MOVING_BOX, TRIANGLE_COUNT,
@@ -55,7 +55,7 @@ class _Top(NamedTuple):
 
 
 class _Search(NamedTuple):
-    """A world as pointers, with what one ray at a time needs to search it."""
+    """A placed world as pointers, and the memory that the walk of one ray needs."""
 
     triangles: Any
     triangle_count: int
@@ -79,6 +79,12 @@ class _Best(NamedTuple):
     primitive: Any
     u: Any
     v: Any
+
+
+@inlined
+def _no_hit(t_max):
+    """Nothing hit yet, and only what is nearer than t_max will do."""
+    return _Best(t_max, np.int32(MISS), ZERO, ZERO)
 
 
 @inlined
@@ -123,58 +129,58 @@ def _between(ray, t_min, t_max):
     return Ray(ray.ox, ray.oy, ray.oz, ray.dx, ray.dy, ray.dz, t_min, t_max)
 
 
-@subkernel
-def _closest_in_tree(s, trees, o, ray, enter, leave, best):
-    """Nearest hit in object o, if nearer than `best`; equal t goes to the lower number."""
+@inlined
+def _walk(s, trees, o, ray, enter, leave, best, nearest):
+    """The nearest hit in object o if it is nearer than `best`; or, where not the `nearest` is wanted, the first found.
+
+    Of hits at equal t the one on the lower number is the nearest.  `nearest` is a constant, so that either walk is
+    compiled without the other."""
     near, far = hit_box(_between(ray, enter, leave), s.boxes, o)
     if near > far:
         return best
     pending = push(s.stack, 0, s.roots[o], near, far)
-    while pending > 0 and s.stack.enter[pending - 1] <= best.t:
-        leaf = next_leaf(trees, ray, s.stack, pending)
-        pending = leaf.pending
-        s.counts[STEPS] += leaf.steps
-        s.counts[TESTS] += leaf.size
-        for i in range(leaf.first, leaf.first + leaf.size):
-            primitive = trees.items[i]
-            t, u, v = _hit_primitive(s.triangles, s.triangle_count, s.quadrics, ray, primitive)
-            if t < best.t or (t == best.t and t < INFINITY and primitive < best.primitive):
-                best = _Best(t, primitive, u, v)
-    return best
-
-
-@subkernel
-def _any_in_tree(s, trees, o, ray, enter, leave):
-    """The first primitive of object o that is found to be hit, or MISS."""
-    near, far = hit_box(_between(ray, enter, leave), s.boxes, o)
-    if near > far:
-        return np.int32(MISS)
-    pending = push(s.stack, 0, s.roots[o], near, far)
-    while pending > 0:
+    while pending > 0 and (not nearest or s.stack.enter[pending - 1] <= best.t):
         leaf = next_leaf(trees, ray, s.stack, pending)
         pending = leaf.pending
         s.counts[STEPS] += leaf.steps
         for i in range(leaf.first, leaf.first + leaf.size):
             s.counts[TESTS] += 1
-            if _hit_primitive(s.triangles, s.triangle_count, s.quadrics, ray, trees.items[i])[0] < INFINITY:
-                return trees.items[i]
-    return np.int32(MISS)
+            primitive = trees.items[i]
+            t, u, v = _hit_primitive(s.triangles, s.triangle_count, s.quadrics, ray, primitive)
+            if nearest:
+                if t < best.t or (t == best.t and t < INFINITY and primitive < best.primitive):
+                    best = _Best(t, primitive, u, v)
+            elif t < INFINITY:
+                return _Best(t, primitive, u, v)
+    return best
+
+
+@subkernel
+def _closest_in_tree(s, trees, o, ray, enter, leave, best):
+    """The nearer of `best` and the nearest hit in object o."""
+    return _walk(s, trees, o, ray, enter, leave, best, True)
+
+
+@subkernel
+def _any_in_tree(s, trees, o, ray, enter, leave):
+    """The first primitive of object o that is found to be hit, or MISS."""
+    return _walk(s, trees, o, ray, enter, leave, _no_hit(INFINITY), False).primitive
 
 
 @inlined
 def _piece(leaf):
-    """The part of a ray that is in a leaf: an object that lies in several is searched piece by piece."""
+    """The interval of a ray in a leaf of objects: an object that lies in several leaves is searched piece by piece."""
     return leaf.enter - SLACK * abs(leaf.enter), leaf.leave + SLACK * abs(leaf.leave)
 
 
 @inlined
-def _closest_of(s, top, ray, best):
-    """Nearest hit in the objects of a tree, if nearer than `best`."""
+def _walk_top(s, top, ray, best, nearest):
+    """As `_walk`, in all objects of a tree over objects."""
     near, far = hit_box(ray, top.box, 0)
-    if near > min(far, best.t):
+    if near > (min(far, best.t) if nearest else far):
         return best
     pending = push(s.top_stack, 0, 0, near, far)
-    while pending > 0 and s.top_stack.enter[pending - 1] <= best.t:
+    while pending > 0 and (not nearest or s.top_stack.enter[pending - 1] <= best.t):
         leaf = next_leaf(top.trees, ray, s.top_stack, pending)
         pending = leaf.pending
         s.counts[STEPS] += leaf.steps
@@ -182,28 +188,25 @@ def _closest_of(s, top, ray, best):
         for i in range(leaf.first, leaf.first + leaf.size):
             o = top.trees.items[i]
             local = transform_ray(ray, s.to_object, o, 12)
-            best = _closest_in_tree(s, s.dynamic, o, local, enter, min(leave, best.t), best)
+            if nearest:
+                best = _closest_in_tree(s, s.dynamic, o, local, enter, min(leave, best.t), best)
+            else:
+                primitive = _any_in_tree(s, s.dynamic, o, local, enter, leave)
+                if primitive != MISS:
+                    return _Best(ZERO, primitive, ZERO, ZERO)
     return best
+
+
+@inlined
+def _closest_of(s, top, ray, best):
+    """Nearest hit in the objects of a tree, if nearer than `best`."""
+    return _walk_top(s, top, ray, best, True)
 
 
 @subkernel
 def _any_of(s, top, ray):
     """The first primitive of the objects of a tree that is found to be hit, or MISS."""
-    near, far = hit_box(ray, top.box, 0)
-    if near > far:
-        return np.int32(MISS)
-    pending = push(s.top_stack, 0, 0, near, far)
-    while pending > 0:
-        leaf = next_leaf(top.trees, ray, s.top_stack, pending)
-        pending = leaf.pending
-        s.counts[STEPS] += leaf.steps
-        enter, leave = _piece(leaf)
-        for i in range(leaf.first, leaf.first + leaf.size):
-            o = top.trees.items[i]
-            primitive = _any_in_tree(s, s.dynamic, o, transform_ray(ray, s.to_object, o, 12), enter, leave)
-            if primitive != MISS:
-                return primitive
-    return np.int32(MISS)
+    return _walk_top(s, top, ray, _no_hit(INFINITY), False).primitive
 
 
 @entry
@@ -217,7 +220,7 @@ def closest(data, batch, first, last, counts):
     hit_u, hit_v = f32_at(load_i64(batch + HIT_U)), f32_at(load_i64(batch + HIT_V))
     for i in range(first, last):
         ray = ray_at(rays, i)
-        best = _Best(ray.t_max, np.int32(MISS), ZERO, ZERO)
+        best = _no_hit(ray.t_max)
         best = _closest_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max, best)
         for number in range(2):
             top = s.resting if number == 0 else s.moving

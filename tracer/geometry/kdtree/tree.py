@@ -1,8 +1,8 @@
-"""A kd-tree as the traversal sees it: eight bytes a node, and one way to walk to the next leaf.
+"""How a kd-tree lies in memory, eight bytes a node, and the walk of a ray to its next leaf.
 
-An inner node is followed by its lower child; the second word holds the number of the upper child
-and, in the two lowest bits, the axis.  In a leaf those bits are LEAF, the first word is the
-position of its first item, and the rest of the second word their count.
+The first word of an inner node is its plane; the second holds the number of the upper child and, in the two lowest
+bits, the axis.  The lower child follows its parent.  In a leaf those two bits are LEAF, the rest of the second word is
+the number of items, and the first word says where they begin.
 (Pharr, Jakob, Humphreys: Physically Based Rendering, third edition, section 4.4.)
 """
 
@@ -23,9 +23,9 @@ STACK_SIZE = MAX_DEPTH + 4
 
 
 class Trees(NamedTuple):
-    """Any number of kd-trees, back to back: a root is a node's number.
+    """Any number of kd-trees side by side: a root is a node's number.
 
-    words (2 n,) int32 and planes, the same memory as float32; items (m,) int32, what leaves hold.
+    words (2 n,) int32, and planes, the same memory as float32; items (m,) int32, what leaves hold.
     Kernels that walk them are given pointers instead of arrays.
     """
 
@@ -35,12 +35,13 @@ class Trees(NamedTuple):
 
 
 class Parts(NamedTuple):
-    """All that a placed world is to its kd-trees.
+    """A world placed in kd-trees.
 
-    triangles (t, 9) and quadrics (q, 16) float32 are in the space of their object.  static and dynamic
-    are trees over primitives, resting one over those dynamic objects that rest, inside resting_box (6,),
-    and moving one over the others.  roots (objects,) int32, boxes (objects, 6) and to_object (objects, 12)
-    float32; object 0 is static.
+    triangles (t, 9) and quadrics (q, 16) float32 are in the space of their object.  `static` is the tree over the
+    primitives of object 0, `dynamic` are those of the other objects, each in the space of its object.  `resting` is
+    a tree over the objects that rest, in the world and inside resting_box (6,), and `moving` one over the others.
+    For each object: roots (objects,) int32, where its tree begins; boxes (objects, 6) float32, in its own space;
+    to_object (objects, 12) float32, the map from the world.
     """
 
     triangles: NDArray[np.float32]
@@ -57,7 +58,7 @@ class Parts(NamedTuple):
 
 
 class Stack(NamedTuple):
-    """Nodes still to be entered by one ray, each with its interval of t: pointers to STACK_SIZE entries."""
+    """Nodes that one ray has still to enter, each with its interval of t: pointers to STACK_SIZE entries."""
 
     node: Any
     enter: Any
@@ -65,7 +66,8 @@ class Stack(NamedTuple):
 
 
 class Leaf(NamedTuple):
-    """A leaf that a ray enters: its items, the ray's interval in it, and what it took to get there."""
+    """A leaf that a ray enters: where its items begin and how many they are, the ray's interval of t in it, the steps
+    taken on the way, and how many nodes are pending then."""
 
     first: int
     size: int
@@ -77,6 +79,7 @@ class Leaf(NamedTuple):
 
 @inlined
 def push(stack, pending, node, enter, leave):
+    """Put a node and a ray's interval in it on the stack; how many are pending then."""
     stack.node[pending] = node
     stack.enter[pending] = enter
     stack.leave[pending] = leave
@@ -85,7 +88,7 @@ def push(stack, pending, node, enter, leave):
 
 @inlined
 def next_leaf(trees, ray, stack, pending):
-    """Enter the newest of the `pending` nodes and walk down to a leaf, nearer child first."""
+    """Enter the newest of the pending nodes and walk down to a leaf, nearer child first."""
     pending -= 1
     node, enter, leave = stack.node[pending], stack.enter[pending], stack.leave[pending]
     inverse_x, inverse_y, inverse_z = inverse(ray.dx), inverse(ray.dy), inverse(ray.dz)

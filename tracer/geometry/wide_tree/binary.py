@@ -1,17 +1,16 @@
 """From triangles and boxes to a binary tree, by the surface area heuristic over bins (Wald 2007).
 
-A node's items lie together.  To split, they are put in bins along each axis by the centres of their
-boxes, the cheapest of all planes between bins is taken, and they are copied, lower side first, to the
-same places of a second array; the children are copied back, and so on.  What a side costs is counted
-in blocks of 8 triangles, because that is what a ray tests at once.  Leaves are smaller than blocks:
-which of them make one is decided when the tree is collapsed.
+The items of a node lie together.  To split a node, its items are put into bins along each axis, by the centres of their
+boxes.  The cheapest of all planes between bins is taken, and the items are copied, lower side first, to the same places
+of a second array; its children's are copied back, and so on.  The cost of a side is counted in blocks of 8 triangles,
+because a ray tests a block at once.  Leaves are smaller than blocks: which of them make one block is decided when the
+tree is collapsed.
 
-An item is eight float32: lower corner, upper corner *negated* (so that a box grows by one vector
-minimum), its number and its weight (1 of a triangle, 8 of
-what needs a leaf to itself), both as int32.  A node is eight too: its box in the same way,
-then either WEIGHT 0 and the number of its upper child, or a leaf's weight and first item.  The
-lower child follows its parent.  A tree over n items takes at most 2 n - 1 places, those of every
-subtree are set aside in advance, and so any number of threads builds the same tree.
+An item is eight float32: its lower corner, its upper corner *negated* (so that a box grows by one vector minimum), and,
+as int32, its number and its weight: 1 for a triangle, 8 for what needs a leaf to itself.  A node is eight as well: its
+box in the same form, then either WEIGHT 0 and the number of its upper child, or a leaf's weight and first item.  The
+lower child follows its parent.  A tree over n items takes at most 2 n - 1 places.  The places of every subtree are set
+aside in advance, so that any number of threads builds the same tree.
 """
 
 from __future__ import annotations

@@ -22,10 +22,10 @@ ALL = 1 << 62
 
 
 def _grow(items: Items, count: int, depth: int, control: NDArray[np.int64], threads: int) -> None:
-    """A binary tree over all items, at most so deep; raises Cancelled when control[CANCELLED] is set."""
+    """Build a binary tree over all items, at most so deep; raises Cancelled when control[CANCELLED] is set."""
 
     def run(tasks: list[NDArray[np.int64]], splits: int) -> list[NDArray[np.int64]]:
-        """Work off tasks in parallel; those that are left in each."""
+        """Work on tasks in parallel, each for so many splits; the tasks that are left of them."""
         left: list[list[NDArray[np.int64]]] = [[] for _ in tasks]
 
         def one(chunk: int, worker: int) -> None:
@@ -56,10 +56,11 @@ def build_topology(
     threads: int = 1,
     depth: int = MAX_DEPTH - TOP_LEVEL_DEPTH,
 ) -> Topology:
-    """The shape of a tree over triangles (t, 9), corner and edges, and boxes (q, 6), numbered in this order.
+    """The topology of a tree over triangles (t, 9), corner and edges, and boxes (q, 6), numbered in this order.
 
-    No way down has more than `depth` nodes, which must do for a balanced binary tree.  Raises Cancelled
-    when control[CANCELLED] is set; counts items that have found their leaf in control[DONE].
+    No way from the root to a leaf has more than `depth` nodes, which must be enough for a balanced binary tree.
+    control (2,) int64: raises Cancelled once control[CANCELLED] is set, and counts the items that have found
+    their leaf in control[DONE].
     """
     triangles, count = len(rows), len(rows) + len(boxes)
     if count == 0:

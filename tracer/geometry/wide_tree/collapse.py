@@ -1,7 +1,7 @@
 """From a binary tree to one of up to eight children a node, at the least expected cost.
 
-What a subtree costs in so many slots of a node above it follows from what its two children cost in
-fewer, so that the cheapest way is found from the leaves up (Ylitie, Karras, Laine 2017).
+A subtree may take one or more of the eight slots of a node above it.  Its cost in so many slots follows from the costs
+of its two children in fewer, so that the cheapest way is found from the leaves up (Ylitie, Karras, Laine 2017).
 Neighbouring leaves are joined to one block where that pays.
 """
 
@@ -14,7 +14,7 @@ from tracer.geometry.wide_tree.topology import VACANT, WIDTH
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.simd import address_of, load_i32, store
 
-# What a ray that enters them is expected to spend on a node, on a leaf and on each triangle in it.
+# Expected cost of a node and of a leaf to a ray that enters it, and of each triangle in a leaf.
 NODE_COST, LEAF_COST, TRIANGLE_COST = 1.0, 0.5, 0.1
 ONE_LEAF = 1  # in a plan: all below becomes one leaf where it has one slot
 SHARE_BITS = 3  # in a plan, from bit SHARE_BITS * slots on: how many of these the lower child gets
@@ -60,9 +60,9 @@ def _plan_node(area, weight, lower, upper, result):
 
 @kernel
 def plan(binary, levels):
-    """Write into every inner node of a binary tree what to do with it in 1 to 8 slots; `levels` bounds its depth.
+    """Write into every inner node of a binary tree how it is best divided among 1 to 8 slots.
 
-    A share of 0 means that one slot less is as good.
+    `levels` bounds the tree's depth.  A share of 0 means that one slot less is as good.
     """
     nodes = address_of(binary)
     costs, weights, result = np.empty((levels + 1, WIDTH)), np.empty(levels + 1, np.int64), np.empty(WIDTH + 1)
