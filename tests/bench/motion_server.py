@@ -99,8 +99,8 @@ class Script:
         self._lead(self.began)
         had = self.c.traced
         self._before()
-        if self.c.faults.notice is not None:  # the window lives on, but what it shows is worth nothing
-            raise RuntimeError(self.c.faults.notice.told)
+        if self.c.notices.faults.notice is not None:  # the window lives on, but what it shows is worth nothing
+            raise RuntimeError(self.c.notices.faults.notice.told)
         new = self.c.traced
         if new is had or new is None or self.burst is None:
             return
@@ -120,7 +120,7 @@ class Script:
     def _lead(self, now: float) -> None:
         c = self.c
         if self.state == "starting":
-            if c.traced is not None and c.traced.whole and not c.active and c.opener.warm_up_job is None:
+            if c.traced is not None and c.traced.whole and not c.active and c.loader.warm_up_job is None:
                 self._next(now)
         elif self.state == "moving":
             if now - self.since < BURST:
@@ -137,7 +137,7 @@ class Script:
         elif self.state == "whole":
             if self.burst is not None and self.burst.full == 0.0 and not c.active:
                 c.preferences.dynamic_resolution = False  # a whole frame, all at once
-                c.trace_again()
+                c.tracing.trace_again()
             elif self.burst is not None and self.burst.full > 0.0 and not c.active:
                 c.preferences.dynamic_resolution = True
                 self.done.append(self.burst)
@@ -152,7 +152,7 @@ class Script:
         scene = c.session.scene
         assert scene is not None
         c.session.go_to_frame(round((len(self.done) + 0.3) / self.count * (scene.frames - 1)))
-        c.follow_path(True)
+        c.motion.follow_path(True)
         if self.burst.kind == "hand":
             self._start, self._at = c.session.camera, 0.0
         else:
@@ -164,9 +164,9 @@ class Script:
         step, self._at = at - self._at, at
         place = min(at / BURST, 1.0) * (len(HAND) - 1)
         turn, tilt, right, forward = (np.interp(place, range(len(HAND)), column) for column in zip(*HAND))
-        up, pace = self.c.world_up, self.c.pace
+        up, pace = self.c.motion.world_up, self.c.motion.pace
         camera = navigation.look(self.c.session.camera, turn * step, tilt * step, up)
-        self.c.move(navigation.fly(camera, right * pace * step, 0.0, forward * pace * step, up))
+        self.c.motion.move(navigation.fly(camera, right * pace * step, 0.0, forward * pace * step, up))
 
 
 def compared(burst: Burst, size: tuple[int, int], renderer: Renderer) -> list[dict[str, float]]:
@@ -199,14 +199,14 @@ def main() -> int:
     path, window, way, bursts, out = sys.argv[1:]
     app = App(Path(path))
     app.controller.tracing.governor = WAYS[way]()
-    app.controller.change(samples=1)
+    app.controller.settings.change(samples=1)
     app.ui.tour.end()
     width, height = (int(side) for side in window.split("x"))
     geometry = app.params.app_window_params
     geometry.window_geometry.size, geometry.restore_previous_geometry = (width, height), False
     script = Script(app, int(bursts))
     code = app.run()
-    size, scene = app.controller.size, app.controller.session.scene
+    size, scene = app.controller.tracing.now.size, app.controller.session.scene
     assert scene is not None
     renderer = Renderer(scene, app.controller.session.settings)
     told = []

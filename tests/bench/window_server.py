@@ -73,8 +73,8 @@ class Watch:
 
     def _advance(self, now: float) -> None:
         c, state = self.c, self.state
-        if "full picture" not in self.seen or c.opener.busy:
-            warming, loading = c.opener.warm_up_job is not None, c.opener.load_job is not None
+        if "full picture" not in self.seen or c.loader.busy:
+            warming, loading = c.loader.warm_up_job is not None, c.loader.load_job is not None
             state = "compiling" if warming else "opening" if loading else "first picture" if c.session.scene else state
         elif state == "tracing" and now - self.since > self.seconds:
             state, c.preferences.keep_tracing = "moving", False
@@ -86,14 +86,14 @@ class Watch:
                 state, self.app.params.app_shall_exit = "closing", True
         elif state not in ("tracing", "moving", "closing"):
             state, c.preferences.keep_tracing = "tracing", True
-            c.trace_again()
+            c.tracing.trace_again()
         if state != self.state:
             mark = self._now()
             passed, worked, own = (b - a for a, b in zip(self._mark, mark))
             self.others[self.state] = max(0.0, worked - own) / passed
             self.state, self.since, self._mark = state, now, mark
         if state == "moving":
-            c.move(navigation.look(c.session.camera, TURN, 0.0, c.world_up))
+            c.motion.move(navigation.look(c.session.camera, TURN, 0.0, c.motion.world_up))
 
     def report(self) -> dict[str, Any]:
         return {
@@ -109,7 +109,7 @@ def main() -> int:
     scene, size, seconds, spawned = sys.argv[1:]
     app = App(Path(scene))
     app.ui.tour.end()
-    app.controller.change(samples=1)  # at rest nothing is to go on
+    app.controller.settings.change(samples=1)  # at rest nothing is to go on
     width, height = (int(side) for side in size.split("x"))
     geometry = app.params.app_window_params
     geometry.window_geometry.size, geometry.restore_previous_geometry = (width, height), False

@@ -27,11 +27,11 @@ class Desk:
     def __init__(self, path: Path, folder: Path) -> None:
         preferences = Preferences(dynamic_resolution=False, samples=1, threads=1, screenshot_folder=str(folder))
         self.c = Controller(preferences)
-        self.runner = self.c.runner
+        self.runs = self.c.runs
         self.came: list[Frame] = []
         self.open(path)
-        self.runner.experiment_plan = ExperimentPlan({"paper"}, frames=5, size=(32, 24), depth=1)
-        self.runner.zoom_plan = replace(self.runner.zoom_plan, steps=4, size=(32, 24))
+        self.runs.experiment_plan = ExperimentPlan({"paper"}, frames=5, size=(32, 24), depth=1)
+        self.runs.zoom_plan = replace(self.runs.zoom_plan, steps=4, size=(32, 24))
 
     def open(self, path: Path) -> None:
         scene = load_scene(path)
@@ -47,7 +47,7 @@ class Desk:
     def until(self, happens: Callable[[], object]) -> None:
         end = time.monotonic() + 60.0
         while not happens():
-            assert time.monotonic() < end, f"waited in vain; the status says {self.c.message}"
+            assert time.monotonic() < end, f"waited in vain; the status says {self.c.notices.message}"
             self.tick()
 
     def rest(self) -> None:
@@ -61,13 +61,13 @@ class Desk:
         self.until(rested)
 
     def run_to_its_end(self) -> None:
-        self.until(lambda: self.runner.current is None)
+        self.until(lambda: self.runs.current is None)
         self.rest()
 
     @property
     def said(self) -> str:
-        assert self.c.message is not None
-        return self.c.message.text
+        assert self.c.notices.message is not None
+        return self.c.notices.message.text
 
 
 def is_the_same_picture(one: Frame, other: Frame) -> bool:

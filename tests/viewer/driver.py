@@ -44,8 +44,9 @@ class Driver:
     def wait(self, until: Callable[[], bool], what: str, patience: float = PATIENCE) -> None:
         end = time.monotonic() + patience
         while not until():
-            assert self.c.frame is not None or self.c.message is None or not self.c.message.error, self.c.message.text
-            assert time.monotonic() < end, f"waited in vain: {what}; the status says {self.c.message}"
+            said = self.c.notices.message
+            assert self.c.frame is not None or said is None or not said.error, said.text
+            assert time.monotonic() < end, f"waited in vain: {what}; the status says {said}"
             self.context.yield_()
         self.context.yield_()
 
@@ -91,7 +92,7 @@ class Driver:
 
     def certify(self) -> None:
         """Frames from now on come with cells and certificates drawn by lot, and with work where that was asked for."""
-        renderer = self.c.render._renderer
+        renderer = self.c.renderer._renderer
         refine = renderer.refine
 
         def with_more(*arguments, **options):

@@ -39,7 +39,7 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
         app.ui.tour.end()  # it comes by itself on the first start
     app.controller.preferences.screenshot_folder = str(Path(folder) / "pictures")
     app.controller.preferences.dynamic_resolution = True
-    app.controller.change(samples=1)  # else pictures at rest go on changing
+    app.controller.settings.change(samples=1)  # else pictures at rest go on changing
     failed: list[BaseException] = []
 
     def test(context) -> None:
@@ -60,7 +60,7 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
         testing.run(test_function=test, runner_params=params, add_ons_params=add_ons, raise_on_error=False)
 
     code = app.run(runner)
-    stuck = app.controller.render._thread.is_alive()
+    stuck = app.controller.renderer._thread.is_alive()
     if stuck:
         print("the render thread outlived the window", file=sys.stderr)
     return 1 if failed or stuck else code

@@ -99,9 +99,10 @@ def view(text: str) -> ChosenView:
 
 
 def method(text: str) -> str:
-    """A method, with what it takes along."""
-    from tracer.method import choice, is_method
+    """The name of a method."""
+    from tracer.method import Method, choice
 
-    if not is_method(text):
-        raise argparse.ArgumentTypeError(f"invalid choice: {text!r}; it is {choice()}")
-    return text
+    try:
+        return str(Method.parse(text))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"invalid choice: {text!r}; it is {choice()}") from None

@@ -21,7 +21,7 @@ from tracer.compilation import warm_up
 from tracer.culling import modes
 from tracer.frame import Frame, Settings
 from tracer.kernels import cache_folder, is_kept
-from tracer.method import base_of
+from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_scene, load_visible_scene, scene_info
 from tracer.scene.model import Camera, Scene
@@ -30,7 +30,7 @@ from viewer.output import capture
 from viewer.output.legend import Chosen, legend_of
 from viewer.output.legend_picture import with_legend
 from viewer.output.pictures import lights_in_words, picture
-from viewer.state.methods import default_for
+from viewer.state.methods import CERTIFIED, default_for
 from viewer.state.session import Session
 from viewer.state.views import View
 from viewer.util.files import check_writable, write_whole
@@ -65,8 +65,10 @@ def render(path: Path, options: Namespace) -> None:
     modes = view.of_modes or options.buffers is not None
     settings = replace(tracing_settings(options), method=options.method or default_for(view), modes=modes)
     _check_outputs(options.output, options.buffers)
-    if view is View.CERTIFICATE and base_of(settings.method) != "certified":
-        raise ValueError(f"--view certificate: the method {settings.method} makes none; give --method certified")
+    method = Method.parse(settings.method)
+    if view is View.CERTIFICATE and (method.adaptive or not method.has_certificates):
+        may = "may make" if method.adaptive else "makes"
+        raise ValueError(f"--view certificate: the method {settings.method} {may} none; give --method {CERTIFIED}")
     with working() as work:
         scene = load_visible_scene(path, work.progress)
         for warning in scene.warnings:

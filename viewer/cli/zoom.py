@@ -31,6 +31,7 @@ from viewer.output.reports import (
     summary,
     zoom_title,
 )
+from viewer.state.methods import NO_CULLING
 from viewer.util.messages import say
 
 WHICH = (
@@ -91,7 +92,7 @@ def run(path: Path, options: Namespace) -> bool:
 
 def _aim(scene: Scene, settings: Settings, world: World, time: float, options: Namespace, work: Work) -> Aim:
     """Where to start from, seen in a picture of the primary rays alone."""
-    look = replace(settings, method="none", depth=0, verify=False)
+    look = replace(settings, method=NO_CULLING, depth=0, verify=False)
     frame = Renderer(scene, look, world=world).render(time, options.camera, work.cancelled)
     if options.pixel is not None:
         return zoom.aim(frame, zoom.primitive_at(frame, *options.pixel))

@@ -13,7 +13,7 @@ from enum import Enum
 import numpy as np
 
 from tracer.frame import Frame
-from tracer.method import culls_by_modes
+from tracer.method import Method
 from viewer.output.legends import (
     LegendRow,
     certificate_legend,
@@ -135,7 +135,7 @@ def _by_modes(frame: Frame, light: int | None = None) -> tuple[Entry, ...]:
         return ()
     if light is not None and light < len(said) > 1:
         columns = {f"light {light}": said[light]} | columns
-    culls = culls_by_modes(frame.settings.method)
+    culls = Method.parse(frame.settings.method).uses_modes
     parts = columns.values()
     return (
         Entry(f"shadow rays{'' if culls else ', if by modes'}", None, tuple(columns), _BY_MODES, quiet=True),
@@ -228,7 +228,7 @@ def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
         ),
         Entry("largest difference", None, (f"{255.0 * found.largest:.0f} of 255",), _LARGEST),
     )
-    if frame.settings.method == "none":
+    if not Method.parse(frame.settings.method).culls:
         note = Note("Culling is off (C): every shadow ray is traced, so nothing can be wrong.", Tone.WARNING)
     elif not shadow.culled + shadow.candidates_only + shadow.dynamic_only + shadow.cache_hits:
         note = Note("No shadow ray of this frame was culled, so none can be wrong.", Tone.WARNING)

@@ -1,31 +1,35 @@
-"""What is kept: bookmarks in the preferences, and pictures in files."""
+"""Files that the window writes: pictures, and the results of runs.
+
+Each is written on a thread of its own, so that the window does not wait for a disk.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.frame import Frame
 from tracer.scene.model import Progress
 from viewer.output import capture
 from viewer.output.legend import Legend
 from viewer.output.legend_picture import with_legend
 from viewer.services.jobs import Job
-from viewer.state.preferences import default_screenshot_folder
-from viewer.state.session import Snapshot, settings_to_json
-
-if TYPE_CHECKING:
-    from viewer.services.controller import Controller
+from viewer.state.notices import Notices
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session, settings_to_json
 
 
-class Keeper:
-    """Adds and finds bookmarks; writes pictures on threads, so that the window does not wait for a disk."""
+class CaptureService:
+    """`saving` are the jobs that write files now."""
 
-    def __init__(self, controller: Controller) -> None:
-        self._c = controller
+    def __init__(
+        self, session: Session, preferences: Preferences, notices: Notices, wake: Callable[[], None] = lambda: None
+    ) -> None:
+        self._session, self._preferences, self._notices, self._wake = session, preferences, notices, wake
         self.saving: list[Job[Path]] = []
 
     @property
@@ -33,54 +37,29 @@ class Keeper:
         return bool(self.saving)
 
     def follow(self) -> None:
-        """Tell of the pictures that have been written, or could not be."""
+        """Report the files that have been written, or could not be."""
         for job in [job for job in self.saving if job.done]:
             self.saving.remove(job)
             if job.failure is not None:
-                self._c.report(job.failure)
+                self._notices.report(job.failure)
             else:
-                self._c.say(f"saved {job.result}")
+                self._notices.say(f"saved {job.result}")
 
-    @property
-    def bookmarks(self) -> list[dict]:
-        """The bookmarks of the open scene: {"name": ..., "state": a snapshot's JSON}."""
-        scene = self._c.session.scene
-        if scene is None:
-            return []
-        return self._c.preferences.bookmarks.setdefault(str(Path(scene.path).absolute()), [])
+    def write(self, save: Callable[[], Path]) -> Job[Path]:
+        """Let `save` write a file, whose path it returns, on a thread of its own."""
 
-    def add_bookmark(self, name: str = "") -> None:
-        session = self._c.session
-        if session.scene is None:
-            return
-        name = name.strip() or f"frame {session.frame}"
-        self.bookmarks.append({"name": name, "state": session.snapshot().to_json()})
-        self._c.save_preferences()
-        self._c.say(f"bookmarked as {name!r}")
+        def work(_: Progress) -> Path:
+            return save()
 
-    def forget_bookmark(self, index: int) -> None:
-        del self.bookmarks[index]
-        self._c.save_preferences()
+        job = Job("Saving", work, self._wake)
+        self.saving.append(job)
+        return job
 
-    def go_to_bookmark(self, index: int) -> None:
-        """Glide to a bookmark and take over its time and view; settings stay as they are."""
-        if self._c.runner.refuses():
-            return
-        try:
-            snapshot = Snapshot.from_json(self.bookmarks[index]["state"])
-        except (ValueError, KeyError, TypeError, IndexError) as error:
-            self._c.say(f"this bookmark is damaged: {error}", error=True)
-            return
-        start = self._c.session.camera
-        self._c.restore(replace(snapshot, settings={}))
-        if not snapshot.follow:
-            self._c.glide(snapshot.camera, start)
-
-    def capture(self, pixels: NDArray[np.uint8] | None, legend: Legend | None = None) -> None:
-        """Save a picture, (h, w, 3) uint8, of the newest frame, with its legend, named by the user's template."""
-        session, preferences, frame = self._c.session, self._c.preferences, self._c.frame
+    def capture(self, frame: Frame | None, pixels: NDArray[np.uint8] | None, legend: Legend | None = None) -> None:
+        """Save a picture, (h, w, 3) uint8, of a frame, with its legend, named by the user's template."""
+        session, preferences = self._session, self._preferences
         if frame is None or pixels is None or session.scene is None:
-            self._c.say("there is no picture to save yet", error=True)
+            self._notices.say("there is no picture to save yet", error=True)
             return
         # What the picture shows: another moment than the session's where a run goes on, or a finer frame is to come.
         number = session.frame_at(frame.time)
@@ -103,16 +82,16 @@ class Keeper:
         )
         size = (frame.width, frame.height)
         text = capture.metadata(snapshot, number, size, frame.statistics.to_dict())
-        folder = Path(preferences.screenshot_folder or default_screenshot_folder()).expanduser()
+        folder = preferences.picture_folder
         try:
             name = capture.file_name(preferences.screenshot_template, values)
         except capture.CaptureError as error:
-            self._c.say(str(error), error=True)
+            self._notices.say(str(error), error=True)
             return
         place = preferences.legend_x, preferences.legend_y
 
-        def save(_: Progress) -> Path:
+        def save() -> Path:
             described = with_legend(pixels, legend, place) if legend is not None else None
             return capture.save(pixels if described is None else described, folder, name, text)
 
-        self.saving.append(Job("Saving", save, lambda: self._c.wake()))
+        self.write(save)

@@ -1,95 +1,64 @@
-"""Between the widgets and the threads: what happens when something was asked for.
+"""Wires the session, the threads and the helpers together, and takes them one step further in each frame.
 
-The controller owns the session, the render thread and the background jobs.  Panels and commands
-call it; the window calls `tick` once per frame.  It knows neither widgets nor GL, so that tests
-can drive it without a window.
+Panels and commands call the helpers; the window calls `tick` once per frame.  Nothing here knows widgets or GL, so that
+tests can drive all of it without a window.
 """
 
 from __future__ import annotations
 
-import math
 import time
-from collections.abc import Callable, Collection
-from dataclasses import dataclass, replace
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from tracer.renderer import Frame, Renderer
-from tracer.scene.model import Camera, Scene
-from viewer.services.capture_service import Keeper
+from tracer.frame import Frame
+from tracer.renderer import Renderer
+from tracer.scene.model import Scene
+from tracer.zoom import Step
+from viewer.services.bookmarks import Bookmarks
+from viewer.services.capture_service import CaptureService
 from viewer.services.motion import Motion
-from viewer.services.questions import Asking
+from viewer.services.questions import Questions
 from viewer.services.render_thread import RenderThread, Traced
-from viewer.services.run_controller import Runner
-from viewer.services.scene_loader import Opener
-from viewer.services.shadow_inspector import Explaining
-from viewer.services.tracing import Tracing
-from viewer.state import navigation
-from viewer.state.faults import Faults
+from viewer.services.run_controller import RunController
+from viewer.services.scene_loader import SceneLoader
+from viewer.services.selection import Selection
+from viewer.services.settings_controller import SettingsController
+from viewer.services.shadow_inspector import ShadowInspector
+from viewer.services.tracing import Conditions, Tracing
 from viewer.state.history import History
-from viewer.state.log import Level, Log
-from viewer.state.picking import Pick, pick, refreshed, typical_depth
-from viewer.state.preferences import Preferences, save_preferences
+from viewer.state.notices import Notices
+from viewer.state.preferences import Preferences
 from viewer.state.session import Session, Snapshot
-from viewer.state.views import View
-from viewer.util.failures import Failure
-from viewer.util.messages import in_one_line
-
-INFO_SECONDS = 6.0
-
-
-@dataclass(frozen=True)
-class Message:
-    """One line for the status bar."""
-
-    text: str
-    error: bool
-    at: float
 
 
 class Controller:
-    """See the module.  `wake` makes the window draw a frame soon; it may be called from any thread."""
+    """See the module.  `wake` makes the window draw a frame soon, and may be called from any thread; `info` is what
+    `scene_info` says of the scene, `drawn_seconds` what the window's last frame took."""
 
     def __init__(self, preferences: Preferences, wake: Callable[[], None] = lambda: None) -> None:
-        self.preferences = preferences
-        self.session = Session(settings=preferences.settings(), view=preferences.chosen_view())
         self.wake = wake
-        self.render = RenderThread(lambda: self.wake())
+
+        def awaken() -> None:
+            self.wake()
+
+        self.preferences = preferences
+        self.session = session = Session(settings=preferences.settings(), view=preferences.chosen_view())
+        self.notices = notices = Notices(awaken)
+        self.renderer = renderer = RenderThread(awaken)
         self.history = History()
-        self.log = Log()
-        self.faults = Faults(self.log)
+        self.selection = Selection(session, lambda: self.frame)
+        self.captures = CaptureService(session, preferences, notices, awaken)
+        self.runs = RunController(session, self.selection, renderer, preferences, notices, self.captures, awaken)
+        self.tracing = Tracing(session, preferences, renderer, self.runs.refuses, awaken)
+        self.settings = SettingsController(session, preferences, notices, self.runs.refuses)
+        self.motion = Motion(session, preferences, notices, self.runs.refuses)
+        self.bookmarks = Bookmarks(session, preferences, self.settings, notices)
+        self.inspector = ShadowInspector(self.selection, renderer)
+        self.questions = Questions(self.runs, self.captures, awaken)
+        self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
         self.info: dict[str, Any] = {}
-        self.selected: Pick | None = None
-        self.hovered: tuple[float, float] | None = None
-        self.message: Message | None = None
-        self.opener = Opener(self)
-        self.keeper = Keeper(self)
-        self.runner = Runner(self)
-        self.tracing = Tracing(self)
-        self.motion = Motion(self)
-        self.explaining = Explaining(self)
-        self.asking = Asking(self)
         self.drawn_seconds = 0.0
-        self.size = (0, 0)
-        self._seen = math.inf
-
-    # --- the frame -------------------------------------------------------------------------------
-
-    def tick(self, size: tuple[int, int]) -> Frame | None:
-        """One step of everything: `size` is what the picture's window has room for, in pixels (0 if hidden).
-
-        Returns the frame that has just come, if one has."""
-        self.size = size
-        self.opener.follow()
-        self.keeper.follow()
-        self.asking.follow()
-        frame = self._take_frame()
-        self.motion.follow()
-        self.tracing.ask()
-        self.explaining.follow()
-        return frame
 
     @property
     def frame(self) -> Frame | None:
@@ -102,224 +71,110 @@ class Controller:
         return self.tracing.traced
 
     @property
-    def moving(self) -> bool:
-        """Whether frames should come fast rather than fine."""
-        return self.motion.under_way
-
-    @property
-    def lively(self) -> bool:
-        """Whether each of the window's frames shows something else than the last."""
-        return self.moving or self.session.playing
-
-    @property
     def active(self) -> bool:
         """Whether anything goes on."""
-        working = self.render.busy or self.opener.busy or self.keeper.busy or self.runner.current is not None
-        return working or self.lively
+        working = self.renderer.busy or self.loader.busy or self.captures.busy or self.runs.current is not None
+        return working or self.motion.lively
 
-    def _take_frame(self) -> Frame | None:
-        failed = self.render.take_failure()
-        if failed is not None:
-            self.report(failed)
-            self.session.playing = False
-        of_run = self.runner.follow()
-        if of_run is not None:
-            self.tracing.show(of_run)
-        before = self.tracing.traced
-        traced = of_run if of_run is not None else self.tracing.take()
-        if traced is None:
-            return None
-        frame = traced.frame
-        if of_run is None and frame.settings.samples == 1:  # further samples count nothing
-            again = before is not None and before.request is traced.request
-            self.history.add(frame, self.drawn_seconds, again)
-        if math.isinf(self._seen):  # from the scene's first frame on, so that the speed does not change on the way
-            self._seen = typical_depth(frame)
-        if self.selected is not None:
-            self.selected = refreshed(self.selected, frame)
+    # --- the frame -------------------------------------------------------------------------------
+
+    def tick(self, size: tuple[int, int]) -> Frame | None:
+        """Take everything one step further; `size` is what the picture's window has room for, in pixels (0 if hidden).
+
+        Returns the frame that has just come, if one has."""
+        self._take_scene()
+        self.captures.follow()
+        self.questions.follow()
+        frame = self._take_frame()
+        traced, motion, run = self.traced, self.motion, self.runs.current
+        motion.follow(traced.request.time if traced is not None and traced.whole else None)
+        self.tracing.ask(Conditions(size, motion.under_way, run, self.loader.ready, self.selection.hovered))
+        self.inspector.follow(self.frame if run is None else None, not motion.lively)
         return frame
 
-    # --- messages and selection ------------------------------------------------------------------
+    def _take_scene(self) -> None:
+        arrival = self.loader.follow()
+        if arrival is None:
+            return
+        if arrival.opened is not None:
+            self.show(arrival.opened.scene, arrival.opened.renderer, arrival.opened.info)
+        if arrival.place is not None:
+            self.restore(arrival.place)
+        self.notices.say(arrival.text)
 
-    def say(self, text: str, error: bool = False, details: str = "") -> None:
-        """Show one line in the status bar, a notice for some seconds, an error until the next; the log keeps both."""
-        self.message = Message(in_one_line(text), error, time.monotonic())
-        self.log.add(Level.ERROR if error else Level.NOTICE, self.message.text, details)
-        self.wake()
-
-    def report(self, failed: Failure) -> None:
-        """Tell of a failure: in the status bar where it was to be expected, else as a fault of the program."""
-        if failed.expected:
-            self.say(failed.text, error=True, details=failed.details)
+    def _take_frame(self) -> Frame | None:
+        """The newest frame, of a run that is under way or else as it was asked for."""
+        failed = self.renderer.take_failure()
+        if failed is not None:
+            self.notices.report(failed)
+            self.session.playing = False
+        run = self.runs.follow()
+        if run.ended:
+            self.tracing.again()  # else the world might stay where the run has put it
+        before = self.traced
+        if run.picture is not None:
+            self.tracing.show(run.picture)
+            frame = run.picture.frame
         else:
-            self.faults.tell(failed)
-            self.wake()
+            traced = self.tracing.take()
+            if traced is None:
+                return None
+            frame = traced.frame
+            if frame.settings.samples == 1:  # further samples count nothing
+                again = before is not None and before.request is traced.request
+                self.history.add(frame, self.drawn_seconds, again)
+        self.motion.look_around(frame)
+        self.selection.refresh(frame)
+        return frame
 
-    @property
-    def current_message(self) -> Message | None:
-        if self.message is not None and not self.message.error and time.monotonic() - self.message.at > INFO_SECONDS:
-            self.message = None
-        return self.message
-
-    def pick(self, at: tuple[float, float] | None) -> Pick | None:
-        """What lies under a point of the picture."""
-        if at is None or self.frame is None or self.session.scene is None:
-            return None
-        return pick(self.frame, self.session.scene, *at)
-
-    def select(self, at: tuple[float, float]) -> None:
-        """Keep what is under a point of the picture in view of the inspector; nothing there: forget it."""
-        found = self.pick(at)
-        self.selected = found if found is not None and found.primitive >= 0 else None
+    # --- going elsewhere -------------------------------------------------------------------------
 
     def show(self, scene: Scene, renderer: Renderer, info: dict[str, Any]) -> None:
-        """Look at another scene: what was learnt and drawn of the old one is gone, settings and view stay."""
-        self.runner.stop()
+        """Show another scene: what was known and drawn of the old one is gone, settings and view stay."""
+        self.runs.stop()
         self.session.open(scene)
         self.info = info
-        self.render.use(renderer)
+        self.renderer.use(renderer)
         self.history.clear()
         self.tracing.forget()
-        self._seen = math.inf
-        self.selected = None
-        self.motion.halt()
+        self.selection.clear()
+        self.motion.enter(info.get("bounds"))
         self.preferences.remember_scene(Path(scene.path).absolute())
-        self.save_preferences()
+        self.settings.save()
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot of the open scene."""
-        self.runner.stop()
+        self.runs.stop()
         self.motion.halt()
         self.session.restore(snapshot)
         self.preferences.keep(self.session.settings)
         self.preferences.view = self.session.view.value
 
-    # --- settings --------------------------------------------------------------------------------
-
-    def change(self, **changes: Any) -> None:
-        """Change fields of `tracer.Settings`; a value that is no good is one line and changes nothing."""
-        if self.runner.refuses():
+    def go_to_bookmark(self, index: int) -> None:
+        """Glide to a bookmark and take over its time and view; settings stay as they are."""
+        if self.runs.refuses():
             return
-        try:
-            settings = replace(self.session.settings, **changes)
-            settings.validated()
-        except ValueError as error:
-            self.say(str(error), error=True)
-            return
-        self.session.settings = settings
-        self.preferences.keep(settings)
+        snapshot, start = self.bookmarks.find(index), self.session.camera
+        if snapshot is not None:
+            self.restore(snapshot)
+            if not snapshot.follow:
+                self.motion.glide(snapshot.camera, start)
 
-    def set_view(self, view: View) -> None:
-        if view is View.CERTIFICATE and self.frame is not None and self.frame.statistics.certificates:
-            self.tracing.reconsider()  # more may be made at rest, for this view to show
-        self.session.view = view
-        self.preferences.view = view.value
-
-    def set_light(self, light: int) -> None:
-        """Choose the light of the views that speak of one; counts around."""
-        lights = len(self.session.scene.lights) if self.session.scene is not None else 0
-        self.session.light = light % lights if lights else 0
-
-    def toggle_culling(self) -> None:
-        self.change(method="none" if self.session.settings.method != "none" else self.preferences.method)
-
-    def reset_modes(self) -> None:
-        """Forget all that was learnt about shadows, and look again."""
-        if not self.runner.refuses():
-            self.render.reset_modes()
-            self.tracing.again(modes_are_lost=True)
-
-    def trace_again(self) -> None:
-        """Trace the same frame once more: the modes may have learnt from the last.  One under way is let finish."""
-        if not self.render.busy:
-            self.tracing.again()
-
-    # --- camera and time -------------------------------------------------------------------------
-
-    @property
-    def world_up(self) -> navigation.Vector:
-        scene = self.session.scene
-        return navigation.world_up(scene.camera) if scene is not None else np.array([0.0, 1.0, 0.0])
-
-    @property
-    def pace(self) -> float:
-        """World units per second at speed 1."""
-        low, high = self.info.get("bounds") or ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-        return navigation.pace(low, high, self._seen)
-
-    def moved(self) -> None:
-        """Note that the picture is changing under the user's hand: coarse frames for a moment."""
-        self.motion.by_hand()
-
-    def move(self, camera: Camera) -> None:
-        """Take the camera in hand and put it there."""
-        if self.runner.refuses():
-            return
-        self.motion.halt()
-        self.session.move(camera)
-        self.moved()
-
-    def glide(self, camera: Camera, start: Camera | None = None) -> None:
-        """Move the camera there in a moment's time."""
-        if self.runner.refuses():
-            return
-        self.motion.glide(start or self.session.camera, camera)
-
-    def follow_path(self, follow: bool) -> None:
-        """Put the camera on the scene's own path, or take it off where it is."""
-        if self.runner.refuses():
-            return
-        self.motion.halt()
-        self.session.free_camera = None if follow else self.session.camera
-
-    def reset_camera(self) -> None:
-        """Back to the scene's own camera, now."""
-        self.follow_path(True)
-
-    def toggle_play(self) -> None:
-        if self.runner.refuses():
-            return
-        if not self.session.animated:
-            self.say("this scene has no animation")
-            return
-        scene = self.session.scene
-        if not self.session.playing and scene is not None and self.session.time >= scene.time_range[1]:
-            self.session.go_to_frame(0)
-        self.session.playing = not self.session.playing
-
-    def step(self, frames: int) -> None:
-        """Stop, and go so many frames on (or back)."""
-        if self.runner.refuses():
-            return
-        self.session.playing = False
-        self.session.go_to_frame(self.session.frame + frames)
-        self.moved()  # a key that is held down is motion
-
-    # --- the end ---------------------------------------------------------------------------------
-
-    def reset_preferences(self, kept: Collection[str]) -> None:
-        """All settings as they were at first, but for these fields of the preferences."""
-        if self.runner.refuses():
-            return
-        self.preferences.reset(kept)
-        self.session.settings, self.session.view = self.preferences.settings(), self.preferences.chosen_view()
-        self.save_preferences()
-        self.say("settings reset")
-
-    def save_preferences(self) -> None:
-        error = save_preferences(self.preferences)
-        if error:
-            self.say(error, error=True)
+    def go_to_step(self, step: Step) -> None:
+        """Glide to where a step of the zoom test stood, at the test's time."""
+        camera = self.runs.go_to(step)
+        if camera is not None:
+            self.motion.glide(camera)
 
     def close(self, timeout: float = 30.0) -> bool:
-        """Stop everything, finish writing pictures and save the preferences; false if something would not stop."""
+        """Stop everything, finish writing files and save the preferences; false if something would not stop."""
         deadline = time.monotonic() + timeout
-        jobs = [*self.opener.cancel_all(), *self.keeper.saving]
-        self.runner.stop()
-        stopped = self.render.close(timeout)
+        jobs = [*self.loader.cancel_all(), *self.captures.saving]
+        self.runs.stop()
+        stopped = self.renderer.close(timeout)
         for job in jobs:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))
         if self.session.scene is not None:
             self.preferences.last = self.session.snapshot().to_json()
-        self.save_preferences()
+        self.settings.save()
         return stopped

@@ -1,20 +1,32 @@
-"""What moves by itself: a camera that glides to another place, and time that is played."""
+"""Camera and time: moved by hand, glided, played.
+
+While something moves, pictures should come fast rather than fine.
+"""
 
 from __future__ import annotations
 
+import math
 import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import numpy as np
+
+from tracer.frame import Frame
 from tracer.scene.model import Camera
 from viewer.state import navigation
+from viewer.state.notices import Notices
+from viewer.state.picking import typical_depth
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session
 
-if TYPE_CHECKING:
-    from viewer.services.controller import Controller
-
-AT_REST_AFTER = 0.25
+IDLE_AFTER = 0.25
+"""Seconds after a movement by hand until nothing moves."""
 GLIDE_SECONDS = 0.35
 LONGEST_STEP = 0.25
+"""Seconds of the animation, at most, that pass between two frames of the window."""
+
+Corner = Sequence[float]
 
 
 @dataclass(frozen=True)
@@ -27,49 +39,124 @@ class _Glide:
 
 
 class Motion:
-    """Moves the session on with the clock, and knows whether the picture is at rest."""
+    """Moves the session's camera and time on; both stay where they are while `locked()`, which says so itself."""
 
-    def __init__(self, controller: Controller) -> None:
-        self._c = controller
+    def __init__(
+        self, session: Session, preferences: Preferences, notices: Notices, locked: Callable[[], bool]
+    ) -> None:
+        self._session, self._preferences, self._notices, self._locked = session, preferences, notices, locked
         self._glide: _Glide | None = None
         self._moving_until = 0.0
         self._last = time.monotonic()
+        self._bounds: tuple[Corner, Corner] | None = None
+        self._depth = math.inf
+
+    def enter(self, bounds: tuple[Corner, Corner] | None) -> None:
+        """Begin in another scene, of these bounds."""
+        self.halt()
+        self._bounds, self._depth = bounds, math.inf
+
+    def look_around(self, frame: Frame) -> None:
+        """Take the scene's scale from its first frame, and keep it, so that the speed does not change on the way."""
+        if math.isinf(self._depth):
+            self._depth = typical_depth(frame)
+
+    # --- what is moving ---------------------------------------------------------------------------
 
     @property
     def under_way(self) -> bool:
         """Whether frames should come fast rather than fine."""
-        real_time = self._c.session.playing and not self._c.preferences.every_frame
+        real_time = self._session.playing and not self._preferences.every_frame
         return real_time or self._glide is not None or time.monotonic() < self._moving_until
 
-    def by_hand(self) -> None:
-        """Note that the picture is changing under the user's hand: coarse frames for a moment."""
-        self._moving_until = time.monotonic() + AT_REST_AFTER
+    @property
+    def lively(self) -> bool:
+        """Whether each of the window's frames shows something else than the last."""
+        return self.under_way or self._session.playing
 
-    def glide(self, start: Camera, end: Camera) -> None:
-        """Move the camera from one place to another in a moment's time, from the next `follow` on."""
-        self._glide = _Glide(start, end, time.monotonic())
+    def follow(self, shown: float | None) -> None:
+        """Bring time and camera to where they should be now; `shown` is the time of the newest whole picture."""
+        now = time.monotonic()
+        step, self._last = min(now - self._last, LONGEST_STEP), now
+        self._play(step, shown)
+        if self._glide is not None:
+            t = (now - self._glide.began) / GLIDE_SECONDS
+            self._session.move(navigation.blend(self._glide.start, self._glide.end, t))
+            if t >= 1.0:
+                self._glide = None
+
+    def _play(self, step: float, shown: float | None) -> None:
+        """Go on in real time, or to the next frame once this one has been traced."""
+        session, preferences = self._session, self._preferences
+        if not session.playing:
+            return
+        if not preferences.every_frame:
+            session.advance(step * preferences.playback_rate, preferences.loop)
+        elif shown == session.time:
+            session.advance_frame(preferences.loop)
+
+    # --- the camera -------------------------------------------------------------------------------
+
+    @property
+    def world_up(self) -> navigation.Vector:
+        scene = self._session.scene
+        return navigation.world_up(scene.camera) if scene is not None else np.array([0.0, 1.0, 0.0])
+
+    @property
+    def pace(self) -> float:
+        """World units per second at speed 1."""
+        low, high = self._bounds or ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        return navigation.pace(low, high, self._depth)
+
+    def move(self, camera: Camera) -> None:
+        """Take the camera in hand and put it there."""
+        if self._locked():
+            return
+        self.halt()
+        self._session.move(camera)
+        self._by_hand()
+
+    def glide(self, camera: Camera, start: Camera | None = None) -> None:
+        """Move the camera there in a moment's time, from where it is or from `start`."""
+        if not self._locked():
+            self._glide = _Glide(start or self._session.camera, camera, time.monotonic())
 
     def halt(self) -> None:
         """Leave the camera where it is."""
         self._glide = None
 
-    def follow(self) -> None:
-        """Bring time and camera to where they should be now."""
-        now = time.monotonic()
-        step, self._last = min(now - self._last, LONGEST_STEP), now
-        self._play(step)
-        if self._glide is not None:
-            t = (now - self._glide.began) / GLIDE_SECONDS
-            self._c.session.move(navigation.blend(self._glide.start, self._glide.end, t))
-            if t >= 1.0:
-                self._glide = None
-
-    def _play(self, step: float) -> None:
-        """In real time, or on to the next frame once this one has been traced."""
-        session, preferences, traced = self._c.session, self._c.preferences, self._c.traced
-        if not session.playing:
+    def follow_path(self, follow: bool) -> None:
+        """Put the camera on the scene's own path, or take it off where it is."""
+        if self._locked():
             return
-        if not preferences.every_frame:
-            session.advance(step * preferences.playback_rate, preferences.loop)
-        elif traced is not None and traced.whole and traced.request.time == session.time:
-            session.advance_frame(preferences.loop)
+        self.halt()
+        self._session.free_camera = None if follow else self._session.camera
+
+    def reset_camera(self) -> None:
+        """Go back to the scene's own camera, now."""
+        self.follow_path(True)
+
+    # --- time -------------------------------------------------------------------------------------
+
+    def toggle_play(self) -> None:
+        if self._locked():
+            return
+        session = self._session
+        if not session.animated:
+            self._notices.say("this scene has no animation")
+            return
+        if not session.playing and session.scene is not None and session.time >= session.scene.time_range[1]:
+            session.go_to_frame(0)
+        session.playing = not session.playing
+
+    def step(self, frames: int) -> None:
+        """Stop, and go so many frames on (or back)."""
+        if self._locked():
+            return
+        self._session.playing = False
+        self._session.go_to_frame(self._session.frame + frames)
+        self._by_hand()  # a key that is held down is motion
+
+    def _by_hand(self) -> None:
+        """Note that the picture is changing under the user's hand: coarse frames for a moment."""
+        self._moving_until = time.monotonic() + IDLE_AFTER

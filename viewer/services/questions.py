@@ -6,14 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from viewer.output.exports import ENDINGS
+from viewer.services.capture_service import CaptureService
+from viewer.services.jobs import Job
+from viewer.services.run_controller import RunController
 from viewer.services.runs import Run
-
-if TYPE_CHECKING:
-    from viewer.services.controller import Controller
-    from viewer.services.jobs import Job
 
 
 @dataclass(frozen=True)
@@ -28,15 +27,15 @@ class Question:
     ticked: set[str] = field(default_factory=set)
 
 
-class Asking:
+class Questions:
     """`question` is the one to be answered now; a newer one takes its place."""
 
-    def __init__(self, controller: Controller) -> None:
-        self._c = controller
+    def __init__(self, runs: RunController, captures: CaptureService, wake: Callable[[], None] = lambda: None) -> None:
+        self._runs, self._captures, self._wake = runs, captures, wake
         self.question: Question | None = None
         self._leave: Callable[[], None] | None = None  # how to quit once the run's results are written
         self._run: Run | None = None
-        self._files: list[Job] | None = None
+        self._files: list[Job[Path]] | None = None
 
     def answer(self, name: str) -> None:
         """Choose an answer of the question, by its name."""
@@ -56,7 +55,7 @@ class Asking:
             return
 
         def stop() -> None:
-            self._c.runner.stop()
+            self._runs.stop()
             go_on()
 
         self.question = Question(
@@ -64,7 +63,7 @@ class Asking:
             f"{_so_far(run)} What is done is kept, and can still be saved from its panel.",
             (("Keep running", _nothing), ("Stop and open", stop)),
         )
-        self._c.wake()
+        self._wake()
 
     def before_quitting(self, leave: Callable[[], None]) -> None:
         """Quit, at once or, while a run is under way, when the user agrees."""
@@ -74,7 +73,7 @@ class Asking:
             return
 
         def save() -> None:
-            self._c.runner.stop()
+            self._runs.stop()
             self._leave, self._run, self._files = leave, run, None
 
         self.question = Question(
@@ -82,21 +81,22 @@ class Asking:
             f"{_so_far(run)} What is done can be saved with the pictures: figures, table and plot.",
             (("Keep running", _nothing), ("Save and quit", save), ("Quit", leave)),
         )
-        self._c.wake()
+        self._wake()
 
-    def before_resetting(self) -> None:
-        """Reset all settings when the user agrees, and what was collected as well where that is ticked."""
+    def before_resetting(self, reset: Callable[[list[str]], None]) -> None:
+        """Reset all settings when the user agrees, except the fields of the preferences that `reset` gets: what was
+        collected is reset where that is ticked."""
         fields = {"Forget bookmarks as well": "bookmarks", "Forget recent scenes as well": "recent"}
         ticked: set[str] = set()
 
-        def reset() -> None:
-            kept = [name for told, name in fields.items() if told not in ticked]
-            self._c.reset_preferences([*kept, "tour", "last"])
+        def agree() -> None:
+            kept = [name for option, name in fields.items() if option not in ticked]
+            reset([*kept, "tour", "last"])
 
         self.question = Question(
             "Reset all settings?",
             "View, culling, quality, theme, sizes and the folder of pictures become what they were at first.",
-            (("Keep them", _nothing), ("Reset", reset)),
+            (("Keep them", _nothing), ("Reset", agree)),
             tuple(fields),
             ticked,
         )
@@ -107,10 +107,10 @@ class Asking:
         if self._leave is None or run is None or not run.done:
             return
         if self._files is None:
-            before = len(self._c.keeper.saving)
+            before = len(self._captures.saving)
             for ending in ENDINGS if run.results is not None else ():
-                self._c.runner.export(run, ending)
-            self._files = self._c.keeper.saving[before:]
+                self._runs.export(run, ending)
+            self._files = self._captures.saving[before:]
         elif all(job.done for job in self._files):
             leave, failed = self._leave, any(job.failure is not None for job in self._files)
             self._leave = self._run = self._files = None
@@ -118,7 +118,7 @@ class Asking:
                 leave()
 
     def _under_way(self) -> Run | None:
-        run = self._c.runner.current
+        run = self._runs.current
         return run if run is not None and not run.stopping else None
 
 

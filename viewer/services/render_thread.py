@@ -50,18 +50,19 @@ class Traces(Protocol):
 
 @dataclass(frozen=True)
 class RenderRequest:
-    """What to trace: a picture, with so many samples a pixel in the end.  `divisor` is how much coarser than the window
-    it is; `serial` tells requests apart that are otherwise alike; `patience` is for how many seconds, at least,
-    certificates may be made, where nobody waits for the picture.  How it comes about does not tell requests apart:
-    `parts` of it, in sixteenths, around a `focus`; a `quick` one is not cut short before some of it has been shown, but
-    by one that is `final`: nothing moves any more."""
+    """What to trace: a picture, with so many samples a pixel in the end.
+
+    `divisor` is how much coarser than the window it is; `serial` tells requests apart that are otherwise alike;
+    `refinement_seconds` is how long, at least, certificates may be made for it where nobody waits for the picture.  How
+    the picture comes about does not tell requests apart: `parts` of it, in sixteenths, around a `focus`.  A `quick`
+    request is not cut short before some of it has been shown, except by one that is `final`: nothing moves any more."""
 
     time: float
     camera: Camera
     settings: Settings
     divisor: int = 1
     serial: int = 0
-    patience: float = 0.0
+    refinement_seconds: float = 0.0
     samples: int = 1
     parts: tuple[float, ...] = field(default=(16,), compare=False)
     quick: bool = field(default=False, compare=False)
@@ -279,8 +280,8 @@ class RenderThread:
         try:
             if reset:
                 renderer.reset_modes()
-            seconds = max(request.settings.certificate_seconds, request.patience)
-            patient = request.patience > 0.0
+            seconds = max(request.settings.certificate_seconds, request.refinement_seconds)
+            patient = request.refinement_seconds > 0.0
             renderer.settings = replace(request.settings, certificate_seconds=seconds, patient=patient)
             refining = renderer.refine(
                 request.time, request.camera, lambda: self._cancel, request.parts, request.samples, request.focus

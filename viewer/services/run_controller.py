@@ -1,4 +1,4 @@
-"""Starts and stops runs, shows their frames as the picture, and tells what has come of them.
+"""Starts and stops runs, shows their frames as the picture, and reports how they ended.
 
 One run at a time: it has the render thread to itself.  What the user would change of the picture
 meanwhile is refused, in one line that says how to stop it.
@@ -7,28 +7,55 @@ meanwhile is refused, in one line that says how to stop it.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from tracer import zoom
-from tracer.scene.model import Progress
+from tracer.scene.model import Camera
 from tracer.zoom import Step
 from viewer.output import exports
-from viewer.services.jobs import Job
-from viewer.services.render_thread import RenderRequest, Traced
-from viewer.services.runs import Experiment, ExperimentPlan, Run, ZoomPlan, ZoomTest, duration
-from viewer.state.preferences import default_screenshot_folder
+from viewer.services.capture_service import CaptureService
+from viewer.services.render_thread import RenderRequest, Task, Traced
+from viewer.services.runs import Experiment, Run, ZoomTest, duration
+from viewer.services.selection import Selection
+from viewer.state.methods import BY_MODES, CERTIFIED
+from viewer.state.notices import Notices
+from viewer.state.plans import ExperimentPlan, ZoomPlan
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session
 
-if TYPE_CHECKING:
-    from viewer.services.controller import Controller
+
+class Performs(Protocol):
+    """The part of `RenderThread` that is used here."""
+
+    def perform(self, task: Task) -> None: ...
 
 
-class Runner:
-    """`experiment` and `zoom_test` are the last of their kind: under way, done or stopped."""
+@dataclass(frozen=True)
+class Progress:
+    """What has become of the run since it was last asked: a frame that is to be the picture, and whether it ended."""
 
-    def __init__(self, controller: Controller) -> None:
-        self._c = controller
-        self.experiment_plan = ExperimentPlan({"paper", "certified"})
+    picture: Traced | None = None
+    ended: bool = False
+
+
+class RunController:
+    """`experiment` and `zoom_test` are the last of their kind: under way, done or stopped; `current` is under way."""
+
+    def __init__(
+        self,
+        session: Session,
+        selection: Selection,
+        renderer: Performs,
+        preferences: Preferences,
+        notices: Notices,
+        files: CaptureService,
+        wake: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._session, self._selection, self._renderer = session, selection, renderer
+        self._preferences, self._notices, self._files, self._wake = preferences, notices, files, wake
+        self.experiment_plan = ExperimentPlan({BY_MODES, CERTIFIED})
         self.zoom_plan = ZoomPlan()
         self.experiment: Experiment | None = None
         self.zoom_test: ZoomTest | None = None
@@ -38,32 +65,32 @@ class Runner:
         """Whether a run is under way that must not be disturbed; says so."""
         if self.current is None or self.current.stopping:
             return False
-        self._c.say(f"the {self.current.name} is still under way; stop it first (Escape)")
+        self._notices.say(f"the {self.current.name} is still under way; stop it first (Escape)")
         return True
 
     def start_experiment(self) -> None:
         """Begin what `experiment_plan` says, over the open scene's path."""
-        scene = self._c.session.scene
+        scene = self._session.scene
         if scene is None or self.current is not None:
             self._refuse_start()
             return
         try:
-            run = Experiment(scene, self._c.session.settings, self.experiment_plan, lambda: self._c.wake())
+            run = Experiment(scene, self._session.settings, self.experiment_plan, self._wake)
         except ValueError as error:
-            self._c.say(str(error), error=True)
+            self._notices.say(str(error), error=True)
             return
         self.experiment = run
         self._start(run)
 
     def start_zoom_test(self) -> None:
         """Go towards the selected primitive, from where the picture shows it or, so planned, from the last start."""
-        scene, frame, selected = self._c.session.scene, self._c.frame, self._c.selected
+        scene, frame, selected = self._session.scene, self._selection.frame, self._selection.picked
         if scene is None or frame is None or self.current is not None:
             self._refuse_start()
             return
         start = self.last_start if self.zoom_plan.same_start else None
         if start is None and selected is None:
-            self._c.say("click a primitive in the picture first: the zoom test goes towards it", error=True)
+            self._notices.say("click a primitive in the picture first: the zoom test goes towards it", error=True)
             return
         try:
             if start is None and selected is not None:
@@ -73,9 +100,9 @@ class Runner:
                     )
                 start = zoom.aim(frame, selected.primitive)
             assert start is not None
-            run = ZoomTest(scene, self._c.session.settings, start, self.zoom_plan, lambda: self._c.wake())
+            run = ZoomTest(scene, self._session.settings, start, self.zoom_plan, self._wake)
         except ValueError as error:
-            self._c.say(str(error), error=True)
+            self._notices.say(str(error), error=True)
             return
         self.zoom_test = run
         self._start(run)
@@ -83,66 +110,67 @@ class Runner:
     @property
     def last_start(self) -> zoom.Aim | None:
         """Where the last zoom test began; None where that was in another scene, or another primitive is selected."""
-        test, selected = self.zoom_test, self._c.selected
-        if test is None or not test.is_of(self._c.session.scene):
+        test, selected = self.zoom_test, self._selection.picked
+        if test is None or not test.is_of(self._session.scene):
             return None
         return test.start if selected is None or selected.primitive == test.start.primitive else None
 
     def _refuse_start(self) -> None:
-        self._c.say(f"the {self.current.name} is still under way" if self.current is not None else "open a scene first")
+        run = self.current
+        self._notices.say(f"the {run.name} is still under way" if run is not None else "open a scene first")
 
     def _start(self, run: Run) -> None:
         self.current = run
-        self._c.session.playing = False
-        self._c.tracing.interrupted()
-        self._c.render.perform(run)
+        self._session.playing = False
+        self._renderer.perform(run)
 
     def stop(self) -> None:
         """End the run that is under way after its last whole frame, and keep what it has."""
         if self.current is not None:
             self.current.stop()
 
-    def follow(self) -> Traced | None:
-        """Tell of a run that has ended; returns the frame that is to be the picture, if there is a new one."""
+    def follow(self) -> Progress:
+        """Report a run that has ended; returns what has become of it since the last time."""
         run = self.current
         if run is None:
-            return None
+            return Progress()
         done = run.done  # before its last frame is taken: none comes after
         frame = run.take()
         if done:
             self.current = None
-            self._c.tracing.again()  # else the world might stay where the run has put it
-            self._tell(run)
-        if frame is None or run.stopping or not run.is_of(self._c.session.scene):
-            return None
-        return Traced(RenderRequest(frame.time, frame.camera, frame.settings), frame, frame.statistics)
+            self._report(run)
+        if frame is None or run.stopping or not run.is_of(self._session.scene):
+            return Progress(ended=done)
+        request = RenderRequest(frame.time, frame.camera, frame.settings)
+        return Progress(Traced(request, frame, frame.statistics), done)
 
-    def _tell(self, run: Run) -> None:
+    def _report(self, run: Run) -> None:
         if run.failure is not None:
-            self._c.report(run.failure)
+            self._notices.report(run.failure)
         elif run.whole:
             frames = run.done_of[1]
-            self._c.say(f"{run.name} done: {frames} frame{'s' * (frames != 1)} in {duration(run.seconds)}")
+            self._notices.say(f"{run.name} done: {frames} frame{'s' * (frames != 1)} in {duration(run.seconds)}")
         else:
             kept = "" if run.results is None else "; what was done is kept"
             done, frames = run.done_of
-            self._c.say(f"{run.name} stopped after {done} of {frames} frames{kept}")
+            self._notices.say(f"{run.name} stopped after {done} of {frames} frames{kept}")
 
-    def go_to(self, step: Step) -> None:
-        """Put the camera where a step of the zoom test stood, at the test's time; the next test starts as that did."""
-        test, session = self.zoom_test, self._c.session
+    def go_to(self, step: Step) -> Camera | None:
+        """Set the time of the zoom test, and return the camera of one of its steps; the next test starts where that one
+        did.  None, and one line, where that cannot be."""
+        test, session = self.zoom_test, self._session
         if test is None or test.results is None or self.refuses():
-            return
+            return None
         if not test.is_of(session.scene):
-            self._c.say(f"this test was made in {test.scene_path.name}; open that scene again to go there")
-            return
+            self._notices.say(f"this test was made in {test.scene_path.name}; open that scene again to go there")
+            return None
         session.playing = False
         session.time = test.results.time
         self.zoom_plan.same_start = True
-        self._c.glide(step.camera)
+        return step.camera
 
     def export(self, run: Run, ending: str) -> None:
-        """Write the results, as one of exports.ENDINGS, into the folder of the screenshots."""
+        """Write the results, as one of exports.ENDINGS, into the folder of the pictures."""
         results = run.results
         self._export(run, ending, "", lambda path: run.write(results, path))
 
@@ -154,12 +182,8 @@ class Runner:
 
     def _export(self, run: Run, ending: str, what: str, write: Callable[[Path], None]) -> None:
         if run.results is None:
-            self._c.say("there is nothing to save yet")
+            self._notices.say("there is nothing to save yet")
             return
-        folder = Path(self._c.preferences.screenshot_folder or default_screenshot_folder()).expanduser()
+        folder = self._preferences.picture_folder
         name = f"{run.scene_path.stem}-{run.name.replace(' ', '-')}{what}"
-
-        def save(_: Progress) -> Path:
-            return exports.save(folder, name, ending, write)
-
-        self._c.keeper.saving.append(Job("Saving", save, lambda: self._c.wake()))
+        self._files.write(lambda: exports.save(folder, name, ending, write))

@@ -1,4 +1,4 @@
-"""Opening scenes and captures beside the window, and preparing the kernels.
+"""Opens scenes and saved pictures beside the window, and prepares the kernels.
 
 While a scene is read the one that is open stays usable, and it stays open if the reading fails or
 is cancelled.  A second request to open takes the place of the first.
@@ -6,61 +6,82 @@ is cancelled.  A second request to open takes the place of the first.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.scene.model import Scene
 from viewer.output import capture
 from viewer.services import scene_files
 from viewer.services.jobs import Job
-from viewer.state.session import Snapshot
+from viewer.state.notices import Notices
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session, Snapshot
 from viewer.util.messages import ERROR, say
 
-if TYPE_CHECKING:
-    from viewer.services.controller import Controller
+
+@dataclass(frozen=True)
+class Arrival:
+    """What has been opened: a scene, None where it is open already; the place in it to go to, if not where it begins;
+    and one line that says so."""
+
+    opened: scene_files.Opened | None
+    place: Snapshot | None
+    text: str
 
 
-class Opener:
-    """Runs `viewer.services.scene_files` on threads and hands its results to the controller."""
+class SceneLoader:
+    """Runs `scene_files.open_scene` on threads; `follow` hands out what has arrived."""
 
-    def __init__(self, controller: Controller) -> None:
-        self._c = controller
+    def __init__(
+        self,
+        session: Session,
+        preferences: Preferences,
+        notices: Notices,
+        ask_first: Callable[[str, Callable[[], None]], None],
+        wake: Callable[[], None] = lambda: None,
+    ) -> None:
+        """`ask_first(name, go_on)` calls `go_on` at once, or when the user agrees to open what is called so."""
+        self._session, self._preferences, self._notices = session, preferences, notices
+        self._ask_first, self._wake = ask_first, wake
         self.warm_up_job: Job[None] | None = None
         self.load_job: Job[scene_files.Opened] | None = None
         self._abandoned: list[Job] = []
-        self._restore_after_load: Snapshot | None = None
+        self._place: Snapshot | None = None  # where to go once the scene is loaded
+        self._restored: Arrival | None = None
         self._from_shell = False  # whether what is being opened was named on the command line
 
     @property
     def busy(self) -> bool:
-        return self.load_job is not None or self.warm_up_job is not None
+        loading = self.load_job is not None or self._restored is not None
+        return loading or self.warm_up_job is not None
 
     @property
-    def certifies(self) -> bool:
-        """Whether methods that make certificates can be traced with; pictures come sooner, by a method that makes
-        none, and look the same."""
+    def ready(self) -> bool:
+        """Whether all kernels are; those that make certificates come last, and pictures without them look the same."""
         return self.warm_up_job is None
 
     def start(self, path: Path | None) -> None:
         """Compile or load the kernels in the background, and open a first scene meanwhile."""
         title = "Loading the tracer" if compiled_before() else "Compiling the tracer (first start only)"
-        self.warm_up_job = Job(title, warm_up, lambda: self._c.wake())
+        self.warm_up_job = Job(title, warm_up, self._wake)
         if path is not None:
             self._from_shell = True
             self._open(path)
 
-    def follow(self) -> None:
-        """Take up what the jobs have finished."""
+    def follow(self) -> Arrival | None:
+        """Take up what the jobs have finished; returns what has been opened, once."""
         if self.warm_up_job is not None and self.warm_up_job.done:
             job, self.warm_up_job = self.warm_up_job, None
             if job.failure is not None:
-                self._c.report(replace(job.failure, text=f"the tracer could not be compiled: {job.failure.text}"))
+                self._notices.report(replace(job.failure, text=f"the tracer could not be compiled: {job.failure.text}"))
         if self.load_job is not None and self.load_job.done:
             load, self.load_job = self.load_job, None
-            self._loaded(load)
+            self._restored = self._loaded(load)
         self._abandoned = [job for job in self._abandoned if not job.done]
+        arrival, self._restored = self._restored, None
+        return arrival
 
     def open(self, path: Path) -> None:
         """Open a scene, or restore what a captured picture shows; anything else is one line."""
@@ -72,33 +93,33 @@ class Opener:
         if refused:
             self._refuse(refused)
         elif scene_files.is_capture(path):
-            self._c.asking.before_opening(path.name, lambda: self._restore_capture(path))
+            self._ask_first(path.name, lambda: self._restore_capture(path))
         else:
-            self._c.asking.before_opening(path.name, lambda: self._load(path, None))
+            self._ask_first(path.name, lambda: self._load(path, None))
 
     def go_on(self) -> bool:
         """Open what was open when the window was last closed, as it was seen; where it has gone, only say so."""
-        last = self._c.preferences.last
+        last = self._preferences.last
         if not last:
             return False
         try:
             snapshot = Snapshot.from_json(last)
         except ValueError as error:
-            self._c.say(f"cannot start where you left off: {error}", error=True)
+            self._notices.say(f"cannot start where you left off: {error}", error=True)
             return False
         found = scene_files.find_scene(snapshot.scene, Path(snapshot.scene))
         if found is None:
-            self._c.say(f"cannot start where you left off: the scene is gone: {snapshot.scene}", error=True)
+            self._notices.say(f"cannot start where you left off: the scene is gone: {snapshot.scene}", error=True)
             return False
         self._load(found, snapshot)
         return True
 
     def reload(self) -> None:
         """Read the scene's file again and keep the place."""
-        session = self._c.session
+        session = self._session
         if session.scene is not None:
             path, here = Path(session.scene.path), session.snapshot()
-            self._c.asking.before_opening(f"{path.name} again", lambda: self._load(path, here))
+            self._ask_first(f"{path.name} again", lambda: self._load(path, here))
 
     def cancel(self) -> None:
         """Give up the load that is under way; the scene that is open stays."""
@@ -120,18 +141,18 @@ class Opener:
             self._refuse(str(error))
             return
         found = scene_files.find_scene(snapshot.scene, path)
-        scene = self._c.session.scene
+        scene = self._session.scene
         if found is None:
             self._refuse(f"{path.name}: its scene was not found: {snapshot.scene}")
         elif scene is not None and self.load_job is None and _same_file(found, scene):
-            self._c.restore(snapshot)
-            self._c.say(f"restored {path.name}")
+            self._restored = Arrival(None, snapshot, f"restored {path.name}")
+            self._wake()
         else:
             self._load(found, snapshot)
 
     def _refuse(self, why: str) -> None:
         self._tell_shell(why)
-        self._c.say(why, error=True)
+        self._notices.say(why, error=True)
 
     def _tell_shell(self, why: str) -> None:
         """What was named on the command line is missed there too: the window stays open, and empty."""
@@ -142,34 +163,32 @@ class Opener:
         if self.load_job is not None:
             self.load_job.cancel()
             self._abandoned.append(self.load_job)
-        self._restore_after_load = then
-        settings = self._c.session.settings
+        self._place = then
+        settings = self._session.settings
         self.load_job = Job(
             f"Loading {path.name}",
             lambda progress: scene_files.open_scene(path, settings, self._kernels_ready, progress),
-            lambda: self._c.wake(),
+            self._wake,
         )
 
     def _kernels_ready(self) -> bool:
         job = self.warm_up_job
         return job is None or job.done or can_draw()
 
-    def _loaded(self, job: Job[scene_files.Opened]) -> None:
+    def _loaded(self, job: Job[scene_files.Opened]) -> Arrival | None:
+        place, self._place = self._place, None
         if job.cancelled:
-            stays = ": the scene that was open stays" if self._c.session.scene is not None else ""
-            self._c.say(f"loading cancelled{stays}")
+            stays = ": the scene that was open stays" if self._session.scene is not None else ""
+            self._notices.say(f"loading cancelled{stays}")
         elif job.failure is not None:
             self._tell_shell(job.failure.text)
-            self._c.report(job.failure)
+            self._notices.report(job.failure)
         elif job.result is not None:
             opened = job.result
-            self._c.show(opened.scene, opened.renderer, opened.info)
-            if self._restore_after_load is not None:
-                self._c.restore(self._restore_after_load)
             count = len(opened.scene.warnings)
             warned = f", {count} warning{'s' * (count > 1)}" if count else ""
-            self._c.say(f"{opened.scene.path.name} opened in {opened.seconds:.1f} s{warned}")
-        self._restore_after_load = None
+            return Arrival(opened, place, f"{opened.scene.path.name} opened in {opened.seconds:.1f} s{warned}")
+        return None
 
 
 def _same_file(path: Path, scene: Scene) -> bool:

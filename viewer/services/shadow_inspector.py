@@ -1,4 +1,4 @@
-"""Why is it in shadow there?  Asked about what was clicked, or, until something is, what the pointer is on.
+"""Why is a point in shadow?  Asked about what was clicked or, until something is, what the pointer is on.
 
 The question goes to the render thread, which alone may touch the world, and is answered between two frames; the
 window never waits.  What has come speaks of one moment of the scene, in world space, and so it stays right when
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import NamedTuple, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,10 @@ from numpy.typing import NDArray
 from tracer.explanation import Explanation, explain, outline
 from tracer.frame import Frame
 from tracer.renderer import Renderer
-from viewer.services.render_thread import Traces
-from viewer.state.picking import pixel_at
+from viewer.services.render_thread import Question, Traces
+from viewer.services.selection import Selection
+from viewer.state.picking import Pick, pixel_at
 from viewer.state.projection import Stroke, place, strokes
-
-if TYPE_CHECKING:
-    from viewer.services.controller import Controller
-    from viewer.state.picking import Pick
 
 MOST_OCCLUDERS = 8  # of one light that are named and drawn
 
@@ -75,37 +72,45 @@ class PixelQuestion:
         self.found = Answer(self.frame, self.x, self.y, lights, outlines)
 
 
-class Explaining:
+class Answers(Protocol):
+    """The part of `RenderThread` that is used here."""
+
+    def ask(self, question: Question) -> None: ...
+
+
+class ShadowInspector:
     """`answer` is what is known of the pixel that the inspector shows, None while nothing is."""
 
-    def __init__(self, controller: Controller) -> None:
-        self._c = controller
+    def __init__(self, selection: Selection, renderer: Answers) -> None:
+        self._selection, self._renderer = selection, renderer
         self.answer: Answer | None = None
         self._subject: object = None
         self._asked: PixelQuestion | None = None
         self._drawn: tuple[Answer, Frame, list[DrawnLine]] | None = None
 
-    def follow(self) -> None:
-        """Take up an answer, and ask about what the inspector shows now if that is another pixel, or frame."""
-        c, frame = self._c, self._c.frame
-        if frame is None or c.runner.current is not None:
+    def follow(self, frame: Frame | None, idle: bool) -> None:
+        """Take up an answer, and ask about what the inspector shows now if that is another pixel, or frame.
+
+        `frame` is the newest, None where it must not be asked about; what the pointer is on is asked about when
+        `idle`."""
+        if frame is None:
             self._forget()
             return
-        kept = c.selected
+        kept = self._selection.picked
         subject = (kept.primitive, kept.x, kept.y, kept.seen) if kept is not None else "pointer"
         if subject != self._subject:
             self._forget()
             self._subject = subject
         if self._asked is not None and self._asked.found is not None:
             self.answer = self._asked.found
-        at = _pixel_of(kept, frame) if kept is not None else self._pointed_at(frame)
+        at = _pixel_of(kept, frame) if kept is not None else self._pointed_at(frame, idle)
         if at is None and kept is None:
             self._forget()
-        if self.answer is not None and self.answer.frame.time != frame.time:
+        if self.answer is not None and _is_outdated(self.answer, frame):
             self.answer = None
         if at is not None and not self._has_asked(frame, *at):
             self._asked = PixelQuestion(frame, *at)
-            c.render.ask(self._asked)
+            self._renderer.ask(self._asked)
 
     def lines(self, frame: Frame) -> list[DrawnLine]:
         """What is to be drawn of the answer on a frame."""
@@ -123,13 +128,19 @@ class Explaining:
         asked = self._asked
         return asked is not None and asked.frame is frame and (asked.x, asked.y) == (x, y)
 
-    def _pointed_at(self, frame: Frame) -> tuple[int, int] | None:
-        """The pixel under the pointer, while the picture rests there and it shows something."""
-        c = self._c
-        if c.hovered is None or c.lively:
+    def _pointed_at(self, frame: Frame, idle: bool) -> tuple[int, int] | None:
+        """The pixel under the pointer, while nothing moves and it shows something."""
+        hovered = self._selection.hovered
+        if hovered is None or not idle:
             return None
-        x, y = pixel_at(frame, *c.hovered)
+        x, y = pixel_at(frame, *hovered)
         return (x, y) if frame.primitive[y, x] >= 0 else None
+
+
+def _is_outdated(answer: Answer, frame: Frame) -> bool:
+    """Whether an answer speaks of another moment, or of what another method knew."""
+    then = answer.frame
+    return then.time != frame.time or then.settings.method != frame.settings.method
 
 
 def _pixel_of(kept: Pick, frame: Frame) -> tuple[int, int] | None:

@@ -10,11 +10,11 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from tracer.method import base_of
+from tracer.method import Method
 from viewer.services.controller import Controller
 from viewer.state import navigation
 from viewer.state.history import fully_traced
-from viewer.state.methods import with_base
+from viewer.state.methods import BY_MODES, with_base
 from viewer.state.views import View
 
 SECONDS = 2.0  # that a picture stays when it is shown
@@ -58,7 +58,7 @@ class Tour:
 
     def start(self) -> None:
         self.done, self._watches = set(), [step.watch(self._c) for step in STEPS]
-        self._c.selected = None  # what was clicked before was not clicked for the tour
+        self._c.selection.picked = None  # what was clicked before was not clicked for the tour
         self._go_to(0)
 
     def end(self) -> None:
@@ -106,14 +106,14 @@ def _has_flown(c: Controller) -> Iterator[None]:
 
 def _fly(c: Controller, _: Callable[[str], None]) -> Iterator[float]:
     camera = c.session.camera
-    c.glide(navigation.fly(camera, 0.0, 0.0, 0.5 * c.pace, c.world_up))
+    c.motion.glide(navigation.fly(camera, 0.0, 0.0, 0.5 * c.motion.pace, c.motion.world_up))
     yield SECONDS
 
 
 def _has_toggled_culling(c: Controller) -> Iterator[None]:
     """Off, and then seen again what culling saves."""
     for off in (True, False):
-        while (c.session.settings.method == "none") is not off or _culls(c) is off:
+        while Method.parse(c.session.settings.method).culls is off or _culls(c) is off:
             yield
 
 
@@ -126,32 +126,32 @@ def _toggle_culling(c: Controller, show_panel: Callable[[str], None]) -> Iterato
     before = c.session.settings.method
     show_panel("Statistics")
     if not _culls(c):
-        c.change(method=with_base(before, "paper"))
+        c.settings.change(method=with_base(before, BY_MODES))
     for _ in range(50):  # it learns from a whole picture first
         yield 0.1
         if _culls(c):
             break
     for _ in range(2):
         yield SECONDS
-        c.toggle_culling()
+        c.settings.toggle_culling()
     yield SECONDS
-    if before != "none":
-        c.change(method=before)
+    if Method.parse(before).culls:
+        c.settings.change(method=before)
 
 
 def _how_to_toggle(c: Controller) -> str:
-    method = c.session.settings.method
-    if method == "none" or _culls(c):
+    method = Method.parse(c.session.settings.method)
+    if not method.culls or _culls(c):
         return (
             "Press C twice. The picture looks the same, but without culling every shadow ray is traced: compare the "
             "row Traced in the Statistics panel."
         )
-    if base_of(method) == "auto":
+    if method.adaptive:
         return (
             "The method auto culls nothing here, as that would not be quicker. Choose paper, the published method, in "
             "the Culling panel first."
         )
-    return f"The method {base_of(method)} has culled nothing here yet. Press T to trace the picture once more."
+    return f"The method {method.base} has culled nothing here yet. Press T to trace the picture once more."
 
 
 def _has_seen_modes(c: Controller) -> Iterator[None]:
@@ -164,7 +164,7 @@ def _has_seen_modes(c: Controller) -> Iterator[None]:
 def _show_modes(c: Controller, show_panel: Callable[[str], None]) -> Iterator[float]:
     show_panel("View")
     for view in (View.OCCLUSION, View.SHADOW, View.COLOR):
-        c.set_view(view)
+        c.settings.set_view(view)
         yield SECONDS
 
 
@@ -175,20 +175,24 @@ def _has_clicked_a_shadow(c: Controller) -> Iterator[None]:
 
 def _in_shadow(c: Controller) -> bool:
     """Whether the pixel that was clicked is in the shadow of some light."""
-    answer = c.explaining.answer
-    return c.selected is not None and answer is not None and any(one.blocked_at is not None for one in answer.lights)
+    answer = c.inspector.answer
+    return (
+        c.selection.picked is not None
+        and answer is not None
+        and any(one.blocked_at is not None for one in answer.lights)
+    )
 
 
 def _click_a_shadow(c: Controller, show_panel: Callable[[str], None]) -> Iterator[float]:
     show_panel("Inspector")
-    c.set_view(View.COLOR)
+    c.settings.set_view(View.COLOR)
     for at in _PLACES:
-        c.select(at)
-        if c.selected is None or c.selected.dynamic:
+        c.selection.select(at)
+        if c.selection.picked is None or c.selection.picked.dynamic:
             continue
         for _ in range(50):  # an answer takes a moment
             yield 0.02
-            if c.explaining.answer is not None:
+            if c.inspector.answer is not None:
                 break
         if _in_shadow(c):
             yield SECONDS
@@ -196,17 +200,17 @@ def _click_a_shadow(c: Controller, show_panel: Callable[[str], None]) -> Iterato
 
 
 def _has_run_a_zoom_test(c: Controller) -> Iterator[None]:
-    last = c.runner.zoom_test
-    while c.runner.zoom_test is last or c.runner.zoom_test is None or c.runner.current is c.runner.zoom_test:
+    last = c.runs.zoom_test
+    while c.runs.zoom_test is last or c.runs.zoom_test is None or c.runs.current is c.runs.zoom_test:
         yield
 
 
 def _run_a_zoom_test(c: Controller, show_panel: Callable[[str], None]) -> Iterator[float]:
-    if c.selected is None or c.selected.dynamic:
+    if c.selection.picked is None or c.selection.picked.dynamic:
         yield from _click_a_shadow(c, show_panel)
     show_panel("Zoom test")
-    c.runner.start_zoom_test()
-    while c.runner.current is not None:
+    c.runs.start_zoom_test()
+    while c.runs.current is not None:
         yield 0.1
 
 

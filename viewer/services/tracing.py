@@ -1,43 +1,79 @@
-"""What is asked of the render thread so that the picture keeps up with the session, and what has come.
+"""What the render thread is asked for, so that the picture keeps up with the session, and what has come.
 
-Each picture comes fast, with a part of its pixels shaded, and becomes whole where nothing newer is wanted;
-at rest it gets more samples a pixel.  Nothing is asked for twice, and nothing at all while a run has the
-render thread to itself.
+Each picture comes fast, with a part of its pixels shaded, and becomes whole unless something newer is wanted; at idle
+it gets more samples a pixel.  Nothing is asked for twice, and nothing at all while a run has the render thread.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from itertools import product
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from tracer.frame import Frame, Settings
-from tracer.method import base_of, certifies
+from tracer.method import Method
+from viewer.services import refinement
 from viewer.services.governor import AT_ONCE, Governor, Plan, divided
+from viewer.services.refinement import Refinement
 from viewer.services.render_thread import RenderRequest, Traced
-from viewer.state.methods import with_base
+from viewer.services.runs import Run
+from viewer.state.methods import NO_CULLING, with_base
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session
 from viewer.state.views import View
 
-if TYPE_CHECKING:
-    from viewer.services.controller import Controller
 
-LESSONS = 40  # frames at rest that certificates are made in, at most
-PATIENCE = 0.4  # seconds that these may give them: the picture is there, and a motion ends them at once
+class Pictures(Protocol):
+    """The part of `RenderThread` that is used here."""
+
+    @property
+    def busy(self) -> bool: ...
+
+    def submit(self, request: RenderRequest) -> None: ...
+
+    def hurry(self, request: RenderRequest) -> None: ...
+
+    def take(self) -> Traced | None: ...
+
+    def reset_modes(self) -> None: ...
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """What else decides how a picture is traced: the `size`, in pixels, that there is room for (0 where it is hidden),
+    whether anything is `moving`, the `run` that is under way, whether the kernels that make certificates are `ready`,
+    and the point of the picture that matters most, its `focus`."""
+
+    size: tuple[int, int] = (0, 0)
+    moving: bool = False
+    run: Run | None = None
+    ready: bool = True
+    focus: tuple[float, float] | None = None
 
 
 class Tracing:
-    """`traced` is the newest frame with the request it answers."""
+    """`traced` is the newest frame with the request it answers; `now` are the conditions of the last `ask`."""
 
-    def __init__(self, controller: Controller, governor: Governor | None = None) -> None:
-        self._c = controller
+    def __init__(
+        self,
+        session: Session,
+        preferences: Preferences,
+        renderer: Pictures,
+        locked: Callable[[], bool] = lambda: False,
+        wake: Callable[[], None] = lambda: None,
+        governor: Governor | None = None,
+    ) -> None:
+        """Nothing is traced again on the user's behalf while `locked()`, which says so itself."""
+        self._session, self._preferences, self._renderer = session, preferences, renderer
+        self._locked, self._wake = locked, wake
+        self.now = Conditions()
         self.traced: Traced | None = None
         self._known: Frame | None = None  # the last that was whole and of the window's resolution
         self.governor = governor or Governor()
+        self.refinement = Refinement()
         self._serial = 0
-        self._considered: RenderRequest | None = None  # the whole picture that was last learnt from
-        self._settled: RenderRequest | None = None
-        self._lessons = 0  # frames at rest that may still be traced to learn from
-        self._learning = False  # whether such a one was asked for last
+        self._refines = False  # whether the last picture was asked for to refine what is known
         self._asked: RenderRequest | None = None
         self._chosen: Settings | None = None
         self._glance = False
@@ -48,38 +84,41 @@ class Tracing:
         return self.traced.frame if self.traced is not None else None
 
     def forget(self) -> None:
-        """Another scene: it has no frame yet, and its pixels cost something else."""
-        self.traced = self._known = self._asked = self._settled = self._considered = None
+        """Begin with another scene: it has no frame yet, and its pixels cost something else."""
+        self.traced = self._known = self._asked = None
         self._new = True
+        self.refinement.forget()
         self.governor.forget()
 
-    def again(self, modes_are_lost: bool = False) -> None:
+    def again(self) -> None:
         """Trace what was traced last once more."""
         self._serial += 1
-        if modes_are_lost:
-            self._settled = self._known = None
 
-    def reconsider(self) -> None:
-        """What is there may teach more than was wanted of it so far."""
-        self._considered = self._settled = None
+    def trace_again(self) -> None:
+        """Trace the same frame once more for the user: culling may know more now.  One under way is let finish."""
+        if not self._renderer.busy:
+            self.again()
 
-    def interrupted(self) -> None:
-        """What was asked for may never come: it is asked for anew."""
-        self._asked = None
+    def reset_modes(self) -> None:
+        """Forget all that is known about shadows, and look again."""
+        if not self._locked():
+            self._renderer.reset_modes()
+            self._known = None
+            self.refinement.forget()
+            self.again()
 
     def show(self, traced: Traced) -> None:
         """Take up a frame that was not asked for here; what should be seen is asked for anew after it."""
-        self.traced = traced
-        self.interrupted()
+        self.traced, self._asked = traced, None
 
     def take(self) -> Traced | None:
         """The newest frame that the render thread has made, once."""
-        traced = self._c.render.take()
+        traced = self._renderer.take()
         if traced is None:
             return None
         if self.traced is None or self.traced.request is not traced.request:
             self._glance = False
-            if not traced.request.patience:  # else it took its time for certificates, not for its pixels
+            if not traced.request.refinement_seconds:  # else it took its time for certificates, not for its pixels
                 self.governor.observe(traced.first, traced.frame.width * traced.frame.height)
         self.traced = self._with_modes(traced)
         return self.traced
@@ -100,81 +139,68 @@ class Tracing:
             return replace(traced, frame=frame)
         return traced
 
-    def _settle(self) -> None:
-        """At rest the first whole picture of a view teaches the modes; a second one shows what they save.  Certificates
-        are made within a budget: where the user has chosen them, as the method or as the view, more frames follow,
-        until none are wanted; elsewhere the time goes into samples."""
-        traced = self.traced
-        if traced is None or not traced.whole or traced.request is self._considered:
-            return
-        request, self._considered = traced.request, traced.request
-        seen = replace(request.settings, verify=False, record_work=False)
-        view = replace(request, settings=seen, serial=0, patience=0.0)
-        learns = request.divisor == 1
-        if learns and view != self._settled:
-            self._settled = view
-            certified = base_of(seen.method) == "certified" or self._c.session.view is View.CERTIFICATE
-            self._lessons = LESSONS if certified and certifies(seen.method) else 1
-        elif traced.frame.statistics.certificates == 0:
-            self._lessons = 0
-        if self._c.preferences.keep_tracing or (learns and self._lessons > 0):
-            self._lessons -= 1
-            self._serial += 1
-            self._learning = True
-
-    def ask(self) -> None:
+    def ask(self, now: Conditions) -> None:
         """Ask for what should be seen now, unless it has been asked for, or is there."""
-        c, session = self._c, self._c.session
-        width, height = self.full_size
-        if session.scene is None or width < 1 or height < 1 or c.runner.current is not None:
+        self.now = now
+        session, (width, height) = self._session, self.full_size
+        if now.run is not None:
+            self._asked = None  # what was asked for has been dropped
+            return
+        if session.scene is None or width < 1 or height < 1:
             return
         if self._new:  # what the scene brings into the window changes the room for its picture
             self._new = False
-            c.wake()
+            self._wake()
             return
-        if not c.moving and not session.playing:
-            self._settle()
+        if not now.moving and not session.playing:
+            self._refine()
         if self._jumped():  # the next picture is another: it may come coarse at first, if that must be
             self._glance = True
-        moving = c.moving or self._glance
-        self._learning = self._learning and not moving and not session.playing
+        moving = now.moving or self._glance
+        self._refines = self._refines and not moving and not session.playing
         plan = self._plan(width, height, moving)
         width, height = divided(width, height, plan.divisor)
         settings = replace(self.settings, width=width, height=height, samples=1)
-        patience = PATIENCE if self._learning else 0.0
+        seconds = refinement.SECONDS if self._refines else 0.0
         wanted = RenderRequest(
-            session.time, session.camera, settings, plan.divisor, self._serial, patience, session.settings.samples,
-            plan.parts, moving or session.playing, focus=c.hovered,
+            session.time, session.camera, settings, plan.divisor, self._serial, seconds, session.settings.samples,
+            plan.parts, moving or session.playing, focus=now.focus,
         )  # fmt: skip
         if self._answered(wanted):
             self._make_final(wanted)
             return
         self._asked, self._chosen = wanted, session.settings
-        c.render.submit(wanted)
+        self._renderer.submit(wanted)
+
+    def _refine(self) -> None:
+        """At idle, let one more frame of the same view follow where it will know more about shadows."""
+        if self.refinement.wants_another(self.traced, self._session.view, self._preferences.keep_tracing):
+            self._serial += 1
+            self._refines = True
 
     def _make_final(self, wanted: RenderRequest) -> None:
         """What was asked for in motion and is still wanted when nothing moves comes before what is on its way."""
         asked = self._asked
         if asked is not None and wanted == asked and not wanted.quick and not asked.final:
             self._asked = replace(wanted, final=True)
-            self._c.render.hurry(self._asked)
+            self._renderer.hurry(self._asked)
 
     def _plan(self, width: int, height: int, coarse: bool) -> Plan:
-        """How the picture is to come about: at once where it is traced to learn more, and where each is to be whole."""
-        c, preferences = self._c, self._c.preferences
-        if self._learning or not preferences.dynamic_resolution or (c.session.playing and preferences.every_frame):
+        """How the picture is to come about: at once where it refines what is known, and where each is to be whole."""
+        playing, preferences = self._session.playing, self._preferences
+        if self._refines or not preferences.dynamic_resolution or (playing and preferences.every_frame):
             return AT_ONCE
-        return self.governor.plan(width, height, 1.0 / preferences.target_fps, coarse, c.session.playing)
+        return self.governor.plan(width, height, 1.0 / preferences.target_fps, coarse, playing)
 
     @property
     def settings(self) -> Settings:
         """What the user has set, with modes; verified and with its work recorded where the view needs that.  While what
         makes certificates is still being compiled it is traced without: the picture is the same."""
-        s, method = self._c.session, self._c.session.settings.method
+        s, method = self._session, self._session.settings.method
         verify = s.settings.verify or s.view.needs_verify
-        if certifies(method) and not self._c.opener.certifies:
-            method = with_base(method, "none")
-        seconds = self._c.preferences.certificate_share / self._c.preferences.target_fps
+        if not self.now.ready and Method.parse(method).has_certificates:
+            method = with_base(method, NO_CULLING)
+        seconds = self._preferences.certificate_share / self._preferences.target_fps
         return replace(
             s.settings,
             method=method,
@@ -188,7 +214,7 @@ class Tracing:
         """Whether a frame has been asked for, or is there.  One that holds more for a view serves the next view."""
         if wanted == self._asked or self._same_picture(wanted):
             return True
-        if self._c.session.settings != self._chosen:
+        if self._session.settings != self._chosen:
             return False
         settings = wanted.settings
         for verify, work in product({settings.verify, True}, {settings.record_work, True}):
@@ -204,9 +230,9 @@ class Tracing:
         return traced.whole and traced.request == wanted and traced.frame.settings.samples >= wanted.samples
 
     def _jumped(self) -> bool:
-        """Whether, at rest, something else is to be seen than was last asked for; to learn more is to see the same."""
-        session, asked = self._c.session, self._asked
-        if asked is None or session.playing or self._c.moving:
+        """Whether, at idle, something else is to be seen than was last asked for; to refine is to see the same."""
+        session, asked = self._session, self._asked
+        if asked is None or session.playing or self.now.moving:
             return False
         settings = _as_asked(self.settings, asked.settings)
         return (session.time, session.camera, settings) != (asked.time, asked.camera, asked.settings)
@@ -217,7 +243,7 @@ class Tracing:
     def becoming_finer(self) -> bool:
         """Whether a part of the picture is shown and the whole of the same view is to come."""
         partly = self.traced is not None and (self.traced.request.divisor > 1 or not self.traced.whole)
-        return partly and not self._c.session.playing
+        return partly and not self._session.playing
 
     @property
     def samples_shown(self) -> int:
@@ -226,13 +252,13 @@ class Tracing:
 
     @property
     def samples_wanted(self) -> int:
-        """How many it is to have at rest."""
-        return self._c.session.settings.samples
+        """How many it is to have at idle."""
+        return self._session.settings.samples
 
     @property
     def outdated(self) -> bool:
         """Whether the newest frame was traced with other settings than those now chosen, or lacks what they ask for."""
-        if self.frame is None or self._c.runner.current is not None:
+        if self.frame is None or self.now.run is not None:
             return False
         had, wanted = self.frame.settings, self.settings
         lacks = (wanted.verify and not had.verify) or (wanted.record_work and not had.record_work)
@@ -240,8 +266,8 @@ class Tracing:
 
     @property
     def full_size(self) -> tuple[int, int]:
-        """The resolution at rest: the window's, or the fixed one (0, 0 while there is nowhere to show it)."""
-        p, size = self._c.preferences, self._c.size
+        """The resolution at idle: the window's, or the fixed one (0, 0 while there is nowhere to show it)."""
+        p, size = self._preferences, self.now.size
         return (p.fixed_width, p.fixed_height) if p.fixed_resolution and min(size) > 0 else size
 
     @property
@@ -257,21 +283,21 @@ class Tracing:
         """How many of the screen's pixels show one of the newest frame's, from side to side; 1 at least."""
         if self.frame is None:
             return 1
-        width, height = self._c.size
+        width, height = self.now.size
         return max(1, round(min(width / self.frame.width, height / self.frame.height)))
 
     @property
     def drawn_view(self) -> View:
         """The view to draw the newest frame in: the picture while one that needs more of a frame waits for it."""
-        view = self._c.session.view
+        view = self._session.view
         return view if self.frame is None or view.can_draw(self.frame) else View.COLOR
 
     @property
     def title(self) -> str:
         """The view, and the light where it shows one; before it what a run that is under way is at."""
-        view, run = self.drawn_view, self._c.runner.current
-        title = f"{view.label}, light {self._c.session.light}" if view.of_light else view.label
-        wanted = self._c.session.view
+        view, run = self.drawn_view, self.now.run
+        title = f"{view.label}, light {self._session.light}" if view.of_light else view.label
+        wanted = self._session.view
         if run is not None:
             lacks = wanted is not view and run.lacks(wanted)
             return f"showing {run.label_shown}   {title}{f' (this run {lacks})' if lacks else ''}"

@@ -29,7 +29,7 @@ class Faults:
     def others(self) -> int:
         return max(0, len(self._unseen) - 1)
 
-    def tell(self, failed: Failure) -> Entry:
+    def add(self, failed: Failure) -> Entry:
         """Log it, and show it unless it was just dismissed; may be called from any thread."""
         entry = self._log.add(Level.FAULT, failed.text, failed.details)
         now = time.monotonic()

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tracer.frame import Frame
-from tracer.method import base_of, culls_by_modes
+from tracer.method import Method
+from viewer.state.methods import BY_MODES, CERTIFIED
 from viewer.state.views import View
 
 
@@ -21,17 +22,17 @@ class Missing:
 def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) -> Missing | None:
     """What to say over a frame in this view, maps of work as `shares` or as counts; None where there is something to
     see, or soon will be.  `more` says that frames follow."""
-    method, decision = frame.settings.method, frame.statistics.decision
+    method, decision = Method.parse(frame.settings.method), frame.statistics.decision
     if view is View.CERTIFICATE and not view.can_draw(frame):
         if decision and frame.statistics.certificates and more:
             decision += " More are made and tried while nothing moves."
-        return Missing(decision or f"The method {base_of(method)} makes no certificates; certified does.", "certified")
+        return Missing(decision or f"The method {method.base} makes no certificates; {CERTIFIED} does.", CERTIFIED)
     if view is View.SAVED or (view is View.COST and shares):
         return _nothing_saved(view, frame)
-    if view.needs_verify and not culls_by_modes(method):
-        why = "traces every shadow ray" if base_of(method) == "none" else "is exact"
-        text = f"The method {base_of(method)} {why}: no answer can be wrong. The paper's method is wrong now and then."
-        return Missing(text, "paper")
+    if view.needs_verify and not method.uses_modes:
+        why = "is exact" if method.kind.culls else "traces every shadow ray"
+        text = f"The method {method.base} {why}: no answer can be wrong. The paper's method is wrong now and then."
+        return Missing(text, BY_MODES)
     if view.of_modes and not view.can_draw(frame):
         return Missing(f"This run keeps no modes with the method {method}.", "")
     return None
@@ -41,9 +42,12 @@ def _nothing_saved(view: View, frame: Frame) -> Missing | None:
     """For a map of what culling saves, which is of one colour where it saves nothing."""
     if frame.saved is None or frame.saved.any() or (frame.due_rays is not None and not frame.due_rays.any()):
         return None
-    base = base_of(frame.settings.method)
+    method = Method.parse(frame.settings.method)
     why = frame.statistics.decision or (
-        "The method none traces every shadow ray." if base == "none" else f"The method {base} has culled nothing here."
+        f"The method {method.base} has culled nothing here."
+        if method.kind.culls
+        else f"The method {method.base} traces every shadow ray."
     )
     shown = "no ray is saved at any pixel" if view is View.SAVED else "100 % of the rays are traced at every pixel"
-    return Missing(f"{why} So {shown}.", "certified" if base != "certified" else "")
+    helps = method.adaptive or not method.has_certificates
+    return Missing(f"{why} So {shown}.", CERTIFIED if helps else "")

@@ -18,8 +18,8 @@ from typing import Any
 import platformdirs
 
 from tracer.frame import Settings
-from tracer.method import is_method
-from viewer.state.methods import DEFAULT
+from tracer.method import Method
+from viewer.state.methods import DEFAULT, NO_CULLING, is_method
 from viewer.state.views import BENEATH, View
 from viewer.util.files import write_text
 
@@ -58,7 +58,7 @@ _RANGES: dict[str, tuple[float, float]] = {
 class Preferences:
     """Everything that outlives the window.  `speed` is relative to the scene's own pace, 1 by default; `method` is
     the one to cull by while `culling` is on, `certificate_share` the part of a frame's time in motion that may go into
-    certificates; `samples` is how many a pixel gets at rest; `legend_x` and `legend_y` say where in the room that the
+    certificates; `samples` is how many a pixel gets at idle; `legend_x` and `legend_y` say where in the room that the
     picture leaves to its legend this lies, 0 to 1 from left and top; `tour` says that the tour has not been shown yet,
     `last` is the snapshot, as JSON, to start from where that is asked for."""
 
@@ -106,7 +106,7 @@ class Preferences:
 
     def settings(self) -> Settings:
         """Settings to trace with; the defaults where these do not go together."""
-        method = self.method if self.culling else "none"
+        method = self.method if self.culling else NO_CULLING
         names = ("symmetric", "zoom_factor", "depth", "samples", "threads", "verify")
         try:
             values = {name: getattr(self, name) for name in names}
@@ -117,9 +117,15 @@ class Preferences:
     def keep(self, settings: Settings) -> None:
         """Remember what was chosen to trace with."""
         s = settings
-        self.culling, self.method = s.method != "none", s.method if s.method != "none" else self.method
+        self.culling = Method.parse(s.method).culls
+        self.method = s.method if self.culling else self.method
         self.symmetric, self.zoom_factor = s.symmetric, s.zoom_factor
         self.depth, self.samples, self.threads, self.verify = s.depth, s.samples, s.threads, s.verify
+
+    @property
+    def picture_folder(self) -> Path:
+        """Where pictures and results are saved."""
+        return Path(self.screenshot_folder or default_screenshot_folder()).expanduser()
 
     def chosen_view(self) -> View:
         return View(self.view) if self.view in set(View) else View.COLOR
@@ -143,7 +149,7 @@ def config_folder() -> Path:
 
 
 def default_screenshot_folder() -> Path:
-    """The user's own pictures folder, where screenshots go until told otherwise."""
+    """The user's own pictures folder, where pictures are saved unless another is set."""
     return Path(platformdirs.user_pictures_dir()) / "shadowcull"
 
 
@@ -201,7 +207,7 @@ def _checked(name: str, value: Any, default: Any) -> Any:
             return default
         return type(default)(value)
     if name == "method":
-        return value if isinstance(value, str) and is_method(value) and value != "none" else default
+        return value if isinstance(value, str) and is_method(value) and Method.parse(value).culls else default
     if name == "theme":
         return value if value in THEMES else default
     if name == "recent":

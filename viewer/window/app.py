@@ -24,7 +24,7 @@ from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, palette, style
+from viewer.window import commands, menus, palette, style
 from viewer.window.display import Display, Look
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
@@ -51,13 +51,13 @@ class App:
         preferences, problem = load_preferences()
         self.controller = Controller(preferences)
         self.ui = Ui(self.controller)
-        self.ui.guard = Guard(self.controller, lambda name, fault: faults.instead(self.ui, name, fault))
+        self.ui.guard = Guard(self.controller.notices, lambda name, fault: faults.instead(self.ui, name, fault))
         self.ui.commands = commands.build(self.ui)
         self.scene_path = scene_path
         self.layout_file = LayoutFile(config_folder())
         self.params = self._params()
         self.layout = Layout(self.ui, self.params)
-        self.ui.request_exit = lambda: self.controller.asking.before_quitting(lambda: self._exit())
+        self.ui.request_exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
         if preferences.tour:
             preferences.tour = False  # on the first start only; the menu Help has it again
             self.ui.tour.start()
@@ -65,7 +65,7 @@ class App:
         self._capture_this_frame = False
         self.drawn_by_processor = self.iconified = False
         if problem:
-            self.controller.say(problem, error=True)
+            self.controller.notices.say(problem, error=True)
 
     def run(self, runner: Callable[[hello_imgui.RunnerParams, immapp.AddOnsParams], None] = immapp.run) -> int:
         """Open the window and stay until it is closed; returns the exit code."""
@@ -82,7 +82,7 @@ class App:
         """A thread ended by an exception that nobody caught."""
         if of.exc_value is not None:
             name = of.thread.name if of.thread is not None else "a thread"
-            self.controller.report(failure(of.exc_value, f"{name} failed", known=()))
+            self.controller.notices.report(failure(of.exc_value, f"{name} failed", known=()))
 
     # --- one frame -------------------------------------------------------------------------------
 
@@ -106,12 +106,12 @@ class App:
         step, overlay = self.ui.guard.step, self.ui.guard.overlay
         step("The layout", self.layout.follow)
         overlay("The strip of folded panels", lambda: strip.show(self.ui), lambda: setattr(self.ui.fold, "drawer", ""))
-        step("Reading the keys", lambda: commands.handle_keys(self.ui))
+        step("Reading the keys", lambda: menus.handle_keys(self.ui))
         step("Flying", lambda: picture.fly(self.ui))
         overlay("The progress of loading", lambda: loading.show(self.ui))
         dialogs.show(self.ui)
         overlay("The tour", lambda: tour.show(self.ui), self.ui.tour.end)
-        overlay("The notice", lambda: faults.notice(self.ui), self.controller.faults.dismiss)
+        overlay("The notice", lambda: faults.notice(self.ui), self.controller.notices.faults.dismiss)
 
     def after_widgets(self) -> None:
         """The window is drawn but not yet shown."""
@@ -123,9 +123,9 @@ class App:
     def _open_dropped(self) -> None:
         dropped, self.ui.dropped = self.ui.dropped, []
         if len(dropped) > 1:
-            self.controller.say(f"{len(dropped)} files were dropped; only {dropped[0].name} is opened")
+            self.controller.notices.say(f"{len(dropped)} files were dropped; only {dropped[0].name} is opened")
         if dropped:
-            self.controller.opener.open(dropped[0])
+            self.controller.loader.open(dropped[0])
 
     def _follow_style(self) -> None:
         p = self.controller.preferences
@@ -144,7 +144,7 @@ class App:
         if display is None:
             return
         display.show(c.frame)
-        display.draw(self._look(c.selected.primitive if c.selected is not None else -1))
+        display.draw(self._look(c.selection.picked.primitive if c.selection.picked is not None else -1))
 
     def _bring_shots(self) -> None:
         if self.ui.shots is not None:
@@ -177,7 +177,7 @@ class App:
             look = self._look(selected=-1)  # the mark is for the user, not for the picture
             self.ui.display.draw(look)
             described = legend.of_picture(self.ui) if c.preferences.legend_in_pictures else None
-            c.keeper.capture(self.ui.display.read() if self.ui.display.drawn(look) else None, described)
+            c.captures.capture(c.frame, self.ui.display.read() if self.ui.display.drawn(look) else None, described)
         if self.ui.capture_wanted is CaptureKind.WINDOW:
             self.ui.capture_wanted = None
             self._capture_this_frame = True  # when it is drawn, from here on, with all that was asked for before
@@ -186,11 +186,11 @@ class App:
         if self._capture_this_frame and self.ui.display is not None:
             self._capture_this_frame = False
             size = glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui())
-            self.controller.keeper.capture(self.ui.display.read_window(*size))
+            self.controller.captures.capture(self.controller.frame, self.ui.display.read_window(*size))
 
     def _stay_awake(self) -> None:
         """Doze but when something moves: whatever comes from a thread wakes the window, and it needs the processor."""
-        idling, lively = self.params.fps_idling, self.controller.lively
+        idling, lively = self.params.fps_idling, self.controller.motion.lively
         by_processor = lively and self.drawn_by_processor
         idling.enable_idling = by_processor or not lively
         idling.fps_idle = SLOWEST_BY_PROCESSOR if by_processor else IDLE
@@ -231,7 +231,7 @@ class App:
         return params
 
     def _menus(self) -> None:
-        commands.menus(self.ui)
+        menus.show(self.ui)
         self.layout.menu()
 
     def _ready(self) -> None:
@@ -247,7 +247,7 @@ class App:
         glfw.set_window_close_callback(window, self._close_wanted)
         glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
-        opener = self.controller.opener
+        opener = self.controller.loader
         opener.start(self.scene_path)
         if self.scene_path is None and not (self.controller.preferences.start_where_left and opener.go_on()):
             opener.open(default_scene())

@@ -11,17 +11,17 @@ from collections.abc import Callable
 
 from imgui_bundle import imgui, implot
 
-from viewer.services.controller import Controller
 from viewer.state.log import Entry
+from viewer.state.notices import Notices
 from viewer.util.failures import failure
 
 
 class Guard:
     """`broken` holds, by its name, each part that has failed and is not shown for now."""
 
-    def __init__(self, controller: Controller, instead: Callable[[str, Entry], None]) -> None:
+    def __init__(self, notices: Notices, instead: Callable[[str, Entry], None]) -> None:
         """`instead` draws what stands in the place of a broken part, of which it gets the name and the fault."""
-        self._c = controller
+        self._notices = notices
         self._instead = instead
         self.broken: dict[str, Entry] = {}
 
@@ -30,7 +30,7 @@ class Guard:
         try:
             work()
         except Exception as error:
-            self._tell(name, error)
+            self._report(name, error)
 
     def overlay(self, name: str, show: Callable[[], None], close: Callable[[], None] = lambda: None) -> None:
         """Widgets that come and go, such as a dialog: closed when they fail."""
@@ -45,7 +45,7 @@ class Guard:
             if entry is not None:
                 self.broken[name] = entry
         else:
-            self._drawn(f"{name}: telling what went wrong", lambda: self._instead(name, entry))
+            self._drawn(f"{name}: saying what went wrong", lambda: self._instead(name, entry))
 
     def again(self, name: str | None = None) -> None:
         """Show this part once more, or all of them."""
@@ -59,13 +59,11 @@ class Guard:
             show()
         except Exception as error:
             _recover(before, window)
-            return self._tell(name, error)
+            return self._report(name, error)
         return None
 
-    def _tell(self, name: str, error: Exception) -> Entry:
-        entry = self._c.faults.tell(failure(error, f"{name} failed"))
-        self._c.wake()
-        return entry
+    def _report(self, name: str, error: Exception) -> Entry:
+        return self._notices.fault(failure(error, f"{name} failed"))
 
 
 def configure() -> None:

@@ -17,8 +17,8 @@ from imgui_bundle import ImVec2, hello_imgui, imgui
 
 from viewer.window.panels import strip
 from viewer.window.panels.catalogue import PANELS, PICTURE, Panel
-from viewer.window.panels.widgets import em
 from viewer.window.ui import Ui
+from viewer.window.widgets import em
 
 SMALLEST = (56.0, 34.0)  # width and height in ems that leave room for docked panels beside the picture
 _NOTICED = 1.5  # pixels by which a panel's size must differ from its share to have been changed by the user

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from viewer.output.capture import FIELDS
 from viewer.output.legend import light_in_words
@@ -17,14 +17,12 @@ from viewer.services.controller import Controller
 from viewer.services.file_browser import Browser
 from viewer.services.tour import Tour
 from viewer.state.preferences import default_screenshot_folder
+from viewer.window.command import Command
+from viewer.window.display import Display
 from viewer.window.full_screen import FullScreen
 from viewer.window.guard import Guard
-
-if TYPE_CHECKING:
-    from viewer.window.commands import Command
-    from viewer.window.display import Display
-    from viewer.window.panels.film import Screening
-    from viewer.window.shots import Shots
+from viewer.window.screening import Screening
+from viewer.window.shots import Shots
 
 
 class CaptureKind(Enum):

@@ -10,8 +10,8 @@ from tests.viewer.driver import Driver
 def closing_while_tracing(d: Driver) -> None:
     """The window goes at once, whatever is being traced."""
     d.settle()
-    d.c.change(samples=4000)
-    d.wait(lambda: d.c.render.running is not None and d.c.render.running.samples == 4000, "a long trace")
+    d.c.settings.change(samples=4000)
+    d.wait(lambda: d.c.renderer.running is not None and d.c.renderer.running.samples == 4000, "a long trace")
     _close(d)
 
 
@@ -19,16 +19,16 @@ def closing_while_loading(d: Driver) -> None:
     """The window goes at once, whatever is being loaded."""
     d.wait(lambda: d.c.session.scene is not None, "the first scene")
     d.drop(d.folder / "big.aff")
-    d.wait(lambda: d.c.opener.load_job is not None, "a load")
+    d.wait(lambda: d.c.loader.load_job is not None, "a load")
     _close(d)
 
 
 def closing_while_experimenting(d: Driver) -> None:
     """The window goes at once, whatever is being measured."""
     d.settle()
-    d.c.runner.experiment_plan.size = (2048, 2048)
-    d.c.runner.start_experiment()
-    d.wait(lambda: d.c.runner.experiment.traced > 0, "a first frame")
+    d.c.runs.experiment_plan.size = (2048, 2048)
+    d.c.runs.start_experiment()
+    d.wait(lambda: d.c.runs.experiment.traced > 0, "a first frame")
     _close(d)
 
 

@@ -14,14 +14,14 @@ from viewer.output.legends import occlusion_legend
 from viewer.output.pictures import picture
 from viewer.services.shadow_inspector import Part
 from viewer.state.views import View
-from viewer.window.commands import chord
+from viewer.window.command import chord
 
 KEY = imgui.Key
 
 
 def culling(d: Driver) -> None:
     """Tracing again culls; the key switches it off and on; resetting forgets."""
-    d.c.change(method="paper")
+    d.c.settings.change(method="paper")
     d.settle()
     first = d.c.frame.statistics.shadow
     assert first.due > 0 and first.culled == 0
@@ -47,10 +47,10 @@ def certifying(d: Driver) -> None:
     """Modes are there at once whatever culls; where a view has nothing to show, a note says so and a button switches;
     a method is chosen with what it takes along; key C is off."""
     d.settle()
-    d.wait(lambda: d.c.opener.certifies, "the kernels that make certificates")
+    d.wait(lambda: d.c.loader.ready, "the kernels that make certificates")
     d.c.preferences.fixed_resolution, d.c.preferences.fixed_width, d.c.preferences.fixed_height = True, 240, 180
     for base in ("certified", "none"):
-        d.c.change(method=base)
+        d.c.settings.change(method=base)
         d.settle()
         traced = d.c.history.frames
         for key, view in ((KEY._2, View.OCCLUSION), (KEY._3, View.SHADOW), (KEY._7, View.PIXEL_COUNT)):
@@ -95,7 +95,7 @@ def certifying(d: Driver) -> None:
 def explaining(d: Driver) -> None:
     """What the pointer is on, or was clicked, is explained beside the window's own frames; a key hides the lines."""
     d.settle()
-    explaining = d.c.explaining
+    explaining = d.c.inspector
     assert explaining.answer is None
     traced = d.c.history.frames
     left, top, right, bottom = d.picture_edges()
@@ -118,7 +118,7 @@ def explaining(d: Driver) -> None:
     d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
     d.context.mouse_click(0)
     d.frames(3)
-    assert d.c.selected is not None
+    assert d.c.selection.picked is not None
     d.context.mouse_move_to_pos((left + lit[0] * (right - left), top + lit[1] * (bottom - top)))
     d.wait(lambda: explaining.answer is not None, "an answer about what was clicked", 20.0)
     assert any(one.blocked_at is not None for one in explaining.answer.lights), "it goes on following the pointer"
@@ -138,14 +138,14 @@ def explaining(d: Driver) -> None:
     d.press(KEY.i)
     assert _lines_drawn(d) == drawn
     d.press(KEY.escape)
-    assert d.c.selected is None and _lines_drawn(d) < drawn - 50, "Escape clears"
+    assert d.c.selection.picked is None and _lines_drawn(d) < drawn - 50, "Escape clears"
     d.context.mouse_click(0)
     d.frames(3)
-    assert d.c.selected is not None
+    assert d.c.selection.picked is not None
     d.context.mouse_move_to_pos((left + 0.5 * (right - left), top + 0.02 * (bottom - top)))
     d.context.mouse_click(0)
     d.frames(3)
-    assert d.c.selected is None and explaining.answer is None, "a click on nothing clears"
+    assert d.c.selection.picked is None and explaining.answer is None, "a click on nothing clears"
 
 
 def _lines_drawn(d: Driver) -> int:

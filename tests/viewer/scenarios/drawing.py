@@ -11,7 +11,7 @@ from tests.viewer.driver import Driver
 from tests.viewer.scenarios.steps import figure4
 from viewer.output.pictures import picture
 from viewer.state.views import WRONG, View, wipe_column
-from viewer.window.commands import chord
+from viewer.window.command import chord
 
 KEY = imgui.Key
 
@@ -19,7 +19,7 @@ KEY = imgui.Key
 def views(d: Driver) -> None:
     """Every view by its key, each the same as what the command line would draw; only what must be verified, or
     counted, is traced for, once, and as little for the views after it."""
-    d.c.change(method="paper")
+    d.c.settings.change(method="paper")
     d.settle()
     d.certify()
     d.press(KEY.t)
@@ -44,7 +44,7 @@ def views(d: Driver) -> None:
     d.press(KEY.h)
     d.press(KEY.u)
     for view in (View.SAVED, View.COST):
-        d.c.set_view(view)
+        d.c.settings.set_view(view)
         d.frames(2)
         expected = picture(d.c.frame, view, shares=True).astype(int)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
@@ -86,13 +86,13 @@ def difference(d: Driver) -> None:
     d.c.preferences.beneath = 0.5
     d.press(KEY.m)
     y, x = np.argwhere(wrong)[0]
-    d.c.select(((x + 0.5) / 128, (y + 0.5) / 128))
+    d.c.selection.select(((x + 0.5) / 128, (y + 0.5) / 128))
     d.frames(3)
-    assert d.c.selected.wrong == d.c.frame.wrong[y, x] > 0
+    assert d.c.selection.picked.wrong == d.c.frame.wrong[y, x] > 0
     d.press(KEY.c)
     d.settle()
     assert d.c.frame.settings.method == "none" and not d.c.frame.wrong.any()
-    d.c.selected = None
+    d.c.selection.picked = None
     d.frames(3)
     assert np.abs(d.shown() - dimmed()).max() <= 1
     assert not d.c.session.settings.verify
@@ -114,7 +114,7 @@ def wiping(d: Driver) -> None:
         x = left + start * (right - left)
         d.drag((x, height), ((end - start) * (right - left), 7.0))
         assert abs(d.c.session.wipe - end) < 0.02
-        assert d.c.session.camera == camera and d.ui.pivot is pivot and d.c.selected is None
+        assert d.c.session.camera == camera and d.ui.pivot is pivot and d.c.selection.picked is None
 
     drag_line(0.5, 0.3, middle)
     assert np.abs(d.shown().astype(int) - picture(frame, View.WIPE, marked=False, wipe=d.c.session.wipe)).max() <= 1

@@ -24,7 +24,7 @@ KEY = imgui.Key
 def failing(d: Driver) -> None:
     """Whatever fails, in drawing, a panel, a menu, a command or a thread, is a notice; the window lives on."""
     d.settle()
-    faults, log, guard, display = d.c.faults, d.c.log, d.ui.guard, d.ui.display
+    faults, log, guard, display = d.c.notices.faults, d.c.notices.log, d.ui.guard, d.ui.display
     again = f"{icons.ICON_FA_ROTATE_RIGHT}  Try again"
 
     def fail(*_: object) -> None:
@@ -52,7 +52,7 @@ def failing(d: Driver) -> None:
     assert np.array_equal(d.shown(), before)
     d.press(KEY.f12)
     d.frames(3)
-    assert not (d.folder / "pictures").exists() and "no picture to save" in d.c.message.text
+    assert not (d.folder / "pictures").exists() and "no picture to save" in d.c.notices.message.text
     faults.dismiss()
     display._draw_into = draw_into
     d.press(KEY._6)
@@ -109,7 +109,7 @@ def failing(d: Driver) -> None:
     # Threads.
     threading.Thread(target=fail, name="some thread").start()
     told("some thread")
-    renderer = d.c.render._renderer
+    renderer = d.c.renderer._renderer
     refine, renderer.refine = renderer.refine, fail
     d.press(KEY.t)
     told("frame not traced")

@@ -14,7 +14,7 @@ from tests.viewer.driver import Driver
 from viewer.output.pictures import picture
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
-from viewer.window.commands import chord
+from viewer.window.command import chord
 from viewer.window.panels import browser
 
 KEY = imgui.Key
@@ -30,9 +30,9 @@ def capturing(d: Driver) -> None:
     d.settle()
     d.c.preferences.screenshot_template = "{scene}-{view}-{frame:04d}.png"
     d.press(KEY.f12)
-    d.wait(lambda: not d.c.keeper.busy, "the picture to be written")
+    d.wait(lambda: not d.c.captures.busy, "the picture to be written")
     d.press(int(KEY.f12) | int(KEY.mod_shift))
-    d.wait(lambda: not d.c.keeper.busy, "the window's picture to be written")
+    d.wait(lambda: not d.c.captures.busy, "the window's picture to be written")
     files = sorted(p.name for p in pictures.iterdir())
     assert files == ["tiny-occlusion-0000-2.png", "tiny-occlusion-0000.png"]
     with Image.open(pictures / files[1]) as alone, Image.open(pictures / files[0]) as window:
@@ -58,13 +58,13 @@ def capturing(d: Driver) -> None:
         assert picture.size == (d.c.frame.width, d.c.frame.height), "the fine picture is waited for"
     d.c.preferences.screenshot_template = "{nonsense}"
     d.press(KEY.f12)
-    assert d.c.message.error and "nonsense" in d.c.message.text
+    assert d.c.notices.message.error and "nonsense" in d.c.notices.message.text
     (d.folder / "file").write_text("")
     d.c.preferences.screenshot_folder, d.c.preferences.screenshot_template = str(d.folder / "file"), "a.png"
     d.press(KEY.f12)
-    d.wait(lambda: not d.c.keeper.busy, "the failure to write")
+    d.wait(lambda: not d.c.captures.busy, "the failure to write")
     d.frames(2)
-    assert d.c.message.error and "cannot write" in d.c.message.text
+    assert d.c.notices.message.error and "cannot write" in d.c.notices.message.text
     d.settle()
 
 
@@ -79,12 +79,12 @@ def dropping(d: Driver) -> None:
     fake = d.folder / "fake.png"
     fake.write_bytes(b"no picture")
     for path in (bad, text, fake, d.folder / "gone.aff", d.folder):
-        d.c.message = None
+        d.c.notices.message = None
         d.drop(path)
-        d.wait(lambda: not d.c.opener.busy, "the load to fail")
+        d.wait(lambda: not d.c.loader.busy, "the load to fail")
         d.frames(2)
-        assert d.c.message is not None and d.c.message.error, f"{path} was not refused"
-        assert path.name in d.c.message.text and "\n" not in d.c.message.text
+        assert d.c.notices.message is not None and d.c.notices.message.error, f"{path} was not refused"
+        assert path.name in d.c.notices.message.text and "\n" not in d.c.notices.message.text
         assert d.c.session.scene is scene
     lights = "\n".join(f"l {i} 5 3 0.1 0.1 0.1" for i in range(40))
     many = d.folder / "many.aff"
@@ -93,8 +93,8 @@ def dropping(d: Driver) -> None:
     d.wait(lambda: d.c.session.scene is not scene, "the other scene")
     d.settle()
     assert len(d.c.session.scene.lights) == 42
-    d.c.set_view(View.SHADOW)
-    d.c.set_light(35)
+    d.c.settings.set_view(View.SHADOW)
+    d.c.settings.set_light(35)
     d.frames(3)
     dark = d.folder / "dark.nff"
     dark.write_text(
@@ -116,23 +116,23 @@ def reopening(d: Driver) -> None:
         d.press(chord(key))
         d.settle()
         d.press(KEY.f12)
-        d.wait(lambda: not d.c.keeper.busy, "the picture to be written")
+        d.wait(lambda: not d.c.captures.busy, "the picture to be written")
     d.press(KEY._1)
-    take = d.c.render.take
+    take = d.c.renderer.take
     for view in (View.SAVED, View.COST, View.DIFFERENCE, View.WIPE):
         d.drop(embedded_scenes()["figure4"])
         d.wait(lambda: d.c.session.scene.path.name == "figure4.aff", "the other scene")
         d.press(KEY._1)
         d.settle()
-        d.c.render.take = lambda: None  # the first frame of the scene is long in coming
+        d.c.renderer.take = lambda: None  # the first frame of the scene is long in coming
         d.drop(d.folder / "pictures" / f"{view}.png")
         d.wait(lambda: d.c.session.scene.path == first, "the picture's scene")
         assert d.c.session.view is view and d.c.frame is None
         for key in ("8", "9", "H", "Shift+H", "0", "3", view.key):
             d.press(chord(key))
         d.press(KEY.f12)
-        d.c.say("what could not be saved has been told")
-        d.c.render.take = take
+        d.c.notices.say("what could not be saved has been told")
+        d.c.renderer.take = take
         d.settle()
         assert d.c.tracing.drawn_view is view
         expected = picture(d.c.frame, view, shading=d.c.preferences.shading)
@@ -144,12 +144,12 @@ def cancelling(d: Driver) -> None:
     d.settle()
     scene, frame = d.c.session.scene, d.c.frame
     d.drop(d.folder / "big.aff")
-    assert d.c.opener.load_job is not None
+    assert d.c.loader.load_job is not None
     d.press(KEY.escape)
-    d.wait(lambda: d.c.opener.load_job is None, "the load to stop", 20.0)
+    d.wait(lambda: d.c.loader.load_job is None, "the load to stop", 20.0)
     d.frames(3)
     assert d.c.session.scene is scene and d.c.frame is frame
-    assert "cancelled" in d.c.message.text
+    assert "cancelled" in d.c.notices.message.text
 
 
 def browsing(d: Driver) -> None:

@@ -20,16 +20,16 @@ def filmstrip(d: Driver) -> None:
     d.drop(embedded_scenes()["figure4"])
     d.wait(lambda: d.c.session.scene.path.name == "figure4.aff", "the scene of Figure 4")
     d.settle()
-    runner, plan = d.c.runner, d.c.runner.zoom_plan
+    runs, plan = d.c.runs, d.c.runs.zoom_plan
     plan.factors, plan.steps, plan.size, plan.ratio = "4, 64", 40, (128, 128), 0.94
-    d.c.selected = None
-    d.c.select((0.5, 0.5))
+    d.c.selection.picked = None
+    d.c.selection.select((0.5, 0.5))
     d.ui.show_panel("Zoom test")
     d.frames(3)
     d.context.item_click(f"//Zoom test/**/{icons.ICON_FA_PLAY}  Start")
-    d.wait(lambda: runner.current is None, "the zoom test")
+    d.wait(lambda: runs.current is None, "the zoom test")
     d.settle()
-    test = runner.zoom_test
+    test = runs.zoom_test
     assert test.whole and [len(test.film.of(factor)) for factor in (4.0, 64.0)] == [43, 43]
     camera = d.c.session.camera
     for _ in d.sizes():
@@ -38,7 +38,7 @@ def filmstrip(d: Driver) -> None:
         assert d.c.session.camera == camera
     _ways_back(d)
     d.context.item_click(f"//Zoom test/**/{icons.ICON_FA_FLOPPY_DISK} Film")
-    d.wait(lambda: not d.c.keeper.busy, "the film to be written")
+    d.wait(lambda: not d.c.captures.busy, "the film to be written")
     d.frames(2)
     (path,) = (d.folder / "pictures").glob("*-film-*.png")
     with Image.open(path) as image:
@@ -75,7 +75,7 @@ def _to_the_end(d: Driver, strip: str) -> None:
 
 def _ways_back(d: Driver) -> None:
     """Escape, the button, and whatever is done with the traced picture."""
-    test = d.c.runner.zoom_test
+    test = d.c.runs.zoom_test
     _screened(d, test.results, 4.0)
 
     def show(number: int) -> None:
@@ -88,7 +88,7 @@ def _ways_back(d: Driver) -> None:
     d.frames(2)
     assert d.ui.screening.shot.number == 42
     d.press(KEY.escape)
-    assert d.ui.screening is None and d.c.selected is not None
+    assert d.ui.screening is None and d.c.selection.picked is not None
     show(42)
     d.context.item_click("//Picture/**/Back (Escape)##recorded")
     d.frames(2)
@@ -100,4 +100,4 @@ def _ways_back(d: Driver) -> None:
     d.hold(KEY.d, 0.1)
     assert d.ui.screening is None
     d.settle()
-    assert d.c.runner.zoom_test is test
+    assert d.c.runs.zoom_test is test

@@ -24,7 +24,7 @@ def fitting(d: Driver) -> None:
     d.context.mouse_click(0)
     d.settle()
     for method, size in (("certified", (1600, 1000)), ("certified", (1280, 800)), ("paper", (900, 600))):
-        d.c.change(method=method)
+        d.c.settings.change(method=method)
         d.resize(*size)
         d.settle()
         _check_panels(d, size)

@@ -16,11 +16,11 @@ KEY = imgui.Key
 
 def legends(d: Driver) -> None:
     """Every view has its legend in the picture; it can be dragged, catches in corners, stays inside, and can be off."""
-    d.c.change(method="paper")
+    d.c.settings.change(method="paper")
     d.settle()
     for _ in d.sizes():
         for view in View:
-            d.c.set_view(view)
+            d.c.settings.set_view(view)
             d.settle()
             assert d.ui.legend_shown == (view is not View.COLOR and view.can_draw(d.c.frame)), view
             if d.ui.legend_shown:
@@ -32,7 +32,7 @@ def legends(d: Driver) -> None:
     assert right - area[2] < 20.0 and bottom - area[3] < 20.0, "it has left its corner"
     _off_and_on(d)
     _in_saved_pictures(d)
-    d.c.save_preferences()
+    d.c.settings.save()
     kept = load_preferences()[0]
     assert (kept.legend, kept.legend_in_pictures, kept.legend_x, kept.legend_y) == (True, False, 1.0, 1.0)
 
@@ -48,7 +48,7 @@ def _legend(d: Driver) -> tuple[float, float, float, float]:
 
 def _dragged(d: Driver) -> None:
     """About the picture, and into two corners; nothing but the legend moves, and a click on it selects nothing."""
-    d.c.set_view(View.OCCLUSION)
+    d.c.settings.set_view(View.OCCLUSION)
     d.settle()
     p, camera, frame = d.c.preferences, d.c.session.camera, d.c.frame
     left, top, right, bottom = d.picture_edges()
@@ -63,12 +63,12 @@ def _dragged(d: Driver) -> None:
     assert abs(area[0] + area[2] - left - right) < 6.0 and abs(area[1] + area[3] - top - bottom) < 6.0
     d.context.mouse_click(0)
     d.frames(2)
-    assert d.c.selected is None and d.c.session.camera == camera and d.c.frame is frame
+    assert d.c.selection.picked is None and d.c.session.camera == camera and d.c.frame is frame
     area = drag_to(left, top)
     assert (p.legend_x, p.legend_y) == (0.0, 0.0) and area[0] - left < 20.0
     area = drag_to(right - (area[2] - area[0]) / 2.0 - 20.0, bottom - (area[3] - area[1]) / 2.0 - 20.0)
     assert (p.legend_x, p.legend_y) == (1.0, 1.0) and right - area[2] < 20.0 and bottom - area[3] < 20.0
-    assert d.c.session.camera == camera and d.c.frame is frame and d.c.selected is None
+    assert d.c.session.camera == camera and d.c.frame is frame and d.c.selection.picked is None
 
 
 def _off_and_on(d: Driver) -> None:
@@ -94,7 +94,7 @@ def _in_saved_pictures(d: Driver) -> None:
     def saved(name: str) -> np.ndarray:
         p.screenshot_template = f"{name}.png"
         d.press(KEY.f12)
-        d.wait(lambda: not d.c.keeper.busy, "the picture to be written")
+        d.wait(lambda: not d.c.captures.busy, "the picture to be written")
         assert capture.read(folder / f"{name}.png").view is d.c.session.view
         with Image.open(folder / f"{name}.png") as image:
             return np.asarray(image)

@@ -22,7 +22,7 @@ def flying(d: Driver) -> None:
     assert np.dot(np.subtract(ahead.position, home.position), home.basis()[2]) > 0.0
     assert ahead.basis()[2] @ home.basis()[2] > 0.999
     d.settle()
-    assert (d.c.frame.width, d.c.frame.height) == d.c.size, "at rest the resolution is the window's"
+    assert (d.c.frame.width, d.c.frame.height) == d.c.tracing.now.size, "at rest the resolution is the window's"
     assert d.c.traced.request.divisor == 1 and d.c.traced.whole
 
     before = d.c.session.camera
@@ -45,17 +45,17 @@ def flying(d: Driver) -> None:
     assert d.c.session.camera == before, "typing moved the camera"
     d.context.key_press(KEY.enter)
     d.frames(2)
-    assert d.c.keeper.bookmarks[0]["name"] == "wasd"
+    assert d.c.bookmarks.all[0]["name"] == "wasd"
     d.context.mouse_move_to_pos(d.picture_centre())
     d.context.mouse_click(0)
     d.frames(2)
-    assert d.c.selected is not None and d.c.session.camera == before, "a click only inspects"
+    assert d.c.selection.picked is not None and d.c.session.camera == before, "a click only inspects"
 
     d.press(KEY.r)
     assert d.c.session.follow
     d.wait(lambda: d.c.session.camera == home, "the scene's own camera")
-    d.c.keeper.go_to_bookmark(0)
-    d.wait(lambda: not d.c.moving, "the glide to the bookmark")
+    d.c.go_to_bookmark(0)
+    d.wait(lambda: not d.c.motion.under_way, "the glide to the bookmark")
     assert math.dist(d.c.session.camera.position, before.position) < 1e-9
     d.settle()
 
@@ -78,7 +78,7 @@ def orbiting(d: Driver) -> None:
     assert math.dist(d.c.session.camera.position, d.ui.pivot) < distance
     d.settle()
     d.press(KEY.f)
-    d.wait(lambda: not d.c.moving, "the glide of the focus")
+    d.wait(lambda: not d.c.motion.under_way, "the glide of the focus")
     view = d.c.session.camera.basis()[2]
     to_pivot = np.subtract(d.ui.pivot, d.c.session.camera.position)
     assert view @ to_pivot / np.linalg.norm(to_pivot) > 0.9999
@@ -121,8 +121,8 @@ def resizing(d: Driver) -> None:
         glfw.set_window_size(window, *size)
         d.frames(4)
         d.settle()
-        if min(d.c.size) > 0:
-            assert (d.c.frame.width, d.c.frame.height) == d.c.size
+        if min(d.c.tracing.now.size) > 0:
+            assert (d.c.frame.width, d.c.frame.height) == d.c.tracing.now.size
     d.c.preferences.fixed_resolution, d.c.preferences.fixed_width, d.c.preferences.fixed_height = True, 120, 90
     d.settle()
     assert (d.c.frame.width, d.c.frame.height) == (120, 90)

@@ -44,7 +44,7 @@ def panels(d: Driver) -> None:
     assert d.c.session.view is View.DEPTH
     d.c.preferences.keep_tracing = True
     traced = d.c.history.frames
-    d.c.trace_again()
+    d.c.tracing.trace_again()
     d.wait(lambda: d.c.history.frames >= traced + 3, "frames at rest")
     d.c.preferences.keep_tracing = False
 
@@ -73,7 +73,7 @@ def looks(d: Driver) -> None:
     """Theme and size of the interface change at once and are kept; settings are reset when the user agrees."""
     d.settle()
     p, small = d.c.preferences, imgui.get_font_size()
-    d.c.keeper.add_bookmark("here")
+    d.c.bookmarks.add("here")
 
     def brightness() -> float:
         """Of the window where nothing is drawn: the menu bar's right end."""
@@ -99,13 +99,13 @@ def looks(d: Driver) -> None:
         d.frames(4)
         assert p.theme == after
     assert p.ui_scale == 1.0 and d.c.session.view is View.COLOR and brightness() < 60.0
-    assert p.recent and d.c.keeper.bookmarks[0]["name"] == "here"
-    d.c.asking.before_resetting()
+    assert p.recent and d.c.bookmarks.all[0]["name"] == "here"
+    d.c.questions.before_resetting()
     d.frames(3)
     d.context.item_click("//Reset all settings?###question/Forget bookmarks as well")
     d.context.item_click("//Reset all settings?###question/Reset")
     d.frames(3)
-    assert not d.c.keeper.bookmarks and p.recent
+    assert not d.c.bookmarks.all and p.recent
 
     # What is open now is where the next start may begin; a scene that has gone since is told of.
     d.context.menu_click("//##MainMenuBar/File/Start where I left off")
@@ -115,12 +115,12 @@ def looks(d: Driver) -> None:
     p.last = d.c.session.snapshot().to_json()
     d.press(KEY.r)
     assert p.start_where_left and d.c.session.camera != camera
-    assert d.c.opener.go_on()
+    assert d.c.loader.go_on()
     d.wait(lambda: d.c.session.camera == camera, "the place that was left")
     assert d.c.session.scene.path == path
     d.settle()
     p.last = p.last | {"scene": str(d.folder / "gone.aff")}
-    assert not d.c.opener.go_on() and "the scene is gone" in d.c.message.text
+    assert not d.c.loader.go_on() and "the scene is gone" in d.c.notices.message.text
     d.settle()
 
 
@@ -140,7 +140,7 @@ def hiding(d: Driver) -> None:
     d.frames(3)
     assert set(_places_of_panels()) == {PICTURE} and _picture_share() > 0.9
     d.settle()
-    assert (d.c.frame.width, d.c.frame.height) == d.c.size and d.c.size[0] > 1200
+    assert (d.c.frame.width, d.c.frame.height) == d.c.tracing.now.size and d.c.tracing.now.size[0] > 1200
     d.hold(KEY.d, 0.1)
     assert not d.c.session.follow, "keys fly while the panels are hidden"
     d.press(KEY.tab)

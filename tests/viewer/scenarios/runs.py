@@ -20,35 +20,35 @@ KEY = imgui.Key
 def experimenting(d: Driver) -> None:
     """An experiment starts from its panel, plays, can be stopped, and leaves a table, a plot and files."""
     d.settle()
-    runner, home, method = d.c.runner, d.c.session.camera, d.c.session.settings.method
+    runs, home, method = d.c.runs, d.c.session.camera, d.c.session.settings.method
     d.ui.show_panel("Experiment")
     d.frames(3)
-    runner.experiment_plan.frames, runner.experiment_plan.size = 3000, (64, 48)
+    runs.experiment_plan.frames, runs.experiment_plan.size = 3000, (64, 48)
     d.context.item_click("//Experiment/**/##verify")
-    assert runner.experiment_plan.verify
+    assert runs.experiment_plan.verify
     d.context.item_click(f"//Experiment/**/{icons.ICON_FA_PLAY}  Start")
-    run = runner.experiment
+    run = runs.experiment
     for _ in range(3):
         before = run.traced
         d.wait(lambda: run.traced > before + 3, "frames of the experiment")  # noqa: B023
         assert (d.c.frame.width, d.c.frame.height) == (64, 48) == d.ui.display.size, "they are not the picture"
     d.hold(KEY.w, 0.1)
-    assert d.c.session.camera == home and "stop it first" in d.c.message.text
+    assert d.c.session.camera == home and "stop it first" in d.c.notices.message.text
     d.press(KEY.c)
     assert d.c.session.settings.method == method
     d.press(KEY._2)
     assert d.c.session.view is View.OCCLUSION, "a view can be chosen any time"
     d.context.item_click(f"//Experiment/**/{icons.ICON_FA_STOP}  Stop")
-    d.wait(lambda: runner.current is None, "the experiment to stop", 20.0)
-    assert 3 <= len(run.results.frames) < 3000 and "what was done is kept" in d.c.message.text
+    d.wait(lambda: runs.current is None, "the experiment to stop", 20.0)
+    assert 3 <= len(run.results.frames) < 3000 and "what was done is kept" in d.c.notices.message.text
     d.settle()
-    assert (d.c.frame.width, d.c.frame.height) == d.c.size and d.c.frame.camera == home
+    assert (d.c.frame.width, d.c.frame.height) == d.c.tracing.now.size and d.c.frame.camera == home
 
-    runner.experiment_plan.frames = 6
+    runs.experiment_plan.frames = 6
     d.context.menu_click("//##MainMenuBar/Run/Experiment")
-    d.wait(lambda: runner.current is None, "the experiment to end")
+    d.wait(lambda: runs.current is None, "the experiment to end")
     d.settle()
-    assert runner.experiment is not run and runner.experiment.whole
+    assert runs.experiment is not run and runs.experiment.whole
     files = saved_results(d, "Experiment")
     assert len(json.loads(files[".json"].read_text())["frames"]) == 6
     assert files[".csv"].read_text().splitlines()[1].startswith("none,")
@@ -57,22 +57,22 @@ def experimenting(d: Driver) -> None:
 def zooming(d: Driver) -> None:
     """A zoom test starts from its panel, plays, and leaves plots, steps to go to, and files; Escape stops another."""
     d.settle()
-    runner = d.c.runner
+    runs = d.c.runs
     d.ui.show_panel("Zoom test")
     d.frames(3)
     start = f"//Zoom test/**/{icons.ICON_FA_PLAY}  Start"
     d.context.item_click(start)
     d.frames(2)
-    assert runner.zoom_test is None and "click a primitive" in d.c.message.text
+    assert runs.zoom_test is None and "click a primitive" in d.c.notices.message.text
     d.context.mouse_move_to_pos(d.picture_centre())
     d.context.mouse_click(0)
     d.frames(2)
-    assert d.c.selected is not None
-    runner.zoom_plan.steps, runner.zoom_plan.size = 5, (64, 64)
+    assert d.c.selection.picked is not None
+    runs.zoom_plan.steps, runs.zoom_plan.size = 5, (64, 64)
     d.context.item_click(start)
-    d.wait(lambda: runner.current is None, "the zoom test")
+    d.wait(lambda: runs.current is None, "the zoom test")
     d.settle()
-    test = runner.zoom_test
+    test = runs.zoom_test
     assert test.whole and [a.factor for a in test.results.approaches] == [4.0, 16.0]
     d.context.item_click("//Zoom test/**/all steps")
     d.frames(3)
@@ -88,52 +88,52 @@ def zooming(d: Driver) -> None:
     assert json.loads(files[".json"].read_text())["primitive"] == test.start.primitive
     assert len(files[".csv"].read_text().splitlines()) == 1 + test.frames
 
-    runner.zoom_plan.steps, runner.zoom_plan.ratio = 1000, 0.999
+    runs.zoom_plan.steps, runs.zoom_plan.ratio = 1000, 0.999
     d.context.item_click(start)
-    d.wait(lambda: runner.zoom_test.traced > 5, "steps")
+    d.wait(lambda: runs.zoom_test.traced > 5, "steps")
     d.press(KEY.escape)
-    d.wait(lambda: runner.current is None, "the zoom test to stop", 20.0)
-    assert len(runner.zoom_test.results.approaches[0].steps) >= 5
+    d.wait(lambda: runs.current is None, "the zoom test to stop", 20.0)
+    assert len(runs.zoom_test.results.approaches[0].steps) >= 5
     d.settle()
 
 
 def asking(d: Driver) -> None:
     """While an experiment runs, opening and quitting ask first; the answer that stops it keeps what is done."""
     d.settle()
-    runner, scene = d.c.runner, d.c.session.scene
+    runs, scene = d.c.runs, d.c.session.scene
     first, other = Path(scene.path), embedded_scenes()["figure4"]
-    runner.experiment_plan.frames, runner.experiment_plan.size = 3000, (64, 48)
+    runs.experiment_plan.frames, runs.experiment_plan.size = 3000, (64, 48)
 
     def under_way() -> None:
-        if runner.current is None:
-            runner.start_experiment()
-        d.wait(lambda: runner.experiment.done_of[0] > 1, "frames of the experiment")
+        if runs.current is None:
+            runs.start_experiment()
+        d.wait(lambda: runs.experiment.done_of[0] > 1, "frames of the experiment")
 
     def answer(name: str) -> None:
         d.frames(3)
-        assert d.c.asking.question is not None and runner.current is not None, "nobody has asked"
-        d.context.item_click(f"//{d.c.asking.question.title}###question/{name}")
+        assert d.c.questions.question is not None and runs.current is not None, "nobody has asked"
+        d.context.item_click(f"//{d.c.questions.question.title}###question/{name}")
         d.frames(3)
-        assert d.c.asking.question is None
+        assert d.c.questions.question is None
 
     under_way()
     for ask in (lambda: d.drop(other), lambda: d.press(KEY.f5), lambda: d.press(int(KEY.q) | int(KEY.mod_ctrl)),
-                lambda: d.c.opener.open(other)):  # fmt: skip
+                lambda: d.c.loader.open(other)):  # fmt: skip
         ask()
         answer("Keep running")
-        assert runner.current is not None and not runner.current.stopping and d.c.opener.load_job is None
+        assert runs.current is not None and not runs.current.stopping and d.c.loader.load_job is None
     d.drop(other)
     d.frames(3)
     d.press(KEY.escape)
-    assert d.c.asking.question is None and not runner.current.stopping, "Escape has stopped it beside the question"
+    assert d.c.questions.question is None and not runs.current.stopping, "Escape has stopped it beside the question"
     d.drop(d.folder / "gone.aff")
-    assert d.c.asking.question is None and "no such file" in d.c.message.text
-    run = runner.experiment
+    assert d.c.questions.question is None and "no such file" in d.c.notices.message.text
+    run = runs.experiment
     d.drop(other)
     answer("Stop and open")
-    d.wait(lambda: d.c.session.scene.path == other and runner.current is None, "the other scene")
+    d.wait(lambda: d.c.session.scene.path == other and runs.current is None, "the other scene")
     d.settle()
-    assert run is runner.experiment and run.results is not None and not run.whole
+    assert run is runs.experiment and run.results is not None and not run.whole
     d.ui.show_panel("Experiment")
     d.frames(3)
     saved_results(d, "Experiment")
@@ -156,9 +156,9 @@ def asking(d: Driver) -> None:
     d.press(KEY.escape)
     assert not d.ui.about_open and d.ui.shortcuts_open
     d.press(KEY.escape)
-    assert not d.ui.shortcuts_open and not runner.current.stopping
+    assert not d.ui.shortcuts_open and not runs.current.stopping
     d.press(KEY.escape)
-    d.wait(lambda: runner.current is None, "the experiment to stop", 20.0)
+    d.wait(lambda: runs.current is None, "the experiment to stop", 20.0)
     d.settle()
 
     under_way()

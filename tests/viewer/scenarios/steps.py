@@ -19,7 +19,7 @@ def figure4(d: Driver, frame: int) -> None:
     p = d.c.preferences
     p.dynamic_resolution, p.fixed_resolution, p.fixed_width, p.fixed_height = False, True, 128, 128
     p.every_frame = p.loop = False
-    d.c.change(method="paper")
+    d.c.settings.change(method="paper")
     d.drop(embedded_scenes()["figure4"])
     d.wait(lambda: d.c.session.scene.path.name == "figure4.aff", "the scene of Figure 4")
     d.settle()
@@ -36,9 +36,9 @@ def saved_results(d: Driver, panel: str) -> dict[str, Path]:
     d.scroll_down(panel)
     for kind in ("JSON", "CSV", "Plot"):
         d.context.item_click(f"//{panel}/**/{icons.ICON_FA_FLOPPY_DISK} {kind}")
-    d.wait(lambda: not d.c.keeper.busy, "the files to be written")
+    d.wait(lambda: not d.c.captures.busy, "the files to be written")
     d.frames(2)
-    assert not d.c.message.error, d.c.message.text
+    assert not d.c.notices.message.error, d.c.notices.message.text
     files = {path.suffix: path for path in set(folder.glob("*")) - before}
     assert set(files) == {".json", ".csv", ".png"}
     with Image.open(files[".png"]) as plot:

@@ -33,7 +33,7 @@ def touring(d: Driver) -> None:
     assert tour.at == 1 and tour.done == {0}
     d.press(KEY._2)
     assert tour.at == 1 and tour.done == {0, 2}, "a later step that is done early counts"
-    d.c.change(method="paper")
+    d.c.settings.change(method="paper")
     d.settle()
     assert tour.at == 1 and "Press C twice" in tour.step.text(d.c)
     d.press(KEY.c)
@@ -48,11 +48,11 @@ def touring(d: Driver) -> None:
     assert tour.at == 3
     d.context.item_click(show)
     d.wait(lambda: tour.at == 4, "a shadow that was clicked", 60.0)
-    assert d.c.selected is not None and any(one.blocked_at is not None for one in d.c.explaining.answer.lights)
-    d.c.runner.zoom_plan.steps, d.c.runner.zoom_plan.size = 3, (32, 32)
+    assert d.c.selection.picked is not None and any(one.blocked_at is not None for one in d.c.inspector.answer.lights)
+    d.c.runs.zoom_plan.steps, d.c.runs.zoom_plan.size = 3, (32, 32)
     d.context.item_click(show)
     d.wait(lambda: tour.at is None, "the zoom test", 120.0)
-    assert d.c.runner.zoom_test is not None and d.c.runner.zoom_test.whole
+    assert d.c.runs.zoom_test is not None and d.c.runs.zoom_test.whole
     d.settle()
 
     d.context.menu_click("//##MainMenuBar/Help/Tour")
@@ -69,7 +69,7 @@ def touring(d: Driver) -> None:
     d.context.item_click(show)
     d.wait(lambda: tour.at == 1, "the flight that is shown", 30.0)
     assert d.c.session.camera != camera
-    d.c.change(method="auto")
+    d.c.settings.change(method="auto")
     method = d.c.session.settings.method
     d.context.item_click(show)
     d.wait(lambda: tour.at == 2, "culling off and on", 30.0)
@@ -87,5 +87,5 @@ def touring(d: Driver) -> None:
     assert tour.at is None
     d.press(KEY.c)
     d.settle()
-    d.c.save_preferences()
+    d.c.settings.save()
     assert not load_preferences()[0].tour

@@ -23,11 +23,11 @@ def same_figures(one: experiment.Results, other: experiment.Results) -> bool:
 
 
 def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(desk: Desk) -> None:
-    desk.runner.experiment_plan.verify = True
+    desk.runs.experiment_plan.verify = True
     own = desk.c.frame
     desk.came.clear()
-    desk.runner.start_experiment()
-    run = desk.runner.experiment
+    desk.runs.start_experiment()
+    run = desk.runs.experiment
     desk.run_to_its_end()
     assert run.whole and run.results is not None and desk.said.startswith("experiment done: 5 frames in ")
 
@@ -45,21 +45,21 @@ def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(des
 
 @pytest.mark.parametrize("verify", [False, True])
 def test_a_view_of_what_is_wrong_says_whether_the_run_verifies(desk: Desk, verify: bool) -> None:
-    desk.runner.experiment_plan = replace(desk.runner.experiment_plan, frames=5000, verify=verify)
-    desk.c.set_view(View.WIPE)
+    desk.runs.experiment_plan = replace(desk.runs.experiment_plan, frames=5000, verify=verify)
+    desk.c.settings.set_view(View.WIPE)
     desk.rest()
     desk.came.clear()
-    desk.runner.start_experiment()
+    desk.runs.start_experiment()
     desk.until(lambda: desk.came)
-    assert desk.runner.current.verifies is verify
+    assert desk.runs.current.verifies is verify
     assert ("this run does not verify" in desk.c.tracing.title) is not verify
     assert desk.c.tracing.drawn_view is (View.WIPE if verify else View.COLOR)
 
 
 def test_the_frames_of_the_chosen_method_are_shown(desk: Desk) -> None:
     desk.came.clear()
-    desk.runner.start_experiment()
-    desk.runner.experiment.shown = "none"
+    desk.runs.start_experiment()
+    desk.runs.experiment.shown = "none"
     desk.run_to_its_end()
     small = [frame.settings.method for frame in desk.came if (frame.width, frame.height) == (32, 24)]
     assert small and set(small) == {"none"}
@@ -67,77 +67,77 @@ def test_the_frames_of_the_chosen_method_are_shown(desk: Desk) -> None:
 
 def test_the_last_frame_of_a_run_is_shown_though_the_window_was_late(desk: Desk) -> None:
     desk.came.clear()
-    desk.runner.start_experiment()
-    run = desk.runner.experiment
+    desk.runs.start_experiment()
+    run = desk.runs.experiment
     assert run._done.wait(60.0)
     desk.tick()
     assert [(f.width, f.height, f.settings.method) for f in desk.came] == [(32, 24, "paper")]
-    assert desk.runner.current is None and desk.said.startswith("experiment done")
+    assert desk.runs.current is None and desk.said.startswith("experiment done")
     desk.rest()
     assert (desk.c.frame.width, desk.c.frame.height) == SIZE
 
 
 def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
     session = desk.c.session
-    renderer = desk.c.render._renderer
+    renderer = desk.c.renderer._renderer
     histories = {size: history.words.copy() for size, history in renderer.state.histories.items()}
-    desk.runner.experiment_plan.frames = 5000
-    desk.runner.start_experiment()
-    desk.until(lambda: desk.runner.experiment.traced > 2)
+    desk.runs.experiment_plan.frames = 5000
+    desk.runs.start_experiment()
+    desk.until(lambda: desk.runs.experiment.traced > 2)
     before = (session.camera, session.time, session.settings, session.playing, session.follow)
     asked: list[object] = []
     renderer.refine = lambda *arguments: asked.append(arguments)
     for disturb in (
-        lambda: desk.c.move(ELSEWHERE),
-        lambda: desk.c.glide(ELSEWHERE),
-        lambda: desk.c.follow_path(False),
-        lambda: desk.c.toggle_play(),
-        lambda: desk.c.step(3),
-        lambda: desk.c.change(depth=2),
-        lambda: desk.c.toggle_culling(),
-        lambda: desk.c.reset_modes(),
+        lambda: desk.c.motion.move(ELSEWHERE),
+        lambda: desk.c.motion.glide(ELSEWHERE),
+        lambda: desk.c.motion.follow_path(False),
+        lambda: desk.c.motion.toggle_play(),
+        lambda: desk.c.motion.step(3),
+        lambda: desk.c.settings.change(depth=2),
+        lambda: desk.c.settings.toggle_culling(),
+        lambda: desk.c.tracing.reset_modes(),
     ):
-        desk.c.message = None
+        desk.c.notices.message = None
         disturb()
         assert desk.said == "the experiment is still under way; stop it first (Escape)"
         desk.tick()
         assert (session.camera, session.time, session.settings, session.playing, session.follow) == before
-    desk.runner.start_experiment()
+    desk.runs.start_experiment()
     assert desk.said == "the experiment is still under way"
-    desk.runner.start_zoom_test()
-    assert desk.said == "the experiment is still under way" and desk.runner.zoom_test is None
-    desk.c.trace_again()
-    many = desk.runner.experiment.traced + 10
-    desk.until(lambda: desk.runner.experiment.traced > many)
+    desk.runs.start_zoom_test()
+    assert desk.said == "the experiment is still under way" and desk.runs.zoom_test is None
+    desk.c.tracing.trace_again()
+    many = desk.runs.experiment.traced + 10
+    desk.until(lambda: desk.runs.experiment.traced > many)
     assert not asked, "a frame was traced beside the run"
     del renderer.refine
     assert all(np.array_equal(history.words, histories[size]) for size, history in renderer.state.histories.items())
-    desk.runner.stop()
+    desk.runs.stop()
     desk.run_to_its_end()
-    desk.c.move(ELSEWHERE)
+    desk.c.motion.move(ELSEWHERE)
     desk.rest()
     assert desk.c.frame.camera == ELSEWHERE
 
 
 def test_a_plan_that_is_no_good_is_one_line(desk: Desk) -> None:
-    desk.runner.experiment_plan.size = (0, 10)
-    desk.runner.start_experiment()
-    assert desk.c.message.error and "width and height" in desk.said
-    desk.c.select((0.5, 0.5))
-    desk.runner.experiment_plan.size = desk.runner.zoom_plan.size = (64, 4097)
-    for start in (desk.runner.start_experiment, desk.runner.start_zoom_test):
-        desk.c.message = None
+    desk.runs.experiment_plan.size = (0, 10)
+    desk.runs.start_experiment()
+    assert desk.c.notices.message.error and "width and height" in desk.said
+    desk.c.selection.select((0.5, 0.5))
+    desk.runs.experiment_plan.size = desk.runs.zoom_plan.size = (64, 4097)
+    for start in (desk.runs.start_experiment, desk.runs.start_zoom_test):
+        desk.c.notices.message = None
         start()
-        assert desk.c.message.error and "64 x 4097 is too large for a run" in desk.said
-    desk.runner.zoom_plan.size = (32, 24)
-    desk.runner.zoom_plan.factors = "four"
-    desk.runner.start_zoom_test()
-    assert desk.c.message.error and "'four' are not zoom factors" in desk.said
-    desk.runner.zoom_plan = replace(desk.runner.zoom_plan, factors="4", ratio=0.5, steps=500)
-    desk.runner.start_zoom_test()
+        assert desk.c.notices.message.error and "64 x 4097 is too large for a run" in desk.said
+    desk.runs.zoom_plan.size = (32, 24)
+    desk.runs.zoom_plan.factors = "four"
+    desk.runs.start_zoom_test()
+    assert desk.c.notices.message.error and "'four' are not zoom factors" in desk.said
+    desk.runs.zoom_plan = replace(desk.runs.zoom_plan, factors="4", ratio=0.5, steps=500)
+    desk.runs.start_zoom_test()
     desk.rest()
-    assert desk.c.message.error and desk.said.startswith("the zoom test failed: 500 steps")
-    assert desk.runner.experiment is None and desk.runner.current is None
+    assert desk.c.notices.message.error and desk.said.startswith("the zoom test failed: 500 steps")
+    assert desk.runs.experiment is None and desk.runs.current is None
 
 
 @pytest.mark.parametrize(

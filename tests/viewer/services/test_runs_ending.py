@@ -26,45 +26,45 @@ from viewer.util.resources import embedded_scenes
 
 
 def test_another_scene_ends_a_run_and_its_results_stay(desk: Desk) -> None:
-    desk.runner.experiment_plan.frames = 5000
-    desk.runner.start_experiment()
-    run = desk.runner.experiment
+    desk.runs.experiment_plan.frames = 5000
+    desk.runs.start_experiment()
+    run = desk.runs.experiment
     desk.until(lambda: run.results is not None)
     desk.open(embedded_scenes()["figure4"])
-    assert run.done and desk.runner.current is None and run.results.frames
+    assert run.done and desk.runs.current is None and run.results.frames
     assert desk.c.frame.camera.position == (0.0, 0.0, 20.0), "the picture is not the new scene's"
-    desk.runner.experiment_plan.frames = 2
-    desk.runner.start_experiment()
+    desk.runs.experiment_plan.frames = 2
+    desk.runs.start_experiment()
     desk.run_to_its_end()
-    assert desk.runner.experiment.whole and "figure4" in desk.runner.experiment.results.scene
+    assert desk.runs.experiment.whole and "figure4" in desk.runs.experiment.results.scene
 
 
 def test_a_run_that_is_overtaken_by_another_scene_does_not_trace_it(desk: Desk) -> None:
     """Whatever the thread was at: the run has not begun when the scene changes."""
-    begun, hold, renderer = threading.Event(), threading.Event(), desk.c.render._renderer
+    begun, hold, renderer = threading.Event(), threading.Event(), desk.c.renderer._renderer
 
     class Holding:
         def work(self, renderer: object, cancelled: object) -> None:
             begun.set()
             hold.wait(20.0)
 
-    desk.c.render.perform(Holding())
+    desk.c.renderer.perform(Holding())
     assert begun.wait(20.0)
-    desk.runner.start_experiment()
+    desk.runs.start_experiment()
     scene = load_scene(embedded_scenes()["figure4"])
     desk.c.show(scene, Renderer(scene), scene_info(scene))
     hold.set()
     desk.run_to_its_end()
-    assert renderer is not desk.c.render._renderer
-    assert desk.runner.experiment.results is None and not desk.runner.experiment.traced
+    assert renderer is not desk.c.renderer._renderer
+    assert desk.runs.experiment.results is None and not desk.runs.experiment.traced
     assert desk.said == "experiment stopped after 0 of 5 frames"
 
 
 def test_restoring_a_place_ends_a_run(desk: Desk) -> None:
     snapshot = desk.c.session.snapshot()
-    desk.runner.experiment_plan.frames = 5000
-    desk.runner.start_experiment()
-    desk.until(lambda: desk.runner.experiment.traced > 2)
+    desk.runs.experiment_plan.frames = 5000
+    desk.runs.start_experiment()
+    desk.until(lambda: desk.runs.experiment.traced > 2)
     desk.c.restore(replace(snapshot, camera=ELSEWHERE, follow=False))
     desk.run_to_its_end()
     assert desk.c.frame.camera == ELSEWHERE
@@ -72,13 +72,13 @@ def test_restoring_a_place_ends_a_run(desk: Desk) -> None:
 
 def test_closing_ends_a_run(tiny_scene_file: Path, tmp_path: Path) -> None:
     desk = Desk(tiny_scene_file, tmp_path)
-    desk.runner.experiment_plan.frames = 100_000
-    desk.runner.start_experiment()
-    desk.until(lambda: desk.runner.experiment.traced > 2)
+    desk.runs.experiment_plan.frames = 100_000
+    desk.runs.start_experiment()
+    desk.until(lambda: desk.runs.experiment.traced > 2)
     began = time.monotonic()
     assert desk.c.close()
     assert time.monotonic() - began < 5.0
-    assert desk.runner.experiment.done
+    assert desk.runs.experiment.done
 
 
 def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -88,28 +88,28 @@ def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytes
     monkeypatch.setattr(experiment, "run", fail)
     controller = Controller(Preferences(dynamic_resolution=False, samples=1))
     controller.show(make_scene(), FakeRenderer(), {})
-    controller.runner.experiment_plan.frames = 2
-    controller.runner.start_experiment()
+    controller.runs.experiment_plan.frames = 2
+    controller.runs.start_experiment()
     end = time.monotonic() + 20.0
-    while controller.runner.current is not None or controller.frame is None:
+    while controller.runs.current is not None or controller.frame is None:
         assert time.monotonic() < end
         controller.tick(SIZE)
-    assert controller.faults.notice.text == "the experiment failed: AttributeError: no world"
-    assert "no world" in controller.faults.notice.details
+    assert controller.notices.faults.notice.text == "the experiment failed: AttributeError: no world"
+    assert "no world" in controller.notices.faults.notice.details
     assert controller.close()
 
 
 def test_stopping_keeps_the_whole_frames(desk: Desk) -> None:
     own = desk.c.frame
-    desk.runner.experiment_plan.frames = 5000
-    desk.runner.start_experiment()
-    run = desk.runner.experiment
+    desk.runs.experiment_plan.frames = 5000
+    desk.runs.start_experiment()
+    run = desk.runs.experiment
     desk.until(lambda: run.results is not None and len(run.results.frames) > 3)
     growing = run.results
     before = len(growing.frames)
-    desk.runner.stop()
+    desk.runs.stop()
     desk.run_to_its_end()
-    assert not run.whole and desk.runner.current is None
+    assert not run.whole and desk.runs.current is None
     assert len(growing.frames) == before, "results that were handed out have changed"
     done = len(run.results.frames)
     assert before <= done < 5000
@@ -119,7 +119,7 @@ def test_stopping_keeps_the_whole_frames(desk: Desk) -> None:
 
 
 def test_stopped_before_its_first_frame_a_run_leaves_nothing_and_what_it_cut_short_is_traced(desk: Desk) -> None:
-    renderer, begun = desk.c.render._renderer, threading.Event()
+    renderer, begun = desk.c.renderer._renderer, threading.Event()
 
     def never(_time: float, _camera: Camera, cancel: Callable[[], bool], *_how: object) -> Iterator[Frame]:
         begun.set()
@@ -129,15 +129,15 @@ def test_stopped_before_its_first_frame_a_run_leaves_nothing_and_what_it_cut_sho
         raise Cancelled()
 
     renderer.refine = never
-    desk.c.trace_again()
+    desk.c.tracing.trace_again()
     desk.tick()
     assert begun.wait(20.0)
     desk.came.clear()
-    desk.runner.start_experiment()
-    desk.runner.stop()
+    desk.runs.start_experiment()
+    desk.runs.stop()
     del renderer.refine
     desk.run_to_its_end()
-    assert desk.runner.experiment.results is None
+    assert desk.runs.experiment.results is None
     assert desk.said == "experiment stopped after 0 of 5 frames"
     assert {(frame.width, frame.height) for frame in desk.came} == {SIZE}
 
@@ -151,12 +151,12 @@ def test_a_run_that_is_over_keeps_neither_its_scene_nor_a_frame(desk: Desk) -> N
         show(traced)
 
     desk.c.tracing.show = showing
-    desk.runner.start_experiment()
+    desk.runs.start_experiment()
     desk.run_to_its_end()
     desk.came.clear()
-    assert desk.runner.experiment.whole and frames
+    assert desk.runs.experiment.whole and frames
     desk.open(embedded_scenes()["figure4"])
     desk.came.clear()
     gc.collect()
     assert scene() is None and not any(frame() for frame in frames)
-    assert desk.runner.experiment.scene_path.name == "tiny.aff"
+    assert desk.runs.experiment.scene_path.name == "tiny.aff"

@@ -50,7 +50,7 @@ class Desk:
 
     @property
     def answer(self) -> Answer | None:
-        return self.c.explaining.answer
+        return self.c.inspector.answer
 
     def _place(self, lit: bool) -> tuple[float, float]:
         """Where the square is seen and lit by all lights, or not by one."""
@@ -77,64 +77,64 @@ def blocked(answer: Answer) -> bool:
 def test_the_pointer_is_followed_and_nothing_is_traced_for_it(desk: Desk):
     assert desk.answer is None
     traced = desk.c.history.frames
-    desk.c.hovered = desk.shadow
+    desk.c.selection.hovered = desk.shadow
     answer = desk.answered()
     assert blocked(answer) and answer.lights == explain(desk.renderer, desk.c.frame, answer.x, answer.y)
-    desk.c.hovered = desk.lit
+    desk.c.selection.hovered = desk.lit
     desk.until(lambda: not blocked(desk.answer))
-    desk.c.hovered = (0.5, 0.01)  # background
+    desk.c.selection.hovered = (0.5, 0.01)  # background
     desk.until(lambda: desk.answer is None)
-    desk.c.hovered = desk.lit
+    desk.c.selection.hovered = desk.lit
     desk.answered()
-    desk.c.hovered = None
+    desk.c.selection.hovered = None
     desk.until(lambda: desk.answer is None)
     assert desk.c.history.frames == traced
 
 
 def test_what_is_kept_stays_wherever_the_pointer_and_the_camera_go(desk: Desk):
-    desk.c.hovered = desk.lit
+    desk.c.selection.hovered = desk.lit
     desk.answered()
-    desk.c.select(desk.shadow)
+    desk.c.selection.select(desk.shadow)
     assert blocked(desk.answered())
     first = desk.answer
-    desk.c.move(navigation.look(desk.c.session.camera, 0.05, 0.03, desk.c.world_up))
+    desk.c.motion.move(navigation.look(desk.c.session.camera, 0.05, 0.03, desk.c.motion.world_up))
     desk.until(lambda: not desk.c.active)
     again = desk.answered()
     assert again is not first
     assert np.allclose(again.lights[0].point, first.lights[0].point, atol=0.3), "a pixel's breadth"
-    desk.c.move(navigation.look(desk.c.session.camera, 2.5, 0.0, desk.c.world_up))
+    desk.c.motion.move(navigation.look(desk.c.session.camera, 2.5, 0.0, desk.c.motion.world_up))
     desk.until(lambda: not desk.c.active)
     assert desk.answer is again, "out of sight it is what it was"
-    desk.c.selected = None
+    desk.c.selection.picked = None
     desk.until(lambda: desk.answer is None or desk.answer.x != again.x)
 
 
 def test_another_time_is_another_answer(desk: Desk):
-    desk.c.select(desk.shadow)
+    desk.c.selection.select(desk.shadow)
     first = desk.answered()
-    desk.c.step(3)
+    desk.c.motion.step(3)
     desk.until(lambda: not desk.c.active and desk.c.frame.time > first.frame.time)
     assert desk.answered().frame.time == desk.c.frame.time
-    desk.c.move(navigation.look(desk.c.session.camera, 2.5, 0.0, desk.c.world_up))
+    desk.c.motion.move(navigation.look(desk.c.session.camera, 2.5, 0.0, desk.c.motion.world_up))
     desk.until(lambda: not desk.c.active)
-    desk.c.step(3)
+    desk.c.motion.step(3)
     desk.until(lambda: not desk.c.active and desk.answer is None)
 
 
 def test_a_run_has_the_world_to_itself(desk: Desk):
-    desk.c.select(desk.shadow)
+    desk.c.selection.select(desk.shadow)
     desk.answered()
-    desk.c.runner.experiment_plan = replace(desk.c.runner.experiment_plan, frames=400, size=(32, 24), depth=1)
-    desk.c.runner.start_experiment()
+    desk.c.runs.experiment_plan = replace(desk.c.runs.experiment_plan, frames=400, size=(32, 24), depth=1)
+    desk.c.runs.start_experiment()
     desk.until(lambda: desk.answer is None)
-    desk.c.runner.stop()
-    desk.until(lambda: desk.c.runner.current is None and not desk.c.active)
+    desk.c.runs.stop()
+    desk.until(lambda: desk.c.runs.current is None and not desk.c.active)
     assert blocked(desk.answered())
 
 
 def test_every_named_occluder_is_drawn_up_to_a_number_and_what_blocks_stands_out(desk: Desk):
     desk.renderer.explain = lambda primitive, point, light: ("CANDIDATES", (0, 1) * 10)
-    desk.c.select(desk.shadow)
+    desk.c.selection.select(desk.shadow)
     answer = desk.answered()
     stopped = next(one for one in answer.lights if one.blocked_at is not None)
     assert stopped.certificate == "CANDIDATES" and stopped.named == (0, 1)
@@ -148,7 +148,7 @@ def test_every_named_occluder_is_drawn_up_to_a_number_and_what_blocks_stands_out
 
 def test_what_blocks_is_named_once_and_as_what_it_is(desk: Desk):
     ui = Ui(desk.c)
-    desk.c.select(desk.shadow)
+    desk.c.selection.select(desk.shadow)
     answer = desk.answered()
     found = next(one for one in answer.lights if one.blocked_at is not None)
     stopped = replace(found, certificate="none", named=())

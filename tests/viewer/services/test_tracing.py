@@ -1,4 +1,4 @@
-"""What is asked of the render thread, at rest and in motion: how many frames more, in which order, with which modes."""
+"""What the render thread is asked for, at idle and in motion: in which order, and with which modes."""
 
 from __future__ import annotations
 
@@ -9,67 +9,40 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-import pytest
 
 from tests.viewer.fakes import FakeRenderer, make_frame, make_scene
 from tracer.frame import Settings
 from tracer.scene.model import Camera, Cancelled
-from tracer.statistics import FrameStatistics
 from viewer.services.controller import Controller
 from viewer.services.render_thread import RenderRequest, Traced
-from viewer.services.tracing import LESSONS, Tracing
+from viewer.services.tracing import Conditions, Tracing
 from viewer.state.preferences import Preferences
+from viewer.state.session import Session
 from viewer.state.views import View
 
 CAMERA = Camera((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
-class Desk:
-    """A controller at rest, whose frames come at once: what `Tracing` asks of it."""
+class Pictures:
+    """A render thread that traces nothing: what it was asked, and what it has next."""
+
+    busy = False
 
     def __init__(self) -> None:
-        self.preferences = SimpleNamespace(keep_tracing=False)
-        self.session, self.moving, self.render = SimpleNamespace(playing=False, view=View.COLOR), False, self
-        self.tracing = Tracing(self)  # type: ignore[arg-type]
-        self._next: Traced | None = None
+        self.asked: list[RenderRequest] = []
+        self.next: Traced | None = None
+        self.resets = 0
+
+    def submit(self, request: RenderRequest) -> None:
+        self.asked.append(request)
+
+    hurry = submit
 
     def take(self) -> Traced | None:
-        return self._next
+        return self.next
 
-    def frames(self, made: list[int], camera: Camera = CAMERA, **settings: Any) -> int:
-        """How many frames of a view are traced, the k-th of which makes so many certificates."""
-        for k, certificates in enumerate(made):
-            request = RenderRequest(0.0, camera, Settings(8, 8, **settings), 1, k)
-            before = self.tracing._serial
-            for part in (0.25, 1.0):
-                statistics = FrameStatistics(certificates=certificates, seconds=0.1, part=part)
-                frame = SimpleNamespace(statistics=statistics, width=8, height=8)
-                self._next = Traced(request, frame, statistics)  # type: ignore[arg-type]
-                self.tracing.take()
-                self.tracing._settle()
-                assert part == 1.0 or self.tracing._serial == before, "a part of a picture teaches nothing"
-            if self.tracing._serial == before:
-                return k + 1
-        return len(made)
-
-
-@pytest.mark.parametrize(
-    ("method", "made", "frames"),
-    [
-        ("none", [0] * 20, 2),
-        ("paper", [0] * 20, 2),
-        ("certified", [0] * 20, 2),
-        ("certified", [9, 9, 9, 0, 0, 0], 4),
-        ("auto", [9] * 20, 2),
-        ("certified+cache", [9] * 2 * LESSONS, 1 + LESSONS),
-    ],
-)
-def test_at_rest_frames_follow_as_long_as_there_is_something_to_learn(method: str, made: list[int], frames: int):
-    desk = Desk()
-    assert desk.frames(made, method=method) == frames
-    assert desk.frames(made, method=method) == 1, "nothing is learnt twice"
-    elsewhere = Camera((1.0, 0.0, 0.0), CAMERA.direction, CAMERA.up)
-    assert desk.frames(made, elsewhere, method=method) == frames, "another view"
+    def reset_modes(self) -> None:
+        self.resets += 1
 
 
 def _traced(divisor: int, modes: list[int], part: float = 1.0) -> Traced:
@@ -82,7 +55,8 @@ def _traced(divisor: int, modes: list[int], part: float = 1.0) -> Traced:
 
 def test_a_coarser_picture_shows_the_modes_of_the_last_whole_one():
     """Those of its own resolution know little of what the user has been looking at."""
-    desk = Desk()
+    pictures = Pictures()
+    tracing = Tracing(Session(), Preferences(), pictures)
     for traced, shown in (
         (_traced(2, [0, 0, 1]), [0, 0, 1]),
         (_traced(1, [5, 6, 7]), [5, 6, 7]),
@@ -90,12 +64,47 @@ def test_a_coarser_picture_shows_the_modes_of_the_last_whole_one():
         (_traced(2, [0, 0, 1], part=0.25), [5, 6, 7]),
         (_traced(2, [0, 0]), [0, 0]),
     ):
-        desk._next = traced
-        assert desk.tracing.take().frame.modes.tolist() == shown
-        assert desk.tracing.frame.modes.tolist() == shown
-    desk.tracing.again(modes_are_lost=True)
-    desk._next = _traced(2, [0, 0, 1])
-    assert desk.tracing.take().frame.modes.tolist() == [0, 0, 1]
+        pictures.next = traced
+        assert tracing.take().frame.modes.tolist() == shown
+        assert tracing.frame.modes.tolist() == shown
+    tracing.reset_modes()
+    assert pictures.resets == 1
+    pictures.next = _traced(2, [0, 0, 1])
+    assert tracing.take().frame.modes.tolist() == [0, 0, 1]
+
+
+def test_pictures_are_asked_for_once_and_again_after_a_run():
+    """A run drops what was asked for, and leaves the world at its own last frame."""
+    pictures, session = Pictures(), Session(settings=Settings(method="none", samples=1))
+    session.open(make_scene())
+    tracing = Tracing(session, Preferences(dynamic_resolution=False), pictures)
+    here = Conditions(size=(16, 8))
+    for _ in range(3):
+        tracing.ask(here)
+    (request,) = pictures.asked[1:] if len(pictures.asked) > 1 else pictures.asked
+    assert (request.settings.width, request.settings.height, request.parts) == (16, 8, (16,))
+    run = SimpleNamespace(label_shown="frame 3", lacks=lambda view: "")
+    tracing.ask(replace(here, run=run))
+    assert tracing.title == f"showing frame 3   {View.COLOR.label}"
+    count = len(pictures.asked)
+    tracing.ask(here)
+    assert len(pictures.asked) == count + 1 and pictures.asked[-1] == request
+
+
+def test_until_certificates_can_be_made_pictures_come_without():
+    session = Session(settings=Settings(method="certified+rest"))
+    tracing = Tracing(session, Preferences(), Pictures())
+    assert tracing.settings.method == "certified+rest"
+    tracing.ask(Conditions(ready=False))
+    assert tracing.settings.method == "none+rest"
+    session.settings = replace(session.settings, method="paper")
+    assert tracing.settings.method == "paper"
+
+
+def test_nothing_is_reset_while_it_is_locked():
+    pictures = Pictures()
+    Tracing(Session(), Preferences(), pictures, locked=lambda: True).reset_modes()
+    assert pictures.resets == 0
 
 
 def test_a_hand_that_falters_starves_no_picture():
@@ -120,7 +129,7 @@ def test_a_hand_that_falters_starves_no_picture():
                 break
             if step % 2:
                 x = 0.001 * step
-                controller.move(replace(controller.session.camera, position=(x, 0.0, 0.0)))
+                controller.motion.move(replace(controller.session.camera, position=(x, 0.0, 0.0)))
             controller.tick(size)
             if controller.traced is not None:
                 shown.add(controller.traced.request.camera)

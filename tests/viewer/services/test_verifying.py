@@ -49,72 +49,72 @@ def desk():
 
 @pytest.mark.parametrize("view", [View.SAVED, View.COST])
 def test_a_view_of_work_has_it_counted_once_and_other_views_trace_nothing(desk: Desk, view: View):
-    desk.c.set_view(view)
+    desk.c.settings.set_view(view)
     assert desk.c.tracing.drawn_view is View.COLOR and desk.c.tracing.outdated, "nothing has been counted yet"
     assert "counting" in desk.c.tracing.title
     assert desk.rest() == [False]
     assert desk.c.frame.settings.record_work and desk.c.tracing.drawn_view is view and not desk.c.tracing.outdated
     for other in (View.COLOR, View.COST, View.SAVED, View.CERTIFICATE):
-        desk.c.set_view(other)
+        desk.c.settings.set_view(other)
         assert not desk.c.tracing.outdated
         assert desk.rest() == []
-    desk.c.step(1)
+    desk.c.motion.step(1)
     desk.rest()
     assert not desk.c.frame.settings.record_work, "only frames of such a view"
     assert not desk.c.session.settings.record_work
 
 
 def test_what_was_verified_is_counted_and_verified_again_when_both_are_wanted(desk: Desk):
-    desk.c.change(verify=True)
+    desk.c.settings.change(verify=True)
     assert desk.rest() == [True]
-    desk.c.set_view(View.SAVED)
+    desk.c.settings.set_view(View.SAVED)
     assert desk.rest() == [True] and desk.c.frame.settings.record_work
-    desk.c.set_view(View.DIFFERENCE)
+    desk.c.settings.set_view(View.DIFFERENCE)
     assert desk.rest() == []
 
 
 @pytest.mark.parametrize("view", [View.DIFFERENCE, View.WIPE])
 def test_a_view_of_what_is_wrong_verifies_once_and_other_views_trace_nothing(desk: Desk, view: View):
-    desk.c.set_view(view)
+    desk.c.settings.set_view(view)
     assert desk.c.tracing.drawn_view is View.COLOR and desk.c.tracing.outdated, "nothing has been verified yet"
     assert "verifying" in desk.c.tracing.title
     assert desk.rest() == [True]
     assert desk.c.frame.wrong is not None and desk.c.tracing.drawn_view is view and not desk.c.tracing.outdated
     for other in (View.COLOR, View.WIPE, View.DIFFERENCE, View.DEPTH):
-        desk.c.set_view(other)
+        desk.c.settings.set_view(other)
         assert not desk.c.tracing.outdated
         assert desk.rest() == []
     assert not desk.c.session.settings.verify and not desk.c.preferences.verify
 
 
 def test_only_frames_of_such_a_view_are_verified(desk: Desk):
-    desk.c.set_view(View.DIFFERENCE)
+    desk.c.settings.set_view(View.DIFFERENCE)
     assert set(desk.rest()) == {True}
-    desk.c.step(1)
+    desk.c.motion.step(1)
     assert set(desk.rest()) == {True}
-    desk.c.set_view(View.COLOR)
+    desk.c.settings.set_view(View.COLOR)
     assert desk.rest() == []
-    desk.c.step(1)
+    desk.c.motion.step(1)
     assert set(desk.rest()) == {False}
 
 
 def test_the_users_own_setting_counts_in_every_view(desk: Desk):
-    desk.c.change(verify=True)
+    desk.c.settings.change(verify=True)
     assert desk.rest() == [True]
-    desk.c.set_view(View.DIFFERENCE)
-    desk.c.change(verify=False)
+    desk.c.settings.set_view(View.DIFFERENCE)
+    desk.c.settings.change(verify=False)
     assert desk.rest() == [], "verified it is already"
-    desk.c.set_view(View.COLOR)
-    desk.c.change(verify=True)
-    desk.c.change(verify=False)
-    desk.c.trace_again()
+    desk.c.settings.set_view(View.COLOR)
+    desk.c.settings.change(verify=True)
+    desk.c.settings.change(verify=False)
+    desk.c.tracing.trace_again()
     assert desk.rest() == [False]
 
 
 def test_switched_off_by_the_user_it_is_traced_without(desk: Desk):
-    desk.c.change(verify=True)
+    desk.c.settings.change(verify=True)
     desk.rest()
-    desk.c.change(verify=False)
+    desk.c.settings.change(verify=False)
     assert desk.rest() == [False]
 
 
@@ -125,15 +125,15 @@ def test_what_a_run_cut_short_is_traced_after_it_though_it_showed_no_frame(desk:
     monkeypatch.setattr(experiment, "run", fail)
     desk.renderer.go.clear()
     desk.renderer.started.clear()
-    desk.c.trace_again()
+    desk.c.tracing.trace_again()
     desk.c.tick(SIZE)
     assert desk.renderer.started.wait(10.0)
-    desk.c.runner.start_experiment()
+    desk.c.runs.start_experiment()
     end = time.monotonic() + 10.0
-    while desk.c.runner.current is not None:
+    while desk.c.runs.current is not None:
         assert time.monotonic() < end
         desk.c.tick(SIZE)
-    assert desk.c.faults.notice is not None, "the run fails at once"
+    assert desk.c.notices.faults.notice is not None, "the run fails at once"
     assert desk.renderer.cancelled, "the run came before the frame"
     desk.renderer.go.set()
     assert desk.rest() == [False], "the frame that was cut short has not come"
@@ -147,25 +147,25 @@ def test_a_capture_of_a_runs_frame_is_named_and_restored_as_what_it_shows(desk: 
     for camera, follow in ((elsewhere, False), (own, True)):
         frame = make_frame(time=7.0, camera=camera)
         desk.c.tracing.show(Traced(RenderRequest(7.0, camera, frame.settings), frame, frame.statistics))
-        desk.c.keeper.capture(np.zeros((8, 16, 3), np.uint8))
+        desk.c.captures.capture(desk.c.frame, np.zeros((8, 16, 3), np.uint8))
         name = "0007.png" if camera == elsewhere else "0007-2.png"
-        assert desk.c.keeper.saving.pop().join(10.0)
+        assert desk.c.captures.saving.pop().join(10.0)
         with Image.open(tmp_path / name) as image:
             kept = json.loads(image.text["shadowcull"])
         snapshot = Snapshot.from_json(kept["state"])
         assert (kept["frame"], snapshot.time, snapshot.follow) == (7, 7.0, follow)
         desk.c.restore(snapshot)
         assert (desk.c.session.camera, desk.c.session.frame) == (camera, 7)
-        desk.c.reset_camera()
+        desk.c.motion.reset_camera()
 
 
 def test_a_capture_keeps_the_users_setting_and_the_line(desk: Desk, tmp_path):
-    desk.c.set_view(View.WIPE)
+    desk.c.settings.set_view(View.WIPE)
     desk.c.session.wipe = 0.25
     desk.rest()
     desk.c.preferences.screenshot_folder, desk.c.preferences.screenshot_template = str(tmp_path), "wipe.png"
-    desk.c.keeper.capture(np.zeros((8, 16, 3), np.uint8))
-    assert desk.c.keeper.saving[0].join(10.0)
+    desk.c.captures.capture(desk.c.frame, np.zeros((8, 16, 3), np.uint8))
+    assert desk.c.captures.saving[0].join(10.0)
     with Image.open(tmp_path / "wipe.png") as image:
         kept = json.loads(image.text["shadowcull"])
     assert kept["statistics"]["shadow"]["wrong"] == 3

@@ -13,15 +13,15 @@ from viewer.util.resources import embedded_scenes
 
 def test_a_zoom_test_shows_every_frame_and_finds_what_the_command_finds(figure4: Desk) -> None:
     desk = figure4
-    desk.runner.zoom_plan = replace(desk.runner.zoom_plan, factors="4, 64", steps=20, size=(128, 128))
-    desk.c.select((0.5, 0.5))
-    assert desk.c.selected.primitive == 0
+    desk.runs.zoom_plan = replace(desk.runs.zoom_plan, factors="4, 64", steps=20, size=(128, 128))
+    desk.c.selection.select((0.5, 0.5))
+    assert desk.c.selection.picked.primitive == 0
     own = desk.c.frame
     start = zoom.aim(desk.c.frame, 0)
     desk.came.clear()
-    desk.runner.start_zoom_test()
-    test = desk.runner.zoom_test
-    desk.until(lambda: desk.runner.current is None)
+    desk.runs.start_zoom_test()
+    test = desk.runs.zoom_test
+    desk.until(lambda: desk.runs.current is None)
     of_test = [frame for frame in desk.came if frame.settings.verify]
     assert len(of_test) == test.frames == 2 * (20 + zoom.STILL_FRAMES)
     assert [frame.settings.zoom_factor for frame in of_test] == [4.0] * 23 + [64.0] * 23
@@ -34,64 +34,64 @@ def test_a_zoom_test_shows_every_frame_and_finds_what_the_command_finds(figure4:
 
 
 def test_a_zoom_test_needs_something_to_go_to(desk: Desk) -> None:
-    desk.runner.start_zoom_test()
-    assert desk.c.message.error and "click a primitive" in desk.said
-    desk.c.select((0.5, 0.5))
-    picked = desk.c.selected
-    desk.c.selected = replace(picked, dynamic=True)
-    desk.runner.start_zoom_test()
-    assert desk.c.message.error and "moves" in desk.said
-    desk.c.selected = picked
-    desk.c.move(replace(ELSEWHERE, direction=(0.0, 1.0, 0.0)))
+    desk.runs.start_zoom_test()
+    assert desk.c.notices.message.error and "click a primitive" in desk.said
+    desk.c.selection.select((0.5, 0.5))
+    picked = desk.c.selection.picked
+    desk.c.selection.picked = replace(picked, dynamic=True)
+    desk.runs.start_zoom_test()
+    assert desk.c.notices.message.error and "moves" in desk.said
+    desk.c.selection.picked = picked
+    desk.c.motion.move(replace(ELSEWHERE, direction=(0.0, 1.0, 0.0)))
     desk.rest()
-    desk.runner.start_zoom_test()
-    assert desk.c.message.error and "is not to be seen from here" in desk.said
-    assert desk.runner.zoom_test is None
+    desk.runs.start_zoom_test()
+    assert desk.c.notices.message.error and "is not to be seen from here" in desk.said
+    assert desk.runs.zoom_test is None
 
 
 def test_a_step_can_be_gone_to(figure4: Desk) -> None:
     desk = figure4
-    desk.c.select((0.5, 0.5))
-    desk.runner.start_zoom_test()
+    desk.c.selection.select((0.5, 0.5))
+    desk.runs.start_zoom_test()
     desk.run_to_its_end()
-    step = desk.runner.zoom_test.results.approaches[0].steps[-1]
+    step = desk.runs.zoom_test.results.approaches[0].steps[-1]
     desk.c.session.go_to_frame(30)
-    desk.runner.go_to(step)
+    desk.c.go_to_step(step)
     desk.rest()
     assert desk.c.frame.camera.position == pytest.approx(step.camera.position)
     assert desk.c.frame.time == 0.0
     camera = desk.c.session.camera
-    desk.runner.experiment_plan.frames = 5000
-    desk.runner.start_experiment()
-    desk.runner.go_to(desk.runner.zoom_test.results.approaches[0].steps[0])
+    desk.runs.experiment_plan.frames = 5000
+    desk.runs.start_experiment()
+    desk.c.go_to_step(desk.runs.zoom_test.results.approaches[0].steps[0])
     assert desk.said.startswith("the experiment is still under way") and desk.c.session.camera == camera
-    desk.runner.stop()
+    desk.runs.stop()
     desk.run_to_its_end()
     desk.open(embedded_scenes()["figure3"])
     camera = desk.c.session.camera
-    desk.runner.go_to(step)
+    desk.c.go_to_step(step)
     desk.rest()
     assert desk.c.session.camera == camera and "figure4.aff" in desk.said
 
 
 def test_a_zoom_test_can_be_repeated_from_its_start(figure4: Desk) -> None:
     desk = figure4
-    desk.c.select((0.5, 0.5))
-    desk.runner.start_zoom_test()
+    desk.c.selection.select((0.5, 0.5))
+    desk.runs.start_zoom_test()
     desk.run_to_its_end()
-    first = desk.runner.zoom_test
-    desk.runner.go_to(first.results.approaches[0].steps[-1])
+    first = desk.runs.zoom_test
+    desk.c.go_to_step(first.results.approaches[0].steps[-1])
     desk.rest()
-    assert desk.runner.zoom_plan.same_start
-    for selected in (desk.c.selected, None):
-        desk.c.selected = selected
-        desk.runner.start_zoom_test()
+    assert desk.runs.zoom_plan.same_start
+    for selected in (desk.c.selection.picked, None):
+        desk.c.selection.picked = selected
+        desk.runs.start_zoom_test()
         desk.run_to_its_end()
-        assert desk.runner.zoom_test is not first and desk.runner.zoom_test.results == first.results
-    desk.runner.zoom_plan.same_start = False
-    desk.c.select((0.5, 0.5))
-    desk.runner.start_zoom_test()
+        assert desk.runs.zoom_test is not first and desk.runs.zoom_test.results == first.results
+    desk.runs.zoom_plan.same_start = False
+    desk.c.selection.select((0.5, 0.5))
+    desk.runs.start_zoom_test()
     desk.run_to_its_end()
-    assert desk.runner.zoom_test.start.distance < first.start.distance
-    desk.c.selected = replace(desk.c.selected, primitive=first.start.primitive + 1)
-    assert desk.runner.last_start is None, "of another primitive it is no start"
+    assert desk.runs.zoom_test.start.distance < first.start.distance
+    desk.c.selection.picked = replace(desk.c.selection.picked, primitive=first.start.primitive + 1)
+    assert desk.runs.last_start is None, "of another primitive it is no start"

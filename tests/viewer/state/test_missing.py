@@ -9,12 +9,12 @@ import pytest
 
 from tests.viewer.fakes import make_frame, with_certificates
 from tracer.frame import Settings
-from viewer.state.methods import BASES_TOLD
+from tracer.method import bases
 from viewer.state.missing import missing
 from viewer.state.views import View
 
 
-@pytest.mark.parametrize("method", [*BASES_TOLD, "certified+cache", "paper+rest", "none+cache"])
+@pytest.mark.parametrize("method", [*(kind.name for kind in bases()), "certified+cache", "paper+rest", "none+cache"])
 @pytest.mark.parametrize("view", list(View))
 def test_a_view_that_a_method_has_nothing_for_names_a_method_that_has(view: View, method: str):
     frame = make_frame(Settings(16, 8, method=method, modes=True, verify=True))

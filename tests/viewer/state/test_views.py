@@ -17,7 +17,7 @@ from viewer.output import legends
 from viewer.state import views
 from viewer.state.history import SERIES, History
 from viewer.state.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
-from viewer.window.panels.widgets import in_window_style, percent
+from viewer.window.widgets import in_window_style, percent
 
 
 def test_the_occlusion_legend_counts_primitives_and_pixels():

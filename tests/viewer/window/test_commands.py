@@ -11,7 +11,7 @@ from viewer.services.controller import Controller
 from viewer.state.methods import DEFAULT
 from viewer.state.preferences import Preferences
 from viewer.state.views import View
-from viewer.window import commands
+from viewer.window import command, commands
 from viewer.window.ui import Ui
 
 
@@ -24,7 +24,7 @@ def ui():
 
 
 def test_keys_and_names_are_unique(ui):
-    keys = Counter(commands.chord(c.key) for c in ui.commands if c.key)
+    keys = Counter(command.chord(c.key) for c in ui.commands if c.key)
     assert [k for k, n in keys.items() if n > 1] == []
     names = Counter(c.name for c in ui.commands)
     assert [n for n, count in names.items() if count > 1] == []
@@ -32,23 +32,23 @@ def test_keys_and_names_are_unique(ui):
 
 def test_no_command_takes_a_key_that_flies(ui):
     flying = {int(getattr(imgui.Key, k)) for k in "wasdqe"}
-    assert flying.isdisjoint(commands.chord(c.key) for c in ui.commands if c.key)
+    assert flying.isdisjoint(command.chord(c.key) for c in ui.commands if c.key)
 
 
 def test_every_command_is_in_a_menu(ui):
-    assert {c.menu for c in ui.commands} == set(commands.MENUS)
+    assert {c.menu for c in ui.commands} == set(command.MENUS)
 
 
 def test_unknown_keys_are_refused():
     with pytest.raises(ValueError, match="Hyper"):
-        commands.chord("HyperKey")
+        command.chord("HyperKey")
 
 
 def test_every_command_can_be_asked_for_its_state_without_a_scene(ui):
-    for command in ui.commands:
-        command.enabled()
-        if command.checked is not None:
-            command.checked()
+    for each in ui.commands:
+        each.enabled()
+        if each.checked is not None:
+            each.checked()
 
 
 def test_views_are_chosen_and_ticked(ui):
@@ -66,7 +66,7 @@ def test_culling_is_switched(ui):
     assert ui.controller.session.settings.method == "none" and not ui.controller.preferences.culling
     culling.run()
     assert ui.controller.session.settings.method == DEFAULT
-    ui.controller.change(method="cells+cache")
+    ui.controller.settings.change(method="cells+cache")
     culling.run()
     assert ui.controller.session.settings.method == "none"
     assert ui.controller.preferences.settings().method == "none"

@@ -9,8 +9,8 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.file_browser import Browser, Entry, Kind
-from viewer.window.panels.widgets import ERROR, QUIET, centred, clipped, em, fitted, paragraph, right, tooltip
 from viewer.window.ui import Ui
+from viewer.window.widgets import ERROR, QUIET, centred, clipped, em, fitted, paragraph, right, tooltip
 
 NAME = "The dialog that opens a file"
 TITLE = "Open a scene or a captured picture"
@@ -56,7 +56,7 @@ def show(ui: Ui) -> None:
         imgui.close_current_popup()
     imgui.end_popup()
     if opened is not None:
-        ui.controller.opener.open(opened)
+        ui.controller.loader.open(opened)
 
 
 def _folder_line(b: Browser) -> None:

@@ -9,7 +9,8 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state import navigation
 from viewer.window.commands import focus
-from viewer.window.panels.widgets import (
+from viewer.window.ui import Ui
+from viewer.window.widgets import (
     QUIET,
     checkbox,
     em,
@@ -21,7 +22,6 @@ from viewer.window.panels.widgets import (
     tooltip,
     wide_button,
 )
-from viewer.window.ui import Ui
 
 
 def show(ui: Ui) -> None:
@@ -41,23 +41,25 @@ def _place(ui: Ui) -> None:
     with properties("camera", 5.0) as shown:
         if shown:
             row("Position")
-            changed, position = imgui.drag_float3("##position", list(camera.position), 0.02 * c.pace, format="%.4g")
+            changed, position = imgui.drag_float3(
+                "##position", list(camera.position), 0.02 * c.motion.pace, format="%.4g"
+            )
             if changed:
-                c.move(replace(camera, position=(position[0], position[1], position[2])))
+                c.motion.move(replace(camera, position=(position[0], position[1], position[2])))
             row("Direction")
             view = [float(x) for x in camera.basis()[2]]
             changed, direction = imgui.drag_float3("##direction", view, 0.01, -1.0, 1.0, "%.3f")
             if changed and sum(x * x for x in direction) > 1e-6:
-                c.move(replace(camera, direction=(direction[0], direction[1], direction[2])))
+                c.motion.move(replace(camera, direction=(direction[0], direction[1], direction[2])))
             row("Angle", "of the vertical field of view")
             changed, angle = imgui.slider_float("##angle", camera.angle, 5.0, 120.0, "%.1f degrees")
             if changed:
-                c.move(navigation.zoom(camera, angle))
+                c.motion.move(navigation.zoom(camera, angle))
     if wide_button(f"{icons.ICON_FA_CROSSHAIRS}  Focus", "on what is selected, or under the pointer (F)", 2):
         focus(ui)
     imgui.same_line()
     if wide_button(f"{icons.ICON_FA_ROTATE_LEFT}  Reset", "back to the scene's own camera (R)"):
-        c.reset_camera()
+        c.motion.reset_camera()
 
 
 def _moving(ui: Ui) -> None:
@@ -85,7 +87,7 @@ def _path(ui: Ui) -> None:
     if not c.session.animated:
         paragraph("Nothing moves in this scene.", QUIET)
         return
-    checkbox("Follow the scene's path", c.session.follow, c.follow_path, "until the camera is moved by hand (P)")
+    checkbox("Follow the scene's path", c.session.follow, c.motion.follow_path, "until the camera is moved by hand (P)")
     checkbox("Loop", p.loop, lambda on: setattr(p, "loop", on))
     same_line_for("Every frame")
     tip = "play every frame of the animation, each traced in full, however long it takes; otherwise play in real time"
@@ -107,15 +109,15 @@ def _bookmarks(ui: Ui) -> None:
     entered, ui.new_bookmark = imgui.input_text_with_hint("##bookmark", "name", ui.new_bookmark, flags)
     imgui.same_line()
     if imgui.button(button, (-1.0, 0.0)) or entered:
-        c.keeper.add_bookmark(ui.new_bookmark)
+        c.bookmarks.add(ui.new_bookmark)
         ui.new_bookmark = ""
     tooltip("keep this view: camera, time and settings (Ctrl+B)")
     gone = None
-    for index, bookmark in enumerate(c.keeper.bookmarks):
+    for index, bookmark in enumerate(c.bookmarks.all):
         imgui.push_id(index)
         width = imgui.get_content_region_avail().x - em(2.2)
         if imgui.selectable(str(bookmark.get("name", "?")), False, 0, (width, 0.0))[0]:
-            c.keeper.go_to_bookmark(index)
+            c.go_to_bookmark(index)
         tooltip("go there")
         imgui.same_line()
         if imgui.small_button(icons.ICON_FA_XMARK):
@@ -123,4 +125,4 @@ def _bookmarks(ui: Ui) -> None:
         tooltip("delete it")
         imgui.pop_id()
     if gone is not None:
-        c.keeper.forget_bookmark(gone)
+        c.bookmarks.forget(gone)

@@ -1,14 +1,15 @@
-"""The culling: its method and settings, and what is learnt."""
+"""The culling: its method and settings."""
 
 from __future__ import annotations
 
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.method import BASES, base_of, certifies, takes
-from viewer.state.methods import BASES_TOLD, EXTRAS_TOLD, toggled, with_base
+from tracer.method import Method, additions, bases
+from viewer.state.methods import toggled, with_base
 from viewer.state.preferences import MOST_CERTIFYING
-from viewer.window.panels.widgets import (
+from viewer.window.ui import Ui
+from viewer.window.widgets import (
     ERROR,
     GOOD,
     QUIET,
@@ -23,7 +24,6 @@ from viewer.window.panels.widgets import (
     tooltip,
     wide_button,
 )
-from viewer.window.ui import Ui
 
 
 def show(ui: Ui) -> None:
@@ -34,10 +34,10 @@ def show(ui: Ui) -> None:
     if c.frame is not None and c.frame.statistics.decision:
         paragraph(c.frame.statistics.decision, QUIET)
     tip = "test two neighbouring pixels both ways: each one's ray against the other's primitive (Y)"
-    checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.change(symmetric=on), tip)
+    checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.settings.change(symmetric=on), tip)
     same_line_for("Verify")
     tip = "trace every culled shadow ray as well, and count wrong answers (V)"
-    checkbox("Verify", s.verify, lambda on: c.change(verify=on), tip)
+    checkbox("Verify", s.verify, lambda on: c.settings.change(verify=on), tip)
     _wrong(ui)
     with properties("culling", 6.5) as shown:
         if shown:
@@ -48,8 +48,8 @@ def show(ui: Ui) -> None:
             flags = int(imgui.SliderFlags_.logarithmic)
             changed, factor = imgui.slider_float("##zoom", s.zoom_factor, 1.0, 64.0, "%.1f", flags)
             if changed:
-                c.change(zoom_factor=factor)
-        if shown and certifies(s.method):
+                c.settings.change(zoom_factor=factor)
+        if shown and Method.parse(s.method).has_certificates:
             row(
                 "Certificates",
                 "the share of each frame's time for making them while anything moves; when idle they get more",
@@ -59,47 +59,47 @@ def show(ui: Ui) -> None:
             if changed:
                 p.certificate_share = min(max(share / 100.0, 0.0), MOST_CERTIFYING)
     if wide_button(f"{icons.ICON_FA_ERASER}  Reset modes", "forget all modes and certificates (Backspace)", 2):
-        c.reset_modes()
+        c.tracing.reset_modes()
     imgui.same_line()
     if wide_button(
         f"{icons.ICON_FA_ROTATE_RIGHT}  Trace again",
-        "trace the same frame once more, with what the last one has taught (T)",
+        "trace the same frame once more, with what is known after the last one (T)",
     ):
-        c.trace_again()
+        c.tracing.trace_again()
 
     def keep(on: bool) -> None:
         p.keep_tracing = on
-        c.trace_again()
+        c.tracing.trace_again()
 
     checkbox(
         "Keep tracing when idle",
         p.keep_tracing,
         keep,
-        "trace frame after frame, to watch modes and certificates being learnt (K)",
+        "trace frame after frame, to watch how modes are set and certificates made (K)",
     )
 
 
 def _method(ui: Ui) -> None:
-    """What culls, and what it takes along."""
+    """The base, and what is added to it."""
     c = ui.controller
-    method = c.session.settings.method
-    base = base_of(method)
+    name = c.session.settings.method
+    method = Method.parse(name)
     with properties("method", 4.0) as shown:
         if shown:
-            row("Method", f"{BASES_TOLD[base]} (C turns culling off and on)")
-            if imgui.begin_combo("##method", base):
-                for other in BASES:
-                    if imgui.selectable(other, other == base)[0]:
-                        c.change(method=with_base(method, other))
-                    tooltip(BASES_TOLD[other])
+            row("Method", f"{method.kind.summary} C turns culling off and on.")
+            if imgui.begin_combo("##method", method.base):
+                for kind in bases():
+                    if imgui.selectable(kind.name, kind is method.kind)[0]:
+                        c.settings.change(method=with_base(name, kind.name))
+                    tooltip(kind.summary)
                 imgui.end_combo()
-    for number, (extra, (label, told)) in enumerate(EXTRAS_TOLD.items()):
+    for number, kind in enumerate(additions()):
         if number:
             imgui.same_line(0.0, em(1.0))
-        changed, _ = imgui.checkbox(f"+{extra}", takes(method, extra))
-        tooltip(f"{label}: {told}")
+        changed, _ = imgui.checkbox(f"+{kind.name}", method.has(kind.name))
+        tooltip(kind.summary)
         if changed:
-            c.change(method=toggled(method, extra))
+            c.settings.change(method=toggled(name, kind.name))
 
 
 def _wrong(ui: Ui) -> None:

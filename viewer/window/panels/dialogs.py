@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from viewer.window.commands import HELD_KEYS, MENUS, key_label
+from viewer.window.command import HELD_KEYS, MENUS, key_label
 from viewer.window.panels import browser, questions
-from viewer.window.panels.widgets import QUIET, centred, em, paragraph
 from viewer.window.ui import Ui
+from viewer.window.widgets import QUIET, centred, em, paragraph
 
 
 def show(ui: Ui) -> None:
     """All of them; each shows itself only when it is wanted."""
     ui.guard.overlay(browser.NAME, lambda: browser.show(ui), lambda: setattr(ui.browser, "open", False))
-    ui.guard.overlay("The question", lambda: questions.show(ui), ui.controller.asking.drop)
+    ui.guard.overlay("The question", lambda: questions.show(ui), ui.controller.questions.drop)
     ui.guard.overlay("The list of keys", lambda: _shortcuts(ui), lambda: setattr(ui, "shortcuts_open", False))
     ui.guard.overlay("The words about the program", lambda: _about(ui), lambda: setattr(ui, "about_open", False))
 

@@ -9,13 +9,15 @@ from imgui_bundle import ImVec2, imgui, implot
 
 from tracer import experiment
 from tracer.experiment import REFERENCE, Results, Row
-from tracer.method import BASES, EXTRAS
+from tracer.method import Kind, additions, bases
 from viewer.output.reports import LINES, WRONG
-from viewer.services.runs import LONGEST_SIDE, Experiment, ExperimentPlan
-from viewer.state.methods import BASES_TOLD, EXTRAS_TOLD, in_order, named
+from viewer.services.runs import LONGEST_SIDE, Experiment
+from viewer.state.methods import in_order
+from viewer.state.plans import ExperimentPlan
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
 from viewer.window.panels.runs import export_buttons, side_by_side, start_or_progress
-from viewer.window.panels.widgets import (
+from viewer.window.ui import Ui
+from viewer.window.widgets import (
     ERROR,
     QUIET,
     checkbox,
@@ -28,7 +30,6 @@ from viewer.window.panels.widgets import (
     size_field,
     tooltip,
 )
-from viewer.window.ui import Ui
 
 _WORKS = (("steps", "steps"), ("tests", "tests"))
 _SHORT = ("steps saved", "  most (frame)", "tests saved", "  most (frame)", "extra / pixel", "wrong", "time in window")
@@ -39,7 +40,7 @@ _HEADING, _REFERENCE, _METHOD = 6.8, 5.4, 7.4  # widths of the table's columns i
 
 def show(ui: Ui) -> None:
     """The panel: what to measure, the savings frame by frame, and the table."""
-    run = ui.controller.runner.experiment
+    run = ui.controller.runs.experiment
     results = run.results if run is not None else None
     columns = len(run.methods) if run is not None else 2
     side_by_side(
@@ -57,7 +58,7 @@ def _table_width(columns: int) -> float:
 
 
 def _controls(ui: Ui, run: Experiment | None) -> None:
-    runner = ui.controller.runner
+    runner = ui.controller.runs
     under_way = run is not None and runner.current is run
     if run is not None and under_way:
         _shown_method(run)
@@ -69,7 +70,7 @@ def _controls(ui: Ui, run: Experiment | None) -> None:
 
 
 def _plan(ui: Ui) -> None:
-    plan = ui.controller.runner.experiment_plan
+    plan = ui.controller.runs.experiment_plan
     with properties("plan", 4.6) as shown:
         if not shown:
             return
@@ -80,7 +81,7 @@ def _plan(ui: Ui) -> None:
         if changed:
             plan.frames = min(max(frames, 1), 100_000)
         row("Size")
-        plan.size = size_field(plan.size, LONGEST_SIDE, ui.controller.say)
+        plan.size = size_field(plan.size, LONGEST_SIDE, ui.controller.notices.say)
         row("Bounces", "of reflected and refracted rays, at most")
         changed, depth = imgui.slider_int("##depth", plan.depth, 0, 20)
         if changed:
@@ -90,8 +91,8 @@ def _plan(ui: Ui) -> None:
 
 
 def _methods(plan: ExperimentPlan) -> None:
-    """A list to be opened: a line for each base, a tick for each way to take extras along; the reference is always
-    among them."""
+    """A list to be opened: a line for each base, a tick for each way to add to it; the reference is always among
+    them."""
     opened = imgui.begin_combo("##methods", ", ".join(in_order(plan.methods)), int(imgui.ComboFlags_.height_largest))
     tooltip(", ".join(in_order({REFERENCE, *plan.methods})))
     if opened:
@@ -100,19 +101,21 @@ def _methods(plan: ExperimentPlan) -> None:
 
 
 def _method_ticks(plan: ExperimentPlan) -> None:
-    sets = [extras for n in range(len(EXTRAS) + 1) for extras in combinations(EXTRAS, n)]
+    every = additions()
+    sets: list[tuple[Kind, ...]] = [added for n in range(len(every) + 1) for added in combinations(every, n)]
     if not imgui.begin_table("methods", 1 + len(sets), int(imgui.TableFlags_.sizing_fixed_fit)):
         return
-    for heading in ("", *("+".join(("", *extras)) or "alone" for extras in sets)):
+    imgui.table_next_column()
+    for added in sets:
         imgui.table_next_column()
-        imgui.text_colored(QUIET, heading)
-        if heading.startswith("+"):
-            tooltip("; ".join(f"+{extra}: {EXTRAS_TOLD[extra][1]}" for extra in heading[1:].split("+")))
-    for base in BASES:
+        imgui.text_colored(QUIET, "".join(f"+{kind.name}" for kind in added) or "alone")
+        if added:
+            tooltip("\n".join(f"+{kind.name}: {kind.summary}" for kind in added))
+    for base in bases():
         imgui.table_next_column()
-        imgui.text_unformatted(base)
-        tooltip(BASES_TOLD[base])
-        for method in (named(base, extras) for extras in sets):
+        imgui.text_unformatted(base.name)
+        tooltip(base.summary)
+        for method in ("+".join(kind.name for kind in (base, *added)) for added in sets):
             imgui.table_next_column()
             imgui.begin_disabled(method == REFERENCE)
             changed, _ = imgui.checkbox(f"##{method}", method == REFERENCE or method in plan.methods)
@@ -155,7 +158,7 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
     implot.setup_axes("", "", AXIS, AXIS)
     implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
     implot.setup_axis_format(implot.ImAxis_.y1, "%.4g %%")
-    once = int(imgui.Cond_.always if ui.controller.runner.current is run else imgui.Cond_.once)
+    once = int(imgui.Cond_.always if ui.controller.runs.current is run else imgui.Cond_.once)
     last = max(len(run.times), _FEWEST_FRAMES) - 0.5
     implot.setup_axes_limits(-0.5, last, min(1.1 * bottom, 0.0), max(1.12 * top, _LEAST_TOP), once)
     if wrong:

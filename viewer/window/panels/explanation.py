@@ -13,8 +13,8 @@ from viewer.services.shadow_inspector import MOST_OCCLUDERS, Answer, Part, other
 from viewer.state.picking import kind_of
 from viewer.state.projection import place
 from viewer.state.views import CERTIFICATE_COLORS, CERTIFICATE_MEANING, SHADOW_COLORS, Certificate, ShadowMode
-from viewer.window.panels.widgets import QUIET, checkbox, em, heading, paragraph, swatch, tooltip
 from viewer.window.ui import Ui
+from viewer.window.widgets import QUIET, checkbox, em, heading, paragraph, swatch, tooltip
 
 _LIT, _STOPPED = SHADOW_COLORS[ShadowMode.NON_SHADOW], (0.34, 0.71, 0.91)
 _BLOCKER = SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW]
@@ -39,7 +39,7 @@ def rows(ui: Ui) -> None:
         "in red is what blocks it, in orange what a certificate names; dashes are hidden"
     )
     checkbox("Draw for a click", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), tip)
-    answer = c.explaining.answer
+    answer = c.inspector.answer
     if answer is None:
         paragraph("traced when nothing moves", QUIET)
         return
@@ -135,8 +135,8 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """Over the picture: the lights' ways to the point, and outlines of what blocks them."""
     c = ui.controller
     pointed, ui.pointed_light = ui.pointed_light, None  # the inspector says so in each frame
-    answer, frame = c.explaining.answer, c.frame
-    if answer is None or frame is None or c.selected is None or not c.preferences.draw_explanation:
+    answer, frame = c.inspector.answer, c.frame
+    if answer is None or frame is None or c.selection.picked is None or not c.preferences.draw_explanation:
         return
     width, height = end.x - corner.x, end.y - corner.y
 
@@ -145,7 +145,7 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
 
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(corner, end, True)
-    lines = c.explaining.lines(frame)
+    lines = c.inspector.lines(frame)
     for shade in (True, False):
         for part, light, strokes in lines:
             alpha = _FADED if pointed not in (None, light) else 1.0

@@ -6,13 +6,13 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state.log import Entry
-from viewer.window.panels.widgets import ERROR, QUIET, clipped, em, paragraph, tooltip
 from viewer.window.ui import Ui
+from viewer.window.widgets import ERROR, QUIET, clipped, em, paragraph, tooltip
 
 
 def notice(ui: Ui) -> None:
     """The newest fault, at the window's lower right, until it is dismissed."""
-    faults = ui.controller.faults
+    faults = ui.controller.notices.faults
     entry = faults.notice
     if entry is None:
         return
@@ -43,7 +43,7 @@ def copy_button(ui: Ui, entry: Entry) -> None:
     """Puts all that is known on the clipboard."""
     if imgui.button(f"{icons.ICON_FA_COPY}  Copy details"):
         imgui.set_clipboard_text(entry.told)
-        ui.controller.say("details copied")
+        ui.controller.notices.say("details copied")
 
 
 def instead(ui: Ui, name: str, entry: Entry) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
@@ -12,35 +10,18 @@ from viewer.output.film import Shot
 from viewer.output.reports import changes_in_words
 from viewer.services.runs import ZoomTest
 from viewer.window.palette import MARK
-from viewer.window.panels.widgets import ERROR, QUIET, count, em, paragraph, tooltip
+from viewer.window.screening import Screening, approaches_of
 from viewer.window.ui import Ui
+from viewer.window.widgets import ERROR, QUIET, count, em, paragraph, tooltip
 
 _CHOSEN = ImVec4(0.42, 0.70, 0.96, 1.0)
-
-
-@dataclass(frozen=True)
-class Screening:
-    """A recorded picture that is shown where the traced one is, until something changes that."""
-
-    test: ZoomTest
-    shot: Shot
-    beside: object
-
-    def step(self) -> Step | None:
-        """The step that it is of; None of a test whose results are not there."""
-        return next((s for a in approaches_of(self.test) if a.factor == self.shot.factor for s in a.steps
-                     if s.number == self.shot.number), None)  # fmt: skip
-
-
-def approaches_of(test: ZoomTest) -> list[Approach]:
-    return test.results.approaches if test.results is not None else []
 
 
 def show_step(ui: Ui, test: ZoomTest, factor: float, number: int) -> None:
     """Show the recorded picture of a step, or of the nearest that is kept."""
     shot = test.film.nearest(factor, number)
     if shot is None:
-        ui.controller.say("no picture of this step was kept")
+        ui.controller.notices.say("no picture of this step was kept")
     else:
         ui.screening = Screening(test, shot, _live(ui))
 
@@ -61,7 +42,7 @@ def strip(ui: Ui, test: ZoomTest, approach: Approach, name: str, size: ImVec2) -
             if shot.number in steps:
                 _thumbnail(ui, test, shot, steps[shot.number], height)
                 imgui.same_line(0.0, em(0.15))
-        if ui.controller.runner.current is test and approach is approaches_of(test)[-1]:
+        if ui.controller.runs.current is test and approach is approaches_of(test)[-1]:
             imgui.set_scroll_x(imgui.get_scroll_max_x())
     imgui.end_child()
 
@@ -97,10 +78,10 @@ def screen(ui: Ui, room: ImVec2) -> bool:
     c = ui.controller
     if shown is None or ui.shots is None:
         return False
-    if shown.test is not c.runner.zoom_test or shown.beside != _live(ui):
+    if shown.test is not c.runs.zoom_test or shown.beside != _live(ui):
         ui.screening = None
         return False
-    c.hovered = None
+    c.selection.hovered = None
     top = imgui.get_cursor_screen_pos()
     texture = ui.shots.texture_id(shown.shot, small=False)
     factor = min(room.x / shown.shot.width, room.y / shown.shot.height)
@@ -130,10 +111,10 @@ def _caption(ui: Ui, shown: Screening, top: ImVec2, room: ImVec2) -> None:
         imgui.same_line()
         if imgui.button("Back (Escape)##recorded"):
             ui.screening = None
-        if step is not None and ui.controller.runner.current is None:
+        if step is not None and ui.controller.runs.current is None:
             imgui.same_line()
             if imgui.button("Fly there"):
-                ui.controller.runner.go_to(step)
+                ui.controller.go_to_step(step)
             tooltip("traced at the window's size and with its modes, so that wrong pixels may be missing")
     imgui.end_child()
     imgui.pop_style_color()

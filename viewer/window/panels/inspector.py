@@ -9,23 +9,23 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from viewer.state.picking import Pick
 from viewer.state.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
 from viewer.window.panels import explanation
-from viewer.window.panels.widgets import QUIET, count, heading, judged, paragraph, properties, swatch, told, tooltip
 from viewer.window.ui import Ui
+from viewer.window.widgets import QUIET, count, heading, judged, paragraph, properties, swatch, told, tooltip
 
 
 def show(ui: Ui) -> None:
     """The panel: what was clicked, else what the pointer is on."""
     c = ui.controller
-    if c.selected is not None:
-        imgui.text_colored(QUIET, f"pixel {c.selected.x}, {c.selected.y}, clicked")
+    if c.selection.picked is not None:
+        imgui.text_colored(QUIET, f"pixel {c.selection.picked.x}, {c.selection.picked.y}, clicked")
         imgui.same_line()
         if imgui.small_button(f"{icons.ICON_FA_XMARK}##release"):
-            c.selected = None
+            c.selection.picked = None
             return
         tooltip("let it go, and follow the pointer again (Escape)")
-        _details(ui, c.selected)
+        _details(ui, c.selection.picked)
         return
-    found = c.pick(c.hovered)
+    found = c.selection.at(c.selection.hovered)
     if found is None:
         paragraph("Point at the picture to inspect a pixel; click to keep it here and draw its shadow rays.", QUIET)
     elif found.primitive < 0:

@@ -7,8 +7,8 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from viewer.output.legend import Chosen, Legend, legend_of
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, Layout, Swatch, fitting, lay_out
 from viewer.state.views import Color, color_map
-from viewer.window.panels.widgets import em, tooltip_at
 from viewer.window.ui import Ui
+from viewer.window.widgets import em, tooltip_at
 
 _STEPS = 24  # of a bar of the colour map
 _MARGIN = 0.5  # ems between the legend and the picture's edge

@@ -8,13 +8,13 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.jobs import Job
-from viewer.window.panels.widgets import QUIET, centred, clipped, em, paragraph
 from viewer.window.ui import Ui
+from viewer.window.widgets import QUIET, centred, clipped, em, paragraph
 
 
 def show(ui: Ui) -> None:
     """A small window, while the rest stays usable.  What is compiled behind a picture is told by the status bar."""
-    c, opener = ui.controller, ui.controller.opener
+    c, opener = ui.controller, ui.controller.loader
     preparing = opener.warm_up_job if c.frame is None else None
     jobs = [job for job in (preparing, opener.load_job) if job is not None]
     if not jobs:

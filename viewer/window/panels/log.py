@@ -6,8 +6,8 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state.log import Entry, Level
-from viewer.window.panels.widgets import ERROR, QUIET, WARNING, em, paragraph, tooltip
 from viewer.window.ui import Ui
+from viewer.window.widgets import ERROR, QUIET, WARNING, em, paragraph, tooltip
 
 _ICONS = {
     Level.NOTICE: icons.ICON_FA_CIRCLE_INFO,
@@ -19,7 +19,7 @@ _COLORS = {Level.NOTICE: QUIET, Level.ERROR: WARNING, Level.FAULT: ERROR}
 
 def show(ui: Ui) -> None:
     """The panel."""
-    log = ui.controller.log
+    log = ui.controller.notices.log
     entries = [e for e in log.entries() if not (ui.log_errors_only and e.level is Level.NOTICE)]
     _, ui.log_errors_only = imgui.checkbox("errors only", ui.log_errors_only)
     imgui.same_line()

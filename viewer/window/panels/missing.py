@@ -7,8 +7,8 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from viewer.state.methods import with_base
 from viewer.state.missing import missing
 from viewer.state.views import View
-from viewer.window.panels.widgets import em
 from viewer.window.ui import Ui
+from viewer.window.widgets import em
 
 _WIDTH, _LEAST = 26.0, 8.0  # in ems: of the note, and of a picture that has room for one
 _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.86), ImVec4(0.93, 0.94, 0.96, 1.0)
@@ -17,7 +17,8 @@ _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.86), ImVec4(0.93, 0.94, 0.96, 1.0)
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """A note in the middle of the picture, below its upper third."""
     c = ui.controller
-    found = missing(c.session.view, c.frame, c.preferences.work_shares, c.render.busy) if c.frame is not None else None
+    frame, shares = c.frame, c.preferences.work_shares
+    found = missing(c.session.view, frame, shares, c.renderer.busy) if frame is not None else None
     left, right = _free(ui, corner.x, end.x)
     room = right - left - em(2.0)
     if found is None or room < em(_LEAST):
@@ -32,8 +33,8 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
         imgui.push_text_wrap_pos(0.0)
         imgui.text_colored(_FRONT, found.text)
         imgui.pop_text_wrap_pos()
-        if found.base and c.runner.current is None and imgui.button(f"Use {found.base}##instead"):
-            c.change(method=with_base(c.session.settings.method, found.base))
+        if found.base and c.runs.current is None and imgui.button(f"Use {found.base}##instead"):
+            c.settings.change(method=with_base(c.session.settings.method, found.base))
     imgui.end_child()
     imgui.pop_style_var(2)
     imgui.pop_style_color()

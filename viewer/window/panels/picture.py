@@ -15,8 +15,8 @@ from viewer.state import navigation
 from viewer.state.picking import point_at
 from viewer.window.palette import ON_PICTURE_ERROR
 from viewer.window.panels import explanation, film, legend, missing, timeline, tour, wipe
-from viewer.window.panels.widgets import QUIET, count, em, paragraph
 from viewer.window.ui import Ui
+from viewer.window.widgets import QUIET, count, em, paragraph
 
 CLICK_SLACK = 4.0
 BUTTONS = tuple(int(b) for b in (imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle))
@@ -48,7 +48,7 @@ def show(ui: Ui) -> None:
 
 def _picture(ui: Ui, room: ImVec2) -> None:
     c = ui.controller
-    c.hovered = None
+    c.selection.hovered = None
     frame = c.frame
     texture = ui.display.texture_id if ui.display is not None else None
     if frame is None or texture is None:
@@ -75,7 +75,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
 def _placeholder(ui: Ui, room: ImVec2) -> None:
     """What stands there before the first picture."""
     c = ui.controller
-    if c.opener.load_job is not None or c.opener.warm_up_job is not None or c.render.busy:
+    if c.loader.load_job is not None or c.loader.warm_up_job is not None or c.renderer.busy:
         return  # the progress window speaks
     text = "Open a scene (Ctrl+O), or drop one on this window"
     width = imgui.calc_text_size(text).x
@@ -91,7 +91,7 @@ def _pointer(ui: Ui, corner: ImVec2, size: ImVec2) -> None:
         ui.pivot, ui.pivot_scene = None, c.session.scene
     u, v = (io.mouse_pos.x - corner.x) / size.x, (io.mouse_pos.y - corner.y) / size.y
     if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
-        c.hovered = (u, v)
+        c.selection.hovered = (u, v)
         _wheel(ui, io.mouse_wheel)
     if wipe.handle(ui, corner, size):
         return
@@ -108,7 +108,7 @@ def _pointer(ui: Ui, corner: ImVec2, size: ImVec2) -> None:
         if ui.dragged:
             _drag(ui, ui.pressed, io.mouse_delta.x / size.y, io.mouse_delta.y / size.y)
     if released and not ui.dragged:
-        c.select((u, v))
+        c.selection.select((u, v))
 
 
 def _drag(ui: Ui, button: int, dx: float, dy: float) -> None:
@@ -116,18 +116,18 @@ def _drag(ui: Ui, button: int, dx: float, dy: float) -> None:
     if dx == 0.0 and dy == 0.0:
         return
     c = ui.controller
-    camera, world = c.session.camera, c.world_up
+    camera, world = c.session.camera, c.motion.world_up
     pivot = ui.pivot
     orbiting = c.preferences.navigation == "orbit" and pivot is not None
     if button == BUTTONS[2] or (orbiting and button == BUTTONS[1]):
-        distance = math.dist(pivot, camera.position) if pivot is not None else 4.0 * c.pace
-        c.move(navigation.pan(camera, dx, -dy, distance))
+        distance = math.dist(pivot, camera.position) if pivot is not None else 4.0 * c.motion.pace
+        c.motion.move(navigation.pan(camera, dx, -dy, distance))
     elif orbiting and pivot is not None:
         turn = 2.0 * navigation.RADIANS_PER_HEIGHT
-        c.move(navigation.orbit(camera, pivot, dx * turn, -dy * turn, world))
+        c.motion.move(navigation.orbit(camera, pivot, dx * turn, -dy * turn, world))
     else:
         turn = navigation.RADIANS_PER_HEIGHT
-        c.move(navigation.look(camera, dx * turn, -dy * turn, world))
+        c.motion.move(navigation.look(camera, dx * turn, -dy * turn, world))
 
 
 def _wheel(ui: Ui, notches: float) -> None:
@@ -135,14 +135,15 @@ def _wheel(ui: Ui, notches: float) -> None:
         return
     c = ui.controller
     if c.preferences.navigation == "orbit":
-        point = point_at(c.frame, *c.hovered) if c.frame is not None and c.hovered is not None else None
+        at = c.selection.hovered
+        point = point_at(c.frame, *at) if c.frame is not None and at is not None else None
         if point is not None:
             ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
         if ui.pivot is not None:
-            c.move(navigation.dolly(c.session.camera, ui.pivot, notches))
+            c.motion.move(navigation.dolly(c.session.camera, ui.pivot, notches))
     else:
         c.preferences.speed = min(max(c.preferences.speed * 1.2**notches, 0.001), 1000.0)
-        c.say(f"flying speed {c.preferences.speed:.3g}")
+        c.notices.say(f"flying speed {c.preferences.speed:.3g}")
 
 
 def fly(ui: Ui) -> None:
@@ -159,8 +160,8 @@ def fly(ui: Ui) -> None:
     right, up, forward = axis(imgui.Key.d, imgui.Key.a), axis(imgui.Key.e, imgui.Key.q), axis(imgui.Key.w, imgui.Key.s)
     if right == up == forward == 0.0:
         return
-    way = c.pace * c.preferences.speed * min(io.delta_time, 0.1) * (FASTER if io.key_shift else 1.0)
-    c.move(navigation.fly(c.session.camera, right * way, up * way, forward * way, c.world_up))
+    way = c.motion.pace * c.preferences.speed * min(io.delta_time, 0.1) * (FASTER if io.key_shift else 1.0)
+    c.motion.move(navigation.fly(c.session.camera, right * way, up * way, forward * way, c.motion.world_up))
 
 
 def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> None:

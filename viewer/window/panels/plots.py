@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from viewer.state import terms
 from viewer.window.palette import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
-from viewer.window.panels.widgets import QUIET, checkbox, count, em, paragraph
 from viewer.window.ui import Ui
+from viewer.window.widgets import QUIET, checkbox, count, em, paragraph
 
 _FATES = "What became of shadow rays"
 _LOGARITHMIC = "Milliseconds"

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, imgui
 
-from viewer.window.panels.widgets import em, paragraph
 from viewer.window.ui import Ui
+from viewer.window.widgets import em, paragraph
 
 
 def show(ui: Ui) -> None:
     """A dialog with a button for each answer; Escape chooses the first, which changes nothing."""
-    asking = ui.controller.asking
+    asking = ui.controller.questions
     question = asking.question
     if question is None:
         return

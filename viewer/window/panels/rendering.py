@@ -7,8 +7,8 @@ import os
 from imgui_bundle import imgui
 
 from viewer.state.preferences import LONGEST_SIDE
-from viewer.window.panels.widgets import checkbox, properties, row, size_field
 from viewer.window.ui import Ui
+from viewer.window.widgets import checkbox, properties, row, size_field
 
 SAMPLES = (1, 2, 4, 8, 16, 32, 64)
 
@@ -20,7 +20,9 @@ def show(ui: Ui) -> None:
     checkbox("Fixed size", p.fixed_resolution, lambda on: setattr(p, "fixed_resolution", on), "else that of the window")
     if p.fixed_resolution:
         imgui.same_line()
-        p.fixed_width, p.fixed_height = size_field((p.fixed_width, p.fixed_height), LONGEST_SIDE, ui.controller.say)
+        p.fixed_width, p.fixed_height = size_field(
+            (p.fixed_width, p.fixed_height), LONGEST_SIDE, ui.controller.notices.say
+        )
     tip = "show pictures before all of their pixels are shaded, so that frames come fast"
     checkbox("Shade in parts", p.dynamic_resolution, lambda on: setattr(p, "dynamic_resolution", on), tip)
     with properties("quality", 5.0) as shown:
@@ -32,14 +34,14 @@ def show(ui: Ui) -> None:
             row("Bounces", "of reflected and refracted rays, at most")
             changed, depth = imgui.slider_int("##depth", c.session.settings.depth, 0, 20)
             if changed:
-                c.change(depth=min(max(depth, 0), 100))
+                c.settings.change(depth=min(max(depth, 0), 100))
             row("Samples", "per pixel, when nothing moves: added one by one once the picture is whole")
             now = SAMPLES.index(c.session.settings.samples) if c.session.settings.samples in SAMPLES else 0
             changed, index = imgui.combo("##samples", now, [str(n) for n in SAMPLES])
             if changed:
-                c.change(samples=SAMPLES[index])
+                c.settings.change(samples=SAMPLES[index])
             now = c.session.settings.threads
             row("Threads", "0: all cores; the picture and the numbers are the same for any")
             changed, threads = imgui.slider_int("##threads", now, 0, os.cpu_count() or 1, "%d" if now else "all cores")
             if changed:
-                c.change(threads=min(max(threads, 0), 1024))
+                c.settings.change(threads=min(max(threads, 0), 1024))

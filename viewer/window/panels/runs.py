@@ -9,8 +9,8 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.output.exports import ENDINGS
 from viewer.services.runs import Run, duration
-from viewer.window.panels.widgets import QUIET, clipped, em, tooltip_above, wide_button
 from viewer.window.ui import Ui
+from viewer.window.widgets import QUIET, clipped, em, tooltip_above, wide_button
 
 _KINDS = {".json": "JSON", ".csv": "CSV", ".png": "Plot"}
 _TIPS = {
@@ -59,7 +59,7 @@ def side_by_side(
 
 def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: str) -> None:
     """The button that starts, or, while the run is under way, how far it is and the button that stops it."""
-    runner = ui.controller.runner
+    runner = ui.controller.runs
     if run is None or runner.current is not run:
         imgui.begin_disabled(runner.current is not None)
         if wide_button(f"{icons.ICON_FA_PLAY}  Start", tip, explain=tooltip_above):
@@ -81,7 +81,7 @@ def export_buttons(ui: Ui, run: Run | None) -> None:
         return
     for ending in ENDINGS:
         if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK} {_KINDS[ending]}"):
-            ui.controller.runner.export(run, ending)
+            ui.controller.runs.export(run, ending)
         tooltip_above(_TIPS[ending])
         imgui.same_line(0.0, em(0.25))
     imgui.new_line()

@@ -5,8 +5,8 @@ from __future__ import annotations
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.window.panels.widgets import QUIET, checkbox, paragraph, properties, row, tooltip, wide_button
 from viewer.window.ui import CaptureKind, Ui
+from viewer.window.widgets import QUIET, checkbox, paragraph, properties, row, tooltip, wide_button
 
 
 def show(ui: Ui) -> None:

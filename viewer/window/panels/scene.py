@@ -9,7 +9,8 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from viewer.util.resources import embedded_scenes
-from viewer.window.panels.widgets import (
+from viewer.window.ui import Ui
+from viewer.window.widgets import (
     QUIET,
     WARNING,
     clipped,
@@ -21,7 +22,6 @@ from viewer.window.panels.widgets import (
     value,
     wide_button,
 )
-from viewer.window.ui import Ui
 
 
 def show(ui: Ui) -> None:
@@ -46,13 +46,13 @@ def _recent(ui: Ui) -> None:
         return
     for name, path in embedded_scenes().items():
         if imgui.menu_item(f"{name}##embedded", "comes with Shadowcull", False, True)[0]:
-            ui.controller.opener.open(path)
+            ui.controller.loader.open(path)
     recent = [r for r in ui.controller.preferences.recent if Path(r) not in embedded_scenes().values()]
     if recent:
         imgui.separator()
     for text in recent:
         if imgui.menu_item(f"{Path(text).name}##{text}", "", False, True)[0]:
-            ui.controller.opener.open(Path(text))
+            ui.controller.loader.open(Path(text))
         tooltip(text)
     imgui.end_popup()
 
@@ -111,7 +111,7 @@ def _lights(ui: Ui) -> None:
             tooltip("at ({:.4g}, {:.4g}, {:.4g}), colour ({:.3g}, {:.3g}, {:.3g}); the shadow view shows the chosen "
                     "light".format(*light.position, *light.color))  # fmt: skip
             if clicked:
-                c.set_light(index)
+                c.settings.set_light(index)
     imgui.end_child()
 
 

@@ -8,11 +8,11 @@ from contextlib import contextmanager
 from imgui_bundle import imgui
 
 from tracer.frame import Frame
-from tracer.method import certifies as makes_certificates
-from tracer.method import takes
+from tracer.method import Method
 from viewer.state import terms
 from viewer.state.history import fully_traced
-from viewer.window.panels.widgets import (
+from viewer.window.ui import Ui
+from viewer.window.widgets import (
     QUIET,
     amount,
     clipped,
@@ -25,7 +25,6 @@ from viewer.window.panels.widgets import (
     short,
     tooltip,
 )
-from viewer.window.ui import Ui
 
 _WIDE = 15.0  # ems of a panel that has room for counts and shares beside each other
 _WORK = ("rays", "steps", "tests")
@@ -48,7 +47,7 @@ def show(ui: Ui) -> None:
         paragraph("These are for the previous settings; a new frame is being traced.", QUIET)
     if s.decision:
         paragraph(s.decision, QUIET)
-    certifies = makes_certificates(frame.settings.method)
+    certifies = Method.parse(frame.settings.method).has_certificates
     _shadow_rays(frame, pixels, certifies)
     heading("Work")
     _work(ui)
@@ -87,7 +86,7 @@ def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
         fate(terms.DYNAMIC_ONLY, shadow.dynamic_only)
         if certifies or shadow.candidates_only:
             fate(terms.CANDIDATES_ONLY, shadow.candidates_only)
-        if takes(frame.settings.method, "cache") or shadow.cache_hits:
+        if Method.parse(frame.settings.method).has("cache") or shadow.cache_hits:
             fate(terms.CACHE_HITS, shadow.cache_hits)
         fate(terms.TRACED, fully_traced(shadow))
         if frame.settings.verify:
@@ -132,7 +131,7 @@ def _work(ui: Ui) -> None:
         (name, (part.rays, part.traversal_steps, part.intersection_tests))
         for name, part in (("primary", s.primary), ("secondary", s.secondary), ("shadow", s.shadow))
     ]
-    if makes_certificates(frame.settings.method):
+    if Method.parse(frame.settings.method).has_certificates:
         rows.append(("certificates", (0, s.certificate_steps, s.certificate_tests)))
     rows.append(("all", tuple(sum(numbers[n] for _, numbers in rows) for n in range(3))))
     told = "steps: nodes of the tree that rays enter; tests: rays against primitives"

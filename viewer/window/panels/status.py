@@ -6,14 +6,14 @@ from imgui_bundle import hello_imgui, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.controller import Controller
-from viewer.window.panels.widgets import ERROR, QUIET, clipped, count, em
 from viewer.window.ui import Ui
+from viewer.window.widgets import ERROR, QUIET, clipped, count, em
 
 
 def show(ui: Ui) -> None:
     """The bar."""
     c = ui.controller
-    message = c.current_message
+    message = c.notices.current
     right = _summary(ui)
     width = imgui.calc_text_size(right).x + em(1.0)
     room = imgui.get_content_region_avail().x
@@ -25,7 +25,7 @@ def show(ui: Ui) -> None:
             icon = icons.ICON_FA_CIRCLE_EXCLAMATION if message.error else icons.ICON_FA_CIRCLE_INFO
             clipped(f"{icon}  {message.text}", ERROR if message.error else None)
             if message.error and imgui.is_item_clicked():
-                c.message = None
+                c.notices.message = None
         else:
             clipped(doing(c), QUIET)
     imgui.end_child()
@@ -36,22 +36,22 @@ def show(ui: Ui) -> None:
 
 def doing(c: Controller) -> str:
     """What the program does now."""
-    preparing, loading = c.opener.warm_up_job, c.opener.load_job
+    preparing, loading = c.loader.warm_up_job, c.loader.load_job
     if preparing is not None and c.frame is None:
         return f"{preparing.title}: {preparing.label}"
     if loading is not None:
         return f"{loading.title}: {loading.label}" if loading.label else loading.title
-    if c.runner.current is not None:
-        return f"{c.runner.current.name}, traced: {c.runner.current.label}   (Escape stops it)"
+    if c.runs.current is not None:
+        return f"{c.runs.current.name}, traced: {c.runs.current.label}   (Escape stops it)"
     if preparing is not None:
         return f"compiling certificates (first start only), not culled by them until then: {preparing.label}"
     if c.session.scene is None:
         return "no scene is open"
-    if c.moving or c.session.playing:
+    if c.motion.under_way or c.session.playing:
         return "tracing"
-    if c.render.busy:
+    if c.renderer.busy:
         return "refining the picture" if c.tracing.becoming_finer or _learns(c) else "tracing"
-    if c.render.running is not None and c.tracing.samples_shown < c.tracing.samples_wanted:
+    if c.renderer.running is not None and c.tracing.samples_shown < c.tracing.samples_wanted:
         return f"adding samples: {c.tracing.samples_shown} of {c.tracing.samples_wanted}"
     return "idle   (F1: keyboard and mouse)"
 

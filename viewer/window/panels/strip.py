@@ -6,8 +6,8 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.window.panels.catalogue import PANELS, PICTURE, Panel
-from viewer.window.panels.widgets import clipped, em, tooltip
 from viewer.window.ui import Ui
+from viewer.window.widgets import clipped, em, tooltip
 
 WIDTH = 2.4
 """Of the strip, in ems."""

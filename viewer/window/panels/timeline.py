@@ -5,8 +5,8 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.window.panels.widgets import em, tooltip
 from viewer.window.ui import Ui
+from viewer.window.widgets import em, tooltip
 
 _SHORTEST = 5.0  # ems of a slider that has its moment written beside it
 
@@ -23,19 +23,19 @@ def show(ui: Ui) -> None:
     if session.scene is None:
         return
     imgui.dummy(ImVec2(0.0, em(0.05)))
-    run, last = c.runner.current, session.scene.frames - 1
+    run, last = c.runs.current, session.scene.frames - 1
     imgui.begin_disabled(run is not None)
     if _button(icons.ICON_FA_BACKWARD_STEP + "##back", "one frame back (Left)"):
-        c.step(-1)
+        c.motion.step(-1)
     if _button((icons.ICON_FA_PAUSE if session.playing else icons.ICON_FA_PLAY) + "##play", "play or pause (Space)"):
-        c.toggle_play()
+        c.motion.toggle_play()
     if _button(icons.ICON_FA_FORWARD_STEP + "##forward", "one frame on (Right)"):
-        c.step(1)
+        c.motion.step(1)
     following = session.follow
     if following:
         imgui.push_style_color(imgui.Col_.button, imgui.get_style_color_vec4(imgui.Col_.button_active))
     if _button(icons.ICON_FA_ROUTE + "##follow", "the camera follows the scene's own path (P)"):
-        c.follow_path(not following)
+        c.motion.follow_path(not following)
     if following:
         imgui.pop_style_color()
     time, frame, words = session.time, session.frame, f"frame %d of {last}"
@@ -52,7 +52,7 @@ def show(ui: Ui) -> None:
     imgui.set_next_item_width(max(em(2.5), room))
     changed, frame = imgui.slider_int("##frame", frame, 0, last, words)
     if changed:
-        c.step(frame - session.frame)
+        c.motion.step(frame - session.frame)
     tooltip(f"drag to go through the frames; Ctrl+click to type a number ({end})")
     if timed:
         imgui.same_line()

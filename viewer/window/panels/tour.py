@@ -7,8 +7,8 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.tour import STEPS
-from viewer.window.panels.widgets import GOOD, QUIET, clipped, em, paragraph, tooltip
 from viewer.window.ui import Ui
+from viewer.window.widgets import GOOD, QUIET, clipped, em, paragraph, tooltip
 
 _WIDTH = 27.0  # ems of the window
 _HIGH = 48.0  # ems of a window that has room for the text of all steps

@@ -6,8 +6,8 @@ from imgui_bundle import imgui
 
 from viewer.state.views import View
 from viewer.window.panels import legend
-from viewer.window.panels.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, row
 from viewer.window.ui import Ui
+from viewer.window.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, row
 
 _FLAT = (View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT, View.CERTIFICATE)
 
@@ -23,13 +23,13 @@ def show(ui: Ui) -> None:
             chosen = views.index(c.session.view)
             changed, index = imgui.combo("##view", chosen, [f"{v.label}" for v in views])
             if changed:
-                c.set_view(views[index])
+                c.settings.set_view(views[index])
             if c.session.view.of_light and c.session.scene is not None and c.session.scene.lights:
                 row("Light", "L and Shift+L")
                 names = [ui.light_name(i) for i in range(len(c.session.scene.lights))]
                 changed, light = imgui.combo("##light", c.session.light, names)
                 if changed:
-                    c.set_light(light)
+                    c.settings.set_light(light)
             if c.session.view is View.WIPE:
                 row("Line", "where it is; or drag it in the picture")
                 changed, at = imgui.slider_float("##wipe", 100.0 * c.session.wipe, 0.0, 100.0, "%.0f %%")
@@ -57,7 +57,7 @@ def show(ui: Ui) -> None:
 def _explanation(ui: Ui) -> None:
     """What the view shows, and what it costs."""
     c = ui.controller
-    view, run, told = c.session.view, c.runner.current, c.session.view.explanation
+    view, run, told = c.session.view, c.runs.current, c.session.view.explanation
     lacks = run.lacks(view) if run is not None else ""
     if lacks:
         paragraph(f"This run {lacks}.", WARNING)

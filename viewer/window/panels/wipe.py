@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from tracer.method import Method
 from viewer.state.views import View
-from viewer.window.panels.widgets import em
 from viewer.window.ui import Ui
+from viewer.window.widgets import em
 
 _REACH = 0.45  # ems to either side of the line where it can be taken hold of
 _DARK, _LIGHT, _HELD = (
@@ -51,7 +52,7 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     draw.add_rect_filled(ImVec2(x - 2.0 * half, corner.y), ImVec2(x + 2.0 * half, end.y), dark)
     draw.add_rect_filled(ImVec2(x - half, corner.y), ImVec2(x + half, end.y), bright)
     _knob(draw, ImVec2(x, (corner.y + end.y) / 2.0), bright, dark)
-    left = c.frame.settings.method if c.frame.settings.method != "none" else "no culling"
+    left = c.frame.settings.method if Method.parse(c.frame.settings.method).culls else "no culling"
     pad, text = em(0.35), imgui.get_text_line_height()
     top = corner.y + text + 4.0 * pad
     for name, side in ((left, -1.0), ("reference", 1.0)):

@@ -13,7 +13,8 @@ from viewer.window.palette import MARK
 from viewer.window.panels import film
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
 from viewer.window.panels.runs import export_buttons, side_by_side, start_or_progress
-from viewer.window.panels.widgets import (
+from viewer.window.ui import Ui
+from viewer.window.widgets import (
     ERROR,
     QUIET,
     WARNING,
@@ -29,7 +30,6 @@ from viewer.window.panels.widgets import (
     tooltip,
     tooltip_above,
 )
-from viewer.window.ui import Ui
 
 _NARROWEST = 15.0  # ems of a plot that stands beside another
 _LOW = 9.0  # ems of height below which a plot has no legend
@@ -38,7 +38,7 @@ _FILM, _LEAST_FILM, _MOST_FILM = 0.4, 3.6, 9.0  # the pictures' part of the heig
 
 def show(ui: Ui) -> None:
     """The panel: how to go, the counts on the way, and what happened at which step."""
-    test = ui.controller.runner.zoom_test
+    test = ui.controller.runs.zoom_test
     results = test.results if test is not None else None
     side_by_side(lambda: _controls(ui, test), lambda size: _plots(ui, test, results, size),
                  lambda: _table(ui, test, results), em(18.0))  # fmt: skip
@@ -46,31 +46,31 @@ def show(ui: Ui) -> None:
 
 def _controls(ui: Ui, test: ZoomTest | None) -> None:
     c = ui.controller
-    under_way = c.runner.current is test
+    under_way = c.runs.current is test
     if test is not None and under_way:
         paragraph(f"towards primitive {test.start.primitive}", QUIET)
     else:
         _plan(ui)
 
     tip = "move towards the primitive, once with each factor"
-    start_or_progress(ui, test, c.runner.start_zoom_test, tip)
+    start_or_progress(ui, test, c.runs.start_zoom_test, tip)
     export_buttons(ui, test)
     if test is not None and test.results is not None:
         if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK} Film"):
-            c.runner.export_film(test)
+            c.runs.export_film(test)
         tooltip_above("save the filmstrip as a picture: the paper's Figure 4")
 
 
 def _plan(ui: Ui) -> None:
     c = ui.controller
-    plan = c.runner.zoom_plan
+    plan = c.runs.zoom_plan
     with properties("plan", 4.6) as shown:
         if not shown:
             return
         row("Towards", "the primitive that was clicked in the picture")
-        start = c.runner.last_start
-        if c.selected is not None:
-            clipped(f"{c.selected.primitive}  ({c.selected.kind}, {c.selected.object_name})")
+        start = c.runs.last_start
+        if c.selection.picked is not None:
+            clipped(f"{c.selection.picked.primitive}  ({c.selection.picked.kind}, {c.selection.picked.object_name})")
         elif start is not None and plan.same_start:
             clipped(f"{start.primitive}")
         else:
@@ -99,7 +99,7 @@ def _plan(ui: Ui) -> None:
             plan.ratio = min(max(ratio, 0.01), 0.999)
         tooltip(f"the last step is at {100.0 * plan.ratio**plan.steps:.2g} % of the distance")
         row("Size", "of the test's pictures: it decides the pixel counts, and what can be seen from afar")
-        plan.size = size_field(plan.size, LONGEST_SIDE, c.say)
+        plan.size = size_field(plan.size, LONGEST_SIDE, c.notices.say)
 
 
 def _plots(ui: Ui, test: ZoomTest | None, results: Results | None, size: ImVec2) -> None:
@@ -128,7 +128,7 @@ def _plots(ui: Ui, test: ZoomTest | None, results: Results | None, size: ImVec2)
 
 def _tabs(ui: Ui, test: ZoomTest, approaches: list[Approach], size: ImVec2) -> None:
     """One plot at a time, where there is no room for all; of a test that is under way, the one that grows."""
-    grows = len(approaches) - 1 if ui.controller.runner.current is test else -1
+    grows = len(approaches) - 1 if ui.controller.runs.current is test else -1
     if imgui.begin_child("plots", size) and imgui.begin_tab_bar("factors"):
         for number, approach in enumerate(approaches):
             flags = int(imgui.TabItemFlags_.set_selected) if number == grows else 0

@@ -23,8 +23,8 @@ def close_newest(ui: Ui) -> bool:
         ui.fold.drawer = ""
     elif ui.screening is not None:
         ui.screening = None
-    elif ui.controller.faults.notice is not None:
-        ui.controller.faults.dismiss()
+    elif ui.controller.notices.faults.notice is not None:
+        ui.controller.notices.faults.dismiss()
     else:
         return False
     return True

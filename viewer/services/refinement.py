@@ -1,0 +1,66 @@
+"""Frames that follow a whole picture at idle, because each of them knows more about shadows than the one before.
+
+The first whole picture of a view sets the modes; a second one shows what they save.  Certificates are made within a
+budget: where the user has chosen them, as the method or as the view, more frames follow, until none are left to make.
+Elsewhere the time goes into samples.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tracer.method import Method
+from viewer.services.render_thread import RenderRequest, Traced
+from viewer.state.views import View
+
+MOST_FRAMES = 40
+"""Frames at idle, at most, in which certificates are made."""
+SECONDS = 0.4
+"""That each of these may spend on certificates: the picture is there already, and a movement ends them at once."""
+
+
+class Refinement:
+    """Decides, each time a whole picture has come, whether one more of the same view is worth tracing."""
+
+    def __init__(self) -> None:
+        self._considered: RenderRequest | None = None  # the last picture that was decided about
+        self._settled: RenderRequest | None = None  # the view that `_left` speaks of
+        self._left = 0  # frames of it that may still follow
+        self._certificates_shown = False
+
+    def forget(self) -> None:
+        """Begin anew: modes or certificates were lost, or the scene is another."""
+        self._considered = self._settled = None
+
+    def wants_another(self, newest: Traced | None, view: View, keep_tracing: bool) -> bool:
+        """Whether one more frame should follow the newest; true once for each."""
+        if newest is None:
+            return False
+        shows, self._certificates_shown = self._certificates_shown, view is View.CERTIFICATE
+        if self._certificates_shown and not shows and newest.frame.statistics.certificates:
+            self.forget()  # more can be made for this view to show
+        if not newest.whole or newest.request is self._considered:
+            return False
+        self._considered = newest.request
+        refines = newest.request.divisor == 1
+        if refines and _view_of(newest.request) != self._settled:
+            self._settled = _view_of(newest.request)
+            self._left = MOST_FRAMES if _is_about_certificates(newest.request, view) else 1
+        elif newest.frame.statistics.certificates == 0:
+            self._left = 0
+        if not (keep_tracing or (refines and self._left > 0)):
+            return False
+        self._left -= 1
+        return True
+
+
+def _view_of(request: RenderRequest) -> RenderRequest:
+    """What tells views apart, and not how often or how closely they are looked at."""
+    settings = replace(request.settings, verify=False, record_work=False)
+    return replace(request, settings=settings, serial=0, refinement_seconds=0.0)
+
+
+def _is_about_certificates(request: RenderRequest, view: View) -> bool:
+    """Whether the user has chosen certificates, as the method or as the view."""
+    method = Method.parse(request.settings.method)
+    return method.has_certificates and (not method.adaptive or view is View.CERTIFICATE)

@@ -1,0 +1,45 @@
+"""The pixel that was clicked, and the point of the picture that the pointer is on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tracer.frame import Frame
+from viewer.state.picking import Pick, pick, refreshed
+from viewer.state.session import Session
+
+Point = tuple[float, float]
+"""Of the picture, 0 to 1 from left and top."""
+
+
+class Selection:
+    """`picked` is what was clicked, `hovered` where the pointer is; None where there is nothing."""
+
+    def __init__(self, session: Session, newest: Callable[[], Frame | None]) -> None:
+        """`newest` returns the frame that the picture shows."""
+        self._session, self._newest = session, newest
+        self.picked: Pick | None = None
+        self.hovered: Point | None = None
+
+    @property
+    def frame(self) -> Frame | None:
+        """The frame that the picture shows."""
+        return self._newest()
+
+    def at(self, point: Point | None) -> Pick | None:
+        """What lies under a point of the picture."""
+        frame, scene = self.frame, self._session.scene
+        return pick(frame, scene, *point) if point is not None and frame is not None and scene is not None else None
+
+    def select(self, point: Point) -> None:
+        """Keep what is under a point of the picture in the inspector; nothing there: clear the selection."""
+        found = self.at(point)
+        self.picked = found if found is not None and found.primitive >= 0 else None
+
+    def clear(self) -> None:
+        self.picked = None
+
+    def refresh(self, frame: Frame) -> None:
+        """Take over modes and counts from a newer frame."""
+        if self.picked is not None:
+            self.picked = refreshed(self.picked, frame)

@@ -1,0 +1,65 @@
+"""Changes of settings, view and light: checked, put into the session, and remembered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import replace
+from typing import Any
+
+from tracer.method import Method
+from viewer.state.methods import NO_CULLING
+from viewer.state.notices import Notices
+from viewer.state.preferences import Preferences, save_preferences
+from viewer.state.session import Session
+from viewer.state.views import View
+
+
+class SettingsController:
+    """Settings stay as they are while `locked()`, which says so itself."""
+
+    def __init__(
+        self, session: Session, preferences: Preferences, notices: Notices, locked: Callable[[], bool]
+    ) -> None:
+        self._session, self._preferences, self._notices, self._locked = session, preferences, notices, locked
+
+    def change(self, **changes: Any) -> None:
+        """Change fields of `tracer.Settings`; a value that is no good is reported in one line and changes nothing."""
+        if self._locked():
+            return
+        try:
+            settings = replace(self._session.settings, **changes)
+            settings.validated()
+        except ValueError as error:
+            self._notices.say(str(error), error=True)
+            return
+        self._session.settings = settings
+        self._preferences.keep(settings)
+
+    def set_view(self, view: View) -> None:
+        self._session.view = view
+        self._preferences.view = view.value
+
+    def set_light(self, light: int) -> None:
+        """Choose the light of the views that show one; past the last comes the first."""
+        lights = len(self._session.scene.lights) if self._session.scene is not None else 0
+        self._session.light = light % lights if lights else 0
+
+    def toggle_culling(self) -> None:
+        culls = Method.parse(self._session.settings.method).culls
+        self.change(method=NO_CULLING if culls else self._preferences.method)
+
+    def reset(self, kept: Collection[str]) -> None:
+        """Set everything to its default, except these fields of the preferences."""
+        if self._locked():
+            return
+        self._preferences.reset(kept)
+        self._session.settings = self._preferences.settings()
+        self._session.view = self._preferences.chosen_view()
+        self.save()
+        self._notices.say("settings reset")
+
+    def save(self) -> None:
+        """Write the preferences to their file; a failure is reported in one line."""
+        error = save_preferences(self._preferences)
+        if error:
+            self._notices.say(error, error=True)
