@@ -29,7 +29,7 @@ from tests.tracing import naive
 from tests.tracing.worlds import random_corners, scene
 from tracer.geometry.rays import Hits, ray_batch
 from tracer.scene.model import Camera
-from viewer.cli.main import scene_path
+from viewer.util.resources import scene_path
 
 DEFAULT = scene_path(None)
 TINY = ["--quick", "--size", "24", "--depth", "3"]

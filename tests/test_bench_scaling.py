@@ -11,7 +11,7 @@ import pytest
 from tests.bench import growth, memory, window_times
 from tests.bench.meshes import bumpy_sphere, frequency_for
 from tests.bench.window_server import STATES
-from viewer.cli.main import scene_path
+from viewer.util.resources import scene_path
 
 DEFAULT = str(scene_path(None))
 

@@ -50,7 +50,7 @@ def test_no_test_imports_another() -> None:
 def test_commands_without_a_window_load_no_gl() -> None:
     """Not even on the way: a machine without libGL can render, and `--help` is quick."""
     code = (
-        "import sys, viewer.__main__, viewer.cli.headless, viewer.services.controller, tracer\n"
+        "import sys, viewer.__main__, viewer.cli.render, viewer.services.controller, tracer\n"
         "print([m for m in ('moderngl', 'glfw', 'imgui_bundle', 'OpenGL', 'glcontext') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)

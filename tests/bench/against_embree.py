@@ -43,7 +43,7 @@ from tracer.geometry.world import ACCELERATORS, World
 from tracer.scene.load import load_scene
 from tracer.scene.model import Scene, SceneError
 from viewer.cli.console import print_table, say
-from viewer.cli.main import scene_path
+from viewer.util.resources import scene_path
 
 ROBOT = KITCHEN.parents[1] / "robot" / "Robot.aff"
 VIEWS = {KITCHEN: 10, ROBOT: 5}

@@ -34,7 +34,7 @@ from tracer.frame import Settings
 from tracer.kernels import cache_folder
 from tracer.parallel import thread_count
 from viewer.cli.console import print_table, say
-from viewer.cli.main import scene_path
+from viewer.util.resources import scene_path
 
 ROOT = Path(__file__).resolve().parents[2]
 WITH, WITHOUT = "with counters", "without"

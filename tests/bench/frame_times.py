@@ -33,7 +33,7 @@ from tracer.parallel import thread_count
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from viewer.cli.console import print_table, say
-from viewer.cli.main import scene_path
+from viewer.util.resources import scene_path
 
 METHODS = ("none", "paper")
 KITCHEN = Path(__file__).resolve().parents[3] / "shared" / "bart" / "kitchen" / "kitchen.aff"

@@ -26,8 +26,8 @@ from rich.table import Table
 from tests.bench.frame_times import KITCHEN, machine
 from tests.bench.meshes import bumpy_sphere, frequency_for
 from viewer.cli.console import print_table
-from viewer.cli.main import scene_path
 from viewer.util.messages import say
+from viewer.util.resources import scene_path
 
 ROOT = Path(__file__).resolve().parents[2]
 MB = 1e6

@@ -27,8 +27,8 @@ from rich.table import Table
 from tests.bench.frame_times import KITCHEN, in_words, machine
 from tests.bench.motion_server import WAYS
 from viewer.cli.console import print_table
-from viewer.cli.main import scene_path
 from viewer.util.messages import say
+from viewer.util.resources import scene_path
 from viewer.util.screen import has_display, no_display_reason
 
 ROOT = Path(__file__).resolve().parents[2]

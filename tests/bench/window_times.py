@@ -30,8 +30,8 @@ from tests.bench.frame_times import KITCHEN, in_words, machine
 from tests.bench.window_server import STATES
 from tracer.kernels import cache_folder
 from viewer.cli.console import print_table
-from viewer.cli.main import scene_path
 from viewer.util.messages import say
+from viewer.util.resources import scene_path
 from viewer.util.screen import has_display, no_display_reason
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -17,7 +17,7 @@ from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli.console import Work, print_table, working
-from viewer.cli.headless import prepare_kernels, tracing_settings
+from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import exports
 from viewer.output.reports import LINES, WRONG, frames_in_words
 

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
 from tracer.scene.model import Camera
 from viewer.cli.argument_types import ChosenView
-from viewer.cli.headless import camera_option
 from viewer.output import capture
 from viewer.services.scene_files import find_scene, is_capture
 
+_A_CAMERA = '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
 _SETTINGS = ("method", "samples", "depth", "symmetric", "zoom_factor", "verify")
 
 
@@ -50,7 +51,24 @@ def camera(given: str | Camera | None) -> Camera | None:
             return capture.read(Path(given)).camera
         except capture.CaptureError as error:
             raise ValueError(f"--camera: {error}") from None
-    return camera_option(given)
+    return _camera_from(given)
+
+
+def _camera_from(text: str) -> Camera:
+    """`--camera`: JSON, or a file that holds it; raises ValueError in one line."""
+    name = text[:60]
+    try:
+        if not text.lstrip().startswith("{"):
+            text = Path(text).read_text(encoding="utf-8")
+        data = json.loads(text)
+    except OSError as error:
+        raise ValueError(f"--camera: neither JSON nor a file that can be read: {name}: {error.strerror}") from None
+    except (ValueError, RecursionError):
+        raise ValueError(f"--camera: {name} is not JSON; give a camera like {_A_CAMERA}") from None
+    try:
+        return Camera.from_json(data)
+    except ValueError as error:
+        raise ValueError(f"--camera: {error}") from None
 
 
 def _free_name(stem: str) -> Path:

@@ -19,7 +19,7 @@ from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from tracer.zoom import Aim, Approach, Results
 from viewer.cli.console import Work, print_table, working
-from viewer.cli.headless import moment, prepare_kernels, tracing_settings
+from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
 from viewer.output import exports
 from viewer.output.reports import (
     NEVER_WHOLE,

@@ -45,3 +45,8 @@ def embedded_scenes() -> dict[str, Path]:
 def default_scene() -> Path:
     """The room that opens when no scene is named."""
     return asset_path("scenes", f"{DEFAULT_SCENE}.aff")
+
+
+def scene_path(name: str | None) -> Path:
+    """The file that a name means: a path, the name of a scene that comes with the program, or by default its room."""
+    return default_scene() if name is None else embedded_scenes().get(name) or Path(name)

@@ -15,7 +15,7 @@ from tests.terminal import Terminal
 from viewer.__main__ import main
 from viewer.cli.bench import frame_range
 from viewer.cli.console import Work
-from viewer.cli.main import MISUSED
+from viewer.cli.parsers import MISUSED
 from viewer.output import figures
 from viewer.util.version import program_version
 
@@ -224,6 +224,6 @@ def test_ctrl_c_keeps_what_is_done(tmp_path: Path):
 
 def test_matplotlib_is_loaded_only_for_a_plot():
     """So that the window and the other commands start no slower."""
-    code = "import sys, viewer.__main__, viewer.cli.bench, viewer.cli.headless; print('matplotlib' in sys.modules)"
+    code = "import sys, viewer.__main__, viewer.cli.bench, viewer.cli.render; print('matplotlib' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
     assert done.stdout == "False\n", done.stderr

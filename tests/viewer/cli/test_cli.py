@@ -310,7 +310,7 @@ def test_an_output_that_cannot_be_written_is_known_before_tracing(
         raise AssertionError("nothing may be traced")
 
     monkeypatch.setattr(Path, "touch", refuse)
-    monkeypatch.setattr("viewer.cli.headless.Renderer", trace)
+    monkeypatch.setattr("viewer.cli.render.Renderer", trace)
     assert "cannot be written to: Permission denied" in complaint(render(capfd, room, "-o", tmp_path / "x.png"))
 
 

@@ -15,7 +15,7 @@ from viewer.services import scene_files
 from viewer.state.faults import QUIET_AFTER
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
-from viewer.window import commands
+from viewer.window import menus
 from viewer.window.panels import browser, plots, statistics, status
 
 KEY = imgui.Key
@@ -85,7 +85,7 @@ def failing(d: Driver) -> None:
         assert not guard.broken
 
     # Bars, dialogs and commands.
-    for module, name, part in ((commands, "menus", "The menus"), (status, "_summary", "The status bar")):
+    for module, name, part in ((menus, "show", "The menus"), (status, "_summary", "The status bar")):
         good = getattr(module, name)
         setattr(module, name, fail)
         told(part)

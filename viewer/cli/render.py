@@ -1,12 +1,11 @@
-"""The commands that need no window: `render` and `info`, a few lines each over the tracer.
+"""The command `render`: one frame of a scene into a picture, its buffers, or both.
 
-Nothing here, nor in what it imports, touches GL.  Whatever can be known to fail is found out before
-the tracing: the size, the frame, the camera, and whether the files can be written.
+Whatever can be known to fail is found out before the tracing: the size, the frame, the camera, and whether the files
+can be written.
 """
 
 from __future__ import annotations
 
-import json
 import math
 from argparse import Namespace
 from dataclasses import replace
@@ -15,17 +14,15 @@ from typing import Any, BinaryIO
 
 import numpy as np
 from PIL import Image, PngImagePlugin
-from rich.table import Table
 
-from tracer.compilation import warm_up
 from tracer.culling import modes
-from tracer.frame import Frame, Settings
-from tracer.kernels import cache_folder, is_kept
+from tracer.frame import Frame
 from tracer.method import Method
 from tracer.renderer import Renderer
-from tracer.scene.load import check_scene_file, load_scene, load_visible_scene, scene_info
-from tracer.scene.model import Camera, Scene
+from tracer.scene.load import check_scene_file, load_visible_scene
+from tracer.scene.model import Scene
 from viewer.cli.console import Work, print_table, statistics_table, working
+from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
 from viewer.output import capture
 from viewer.output.legend import Chosen, legend_of
 from viewer.output.legend_picture import with_legend
@@ -46,16 +43,6 @@ PICTURES = {
     ".ppm": "PPM",
 }
 LEGEND_PLACE = 0.0, 1.0  # the lower left corner
-_A_CAMERA = '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
-MOST_PIXELS = 1 << 26  # 8192 × 8192; a frame's buffers then take some 4 GB
-
-
-def info(path: Path, as_json: bool) -> None:
-    """Print what a scene holds; raises SceneError."""
-    with working() as work:
-        scene = load_scene(path, work.progress)
-    facts = scene_info(scene)
-    print(json.dumps(facts, indent=2)) if as_json else print_table(_facts_table(path, facts))
 
 
 def render(path: Path, options: Namespace) -> None:
@@ -125,31 +112,6 @@ def buffers(frame: Frame) -> dict[str, np.ndarray]:
     return arrays
 
 
-def prepare_kernels(work: Work, lights: int, accelerator: str) -> None:
-    """Compile or load every kernel that so many lights need; the first time takes a while and says so."""
-    if next(cache_folder().rglob("*.nbi"), None) is None:
-        often = "once for this version" if is_kept() else "at every start, as the cache folder cannot be written to"
-        work.note(f"compiling the kernels, {often}; this takes a minute or less")
-    warm_up(work.progress, lights, accelerator)
-
-
-def tracing_settings(options: Namespace) -> Settings:
-    """Settings that commands have in common, of one ray a pixel; raises ValueError in one line."""
-    width, height = options.size
-    if width * height > MOST_PIXELS:
-        raise ValueError(f"--size {width}x{height}: more than {MOST_PIXELS:,} pixels")
-    return Settings(
-        width=width,
-        height=height,
-        depth=options.depth,
-        symmetric=options.symmetric,
-        zoom_factor=options.zoom_factor,
-        verify=options.verify,
-        threads=options.threads,
-        accelerator=options.accelerator,
-    ).validated()
-
-
 def _check_outputs(output: Path | None, npz: Path | None) -> None:
     if output is None and npz is None:
         raise ValueError("render: nothing to write; give -o out.png, --buffers out.npz, or both")
@@ -160,20 +122,6 @@ def _check_outputs(output: Path | None, npz: Path | None) -> None:
     for path in (output, npz):
         if path is not None:
             check_writable(path)
-
-
-def moment(scene: Scene, frame: int | None, time: float | None) -> float:
-    """The time of `--frame` or `--time`, of the first frame where neither is given; raises ValueError in one line."""
-    start, end = scene.time_range
-    if time is not None:
-        if not (math.isfinite(time) and start <= time <= end):
-            raise ValueError(f"--time {time:g}: the scene's time runs from {start:g} to {end:g} seconds")
-        return time
-    number = 0 if frame is None else frame
-    if not 0 <= number < scene.frames:
-        only = "is 0" if scene.frames == 1 else f"are 0 to {scene.frames - 1}"
-        raise ValueError(f"--frame {number}: the scene's frame numbers {only}")
-    return scene.frame_time(number)
 
 
 def _times_before(scene: Scene, time: float, count: int) -> list[float]:
@@ -231,37 +179,3 @@ def _write_picture(path: Path, scene: Scene, frame: Frame, options: Namespace) -
         image.save(file, kind, **extras.get(kind, {}))
 
     write_whole(path, write)
-
-
-def _facts_table(path: Path, facts: dict[str, Any]) -> Table:
-    table = Table(title=str(path), title_justify="left", title_style="bold", show_header=False)
-    table.add_column()
-    table.add_column(justify="right")
-    for name, value in facts.items():
-        if name in ("bounds", "time", "warnings"):
-            continue
-        table.add_row(name.replace("_", " "), f"{value:,}")
-    table.add_row("time", "{:g} to {:g} s".format(*facts["time"]))
-    if facts["bounds"] is not None:
-        for name, corner in zip(("least corner", "greatest corner"), facts["bounds"]):
-            table.add_row(name, "  ".join(f"{x:.4g}" for x in corner))
-    for warning in facts["warnings"]:
-        say(f"warning: {warning}")
-    return table
-
-
-def camera_option(text: str) -> Camera:
-    """`--camera`: JSON, or a file that holds it; raises ValueError in one line."""
-    name = text[:60]
-    try:
-        if not text.lstrip().startswith("{"):
-            text = Path(text).read_text(encoding="utf-8")
-        data = json.loads(text)
-    except OSError as error:
-        raise ValueError(f"--camera: neither JSON nor a file that can be read: {name}: {error.strerror}") from None
-    except (ValueError, RecursionError):
-        raise ValueError(f"--camera: {name} is not JSON; give a camera like {_A_CAMERA}") from None
-    try:
-        return Camera.from_json(data)
-    except ValueError as error:
-        raise ValueError(f"--camera: {error}") from None

@@ -1,0 +1,187 @@
+"""What each command understands: its options, their help, and what follows below them."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import NoReturn
+
+from viewer.cli import examples
+from viewer.cli.argument_types import count, factors, method, number, pixel, size, view
+from viewer.util import resources
+from viewer.util.messages import ERROR, say
+from viewer.util.version import program_version
+
+MISUSED = 2
+"""Exit code where a command line is wrong."""
+_CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
+
+
+class Parser(argparse.ArgumentParser):
+    """Options by their whole names; errors in one line, which names where help is."""
+
+    def __init__(self, prog: str, description: str, epilog: str) -> None:
+        super().__init__(
+            prog=prog,
+            description=description,
+            epilog=epilog,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+            allow_abbrev=False,
+        )
+
+    def error(self, message: str) -> NoReturn:
+        say(f"{message} (see '{self.prog} --help')", ERROR)
+        sys.exit(MISUSED)
+
+
+def viewer() -> Parser:
+    """Of the command that opens the window."""
+    parser = Parser(
+        prog="shadowcull",
+        description="An interactive ray tracer that shows shadow culling at work.",
+        epilog=examples.COMMANDS,
+    )
+    parser.add_argument("scene", nargs="?", metavar="SCENE", help=_scene_help())
+    parser.add_argument("--version", action="version", version=f"shadowcull {program_version()}")
+    parser.add_argument("--or-picture", action="store_true", help=argparse.SUPPRESS)
+    return parser
+
+
+def render() -> Parser:
+    """Of `render`."""
+    parser = Parser(
+        prog="shadowcull render",
+        description="Trace one frame of a scene, print its statistics, and write a picture, its buffers, or both.",
+        epilog=examples.RENDER,
+    )
+    add = parser.add_argument
+    add("scene", nargs="?", metavar="SCENE", help=f"{_scene_help()}, or a saved picture, whose state it is then")
+    add("-o", "--output", type=Path, metavar="FILE", help="the picture; a .png also remembers how it was made")
+    _add_moment(parser)
+    add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
+    add("--samples", type=count(1, 4096), default=1, metavar="N", help="rays per pixel, averaged (default: 1)")
+    add(
+        "--method",
+        type=method,
+        metavar="M",
+        help="how shadow rays are culled: none, paper, cells, certified or auto; +cache and +rest add to any, as in "
+        "certified+cache (default: auto, or paper or certified for views that show what these do)",
+    )
+    add(
+        "--view",
+        type=view,
+        default="color",
+        metavar="V",
+        help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference, "
+        "wipe:PART, certificate:LIGHT, saved or cost, as counts of rays or as shares like saved:share (default: color)",
+    )
+    add("--legend", action="store_true", help="draw the view's legend into the picture")
+    add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
+    add("--camera", metavar="JSON", help=f"another camera: {_CAMERA}")
+    add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="trace the N frames before it first")
+    add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
+    _add_tracing_options(parser, "bvh8")
+    _add_zoom_factor(parser)
+    add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
+    return parser
+
+
+def bench() -> Parser:
+    """Of `bench`."""
+    parser = Parser(
+        prog="shadowcull bench",
+        description="Render a path of frames by several methods and print what each saves, as the paper's Table 1.",
+        epilog=examples.BENCH,
+    )
+    add = parser.add_argument
+    add("scene", nargs="?", metavar="SCENE", help=_scene_help())
+    add(
+        "--methods",
+        type=lambda text: [name.strip() for name in text.split(",")],
+        default=["paper"],
+        metavar="M,...",
+        help="like none,paper,cells,certified,certified+cache,auto; none is always measured too (default: paper)",
+    )
+    add("--path-frames", type=count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
+    add("--frames", metavar="A:B", help="only the frames A to B - 1 of the path")
+    add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
+    add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
+    add("--json", type=Path, metavar="FILE", help="every figure of every frame")
+    add("--csv", type=Path, metavar="FILE", help="the table")
+    add("--plot", type=Path, metavar="FILE", help="savings per frame, drawn for a slide: a .png, .svg or .pdf")
+    _add_tracing_options(parser, "kdtree")  # whose steps are the paper's
+    _add_zoom_factor(parser)
+    return parser
+
+
+def zoom() -> Parser:
+    """Of `zoom`."""
+    parser = Parser(
+        prog="shadowcull zoom",
+        description="Move towards a primitive in steps, and tell whether its shadows stay right for each zoom factor.",
+        epilog=examples.ZOOM,
+    )
+    add = parser.add_argument
+    add("scene", nargs="?", metavar="SCENE", help=_scene_help())
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--primitive", type=count(0, 2**31 - 1), metavar="N", help="towards this primitive")
+    which.add_argument("--pixel", type=pixel, metavar="X,Y", help="towards what this pixel of the first frame shows")
+    _add_moment(parser)
+    add("--camera", metavar="JSON", help=f"where to start from: {_CAMERA}")
+    add("--steps", type=count(1, 10_000), default=30, metavar="N", help="how many (default: 30)")
+    add(
+        "--ratio",
+        type=number(0.001, 0.9999),
+        default=0.94,
+        metavar="R",
+        help="each step goes to this part of the distance (default: 0.94)",
+    )
+    add("--factors", type=factors, default=(4.0, 16.0), metavar="F,...", help="zoom factors (default: 4,16)")
+    add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
+    add("--json", type=Path, metavar="FILE", help="every figure of every step")
+    add("--csv", type=Path, metavar="FILE", help="a line for each step")
+    add("--plot", type=Path, metavar="FILE", help="counts, modes and wrong pixels over the steps: a .png, .svg or .pdf")
+    _add_tracing_options(parser, "bvh8")
+    parser.set_defaults(zoom_factor=4.0, verify=True)  # each test has its own, and verifies
+    return parser
+
+
+def info() -> Parser:
+    """Of `info`."""
+    parser = Parser(
+        prog="shadowcull info",
+        description="Say what a scene, or that of a saved picture, holds: primitives, lights, materials, frames, "
+        "bounds, and warnings.",
+        epilog=examples.INFO,
+    )
+    parser.add_argument("scene", nargs="?", metavar="SCENE", help=_scene_help())
+    parser.add_argument("--json", action="store_true", help="as JSON on standard output")
+    return parser
+
+
+def _add_moment(parser: Parser) -> None:
+    """Either of two ways to name a moment of the animation."""
+    moment = parser.add_mutually_exclusive_group()
+    moment.add_argument("--frame", type=int, metavar="N", help="number of the frame in the animation (default: 0)")
+    moment.add_argument("--time", type=float, metavar="T", help="time in seconds, instead of a frame")
+
+
+def _add_tracing_options(parser: Parser, accelerator: str) -> None:
+    """What all commands that trace have in common, with the structure that is theirs by default."""
+    add = parser.add_argument
+    told = f"the tree that rays are traced through (default: {accelerator})"
+    add("--accelerator", choices=("kdtree", "bvh8"), default=accelerator, help=told)
+    add("--threads", type=count(0, 1024), default=0, metavar="N", help="0, the default: one per core")
+    add("--depth", type=count(0, 100), default=10, metavar="D", help="the most bounces (default: 10)")
+    add("--symmetric", action="store_true", help="occlusion tests in both directions between neighbouring pixels")
+
+
+def _add_zoom_factor(parser: Parser) -> None:
+    told = "a primitive that covers this many times its highest pixel count is judged anew (default: 4)"
+    parser.add_argument("--zoom-factor", type=number(1.0, 1e9), default=4.0, metavar="F", help=told)
+
+
+def _scene_help() -> str:
+    names = ", ".join(resources.embedded_scenes())
+    return f"a file (.aff .nff .obj .ply .stl .gltf .glb) or a scene that comes with the program ({names})"

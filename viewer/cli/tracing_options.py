@@ -1,0 +1,53 @@
+"""What the commands that trace have in common: settings, the moment, and kernels that are ready."""
+
+from __future__ import annotations
+
+import math
+from argparse import Namespace
+
+from tracer.compilation import warm_up
+from tracer.frame import Settings
+from tracer.kernels import cache_folder, is_kept
+from tracer.scene.model import Scene
+from viewer.cli.console import Work
+
+MOST_PIXELS = 1 << 26  # 8192 × 8192; a frame's buffers then take some 4 GB
+
+
+def prepare_kernels(work: Work, lights: int, accelerator: str) -> None:
+    """Compile or load every kernel that so many lights need; the first time takes a while and says so."""
+    if next(cache_folder().rglob("*.nbi"), None) is None:
+        often = "once for this version" if is_kept() else "at every start, as the cache folder cannot be written to"
+        work.note(f"compiling the kernels, {often}; this takes a minute or less")
+    warm_up(work.progress, lights, accelerator)
+
+
+def tracing_settings(options: Namespace) -> Settings:
+    """Settings that commands have in common, of one ray a pixel; raises ValueError in one line."""
+    width, height = options.size
+    if width * height > MOST_PIXELS:
+        raise ValueError(f"--size {width}x{height}: more than {MOST_PIXELS:,} pixels")
+    return Settings(
+        width=width,
+        height=height,
+        depth=options.depth,
+        symmetric=options.symmetric,
+        zoom_factor=options.zoom_factor,
+        verify=options.verify,
+        threads=options.threads,
+        accelerator=options.accelerator,
+    ).validated()
+
+
+def moment(scene: Scene, frame: int | None, time: float | None) -> float:
+    """The time of `--frame` or `--time`, of the first frame where neither is given; raises ValueError in one line."""
+    start, end = scene.time_range
+    if time is not None:
+        if not (math.isfinite(time) and start <= time <= end):
+            raise ValueError(f"--time {time:g}: the scene's time runs from {start:g} to {end:g} seconds")
+        return time
+    number = 0 if frame is None else frame
+    if not 0 <= number < scene.frames:
+        only = "is 0" if scene.frames == 1 else f"are 0 to {scene.frames - 1}"
+        raise ValueError(f"--frame {number}: the scene's frame numbers {only}")
+    return scene.frame_time(number)
