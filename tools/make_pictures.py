@@ -61,7 +61,7 @@ def pictures(d: Driver) -> None:
     """The scenario: what a user presses, and what is kept of it."""
     d.c.preferences.dynamic_resolution = False  # whole pictures only
     d.context.mouse_move_to_pos((SIZE[0] - 1.0, SIZE[1] - 1.0))  # the pointer is drawn, too
-    d.c.change(method="paper")
+    d.c.settings.change(method="paper")
     d.settle()
     d.press(KEY.home)
     d.press(KEY.right_arrow, START)
@@ -81,12 +81,12 @@ def pictures(d: Driver) -> None:
     d.press(KEY._1)
     film.save(FOLDER / "loop.webp")
 
-    d.c.change(method="certified")
+    d.c.settings.change(method="certified")
     d.press(KEY.left_arrow, START + FLOWN - STILL)
     d.settle()
-    d.c.change(samples=SAMPLES)
+    d.c.settings.change(samples=SAMPLES)
     d.wait(lambda: d.c.frame.settings.samples == SAMPLES, "all samples")
-    d.c.select(CLICKED)
+    d.c.selection.select(CLICKED)
     d.settle()
     Image.fromarray(d.window()).save(FOLDER / "viewer.png", optimize=True)
 

@@ -109,8 +109,8 @@ def test_frames_are_a_range_of_the_path(text, numbers):
         (["--frames", "5:2"], "give A:B"),
         (["--frames", "0:99"], "of the 6 there are"),
         (["--frames", "three"], "give A:B"),
-        (["--methods", "telepathy"], "there is no method 'telepathy'"),
-        (["--methods", ""], "there is no method ''"),
+        (["--methods", "telepathy"], ", not 'telepathy'"),
+        (["--methods", ""], ", not ''"),
     ],
 )
 def test_mistakes_are_one_line(wrong, said, capsys):
