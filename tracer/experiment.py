@@ -41,10 +41,26 @@ _SHARED = ("depth", "zoom_factor", "symmetric", "verify", "accelerator", "thread
 
 @dataclass
 class Results:
-    """What was measured: for each frame number in `frames`, an entry in each list of each method.
+    """What was measured: for each frame in `frames`, one entry in each list of each method.
 
-    The numbers count the frames of a path, `path_times` in seconds; `planned` is how many of them were to be
-    rendered, `stopped` whether somebody ended that early; `settings` are those that all methods share, by name.
+    Attributes
+    ----------
+    scene : str
+        File of the scene.
+    size : (int, int)
+        Width and height in pixels.
+    frames : list of int
+        Numbers of the frames that were rendered, counted along the path.
+    methods : dict
+        For each method, a list for each figure, by the names of the JSON of `shadowcull bench`.
+    path_times : sequence of float
+        Seconds of all frames of the path.
+    planned : int
+        How many frames were to be rendered.
+    stopped : bool
+        Whether the run was ended early.
+    settings : dict
+        The settings that all methods share, by name.
     """
 
     scene: str
@@ -81,7 +97,20 @@ class Results:
         }
 
     def reductions(self, method: str, work: str) -> np.ndarray:
-        """(frames,) part of the reference's `work` ("steps" or "tests") that a method saves, net of certificates."""
+        """Say what a method saves, frame by frame.
+
+        Parameters
+        ----------
+        method : str
+            Name of the method.
+        work : str
+            "steps" or "tests".
+
+        Returns
+        -------
+        (frames,) float64
+            Saved parts of the work of "none". Work on certificates counts against the method.
+        """
         key = {"steps": "shadow_traversal_steps", "tests": "shadow_intersection_tests"}[work]
         before = np.array(self.methods[REFERENCE][key], np.float64)
         after = np.array(self.methods[method][key], np.float64) + self.methods[method][f"certificate_{work}"]
@@ -90,7 +119,12 @@ class Results:
 
 @dataclass(frozen=True)
 class Row:
-    """A line of the paper's Table 1; reductions are parts of 1, the frames those of the greatest."""
+    """A line of the paper's Table 1.
+
+    Savings are parts of 1. `most_steps_frame` and `most_tests_frame` are the frames that save the most, `wrong_part` is
+    the
+    part of the shadow rays due that had a wrong answer, and `frame_seconds` is the median.
+    """
 
     method: str
     average_steps: float
@@ -156,12 +190,42 @@ def run(
     world: World | None = None,
     on_frame: Callable[[int, str, Frame], None] | None = None,
 ) -> Iterator[Results]:
-    """Render times[i] for each i of `numbers` (default: all) by every method; yields the results after each frame.
+    """Render a path of frames by several methods, and yield the results after each frame.
 
-    Always the same, growing object: stopping early keeps what is done.  A `cancel` that turns true
-    ends the iteration after the last whole frame.  `world` is one that nobody else uses meanwhile;
-    `on_frame` is shown each picture with its number and method.  Raises ValueError as `with_reference` does, and
-    Cancelled if `progress` raises it while trees are built.
+    It always yields the same growing object, so that whoever stops early keeps what is done.
+
+    Parameters
+    ----------
+    scene : Scene
+        What to render.
+    settings : Settings
+        How; the method is replaced by each of `methods`.
+    methods : list of str
+        Names of methods; "none" is always rendered, too.
+    times : list of float
+        Seconds of all frames of the path.
+    numbers : range, optional
+        Which of them to render; all by default.
+    progress : callable, optional
+        Called while trees are built; it may raise Cancelled.
+    cancel : callable, optional
+        Once it returns true, the run ends after the last whole frame.
+    world : World, optional
+        The geometry of the scene, which nobody else may use meanwhile.
+    on_frame : callable, optional
+        Called with the number, the method and the picture of each frame.
+
+    Yields
+    ------
+    Results
+        What was measured so far.
+
+    Raises
+    ------
+    ValueError
+        If a method does not exist.
+    Cancelled
+        If `progress` raises it.
     """
     numbers = range(len(times)) if numbers is None else numbers
     names = with_reference(methods)

@@ -33,12 +33,26 @@ ROUND = 48  # corners of a circle's outline
 
 @dataclass(frozen=True)
 class Explanation:
-    """One light at one point.  A ray is due where the light is on the viewer's side of the surface; `lit` is its true
-    answer, false where none is due, and `blocked_at` where the first thing on its way from the light stops it.
+    """What is between a point and one light.
 
-    `blocker` is the primitive that does so, which may be the one that the point lies on.  `certificate` names what is
-    proven of the point's cell, and `named` the primitives that this rests on, each once; the blocker may be among them.
-    `point` is where shadow rays end, a little above the surface.
+    Attributes
+    ----------
+    light : int
+        Number of the light.
+    due : bool
+        Whether the light is on the viewer's side of the surface.
+    lit : bool
+        Whether the light really reaches the point; false if no ray is due.
+    certificate : str
+        What is known from certificates, in a word.
+    blocker : int or None
+        The first primitive that blocks the light, possibly the one that the point is on.
+    named : tuple of int
+        The primitives that the certificate names, each once.
+    light_position, point : tuple of float
+        Where the light is, and where its shadow rays end, a little above the surface.
+    blocked_at : tuple of float or None
+        Where the first primitive blocks the light.
     """
 
     light: int
@@ -53,7 +67,24 @@ class Explanation:
 
 
 def explain(renderer: Renderer, frame: Frame, x: int, y: int) -> tuple[Explanation, ...]:
-    """An explanation for each light of what the pixel in column x and row y shows; none where that is nothing."""
+    """Explain why the light of each lamp does or does not reach what a pixel shows.
+
+    The world of the renderer must still be placed for this frame.
+
+    Parameters
+    ----------
+    renderer : Renderer
+        The renderer that made the frame.
+    frame : Frame
+        The picture.
+    x, y : int
+        Column and row of the pixel.
+
+    Returns
+    -------
+    tuple of Explanation
+        One for each light; empty if the pixel shows nothing.
+    """
     primitive = int(frame.primitive[y, x])
     if primitive < 0:
         return ()

@@ -15,24 +15,54 @@ from tracer.statistics import FrameStatistics
 
 @dataclass
 class Frame:
-    """One picture and what was learnt from it; arrays are C-contiguous, row 0 at the top.
+    """One picture, and what was found out about it.
 
-    color (h, w, 3) float32, linear and not clamped; depth (h, w) float32, distance along the unit
-    ray, inf for a miss; primitive and cell (h, w) int32, -1 for a miss; normal (h, w, 3) float32,
-    the shading normal towards the viewer.  modes (units,) uint32 or uint64 are the packed words as this
-    frame leaves them, which say nothing of it where `settings.keeps_modes` does not hold; pixel_count and highest_count
-    (units,) int32.  due and lit (h, w, lights) bool where they were asked for: whether each shadow ray of the primary
-    hit is due, and its answer.
-    Where verified, reference like color is the picture with every shadow answer right, which is that
-    of method "none" bit for bit, and wrong (h, w) int32 the number of wrong answers that count for
-    each pixel, at all bounces and of all samples.
+    All arrays are C-contiguous, with row 0 at the top. h and w are the height and width of the picture. A unit is what
+    carries modes: a primitive, or a cell of one.
 
-    cells (h, w) int32 are the units of virtual cells at each pixel, -1 for none, where the method has such;
-    certificates (h, w) packed words like modes, of which the shadow bits are the certificates of the pixel's
-    cell, 0 where it has none.  saved, cost and due_rays (h, w) int32 count, at all bounces, the shadow rays of
-    each pixel that asked no tree of static geometry, all rays that were traced for it, and the shadow rays that were
-    due: without culling, saved + cost rays would have been traced.  layers are what else the method shows of each
-    pixel, by name.
+    Attributes
+    ----------
+    time : float
+        The moment that the picture shows, in seconds.
+    camera : Camera
+        The camera that it was taken with.
+    settings : Settings
+        How it was rendered.
+    color : (h, w, 3) float32
+        Linear colour, not clamped.
+    depth : (h, w) float32
+        Distance along the unit ray, inf for a miss.
+    primitive : (h, w) int32
+        Number of the primitive, -1 for a miss.
+    normal : (h, w, 3) float32
+        Shading normal, on the viewer's side.
+    modes : (units,) uint32 or uint64
+        The packed words of modes as this frame leaves them; without meaning unless `settings.keeps_modes`.
+    pixel_count, highest_count : (units,) int32
+        Pixels that a unit covers now, and the most it covered while fully rendered.
+    lights : int
+        How many lights there are.
+    due, lit : (h, w, lights) bool
+        Whether the shadow ray of the primary hit is due, and whether it reaches the light; with `record_lights`.
+    reference : (h, w, 3) float32
+        The picture with every shadow answer right, that of "none" bit for bit; with `verify`.
+    wrong : (h, w) int32
+        Wrong answers that count for a pixel, at all bounces and of all samples; with `verify`.
+    cells : (h, w) int32
+        The virtual cell at each pixel, -1 for none; for methods that have cells.
+    certificates : (h, w) uint32 or uint64
+        Words like `modes`, with certificates in the place of shadow modes, 0 for none; for methods that make
+        certificates.
+    saved : (h, w) int32
+        Shadow rays of a pixel that did not have to traverse static geometry; with `record_work`.
+    cost : (h, w) int32
+        Rays of all kinds that were traced for a pixel; with `record_work`. Without culling there are `saved + cost`.
+    due_rays : (h, w) int32
+        Shadow rays of a pixel that were due; with `record_work`.
+    layers : dict of str to array
+        Whatever else the method shows at each pixel, by name.
+    statistics : FrameStatistics
+        What the frame cost.
     """
 
     time: float
@@ -68,17 +98,17 @@ class Frame:
 
     @property
     def cell(self) -> NDArray[np.int32]:
-        """The unit that carries modes at each pixel: a virtual cell, or the primitive itself."""
+        """(h, w) int32: the unit that carries modes at each pixel, a virtual cell or the primitive itself."""
         return self.primitive if self.cells is None else self.cells
 
     @property
     def occlusion_mode(self) -> NDArray[np.uint8]:
-        """(h, w) OcclusionMode of each pixel's unit, 255 for a miss."""
+        """(h, w) uint8: the OcclusionMode of each pixel's unit, 255 for a miss."""
         return self._per_pixel(modes.occlusion_mode(self.modes))
 
     @property
     def shadow_mode(self) -> NDArray[np.uint8]:
-        """(h, w, lights) ShadowMode of each pixel's unit, 255 for a miss."""
+        """(h, w, lights) uint8: the ShadowMode of each pixel's unit, 255 for a miss."""
         planes = [self._per_pixel(modes.shadow_mode(self.modes, light)) for light in range(self.lights)]
         return np.stack(planes, axis=-1) if planes else np.empty((*self.primitive.shape, 0), np.uint8)
 

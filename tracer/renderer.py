@@ -28,15 +28,33 @@ from tracer.state import State, open_world
 
 
 class Renderer:
-    """Renders a scene frame by frame and remembers the modes between frames.
+    """Renders a scene frame by frame, and remembers modes and certificates between frames.
 
-    `settings` may be replaced at any time between frames.  Renderers of one scene may share a `world`, as long as they
-    take turns; such a world keeps its accelerator, whatever the settings say, and Frame.settings tells which it is.  A
-    renderer that made its world itself makes another one where the settings name another accelerator.
-    `clock` and `thread_clock` give the seconds by which frames are timed and certificates are budgeted, `cost_model`
-    says what certificates are worth, if not what is usual for the accelerator.
+    `settings` may be replaced between frames. If they name another accelerator, the renderer builds another world,
+    unless
+    the world was given: then its accelerator is used, and `Frame.settings` says so.
 
-    Raises Cancelled if `progress` does while trees are built, ValueError for settings out of range.
+    Parameters
+    ----------
+    scene : Scene
+        What to render.
+    settings : Settings, optional
+        How to render it.
+    progress : callable, optional
+        Called with what is done and the fraction done, while trees are built; it may raise Cancelled.
+    world : World, optional
+        The geometry of the scene. Several renderers may share one, as long as they take turns.
+    clock, thread_clock : callable
+        Give the seconds that time frames, and the seconds of the calling thread that budget certificates.
+    cost_model : CostModel, optional
+        What certificates are worth, instead of what is usual for the accelerator.
+
+    Raises
+    ------
+    ValueError
+        If a setting is out of range.
+    Cancelled
+        If `progress` raises it.
     """
 
     def __init__(
@@ -67,13 +85,30 @@ class Renderer:
         self.state.scene = scene
 
     def reset_modes(self) -> None:
-        """Forget all modes, at every resolution, and all that methods have learnt."""
+        """Forget all modes, at every resolution, and everything that methods have learnt."""
         self.state.forget()
 
     def render(self, time: float = 0.0, camera: Camera | None = None, cancel: Cancel = None) -> Frame:
-        """The frame at `time` seconds; the scene's own camera where none is given.
+        """Render one frame.
 
-        Raises Cancelled, with nothing learnt from this frame, once `cancel()` turns true.
+        Parameters
+        ----------
+        time : float
+            The moment to render, in seconds.
+        camera : Camera, optional
+            The scene's own camera at that time, if none is given.
+        cancel : callable, optional
+            Asked now and then; once it returns true, the frame ends.
+
+        Returns
+        -------
+        Frame
+            The picture with its buffers and statistics.
+
+        Raises
+        ------
+        Cancelled
+            If the frame was cancelled. The renderer has learnt nothing from it.
         """
         frame = self.begin(time, camera, cancel)
         with _discarded_unless_done(frame):
@@ -100,13 +135,38 @@ class Renderer:
         samples: int = 1,
         focus: tuple[float, float] | None = None,
     ) -> Generator[Frame, None, None]:
-        """Frames of one picture that becomes finer: so many sixteenths of its pixels are shaded in each, the most where
-        it helps the most (`tracer.progressive`), the others filled in from these, the same surfaces at all of them.
+        """Render one picture step by step, finer each time.
 
-        The frame that is whole is that of `render`, bit for bit, and only with it anything is learnt: whoever closes
-        the generator before has seen a picture and taught nothing.  After it come frames of 2 to `samples` samples a
-        pixel; the last is that of `render` with so many.  `parts` increase up to 16.  Pixels near `focus`, parts of
-        the width and height, come first where not all come at once.  Raises Cancelled as `render` does.
+        Each step shades more of the pixels, those first where it helps the most (`tracer.progressive`), and fills in
+        the others
+        from shaded pixels on the same surfaces. The whole picture is that of `render`, bit for bit. Only the whole
+        picture
+        teaches the renderer anything: if the generator is closed before it, nothing is remembered. Frames with 2 to
+        `samples`
+        samples per pixel follow; the last is that of `render` with so many samples.
+
+        Parameters
+        ----------
+        time, camera, cancel
+            As for `render`.
+        parts : sequence of float
+            How many sixteenths of the pixels are shaded in each step, increasing up to 16.
+        samples : int
+            Samples per pixel of the last frame.
+        focus : (float, float), optional
+            A point of the picture, in parts of its width and height. Pixels near it come first.
+
+        Yields
+        ------
+        Frame
+            The picture so far.
+
+        Raises
+        ------
+        ValueError
+            If `parts` do not increase up to 16.
+        Cancelled
+            As for `render`.
         """
         if list(parts) != sorted(set(parts)) or not parts or parts[0] < LEVELS[0] or parts[-1] != TURNS:
             raise ValueError(f"parts increase from {LEVELS[0]} at least to {TURNS}")
@@ -165,14 +225,28 @@ class Renderer:
         return self._turn
 
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
-        """What the methods of the last frame know of a light at a point (3,) above a primitive: in a word, and by the
-        primitives that this rests on; None where they know nothing of single points."""
+        """Say what the methods of the last frame know about a light at a point.
+
+        Parameters
+        ----------
+        primitive : int
+            The primitive that the point is on.
+        point : (3,) float32
+            Where shadow rays end, a little above the primitive.
+        light : int
+            Number of the light.
+
+        Returns
+        -------
+        tuple of str and tuple of int, or None
+            What is known, in a word, and the primitives that it rests on; None if nothing is known of single points.
+        """
         answers = (method.explain(primitive, point, light) for method in self._last)
         return next((answer for answer in answers if answer is not None), None)
 
     @property
     def memory_bytes(self) -> int:
-        """Memory, in bytes, that methods hold."""
+        """Memory that the methods of the last frame hold, in bytes."""
         return sum(method.memory_bytes for method in self._last)
 
 

@@ -15,26 +15,46 @@ MAX_SIDE = 16384
 class Settings:
     """How to render.
 
-    Attributes:
-        width, height: of the picture, in pixels.
-        depth: bounces of a ray, at most.
-        method: what culls shadow rays, by name (`tracer.method`).
-        symmetric: test both pixels of a pair for occlusion, not one as published (§2.3); for methods that use modes.
-        zoom_factor: a primitive that covers more than so many times its pixel count is examined anew (§2.6).
-        modes: keep the paper's modes beside a method that does not cull by them: those that "paper+rest" would have,
-            whichever method it is.  Objects that rest then count as static for any method (`tracer.culling.rest`).
-        verify: trace every culled answer too, count the wrong ones, and fill Frame.reference and Frame.wrong.
-        samples: rays of a pixel, which are averaged; modes and statistics are those of the first, through its centre.
-        threads: at work at once; 0 for one on each core.
-        accelerator: "bvh8", the fast structure, which counts the steps and tests of whole packets of rays, or
-            "kdtree", the paper's, which counts them ray by ray.
-        record_lights: fill Frame.due and Frame.lit.
-        record_work: fill Frame.saved, Frame.cost and Frame.due_rays.
-        certificates: made in a frame at most, where the method makes any.
-        certificate_seconds: spent on certificates in a frame at most, a quarter of them at least on making them.  How
-            many are made is left to chance then; inf lets counters repeat exactly.
-        patient: nobody waits for the frame, so that "auto" may spend all of that, and not just what it is worth.
-        certificate_memory: megabytes that certificates take at most.
+    Parameters
+    ----------
+    width, height : int
+        Size of the picture in pixels.
+    depth : int
+        Bounces of a ray, at most.
+    method : str
+        What culls shadow rays, by its name (see `tracer.method`).
+    symmetric : bool
+        Run the occlusion test in both directions between neighbouring pixels, not in one as published (§2.3).
+    zoom_factor : float
+        A primitive that covers more than this many times its highest pixel count is judged again (§2.6).
+    modes : bool
+        Keep the paper's modes also beside a method that does not cull by them: exactly those that "paper+rest"
+        would have.
+        Objects that rest then count as static for every method.
+    verify : bool
+        Trace every culled answer as well, count the wrong ones, and fill `Frame.reference` and `Frame.wrong`.
+    samples : int
+        Rays per pixel, averaged. Modes and statistics are those of the first, which goes through the pixel's centre.
+    threads : int
+        Threads that work at once; 0 for one on each core.
+    accelerator : str
+        "bvh8", the fast structure, which counts steps and tests for whole packets of rays, or "kdtree", the
+        paper's, which
+        counts them ray by ray.
+    record_lights : bool
+        Fill `Frame.due` and `Frame.lit`.
+    record_work : bool
+        Fill `Frame.saved`, `Frame.cost` and `Frame.due_rays`.
+    certificates : int
+        Certificates that a frame makes, at most.
+    certificate_seconds : float
+        Seconds that a frame spends on certificates, at most; a quarter of them is reserved for making them. With a
+        limit,
+        chance decides how many are made. Without one (inf), counters repeat exactly.
+    patient : bool
+        Nobody waits for the frame, so that "auto" may spend the whole budget and not only what certificates are worth.
+    certificate_memory : float
+        Megabytes that certificates take, at most.
     """
 
     width: int = 512
@@ -57,11 +77,17 @@ class Settings:
 
     @property
     def keeps_modes(self) -> bool:
-        """Whether frames learn modes: those of methods that cull by them always do."""
+        """Whether frames keep modes. Frames of methods that cull by modes always do."""
         return self.modes or Method.parse(self.method).uses_modes
 
     def validated(self) -> Settings:
-        """Itself; raises ValueError, in one line, where a value is out of range."""
+        """Return these settings, checked.
+
+        Raises
+        ------
+        ValueError
+            If a value is out of range; the message is one line.
+        """
         Method.parse(self.method)
         checks = (
             (1 <= self.width <= MAX_SIDE and 1 <= self.height <= MAX_SIDE, f"width and height lie in 1 to {MAX_SIDE}"),

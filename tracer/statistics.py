@@ -12,8 +12,20 @@ from tracer.culling.counters import BY_LIGHT, PRIMARY, RAYS, SECONDARY, SHADOW, 
 
 @dataclass
 class RayCounts:
-    """Rays of one kind; traversal steps are kd-tree nodes entered, tests are rays against primitives.  In the 8-wide
-    trees both are counted once for all rays of a packet, and a block of triangles is one test."""
+    """Counts for the rays of one kind.
+
+    In the 8-wide trees, steps and tests are counted once for all rays of a packet, and a block of triangles is one
+    test.
+
+    Attributes
+    ----------
+    rays : int
+        Rays that were traced.
+    traversal_steps : int
+        Nodes that these rays entered, inner nodes and leaves.
+    intersection_tests : int
+        Tests of a ray against a primitive.
+    """
 
     rays: int = 0
     traversal_steps: int = 0
@@ -22,9 +34,23 @@ class RayCounts:
 
 @dataclass
 class ShadowCounts(RayCounts):
-    """Shadow rays: those due and, of these, those culled, those that asked dynamic objects alone, those that asked
-    a few candidates instead of the static tree, and those that a cached occluder blocked; and, where culled answers
-    were verified, the wrong ones.  `rays` are those that asked any tree at all."""
+    """Counts for shadow rays; `rays` are those that were traced through any tree.
+
+    Attributes
+    ----------
+    due : int
+        Shadow rays that had to be answered.
+    culled : int
+        Those that were not traced at all.
+    dynamic_only : int
+        Those that were tested against dynamic objects only.
+    candidates_only : int
+        Those that were tested against a few candidates instead of the static tree.
+    cache_hits : int
+        Those that a cached occluder blocked.
+    wrong : int
+        Wrong answers, counted with `Settings.verify`.
+    """
 
     due: int = 0
     culled: int = 0
@@ -36,8 +62,17 @@ class ShadowCounts(RayCounts):
 
 @dataclass
 class SaidByModes:
-    """Of one light: shadow rays that are due, and of those the ones that the paper's method culls (`full_shadow`), and
-    that it asks moving objects alone about (`non_shadow`), whichever method the frame was traced with."""
+    """What the paper's method would do with the shadow rays of one light, whichever method culls.
+
+    Attributes
+    ----------
+    due : int
+        Shadow rays that had to be answered.
+    full_shadow : int
+        Those that the paper's method culls.
+    non_shadow : int
+        Those that it tests against dynamic objects only.
+    """
 
     due: int = 0
     full_shadow: int = 0
@@ -46,12 +81,29 @@ class SaidByModes:
 
 @dataclass
 class FrameStatistics:
-    """Counters and times of one frame; `phases` are seconds by the names of Figure 1's steps.
+    """Counters and times of one frame.
 
-    `by_modes` is what modes, as the last frame left them, say of the shadow rays of each light that has modes; nothing
-    where none are kept.  `certificates` is how many were made before it was shaded, with so many steps through a tree
-    and tests of triangles.  `part` is the part of the pixels that were shaded: below 1, shadow and secondary rays are
-    those of that part alone.  `decision` is what the method `auto` does now, and why, in a sentence."""
+    Attributes
+    ----------
+    primary, secondary : RayCounts
+        Rays from the camera, and reflected or refracted ones.
+    shadow : ShadowCounts
+        Shadow rays.
+    occlusion_tests : int
+        Extra tests between neighbouring pixels (§2.3).
+    certificates, certificate_steps, certificate_tests : int
+        Certificates that were made, and the steps and tests that they took.
+    part : float
+        The part of the pixels that were shaded. Below 1, shadow and secondary rays are those of this part.
+    decision : str
+        What the method "auto" does now and why, in a sentence.
+    seconds : float
+        Time of the whole frame.
+    by_modes : list of SaidByModes
+        For each light that has modes; empty if none are kept.
+    phases : dict of str to float
+        Seconds of each phase of Figure 1.
+    """
 
     primary: RayCounts = field(default_factory=RayCounts)
     secondary: RayCounts = field(default_factory=RayCounts)

@@ -28,7 +28,15 @@ class Ray(NamedTuple):
 
 
 class Rays(NamedTuple):
-    """n rays: origin and direction (3, n), t_min, which is never negative, and t_max (n,), all float32."""
+    """A batch of n rays.
+
+    Attributes
+    ----------
+    origin, direction : (3, n) float32
+        Where the rays start, and where they point.
+    t_min, t_max : (n,) float32
+        The open interval in which hits count.
+    """
 
     origin: NDArray[np.float32]
     direction: NDArray[np.float32]
@@ -37,8 +45,17 @@ class Rays(NamedTuple):
 
 
 class Hits(NamedTuple):
-    """Nearest hits of n rays: t (n,) float32, inf for a miss; primitive (n,) int32, MISS for none;
-    u and v (n,) float32, barycentric weights of a triangle's second and third corner."""
+    """The nearest hits of n rays.
+
+    Attributes
+    ----------
+    t : (n,) float32
+        Distance in lengths of the ray's direction, inf for a miss.
+    primitive : (n,) int32
+        Number of the primitive, -1 for a miss.
+    u, v : (n,) float32
+        Barycentric weights of a triangle's second and third corner.
+    """
 
     t: NDArray[np.float32]
     primitive: NDArray[np.int32]
@@ -47,10 +64,26 @@ class Hits(NamedTuple):
 
 
 def ray_batch(origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0, t_max: ArrayLike = np.inf) -> Rays:
-    """Turn origins and directions (n, 3) into a batch; t_min and t_max may be one number or (n,).
+    """Make a batch of n rays, which can be traced as often as one likes.
 
-    Directions keep their length; the batch holds copies.  Raises ValueError where shapes do not fit or a
-    t_min is negative.
+    Directions keep their length, and t is measured in it. The batch holds copies.
+
+    Parameters
+    ----------
+    origins, directions : (n, 3) array
+        Where each ray starts, and where it points.
+    t_min, t_max : float or (n,) array
+        The open interval in which hits count; t_min is not negative.
+
+    Returns
+    -------
+    Rays
+        The batch, as structure of arrays.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, or a t_min is negative.
     """
     o, d = np.asarray(origins, np.float32), np.asarray(directions, np.float32)
     if o.ndim != 2 or o.shape[1] != 3 or o.shape != d.shape:

@@ -31,13 +31,38 @@ STRUCTURES: dict[str, Any] = {KD_TREE: KdTree, BVH8: Bvh8}
 
 
 class World:
-    """A scene's geometry for rays: `place` it for a time, then ask.
+    """The geometry of a scene at a time, which answers rays.
 
-    Raises Cancelled if `progress` does while trees are being built, ValueError for an accelerator
-    that does not exist.  `placed` is what kernels are given; `attributes` (primitives, 16) float32 what shading
-    reads (`tracer.geometry.attributes`), of which `normals` (t, 9) are the corners' normals in the space of each
-    triangle's object; `object_of` (primitives,) int32 tells whose each primitive is.  Placing overwrites what
-    was placed before.
+    Trees are built once. `place` then moves what moves; it overwrites what was placed before.
+
+    Parameters
+    ----------
+    scene : Scene
+        What there is.
+    time : float
+        The moment to begin with, in seconds.
+    accelerator : str
+        "bvh8", the fast structure, or "kdtree", the paper's.
+    progress : callable, optional
+        Called while trees are built; it may raise Cancelled.
+
+    Attributes
+    ----------
+    placed
+        What kernels are given.
+    attributes : (primitives, 16) float32
+        What shading reads of each primitive (`tracer.geometry.attributes`).
+    normals : (triangles, 9) float32
+        Normals at the corners, in the space of each triangle's object.
+    object_of : (primitives,) int32
+        The object that each primitive belongs to.
+
+    Raises
+    ------
+    ValueError
+        If there is no such accelerator.
+    Cancelled
+        If `progress` raises it.
     """
 
     def __init__(
@@ -71,10 +96,15 @@ class World:
         return poses_at(self._chains, self.primitives.empty, time)
 
     def place(self, when: float | Poses, resting: NDArray[np.bool_] | None = None) -> None:
-        """Move dynamic objects to their poses at a time in seconds, or to those that `pose` has returned.
+        """Move the dynamic objects to where they are.
 
-        Objects that are present and rest, by resting (objects,) bool, are static geometry to `any_hits`; without
-        it none is."""
+        Parameters
+        ----------
+        when : float or Poses
+            A time in seconds, or what `pose` has returned.
+        resting : (objects,) bool, optional
+            Objects that count as static geometry for `any_hits`; none by default.
+        """
         self._poses = poses = when if isinstance(when, Poses) else self.pose(when)
         rest = np.zeros_like(poses.present) if resting is None else poses.present & resting
         rest[0] = False  # what never moves is in a tree of its own
@@ -106,23 +136,62 @@ class World:
         return boxes
 
     def closest_hits(self, rays: Rays, threads: int = 0) -> Hits:
-        """Nearest hits of a batch of n rays, (n,) each (see `tracer.geometry.rays`); threads 0 stands for all cores."""
+        """Find the nearest hit of each ray.
+
+        Parameters
+        ----------
+        rays : Rays
+            n rays, made by `RayBatch`.
+        threads : int
+            Threads that work at once; 0 for one on each core.
+
+        Returns
+        -------
+        Hits
+            t, primitive, u and v, (n,) each; t is inf and primitive -1 for a miss.
+        """
         n = len(rays.t_min)
         hits = Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
         self._ask(self.structure.closest, batch_of(rays, hits), n, threads)
         return hits
 
     def any_hits(self, rays: Rays, threads: int = 0) -> NDArray[np.bool_]:
-        """(n,) whether anything, static or dynamic, lies in each ray's interval."""
+        """Say for each ray whether anything, static or dynamic, lies in its interval.
+
+        Parameters
+        ----------
+        rays : Rays
+            n rays, made by `RayBatch`.
+        threads : int
+            Threads that work at once; 0 for one on each core.
+
+        Returns
+        -------
+        (n,) bool
+            True for a ray that is blocked.
+        """
         n = len(rays.t_min)
         blocked = np.zeros(n, np.uint8)
         self._ask(self.structure.any_hit, batch_of(rays, blocked=blocked), n, threads)
         return blocked != 0
 
     def occluders(self, rays: Rays, threads: int = 0) -> NDArray[np.int32]:
-        """(n,) a primitive, not always the nearest, that lies in each ray's interval; MISS where none does.
+        """Find for each ray a primitive that lies in its interval, which need not be the nearest.
 
-        The same on every run, and for any number of threads: rays are asked CHUNK by CHUNK."""
+        The answer is the same on every run and for any number of threads.
+
+        Parameters
+        ----------
+        rays : Rays
+            n rays, made by `RayBatch`.
+        threads : int
+            Threads that work at once; 0 for one on each core.
+
+        Returns
+        -------
+        (n,) int32
+            Numbers of primitives, -1 for a ray that nothing blocks.
+        """
         n = len(rays.t_min)
         blocked, found = np.empty(n, np.uint8), np.empty(n, np.int32)
         self._ask(self.structure.any_hit, batch_of(rays, blocked=blocked, occluders=found), n, threads)

@@ -18,11 +18,25 @@ SCENE_EXTENSIONS = (*AFF_EXTENSIONS, *MESH_EXTENSIONS)
 
 
 def load_scene(path: str | Path, progress: Progress | None = None) -> Scene:
-    """The scene in a file: AFF or NFF, OBJ, PLY, STL, glTF or GLB.
+    """Read a scene from a file: AFF, NFF, OBJ, PLY, STL, glTF or GLB.
 
-    Raises SceneError, in one line that names the file, its line where it has lines, and what to
-    do.  `progress` is called with what is being done and the fraction done; what it raises
-    (Cancelled) comes through, and nothing else is changed.
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    progress : callable, optional
+        Called with what is done and the fraction done (0 to 1). It may raise Cancelled to stop.
+
+    Returns
+    -------
+    Scene
+        What the file holds. Its `warnings` name what is missing, such as a texture.
+
+    Raises
+    ------
+    SceneError
+        If the file cannot be read. The message is one line that names the file, its line if it has lines, and what
+        to do.
     """
     path = Path(path)
     check_scene_file(path)
@@ -59,11 +73,21 @@ def load_visible_scene(path: str | Path, progress: Progress | None = None) -> Sc
 
 
 def scene_info(scene: Scene) -> dict[str, Any]:
-    """What `shadowcull info --json` prints, in plain lists and numbers.
+    """Say what a scene contains, as `shadowcull info --json` prints it.
 
-    `dynamic_triangles` are those of objects that move or deform; `materials` counts every material
-    statement that was run, included files each time; `textures` counts distinct images; `bounds`
-    is [least corner, greatest corner] of everything at the start time, or None of nothing.
+    Parameters
+    ----------
+    scene : Scene
+        A scene.
+
+    Returns
+    -------
+    dict
+        Plain lists and numbers. `dynamic_triangles` are those of objects that can move or deform, `materials`
+        counts every
+        material statement that was run, `textures` counts different images, and `bounds` is [lower corner, upper
+        corner] of
+        everything at the start time, or None for an empty scene.
     """
     kinds = np.concatenate([o.quadrics.kind for o in scene.objects])
     static = len(scene.objects[0].triangles)
