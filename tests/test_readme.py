@@ -20,6 +20,10 @@ from PIL import Image
 import tracer
 from tracer import experiment
 from viewer.__main__ import main
+from viewer.services.controller import Controller
+from viewer.state.preferences import Preferences
+from viewer.window import commands
+from viewer.window.ui import Ui
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
@@ -137,6 +141,20 @@ def test_targets_and_files_exist(page: Path) -> None:
     assert set(shown) <= targets
     for path in re.findall(r"`((?:tracer|viewer|shaders|tests|tools|docs|assets)/[\w./-]*)`", text):
         assert (ROOT / path).exists(), path
+
+
+def test_keys_of_the_window_are_told() -> None:
+    """Each key of a command is in the table of keys."""
+    table = "".join(re.findall(r"^\| (`.*?) \|", (DOCS / "viewer.md").read_text(), re.MULTILINE))
+    told = set(re.findall(r"`([^`]+)`", table)) | set("1234567")  # shown as `1` … `7`
+    shown = {"RightArrow": "→", "LeftArrow": "←", "Ctrl+Equal": "+", "Ctrl+Minus": "-", "Ctrl+0": "0"}
+    ui = Ui(Controller(Preferences()))
+    try:
+        keys = {shown.get(command.key, command.key) for command in commands.build(ui) if command.key}
+    finally:
+        ui.controller.close()
+    assert len(keys) > 30
+    assert keys <= told, keys - told
 
 
 def test_lines_of_the_sources_are_there() -> None:
