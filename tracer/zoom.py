@@ -60,9 +60,29 @@ class Change:
 
 @dataclass(frozen=True)
 class Step:
-    """A frame of the way.  `shadows` are the shadow modes by light, None for lights without one; modes are as the
-    frame leaves them, `changes` what they were before it.  `wrong` counts the pixels that a wrong shadow answer
-    touches, `wrong_of_primitive` those among them that show the primitive; rays are those of the whole frame."""
+    """A frame on the way to a primitive.
+
+    Attributes
+    ----------
+    number : int
+        Counted from the first frame.
+    distance : float
+        From the camera to the target.
+    camera : Camera
+        Where the frame was taken from.
+    pixels, highest : int
+        Pixels that the primitive covers, and the most it covered while fully rendered.
+    occlusion : str
+        Its occlusion mode after the frame.
+    shadows : list of str or None
+        Its shadow mode for each light; None for a light without modes.
+    changes : list of Change
+        The modes that the frame has changed.
+    wrong_of_primitive, wrong : int
+        Pixels with a wrong shadow answer: those that show the primitive, and those of the whole picture.
+    due, culled, dynamic_only : int
+        Shadow rays of the whole frame.
+    """
 
     number: int
     distance: float
@@ -127,11 +147,29 @@ class Results:
 
 
 def aim(frame: Frame, primitive: int) -> Aim:
-    """Point a frame's camera at a primitive that the frame shows, which must not lie behind anything on the way.
+    """Point the camera of a frame at a primitive that the frame shows.
 
-    A camera that looks at it already, with all pixels about its axis, goes straight on.  Any other turns
-    to the middle of what is to be seen of it: the visible point nearest to the mean of all.  Raises
-    ValueError where the frame does not show the primitive.
+    If the camera looks straight at the primitive already, with all pixels around its axis, it keeps its direction.
+    Otherwise it turns to the middle of what is visible of the primitive: the visible point that is nearest to the mean
+    of
+    all visible points. Nothing may lie in between on the way there.
+
+    Parameters
+    ----------
+    frame : Frame
+        A picture.
+    primitive : int
+        Number of the primitive.
+
+    Returns
+    -------
+    Aim
+        Where a zoom test starts.
+
+    Raises
+    ------
+    ValueError
+        If the frame does not show the primitive.
     """
     rows, columns = np.nonzero(frame.primitive == primitive)
     if primitive < 0 or not len(rows):
@@ -199,14 +237,44 @@ def run(
     world: World | None = None,
     on_frame: Callable[[float, int, Frame], None] | None = None,
 ) -> Iterator[Results]:
-    """Go towards a primitive in so many steps, once with each zoom factor; yields the results after each frame.
+    """Move towards a primitive, once with each zoom factor, and yield the results after each frame.
 
-    Always the same, growing object: stopping early keeps what is done.  Each step ends at `ratio` of
-    the distance before it, so that the camera comes near but never arrives; STILL_FRAMES of the start
-    come first.  The method is "paper", and every culled answer is verified, whatever `settings` say.
-    A `cancel` that turns true ends the iteration after the last whole frame.  `world` is one that
-    nobody else uses meanwhile; `on_frame` is shown each picture with its factor and number.  Raises
-    ValueError for a primitive that is not there or moves, and for numbers out of range.
+    It always yields the same growing object, so that whoever stops early keeps what is done. The camera first stays
+    where it
+    is for STILL_FRAMES. Then each step ends at `ratio` of the distance before it, so that the camera comes near but
+    never
+    arrives. The method is always "paper", and every culled answer is verified.
+
+    Parameters
+    ----------
+    scene : Scene
+        What to render.
+    settings : Settings
+        How; method, verification, samples and zoom factor are replaced.
+    start : Aim
+        Where to start, from `aim`.
+    factors : sequence of float
+        Zoom factors.
+    steps : int
+        How many steps to go.
+    ratio : float
+        The part of the distance that remains after a step, between 0 and 1.
+    cancel : callable, optional
+        Once it returns true, the test ends after the last whole frame.
+    world : World, optional
+        The geometry of the scene, which nobody else may use meanwhile.
+    on_frame : callable, optional
+        Called with the factor, the number and the picture of each frame.
+
+    Yields
+    ------
+    Results
+        What was found so far.
+
+    Raises
+    ------
+    ValueError
+        If there is no such primitive, or if it moves, or if a number is out of range.
     """
     tests = settings_of_tests(settings, factors, steps, ratio)
     check_primitive(scene, start.primitive)
