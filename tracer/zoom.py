@@ -60,29 +60,11 @@ class Change:
 
 @dataclass(frozen=True)
 class Step:
-    """A frame on the way to a primitive.
+    """A frame on the way, as the frame leaves things: `pixels` that the primitive covers and the `highest` count,
+    its occlusion mode, its shadow mode for each light (None for a light without modes), and the modes that changed.
 
-    Attributes
-    ----------
-    number : int
-        Counted from the first frame.
-    distance : float
-        From the camera to the target.
-    camera : Camera
-        Where the frame was taken from.
-    pixels, highest : int
-        Pixels that the primitive covers, and the most it covered while fully rendered.
-    occlusion : str
-        Its occlusion mode after the frame.
-    shadows : list of str or None
-        Its shadow mode for each light; None for a light without modes.
-    changes : list of Change
-        The modes that the frame has changed.
-    wrong_of_primitive, wrong : int
-        Pixels with a wrong shadow answer: those that show the primitive, and those of the whole picture.
-    due, culled, dynamic_only : int
-        Shadow rays of the whole frame.
-    """
+    `wrong` counts the pixels with a wrong shadow answer, and `wrong_of_primitive` those of them that show the primitive.
+    `due`, `culled` and `dynamic_only` count shadow rays of the whole frame."""
 
     number: int
     distance: float
