@@ -63,7 +63,7 @@ class Step:
     """A frame on the way, as the frame leaves things: `pixels` that the primitive covers and the `highest` count,
     its occlusion mode, its shadow mode for each light (None for a light without modes), and the modes that changed.
 
-    `wrong` counts the pixels with a wrong shadow answer, and `wrong_of_primitive` those of them that show the primitive.
+    `wrong` counts the pixels with a wrong shadow answer, and `wrong_of_primitive` those that show the primitive.
     `due`, `culled` and `dynamic_only` count shadow rays of the whole frame."""
 
     number: int
