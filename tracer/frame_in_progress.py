@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -21,19 +20,17 @@ from tracer.progressive import Parts
 from tracer.scene.model import Camera
 from tracer.settings import Settings
 from tracer.shading.blocks import NO_PLANES, TURNS, all_blocks
-from tracer.shading.buffers import TILE, Buffers, empty_buffers
+from tracer.shading.buffers import Buffers, empty_buffers
 from tracer.shading.surfaces import see_surfaces
 from tracer.shading.whitted import find_in_tile, shade_tile, trace_primary
 from tracer.state import State
 from tracer.statistics import gather
+from tracer.tiles import Tile, nearest_first, tiles_of, tiles_to_shade
 
-FEW = 4  # pixels of each block, at most, that are shaded in larger tiles
-EACH = 3  # larger tiles, at least, for each thread
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 GOLDEN = 1.32471795724474602596  # the powers of its inverse step through the plane evenly (Roberts 2018)
 
 Cancel = Callable[[], bool] | None
-Tile = tuple[int, int, int, int, int]  # left, top, right, bottom, number
 
 
 class FrameInProgress:
@@ -56,7 +53,7 @@ class FrameInProgress:
 
         # What is seen, and by which rays.
         self.rays = pinhole(camera, settings.width, settings.height)
-        self._tiles = tiles_of(settings.width, settings.height, TILE)
+        self._tiles = tiles_of(settings.width, settings.height)
         self.tiles = np.array(self._tiles, np.int64)
         self._everywhere = all_blocks(settings.width, settings.height)
         self._focus: tuple[float, float] | None = None
@@ -159,11 +156,7 @@ class FrameInProgress:
     ) -> None:
         tables = self._stage_tables(learns)
 
-        # Of larger tiles where few of their pixels are shaded, lest packets of rays remain half empty, unless there are
-        # too few for all threads.
-        few = int(np.bitwise_count(lanes).sum()) <= FEW * np.count_nonzero(lanes)
-        side = 2 * TILE if few and len(self._tiles) >= 4 * EACH * self.workers else TILE
-        tiles = tiles_of(self.settings.width, self.settings.height, side)
+        tiles = tiles_to_shade(self.settings.width, self.settings.height, lanes, self.workers)
         self._base.begin_shading(self, len(tiles), first_pass=learns and not self._begun)
         shade_one = self._tile_shader(rays, lanes, buffers, tables[True])
 
@@ -276,7 +269,7 @@ class FrameInProgress:
         frame = self._frame()
         shaded, frame.color = frame.color, self._parts.give()
         with self.phase("filling"):
-            _stretch_records(frame, shaded, self._parts)
+            self._parts.stretch_records(frame, shaded)
         frame.statistics.phases = dict(self.phases)
         return frame
 
@@ -357,31 +350,9 @@ class FrameInProgress:
             statistics=statistics,
         )
 
-    # --- tiles ---------------------------------------------------------------------------------------------
-
     def _for_each_tile(self, work: Callable[[Tile, int], None], tiles: list[Tile] | None = None) -> None:
         """Call work(tile, worker) for every tile, those near the focus first, where there is one."""
         tiles = tiles or self._tiles
         if self._focus is not None:
-            x, y = self._focus[0] - TILE / 2, self._focus[1] - TILE / 2
-            tiles = sorted(tiles, key=lambda tile: math.hypot(tile[0] - x, tile[1] - y))
+            tiles = nearest_first(tiles, *self._focus)
         for_each_chunk(lambda chunk, worker: work(tiles[chunk], worker), len(tiles), self.workers, self.cancel)
-
-
-def tiles_of(width: int, height: int, side: int) -> list[Tile]:
-    """The squares that make a picture, and their numbers."""
-    corners = [(x, y) for y in range(0, height, side) for x in range(0, width, side)]
-    return [(x, y, min(x + side, width), min(y + side, height), number) for number, (x, y) in enumerate(corners)]
-
-
-def _stretch_records(frame: Frame, shaded: NDArray[np.float32], parts: Parts) -> None:
-    """Let pixels that have not been shaded show what is recorded of the nearest that have; wrong ones do not.
-
-    shaded (height, width, 3) are the colours before the others were filled in."""
-    if frame.reference is not None and frame.wrong is not None:
-        frame.reference = frame.color + parts.stretched(frame.reference - shaded)
-        frame.wrong = frame.wrong.copy()
-    if frame.saved is not None and frame.cost is not None and frame.due_rays is not None:
-        frame.saved, frame.cost, frame.due_rays = (
-            parts.stretched(work) for work in (frame.saved, frame.cost, frame.due_rays)
-        )

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.frame import Frame
 from tracer.parallel import for_each_chunk
 from tracer.shading.blocks import BAYER, BLOCK, EDGE, TURNS, Planes, all_blocks, blocks_in, lanes_of, pixels_of
 from tracer.shading.filling import fill_in, nearest
@@ -124,6 +125,18 @@ class Parts:
             columns = np.where(known[rows, columns], columns, beside)
         known = known.reshape(known.shape + (1,) * (values.ndim - 2))
         return np.where(known, values, values[rows, columns])
+
+    def stretch_records(self, frame: Frame, shaded: NDArray[np.float32]) -> None:
+        """Let pixels that have not been shaded show what is recorded of the nearest that have; wrong ones do not.
+
+        shaded (height, width, 3) are the colours before the others were filled in."""
+        if frame.reference is not None and frame.wrong is not None:
+            frame.reference = frame.color + self.stretched(frame.reference - shaded)
+            frame.wrong = frame.wrong.copy()
+        if frame.saved is not None and frame.cost is not None and frame.due_rays is not None:
+            frame.saved, frame.cost, frame.due_rays = (
+                self.stretched(work) for work in (frame.saved, frame.cost, frame.due_rays)
+            )
 
 
 def _with_neighbours(blocks: NDArray[np.bool_]) -> NDArray[np.bool_]:
