@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from tracer import compilation
+from tracer import compilation, compile_beside, compile_steps
 from tracer.kernels import cache_folder
 from tracer.scene.model import Cancelled
 
@@ -180,19 +180,40 @@ def test_what_is_compiled_beside_is_what_a_frame_needs(lights: int, accelerator:
     done: set[str] = set()
     drawable: list[set[str]] = []
     report = lambda *what: told.append(what)  # noqa: E731
-    compilation._compile_beside(report, lights, accelerator, done, lambda: drawable.append(set(done)))
-    assert done == set(compilation._SHARES) == {step for steps in compilation._PARTS.values() for step in steps}
+    compile_beside.compile_beside(report, lights, accelerator, done, lambda: drawable.append(set(done)))
+    assert done == set(compile_steps.SHARES) == {step for steps in compile_steps.PARTS.values() for step in steps}
     assert len(drawable) == 1 and drawable[0] >= done - {"certificates"}
     assert sorted(path.name for path in cache_folder().rglob("*.nbc")) == before
     fractions = [fraction for _, fraction in told]
     assert fractions == sorted(fractions) and fractions[-1] > 0.7
-    assert sum(compilation._SHARES.values()) == pytest.approx(1.0)
+    assert sum(compile_steps.SHARES.values()) == pytest.approx(1.0)
+
+
+def test_without_certificates_less_is_compiled_and_the_rest_later(tmp_path: Path) -> None:
+    code = (
+        "from tracer import compilation, compile_beside, compile_steps\n"
+        "made = []\n"
+        "compilation.compile_beside = lambda *arguments: made.append(list(arguments[-1]))\n"
+        "compilation.picture_steps = lambda *a: iter(['primary rays'])\n"
+        "compilation.certificate_steps = lambda *a: iter(['certificates'])\n"
+        "(compilation.cache_folder() / 'kernel.nbc').touch()\n"
+        "compilation.warm_up(certificates=False)\n"
+        "assert compilation.can_draw() and compilation.compiled_before(certificates=False)\n"
+        "assert not compilation.compiled_before()\n"
+        "compilation.warm_up(certificates=False)\n"
+        "compilation.warm_up()\n"
+        "assert compilation.compiled_before()\n"
+        "assert made == [list(compile_steps.FOR_A_PICTURE), ['certificates']], made\n"
+    )
+    environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 def test_cancelling_ends_the_processes(monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[subprocess.Popen] = []
-    make = compilation._worker
-    monkeypatch.setattr(compilation, "_worker", lambda *a: made.append(make(*a)) or made[-1])
+    make = compile_beside._worker
+    monkeypatch.setattr(compile_beside, "_worker", lambda *a: made.append(make(*a)) or made[-1])
 
     def report(what: str, fraction: float) -> None:
         if len(made) == 2:
@@ -200,23 +221,23 @@ def test_cancelling_ends_the_processes(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     with pytest.raises(Cancelled):
-        compilation._compile_beside(report, 1, "bvh8", set())
+        compile_beside.compile_beside(report, 1, "bvh8", set())
     assert [process.returncode for process in made] == [-signal.SIGKILL] * 2
 
 
 def test_processes_that_cannot_be_had_cost_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "executable", "/bin/false")
     done: set[str] = set()
-    compilation._compile_beside(lambda *what: None, 1, "bvh8", done)
+    compile_beside.compile_beside(lambda *what: None, 1, "bvh8", done)
     assert not done
 
 
 def test_processes_end_with_the_one_that_wants_them(tmp_path: Path) -> None:
     code = (
-        "from tracer import compilation\n"
-        "make = compilation._worker\n"
+        "from tracer import compilation, compile_beside\n"
+        "make = compile_beside._worker\n"
         "def worker(*a):\n    made = make(*a)\n    print(made.pid, flush=True)\n    return made\n"
-        "compilation._worker = worker\n"
+        "compile_beside._worker = worker\n"
         "compilation.warm_up()\n"
     )
     environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(tmp_path)}

@@ -177,7 +177,14 @@ def _read(record: type, at: int, name: str) -> tuple[str, int, dict[str, type]]:
 
 def _kernel(code: str, record: type, names: dict[str, type] | None = None) -> Any:
     """An inlined kernel of this code, made where nothing else is known but what it needs."""
-    scope: dict[str, Any] = {"record": record, "int32": np.int32, "int64": np.int64, "carray": carray, **(names or {})}
+    scope: dict[str, Any] = {
+        "__name__": record.__module__,
+        "record": record,
+        "int32": np.int32,
+        "int64": np.int64,
+        "carray": carray,
+        **(names or {}),
+    }
     scope |= {"load_i64": load_i64, "load_f64": load_f64, "store": store, "address_of": address_of}
     scope |= {f"{kind}_at": at for kind, at in _POINTERS.items()}
     exec(f"def read{code}", scope)

@@ -1,0 +1,207 @@
+"""What is compiled, step by step: a tiny scene is rendered phase by phase, and each phase named before its kernels are
+made ready.
+
+Steps are grouped into parts, so that processes can compile a part each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.certified.cost_model import CostModel
+from tracer.culling.certified.requests import make_requests
+from tracer.culling.certified.store import Budget
+from tracer.geometry.poses import Poses
+from tracer.geometry.primitives import Primitives
+from tracer.geometry.queries import HIT_PRIMITIVE, HIT_T, Placed
+from tracer.geometry.rays import INFINITY, MISS
+from tracer.geometry.world import STRUCTURES
+from tracer.kernels import entry
+from tracer.methods.certified import CertifiedCells
+from tracer.methods.interface import StageTable
+from tracer.renderer import Renderer
+from tracer.scene.animation import Animation
+from tracer.scene.model import (
+    Camera,
+    Light,
+    Material,
+    Progress,
+    Quadrics,
+    Scene,
+    SceneObject,
+    Triangles,
+    empty_quadrics,
+)
+from tracer.settings import Settings
+from tracer.shading.screen import to_screen
+from tracer.simd import f32_at, i32_at, load_i64
+
+# What is made ready, with about how much of the whole time it takes when compiled.
+SHARES = {
+    "nearest hits": 0.17,
+    "shadow rays": 0.04,
+    "the builder": 0.10,
+    "primary rays": 0.04,
+    "occlusion testing": 0.02,
+    "surfaces": 0.11,
+    "shading and shadow testing": 0.16,
+    "filling": 0.02,
+    "mode setting": 0.01,
+    "certificates": 0.33,
+}
+
+# None compiles what another does, once the parts that it needs are done.
+PARTS = {
+    "frame": (
+        "primary rays",
+        "occlusion testing",
+        "surfaces",
+        "shading and shadow testing",
+        "filling",
+        "mode setting",
+    ),
+    "trees": ("the builder",),
+    "queries": ("nearest hits", "shadow rays"),
+    "certificates": ("certificates",),
+}
+NEEDS = {"certificates": ("trees",)}
+FOR_A_PICTURE = ("frame", "trees", "queries")
+
+
+# --- steps: each generator names what comes next, and does it when asked for the one after ---------
+
+
+def picture_steps(lights: int, accelerator: str) -> Iterator[str]:
+    """All that a picture needs, by any method but those that make certificates."""
+    yield from _queries(accelerator)
+    yield from _frame(lights, accelerator)
+
+
+def _queries(accelerator: str) -> Iterator[str]:
+    structure = STRUCTURES[accelerator]
+    yield "nearest hits"
+    structure.closest.compile()
+    yield "shadow rays"
+    structure.any_hit.compile()
+
+
+def _trees(lights: int, accelerator: str) -> Iterator[str]:
+    yield "the builder"
+    _renderer(lights, accelerator)
+
+
+def _frame(lights: int, accelerator: str) -> Iterator[str]:
+    yield "the builder"
+    frame = _renderer(lights, accelerator).begin(0.0, progressive=True)
+    frame.place_objects_and_lights()
+    for name, phase in (
+        ("primary rays", frame.trace_primary_rays),
+        ("occlusion testing", frame.test_occlusion),
+        ("surfaces", frame.see_surfaces),
+        ("surfaces", frame.find_first),
+        ("shading and shadow testing", frame.shade),
+        ("filling", lambda: to_screen(frame.so_far().color.reshape(-1, 3), np.empty((16, 4), np.uint8))),
+        ("mode setting", frame.set_modes),
+    ):
+        yield name
+        phase()
+
+
+def certificate_steps(lights: int, accelerator: str) -> Iterator[str]:
+    """All that is certified, and dropped again."""
+    yield "certificates"
+    renderer = _renderer(lights, accelerator, "certified+cache+rest")
+    frame = renderer.begin(0.0)
+    frame.place_objects_and_lights()  # an object has come to rest: what that darkens is looked for
+    frame.buffers.primitive.fill(MISS)
+    frame.prepare_culling()
+    certified = frame.methods[0]
+    assert isinstance(certified, CertifiedCells) and certified.store is not None
+    StageTable(certified.stages(frame, 0, learns=True), verify=False)
+    requests = make_requests(1)
+    requests.key[0, 0], requests.u[0, 0], requests.v[0, 0], requests.of[0, 0] = -1, 0.25, 0.25, 1
+    certified.store.certify([requests], Budget(), CostModel(1, 1, 8, 8, True, 1), None)
+    certified.store.keep_within(0.0, np.zeros(1, np.int32))
+
+
+def _renderer(lights: int, accelerator: str, method: str = "cells+cache+rest") -> Renderer:
+    # As many lights as make a word of that size, no more: each is traced.
+    scene = _tiny_scene(1 if lights <= 15 else 16)
+    # Methods differ in what their kernels are told; what they take along, and certificates, have kernels more each.
+    return Renderer(scene, Settings(width=4, height=4, method=method, threads=1, accelerator=accelerator))
+
+
+def _tiny_scene(lights: int) -> Scene:
+    """A triangle and a sphere that never move, and a triangle that could."""
+    corners = np.array([[[-1, -1, 0], [1, -1, 0], [0, 1, 0]]], np.float32)
+    normals = np.broadcast_to(np.array([0, 0, 1], np.float32), corners.shape)
+    zero = np.zeros(1, np.int32)
+    triangles = Triangles(corners, normals, np.zeros((1, 3, 2), np.float32), zero, zero - 1)
+    sphere = Quadrics(zero, np.eye(4)[None, :3], np.ones((1, 2), np.float32), zero.astype(np.bool_), zero)
+    return Scene(
+        path=Path("warm-up"),
+        objects=(
+            SceneObject("static", triangles, sphere),
+            SceneObject("dynamic", triangles, empty_quadrics(), (np.eye(4),)),
+        ),
+        materials=(Material(),),
+        textures=(),
+        lights=tuple(Light(f"light {i}", (0.0, 1.0, 5.0)) for i in range(lights)),
+        camera=Camera((0.0, 0.0, 5.0), (0.0, 0.0, -1.0)),
+        animation=Animation.empty(),
+    )
+
+
+# --- parts ---------------------------------------------------------------------------------------
+
+
+def steps_of(part: str, lights: int, accelerator: str) -> Iterator[str]:
+    """The steps of a part, none of which compiles what is another's."""
+    structures: dict[str, Any] = STRUCTURES
+    if part == "queries":
+        return _queries(accelerator)
+    if part in ("trees", "certificates"):
+        queries = dict.fromkeys(("closest", "any_hit"), _Unasked)
+        structures[accelerator] = type("Unasked", (structures[accelerator],), queries)
+        return (_trees if part == "trees" else certificate_steps)(lights, accelerator)
+    structures[accelerator] = _Nowhere
+    return (step for step in _frame(lights, accelerator) if step != "the builder")
+
+
+@entry
+def _no_hit(data, batch, first, last, counts):
+    """Rays first to last - 1 meet nothing."""
+    t, primitive = f32_at(load_i64(batch + HIT_T)), i32_at(load_i64(batch + HIT_PRIMITIVE))
+    for i in range(first, last):
+        t[i], primitive[i] = INFINITY, MISS
+
+
+@entry
+def _nothing(data, batch, first, last, counts):
+    """Nobody asks, as no ray has hit anything."""
+
+
+class _Nowhere:
+    """A structure that no ray meets anything in: frames compile with it as with any other."""
+
+    closest, any_hit = _no_hit, _nothing
+
+    def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
+        self._primitives = primitives
+
+    def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
+        primitives = self._primitives
+        to_object = poses.to_object.reshape(-1, 12).astype(np.float32)
+        arrays = (primitives.triangles, primitives.quadrics, to_object, primitives.object_of)
+        return Placed(*arrays, _no_hit.address, _nothing.address, 0, False, np.zeros(6, np.float32))
+
+
+class _Unasked:
+    """A query that is not compiled, as nobody asks it."""
+
+    address = 0
