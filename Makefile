@@ -84,9 +84,9 @@ linkcheck:  ## check the documentation's links to other sites, which needs the n
 	@tools/environment.sh dev
 	$(RUN) -m sphinx -q -d .cache/docs -b linkcheck docs build/linkcheck
 
-pictures:  ## make the pictures of the README anew, from the real window
+pictures:  ## make the pictures of the README anew, from the real window (ARGS="film" or "still": one of them)
 	@tools/environment.sh dev
-	@$(RUN) tools/with_screen.py $(RUN) tools/make_pictures.py
+	@$(RUN) tools/with_screen.py $(RUN) tools/make_pictures.py $(ARGS)
 
 lint:  ## check style, types and the direction of imports
 	@tools/environment.sh dev

@@ -1,6 +1,6 @@
 """Make the pictures of the README anew, from the real window: `make pictures`, or
 
-    python tools/with_screen.py python tools/make_pictures.py
+    python tools/with_screen.py python tools/make_pictures.py [film] [still]
 
 `viewer.png` is the window with a clicked pixel and its shadow rays.  `loop.webp` is a short film that repeats: a
 flight along the scene's own path, the occlusion modes and shadow modes that it has taught, and the wipe between the
@@ -31,7 +31,7 @@ KEY = imgui.Key
 START, FLOWN = 40, 24  # the frame where the flight begins, and how many frames it is long
 STILL, SAMPLES = 53, 16  # the frame of the still picture, and its samples per pixel
 STEP, HOLD = 90, 1100  # milliseconds that a frame of the film is shown, in motion and when it rests
-CLICKED = (0.855, 0.49)  # the pixel whose shadow rays are drawn, in parts of the picture's width and height
+CLICKED = (0.832, 0.569)  # the pixel whose shadow rays are drawn, in parts of the picture's width and height
 QUALITY = 72
 
 
@@ -57,32 +57,32 @@ class Film:
         )
 
 
-def pictures(d: Driver) -> None:
-    """The scenario: what a user presses, and what is kept of it."""
-    d.c.preferences.dynamic_resolution = False  # whole pictures only
-    d.context.mouse_move_to_pos((SIZE[0] - 1.0, SIZE[1] - 1.0))  # the pointer is drawn, too
-    d.c.settings.change(method="paper")
-    d.settle()
-    d.press(KEY.home)
+def film(d: Driver) -> None:
+    """The flight, the modes and the wipe."""
+    _begin(d)
     d.press(KEY.right_arrow, START)
     film = Film(d)
     for _ in range(FLOWN):
         d.press(KEY.right_arrow)
         film.shoot()
     film.durations[-1] = HOLD
-    for keys in ((KEY._2,), (KEY._3,), (KEY.l,)):
-        for key in keys:
-            d.press(key)
+    for key in (KEY._2, KEY._3, KEY.l):
+        d.press(key)
         film.shoot(HOLD)
     d.press(KEY._9)
     for wipe in 0.5 + 0.4 * np.sin(np.linspace(0.0, 2.0 * np.pi, 17)[:-1]):
         d.c.session.wipe = float(wipe)
         film.shoot()
-    d.press(KEY._1)
     film.save(FOLDER / "loop.webp")
 
+
+def still(d: Driver) -> None:
+    """The window with a clicked pixel, after some frames of certifying."""
+    _begin(d)
+    d.press(KEY.right_arrow, STILL - 1)
+    d.settle()
     d.c.settings.change(method="certified")
-    d.press(KEY.left_arrow, START + FLOWN - STILL)
+    d.press(KEY.right_arrow)
     d.settle()
     d.c.settings.change(samples=SAMPLES)
     d.wait(lambda: d.c.frame.settings.samples == SAMPLES, "all samples")
@@ -91,12 +91,28 @@ def pictures(d: Driver) -> None:
     Image.fromarray(d.window()).save(FOLDER / "viewer.png", optimize=True)
 
 
-def main() -> int:
-    real_window.SCENARIOS["pictures"] = pictures
-    with tempfile.TemporaryDirectory() as folder:
-        os.environ["SHADOWCULL_CONFIG_DIR"] = folder
-        return real_window.run("pictures", SIZE, str(ROOT / "assets" / "scenes" / "default.aff"), folder)
+def _begin(d: Driver) -> None:
+    """Whole pictures only, from the first frame on, and the pointer out of the way, as it is drawn, too."""
+    d.c.preferences.dynamic_resolution = False
+    d.context.mouse_move_to_pos((SIZE[0] - 1.0, SIZE[1] - 1.0))
+    d.c.settings.change(method="paper")
+    d.settle()
+    d.press(KEY.home)
+
+
+def main(names: list[str]) -> int:
+    made = {"film": film, "still": still}
+    if not set(names) <= set(made):
+        print(f"make_pictures: give any of {', '.join(made)}", file=sys.stderr)
+        return 2
+    for name in names or made:
+        real_window.SCENARIOS[name] = made[name]
+        with tempfile.TemporaryDirectory() as folder:
+            os.environ["SHADOWCULL_CONFIG_DIR"] = folder
+            if code := real_window.run(name, SIZE, str(ROOT / "assets" / "scenes" / "default.aff"), folder):
+                return code
+    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))
