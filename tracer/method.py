@@ -206,36 +206,3 @@ register(
 )
 register(Kind("cache", "Tests what blocked a light before first.", "tracer.methods.cache:OccluderCache", addition=True))
 register(Kind("rest", "Counts objects that rest as static.", "tracer.methods.rest:Resting", culls=False, addition=True))
-
-# What the rest of the program asked before there was `Method`.
-BASES = tuple(kind.name for kind in bases())
-EXTRAS = tuple(kind.name for kind in additions())
-
-
-def base_of(method: str) -> str:
-    """What culls: "paper" of "paper+cache"."""
-    return Method.parse(method).base
-
-
-def takes(method: str, extra: str) -> bool:
-    """Whether a method takes an extra along."""
-    return Method.parse(method).has(extra)
-
-
-def culls_by_modes(method: str) -> bool:
-    """Whether a method culls by the modes of the paper."""
-    return Method.parse(method).uses_modes
-
-
-def certifies(method: str) -> bool:
-    """Whether a method makes certificates, or may make some."""
-    return Method.parse(method).has_certificates
-
-
-def is_method(name: str) -> bool:
-    """Whether there is such a method."""
-    try:
-        Method.parse(name)
-    except ValueError:
-        return False
-    return True

@@ -22,6 +22,7 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Cancelled, Scene
 
 STILL_FRAMES = 3
+METHOD = "paper"  # whose zoom factor is tested
 """Frames at the start, before the camera moves, for the modes to settle."""
 
 NEAREST = 1e-3
@@ -205,7 +206,7 @@ def settings_of_tests(settings: Settings, factors: Sequence[float], steps: int, 
         raise ValueError(
             f"{steps} steps of {ratio:g} end nearer than {NEAREST:g} of the distance; go fewer or smaller ones"
         )
-    return [replace(settings, method="paper", verify=True, samples=1, zoom_factor=f).validated() for f in factors]
+    return [replace(settings, method=METHOD, verify=True, samples=1, zoom_factor=f).validated() for f in factors]
 
 
 def run(

@@ -70,6 +70,7 @@ def test_what_is_free_is_what_none_shows_without_a_ray(accelerator: str) -> None
             assert np.array_equal(frame.modes, expected.modes)
             shadow = frame.statistics.shadow
             assert (shadow.due, shadow.rays, shadow.wrong) == (expected.statistics.shadow.due, 0, 0)
+            assert shadow.culled == shadow.due
             assert frame.statistics.secondary == expected.statistics.secondary
             assert frame.statistics.seconds > 0.0
 

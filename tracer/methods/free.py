@@ -14,10 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tracer.culling.counters import CULLED
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, vectors
 from tracer.kernels import entry
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.simd import i64_at, ones
 from tracer.simd.records import I32x2D, I64x2D, reading
 from tracer.statistics import FrameStatistics
 
@@ -60,6 +62,7 @@ def replay(data, call, light, count, counts):
     given, answers = call_at(call), answers_at(data)
     batch, first = shadow_batch_in(given.shadows), answers.at[given.tile, 0]
     for v in range(vectors(count)):
+        i64_at(counts)[CULLED] += ones(np.int64(batch.live[v]))
         batch.live[v] = 0
         batch.settled[v] = batch.due[v]
         batch.lit[v] = answers.lit[given.tile, first + v]

@@ -39,7 +39,7 @@ def bench(path: Path, options: Namespace) -> bool:
             work.note(f"warning: {warning}")
         times = experiment.path_times(scene, options.path_frames)
         numbers = frame_range(options.frames, len(times))
-        prepare_kernels(work, len(scene.lights), options.accelerator)
+        prepare_kernels(work, len(scene.lights), options.accelerator, *methods)
         results = _run(scene, settings, methods, times, numbers, work)
         finished = len(results.frames) == len(numbers)
         if not finished:

@@ -63,7 +63,7 @@ def render(path: Path, options: Namespace) -> None:
         if view.of_light and light >= len(scene.lights):
             raise ValueError(f"--view {view.value}:{light}: {lights_in_words(len(scene.lights))}")
         time = moment(scene, options.frame, options.time)
-        prepare_kernels(work, len(scene.lights), options.accelerator)
+        prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)
         before = _render_before(renderer, time, options, work)
         work.count(f"tracing {settings.width} × {settings.height}", before, before + options.samples)

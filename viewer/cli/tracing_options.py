@@ -8,18 +8,22 @@ from argparse import Namespace
 from tracer.compilation import warm_up
 from tracer.frame import Settings
 from tracer.kernels import cache_folder, is_kept
+from tracer.method import Method
 from tracer.scene.model import Scene
 from viewer.cli.console import Work
 
 MOST_PIXELS = 1 << 26  # 8192 × 8192; a frame's buffers then take some 4 GB
 
 
-def prepare_kernels(work: Work, lights: int, accelerator: str) -> None:
-    """Compile or load every kernel that so many lights need; the first time takes a while and says so."""
+def prepare_kernels(work: Work, lights: int, accelerator: str, *methods: str) -> None:
+    """Compile or load every kernel that these methods need for so many lights.
+
+    The first time takes a while and says so."""
     if next(cache_folder().rglob("*.nbi"), None) is None:
         often = "once for this version" if is_kept() else "at every start, as the cache folder cannot be written to"
         work.note(f"compiling the kernels, {often}; this takes a minute or less")
-    warm_up(work.progress, lights, accelerator)
+    certificates = any(Method.parse(name).has_certificates for name in methods)
+    warm_up(work.progress, lights, accelerator, certificates)
 
 
 def tracing_settings(options: Namespace) -> Settings:

@@ -61,7 +61,7 @@ def run(path: Path, options: Namespace) -> bool:
         time = moment(scene, options.frame, options.time)
         if options.primitive is not None:
             zoom.check_primitive(scene, options.primitive)
-        prepare_kernels(work, len(scene.lights), options.accelerator)
+        prepare_kernels(work, len(scene.lights), options.accelerator, zoom.METHOD)
         world = World(scene, time, settings.accelerator, work.progress)
         start = _aim(scene, settings, world, time, options, work)
         frames, done = len(options.factors) * (options.steps + zoom.STILL_FRAMES), 0
