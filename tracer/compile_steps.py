@@ -13,9 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.certified.certify import COUNTERS as CERTIFYING
 from tracer.culling.certified.cost_model import CostModel
-from tracer.culling.certified.requests import make_requests
-from tracer.culling.certified.store import Budget
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
 from tracer.geometry.queries import HIT_PRIMITIVE, HIT_T, Placed
@@ -123,10 +122,10 @@ def certificate_steps(lights: int, accelerator: str) -> Iterator[str]:
     certified = frame.methods[0]
     assert isinstance(certified, CertifiedCells) and certified.store is not None
     StageTable(certified.stages(frame, 0, learns=True), verify=False)
-    requests = make_requests(1)
-    requests.key[0, 0], requests.u[0, 0], requests.v[0, 0], requests.of[0, 0] = -1, 0.25, 0.25, 1
-    certified.store.certify([requests], Budget(), CostModel(1, 1, 8, 8, True, 1), None)
-    certified.store.keep_within(0.0, np.zeros(1, np.int32))
+    store, model, at = certified.store, CostModel(1, 1, 8, 8, True, 1), np.full(1, 0.25, np.float32)
+    todo, points = store.gather(np.full(1, -1, np.int32), at, at, model.root_requests)
+    store.certify(todo, points, model, store.count, np.zeros((store.threads, CERTIFYING), np.int64))
+    store.keep_within(0.0, np.zeros(1, np.int32))
 
 
 def _renderer(lights: int, accelerator: str, method: str = "cells+cache+rest") -> Renderer:

@@ -40,7 +40,7 @@ class Twin:
         used = int(self.cells.used[0])
         roots = 1 + np.flatnonzero(self.cells.parent[1:used] == 0)
         self.roots = dict(zip(self.cells.owner[roots].tolist(), roots.tolist(), strict=True))
-        self.largest = float(certificates.highest) / (HIGHEST * RAY_OFFSET)
+        self.largest = certificates.scale.max_height / (HIGHEST * RAY_OFFSET)
 
     def certificates_made(self) -> np.ndarray:
         """All (cell, light, state) there are, (n, 3)."""
@@ -66,7 +66,7 @@ class Twin:
         beyond = [np.float32(3 * EPSILON * self.largest * np.linalg.norm(e) / across) for e in (e2, e1)]
         above = np.abs(height)
         inside = (above >= np.float32(LOWEST * RAY_OFFSET) * np.abs(points).max(1)) & (
-            above <= self.certificates.highest
+            above <= self.certificates.scale.max_height
         )
         inside &= (height > 0) if owner & 1 == 0 else (height < 0)
         inside &= (u >= -beyond[0]) & (v >= -beyond[1]) & (u + v <= np.float32(1) + beyond[0] + beyond[1])
@@ -106,7 +106,7 @@ class Twin:
         weights = _weights(rng, count)
         x, y = u + weights[:, 1] * size, v + weights[:, 2] * size
         at = a + x[:, None] * e1 + y[:, None] * e2
-        largest, highest = np.abs(at).max(1), float(self.certificates.highest)
+        largest, highest = np.abs(at).max(1), self.certificates.scale.max_height
         kind = rng.integers(5, size=len(at))
         low = LOWEST * RAY_OFFSET * largest
         rise = [

@@ -1,10 +1,6 @@
-"""From requests to tasks: which cells are begun with, and what is looked at where time is short."""
+"""From requests to tasks: which cells are begun with, and what tasks leave to others."""
 
 from __future__ import annotations
-
-from dataclasses import replace
-from itertools import count
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,23 +8,18 @@ import pytest
 import tracer
 from tests.tracing.shades import BEHIND, floor, roof
 from tests.tracing.worlds import certificates_of, scene
-from tracer.culling.certified import store as certifying
 from tracer.culling.certified.cells import ALONG_U, CANDIDATES, CORNER, FULL, LIT, NORMAL, ROOTS, TOO_MANY
 from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.certified.gather_requests import RequestPoints, gather_tasks
-from tracer.culling.certified.requests import make_requests
-from tracer.culling.certified.store import Budget, CertificateStore
+from tracer.culling.certified.store import CertificateStore
 from tracer.culling.certified.tasks import KEPT, commit, make_tasks, tasks_in
 from tracer.culling.modes import FULLY_RENDERED
-from tracer.methods import certified
 
 # The last light is below the floor: no cell there waits for it.
 LIGHTS = [(0.0, 0.0, 11.0), (1.0, -1.0, 10.0), (0.0, 0.0, -4.0)]
 SQUARES = scene(floor() + roof(6.0, 1.0), lights=LIGHTS, camera=BEHIND)
 SETTINGS = tracer.Settings(96, 64, 2, "certified", threads=1)
-
-
-EAGER = CostModel(2, 4, 2, 8, True, 1)
+EAGER = CostModel(2, 4, 2, 8, True, 1)  # small pictures are to have many certificates on either structure
 
 
 @pytest.fixture
@@ -48,7 +39,7 @@ def _first_untried(c: CertificateStore, cell: int) -> int:
     def waits(number: int) -> set[int]:
         owner = int(c.cells.owner[number])
         row = c.cells.receivers[owner >> 1]
-        above = (c._lights - row[CORNER : CORNER + 3]) @ row[NORMAL : NORMAL + 3] * (-1 if owner & 1 else 1)
+        above = (c.lights - row[CORNER : CORNER + 3]) @ row[NORMAL : NORMAL + 3] * (-1 if owner & 1 else 1)
         states = [(int(c.cells.words[number]) >> (2 + 2 * light)) & 3 for light in range(len(LIGHTS))]
         return {light for light in range(len(LIGHTS)) if above[light] > 0 and states[light] == 0}
 
@@ -83,54 +74,13 @@ def test_points_are_gathered_by_the_cell_to_begin_with(certificates: Certificate
             expected.setdefault(used, set()).add((x, y))  # the root that is made
     points = RequestPoints(np.empty_like(u), np.empty_like(v), np.empty((2, len(u)), np.float32))
     slots = np.zeros(len(cells.words) + len(cells.waiting), np.int32)
-    tasks = gather_tasks(cells, c.occluders, c._lights, c.stationary, key, u, v, 20, slots, points)
+    tasks = gather_tasks(cells, c.occluders, c.lights, c.stationary, key, u, v, 20, slots, points)
     found = {int(cell): set(zip(points.u[a:b].tolist(), points.v[a:b].tolist(), strict=True)) for cell, a, b in tasks}
     assert len(found) == len(tasks) and found == expected
     assert any(_first_untried(c, k) != k for k in key[key > 0].tolist()), "some are part of a whole"
     assert not slots.any()
     assert int(cells.used[0]) == used + 1 and int(cells.owner[used]) == requested_by_some and cells.rooted[moved]
     assert cells.waiting[requested_by_few] == 3 and np.any(cells.receivers[moved, ALONG_U : ALONG_U + 3])
-
-
-def test_what_a_frame_has_no_time_to_look_at_is_looked_at_in_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
-    ticks = count()
-    settings = replace(SETTINGS, width=640, height=320, certificate_seconds=1.0)
-    renderer = tracer.Renderer(SQUARES, settings, cost_model=EAGER, clock=lambda: 0.2 * next(ticks))
-    request_in_tiles, calls = certified.request_in_tiles, []
-
-    def noted(view, rays, tiles, numbers, *rest) -> None:
-        calls.append(set(numbers.tolist()))
-        request_in_tiles(view, rays, tiles, numbers, *rest)
-
-    monkeypatch.setattr(certified, "request_in_tiles", noted)
-    frames = []
-    for _ in range(8):
-        calls.clear()
-        renderer.render()
-        frames.append(set().union(*calls))
-    tiles = 10 * 5
-    assert all(0 < len(frame) < tiles / 2 for frame in frames)
-    assert set().union(*frames) == set(range(tiles)) and not frames[0] & frames[1]
-
-
-def test_lists_for_which_there_is_no_time_come_first_in_the_next_frame(
-    certificates: CertificateStore, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    c, tiles, points = certificates, 10, 100
-    requests = make_requests(tiles)
-    requests.key[:, :points], requests.v[:, :points] = 1, 0.0
-    requests.u[:, :points] = np.arange(tiles)[:, None] / tiles
-    requests.of[:, 0] = points
-    monkeypatch.setattr(certifying, "clock", SimpleNamespace(perf_counter=lambda: 0.0))
-    gathered = []
-    for _ in range(4):
-        c._pace = 1.0  # seconds for each point
-        tasks, some = c._gather([requests], Budget(until=350 / certifying.SORTING), CostModel(1, 1, 2, 8, True, 1))
-        assert tasks.tolist() == [[1, 0, 3 * points]]
-        gathered.append(sorted(set(np.rint(some.u * tiles).astype(int).tolist())))
-    assert gathered == [[0, 1, 2], [3, 4, 5], [6, 7, 8], [0, 1, 9]]
-    tasks, some = c._gather([requests], Budget(), CostModel(1, 1, 2, 8, True, 1))
-    assert len(some.u) == tiles * points
 
 
 def test_a_task_within_another_leaves_what_that_has_found(certificates: CertificateStore) -> None:
@@ -144,6 +94,6 @@ def test_a_task_within_another_leaves_what_that_has_found(certificates: Certific
     tasks.state[0, 0], tasks.amount[0, 0], tasks.names[0, 0, 0] = FULL, 1, 3
     tasks.state[1, 0], tasks.amount[1, 0] = CANDIDATES, TOO_MANY
     tasks.state[1, 1], tasks.amount[1, 1] = LIT, 0
-    commit(cells, certificates.occluders, (certificates.highest, 10.0), tasks, np.empty((8, 3), np.int32))
+    commit(cells, certificates.occluders, certificates.scale, tasks, np.empty((8, 3), np.int32))
     assert certificates.at_pixels(np.array([part])) == word | FULL << 2 | LIT << 4
     assert certificates.at_pixels(np.array([whole])) == word | FULL << 2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,8 +13,7 @@ import pytest
 import tracer
 from tests.tracing.brute import meet_all
 from tests.tracing.shades import BEHIND, GOING, MIDDLES, floor, going, kite, roof
-from tests.tracing.worlds import certificates_of, quad, scene
-from tracer.culling.certified import cost_model
+from tests.tracing.worlds import GREY, certificates_of, quad, scene
 from tracer.culling.certified.cells import CANDIDATES, FINAL, FULL, LIT, NOBODY, SETTLED, make_cells, named_by
 from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.certified.invalidate import copy_kept
@@ -26,6 +26,7 @@ from tracer.scene.animation import Animation
 from tracer.scene.model import Cancelled
 
 SETTINGS = tracer.Settings(64, 48, 2, "certified", threads=1)
+EAGER = CostModel(2, 4, 2, 8, True, 1)  # small pictures are to have many certificates on either structure
 # Near enough for a hit to be certain: not much farther away than twice the largest coordinate.
 LIGHTS = [(0.0, 0.0, 11.0), (1.0, -1.0, 10.0), (-1.0, 0.5, 10.0)]
 LIT_SQUARES = scene(floor() + roof(6.0, 1.0), lights=LIGHTS, camera=BEHIND)
@@ -38,12 +39,6 @@ SAILING = scene(
 )
 
 
-@pytest.fixture(autouse=True)
-def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Small pictures are to have many certificates on either structure."""
-    monkeypatch.setattr(cost_model, "COST_MODELS", dict.fromkeys(ACCELERATORS, CostModel(2, 4, 2, 8, True, 1)))
-
-
 @pytest.fixture(params=ACCELERATORS)
 def accelerator(request: pytest.FixtureRequest) -> str:
     return request.param
@@ -53,7 +48,7 @@ def _pair(made: tracer.Scene, settings: tracer.Settings) -> tuple[tracer.Rendere
     """One that culls nothing and one that goes by certificates, of one world."""
     world = tracer.World(made, made.time_range[0], settings.accelerator)
     return tracer.Renderer(made, replace(settings, method="none"), world=world), tracer.Renderer(
-        made, settings, world=world
+        made, settings, world=world, cost_model=EAGER
     )
 
 
@@ -116,7 +111,7 @@ def test_a_light_that_moves_loses_its_certificates_and_no_other_does(accelerator
 
 
 def test_an_object_that_starts_takes_along_what_names_it_and_nothing_else(accelerator: str):
-    certified = tracer.Renderer(SAILING, replace(SETTINGS, accelerator=accelerator))
+    certified = tracer.Renderer(SAILING, replace(SETTINGS, accelerator=accelerator), cost_model=EAGER)
     for time in (0.0, 0.3, 0.6):
         certified.render(time)
     kite = np.flatnonzero(certified.world.object_of == 1)
@@ -128,7 +123,7 @@ def test_an_object_that_starts_takes_along_what_names_it_and_nothing_else(accele
 
 
 def test_an_object_that_stops_takes_along_what_it_may_darken_and_nothing_else(accelerator: str):
-    certified = tracer.Renderer(SAILING, replace(SETTINGS, accelerator=accelerator))
+    certified = tracer.Renderer(SAILING, replace(SETTINGS, accelerator=accelerator), cost_model=EAGER)
     for time in (1.6, 1.7, 2.2):  # where it is in the last of these it stays
         certified.render(time)
     before = _states(certified)
@@ -215,7 +210,8 @@ def test_memory_is_bounded_and_pictures_stay_right(accelerator: str):
 
 
 def test_what_a_certificate_names_is_what_blocks(accelerator: str):
-    certified = tracer.Renderer(LIT_SQUARES, replace(SETTINGS, accelerator=accelerator, width=48, height=36))
+    settings = replace(SETTINGS, accelerator=accelerator, width=48, height=36)
+    certified = tracer.Renderer(LIT_SQUARES, settings, cost_model=EAGER)
     for _ in range(4):
         frame = certified.render()
     told = dict.fromkeys(("full", "lit", "candidates"), 0)
@@ -301,6 +297,89 @@ def test_cancelled_frames_leave_nothing_wrong_behind(accelerator: str):
         expected, frame = none.render(at), certified.render(at)
         assert expected.color.tobytes() == frame.color.tobytes(), f"after {number} questions"
     assert cancelled > 5 and frame.statistics.shadow.culled > 0 and (_states(certified) == CANDIDATES).any()
+
+
+def _counted(frame: tracer.Frame) -> dict:
+    return frame.statistics.to_dict() | {"seconds": 0, "phases": {}}
+
+
+ASIDE = replace(BEHIND, position=(6.0, -10.0, 3.0), direction=(-6.0, 10.0, -3.0))
+
+
+def _counters_after(settings: tracer.Settings, give_up: Callable[[tracer.Renderer], None]) -> list[dict]:
+    """Of three frames, after the first two of which another is given up."""
+    certified, frames = tracer.Renderer(LIT_SQUARES, settings, cost_model=EAGER), []
+    for number in range(3):
+        frames.append(certified.render())
+        if number < 2:
+            give_up(certified)
+    return [_counted(frame) for frame in frames]
+
+
+def test_counters_after_a_cancelled_frame_are_those_without_it(accelerator: str):
+    """Whenever it was cancelled."""
+    settings = replace(SETTINGS, accelerator=accelerator, width=130, height=90)
+    expected = _counters_after(settings, lambda certified: None)
+    assert all(one["certificates"] > 0 for one in expected[:2])
+
+    certified, asked = tracer.Renderer(LIT_SQUARES, settings, cost_model=EAGER), []
+    certified.render()
+    other = certified.render(camera=ASIDE, cancel=lambda: bool(asked.append(True)))
+    assert other.statistics.certificates > 20 and len(asked) > 10
+    for number in range(len(asked) - 4):  # later frames have less to certify, and ask less often
+
+        def cancelled(certified: tracer.Renderer, number: int = number) -> None:
+            questions = iter(range(number))
+            with pytest.raises(Cancelled):
+                certified.render(camera=ASIDE, cancel=lambda: next(questions, None) is None)
+
+        assert _counters_after(settings, cancelled) == expected, f"cancelled at question {number}"
+
+
+def test_counters_after_a_picture_that_was_left_before_it_was_whole_are_those_without_it(accelerator: str):
+    settings = replace(SETTINGS, accelerator=accelerator, width=130, height=90)
+    expected = _counters_after(settings, lambda certified: None)
+    for shown in (1, 3):
+
+        def left(certified: tracer.Renderer, shown: int = shown) -> None:
+            refining = certified.refine(camera=ASIDE)
+            for _ in range(shown):
+                next(refining)
+            refining.close()
+
+        assert _counters_after(settings, left) == expected, f"left after {shown} pictures"
+
+
+def test_further_samples_request_nothing(accelerator: str):
+    """Though they see, in a mirror, more points of the screens' backs than the first does."""
+    mirror = quad((-6, 5, 0), (6, 5, 0), (6, 5, 6), (-6, 5, 6))
+    screens = [t for x in range(-3, 3) for t in quad((x, 0, 1), (x + 0.9, 0, 1), (x + 0.9, 0, 3), (x, 0, 3))]
+    blinds = [t for x in range(-3, 3) for t in quad((x, 1, 2), (x + 0.4, 1, 2), (x + 0.4, 1, 5), (x, 1, 5))]
+    made = scene(
+        mirror + screens + blinds,
+        lights=[(0.0, 4.0, 4.0), (2.0, 4.0, 5.0)],
+        camera=BEHIND,
+        materials=(replace(GREY, specular=(0.9, 0.9, 0.9)),),
+    )
+    settings = replace(SETTINGS, accelerator=accelerator, width=40, height=30)
+    one, many = (tracer.Renderer(made, replace(settings, samples=n), cost_model=EAGER) for n in (1, 6))
+    seen = [(one.render(), many.render()) for _ in range(4)]
+    assert sum(first.statistics.certificates for first, _ in seen[1:]) > 20
+    for first, other in seen:
+        assert _counted(first) == _counted(other)
+
+
+@pytest.mark.parametrize("budget", [1, 2])
+def test_a_budget_smaller_than_the_number_of_lights_makes_certificates(accelerator: str, budget: int):
+    settings = replace(SETTINGS, accelerator=accelerator, certificates=budget)
+    none, certified = _pair(LIT_SQUARES, settings)
+    expected = none.render()
+    for _ in range(6):
+        frame = certified.render()
+        assert frame.statistics.certificates == budget
+        assert frame.color.tobytes() == expected.color.tobytes()
+    states = _states(certified)
+    assert 5 * budget < np.count_nonzero(states) and states.any(axis=0).sum() > 1
 
 
 def test_cells_that_share_a_list_of_candidates_share_it_when_others_are_dropped():

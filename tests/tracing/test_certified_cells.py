@@ -16,19 +16,13 @@ from tests.tracing.certified_twin import NAMES, Twin
 from tests.tracing.nasty_worlds import nasty_walk, static_part
 from tests.tracing.random_worlds import quickly
 from tests.tracing.worlds import certificates_of, quad, scene
-from tracer.culling.certified import cost_model
 from tracer.culling.certified.cells import CANDIDATES, FULL, LIT
 from tracer.culling.certified.cost_model import CostModel
 from tracer.geometry.world import ACCELERATORS
 from tracer.scene.model import Camera
 
 STATES = (FULL, LIT, CANDIDATES)
-
-
-@pytest.fixture(autouse=True)
-def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Small pictures are to have many certificates on either structure."""
-    monkeypatch.setattr(cost_model, "COST_MODELS", dict.fromkeys(ACCELERATORS, CostModel(2, 4, 0, 8, True, 1)))
+EAGER = CostModel(2, 4, 0, 8, True, 1)  # small pictures are to have many certificates on either structure
 
 
 def _chosen(twin: Twin, rng: np.random.Generator, each: int) -> np.ndarray:
@@ -40,7 +34,7 @@ def _chosen(twin: Twin, rng: np.random.Generator, each: int) -> np.ndarray:
 def _certified(made: tracer.Scene, size: int, frames: Sequence[tuple[float, Camera]], accelerator: str) -> Twin:
     """Certificates of a scene in which nothing moves, as some frames leave them."""
     settings = tracer.Settings(size, size, 2, "certified", accelerator=accelerator, threads=1)
-    certified = tracer.Renderer(made, settings)
+    certified = tracer.Renderer(made, settings, cost_model=EAGER)
     for time, camera in frames:
         certified.render(time, camera)
     store = certificates_of(certified)

@@ -14,27 +14,24 @@ import tracer
 from tests.tracing.nasty_worlds import NastyWalk, nasty_walk
 from tests.tracing.same import contents
 from tests.tracing.worlds import certificates_of
-from tracer.culling.certified import cost_model
 from tracer.culling.certified.cost_model import CostModel
 from tracer.geometry.world import ACCELERATORS
 
 SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
-
-
-@pytest.fixture(autouse=True)
-def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Small pictures are to have many certificates on either structure, and to ask candidates."""
-    monkeypatch.setattr(cost_model, "COST_MODELS", dict.fromkeys(ACCELERATORS, CostModel(2, 4, 3, 48, True, 1)))
+# Small pictures are to have many certificates on either structure, and to test candidates.
+EAGER = CostModel(2, 4, 3, 48, True, 1)
 
 
 def _renderers(
-    scene: tracer.Scene, method: str = "certified", **settings: Any
+    scene: tracer.Scene, method: str = "certified", cost_model: CostModel = EAGER, **settings: Any
 ) -> tuple[tracer.Renderer, tracer.Renderer]:
     """One that culls nothing and one that goes by certificates, of one world."""
     accelerator = settings.get("accelerator", "bvh8")
     world = tracer.World(scene, scene.time_range[0], accelerator)
     none, certified = (tracer.Settings(method=name, **settings) for name in ("none", method))
-    return tracer.Renderer(scene, none, world=world), tracer.Renderer(scene, certified, world=world)
+    return tracer.Renderer(scene, none, world=world), tracer.Renderer(
+        scene, certified, world=world, cost_model=cost_model
+    )
 
 
 def _count(seen: Counter[str], frame: tracer.Frame) -> None:
@@ -84,10 +81,11 @@ def test_pictures_stay_right_while_lights_are_dragged(accelerator: str):
 
 def test_settings_of_another_structure_change_nothing_of_a_world_that_is_there():
     """As when a picture that was traced with the kd-tree is opened again: no ray asks what was not made for asking."""
-    cost_model.COST_MODELS["bvh8"] = CostModel(2, 4, 3, 0, True, 1)
+    asks_none = EAGER._replace(max_asked=0)
     for seed in range(3):
         walk = nasty_walk(seed, lights=3)
-        none, certified = _renderers(walk.scene, width=24, height=24, depth=2, accelerator="bvh8")
+        settings = {"width": 24, "height": 24, "depth": 2, "accelerator": "bvh8"}
+        none, certified = _renderers(walk.scene, cost_model=asks_none, **settings)
         for number, (time, camera) in enumerate(walk.frames):
             if number == 2:
                 certified.settings = replace(certified.settings, accelerator="kdtree")
@@ -101,7 +99,7 @@ def _everything(walk: NastyWalk, threads: int, accelerator: str) -> list[dict]:
     settings = tracer.Settings(
         96, 40, 3, "certified", accelerator=accelerator, threads=threads, verify=True, record_lights=True
     )
-    certified, result = tracer.Renderer(walk.scene, settings), []
+    certified, result = tracer.Renderer(walk.scene, settings, cost_model=EAGER), []
     for time, camera in walk.frames:
         held = contents(certified.render(time, camera))
         store = certificates_of(certified)

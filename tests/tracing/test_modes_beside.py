@@ -15,7 +15,6 @@ import tracer
 from tests.tracing.naive_frame import NaiveRenderer
 from tests.tracing.nasty_worlds import nasty_walk
 from tests.tracing.random_worlds import Walk, quickly, walks
-from tracer.culling.certified import cost_model
 from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.modes import FULLY_RENDERED, occlusion_mode
 from tracer.geometry.world import ACCELERATORS
@@ -23,12 +22,8 @@ from tracer.scene.model import Camera
 
 BESIDE = ("none", "certified", "certified+cache", "none+cache+rest", "auto")
 PAPER = "paper+rest"
-
-
-@pytest.fixture(autouse=True)
-def _eager(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Small pictures are to have many certificates on either structure, and to ask candidates."""
-    monkeypatch.setattr(cost_model, "COST_MODELS", dict.fromkeys(ACCELERATORS, CostModel(2, 4, 3, 48, True, 1)))
+# Small pictures are to have many certificates on either structure, and to test candidates.
+EAGER = CostModel(2, 4, 3, 48, True, 1)
 
 
 def _differing(scene: tracer.Scene, frames: Iterable[tuple[float, Camera]], seen: Counter, **settings) -> list[str]:
@@ -37,7 +32,7 @@ def _differing(scene: tracer.Scene, frames: Iterable[tuple[float, Camera]], seen
 
     def renderer_of(method: str, threads: int = 1, modes: bool = True) -> tracer.Renderer:
         chosen = tracer.Settings(method=method, threads=threads, modes=modes, **settings)
-        return tracer.Renderer(scene, chosen, world=world)
+        return tracer.Renderer(scene, chosen, world=world, cost_model=EAGER)
 
     paper, none = renderer_of(PAPER), renderer_of("none", modes=False)
     beside = {method: renderer_of(method, 1 + number % 3) for number, method in enumerate(BESIDE)}
@@ -102,7 +97,8 @@ def test_modes_beside_a_method_are_what_the_naive_twin_says():
         nonlocal trusted
         still = replace(walk.scene, objects=walk.scene.objects[:1])
         settings = tracer.Settings(24, 18, 2, method, modes=True, accelerator="kdtree", threads=2)
-        beside, twin = tracer.Renderer(still, settings), NaiveRenderer(still, replace(settings, method="paper"))
+        beside = tracer.Renderer(still, settings, cost_model=EAGER)
+        twin = NaiveRenderer(still, replace(settings, method="paper"))
         for time, camera in walk.frames:
             frame, expected = beside.render(time, camera), twin.render(time, camera)
             assert frame.modes.tolist() == expected.words
@@ -117,7 +113,7 @@ def test_modes_go_on_where_the_method_changes_and_forget_nothing():
     """As in the window, where any method may follow another; and where nobody asks for modes, they stay as they are."""
     walk = nasty_walk(3, frames=8)
     settings = tracer.Settings(30, 24, 2, PAPER, threads=1)
-    paper, changing = (tracer.Renderer(walk.scene, settings) for _ in range(2))
+    paper, changing = (tracer.Renderer(walk.scene, settings, cost_model=EAGER) for _ in range(2))
     methods = ["none", PAPER, "certified", "none+cache", "certified+cache", PAPER, "certified", "none"]
     for method, (time, camera) in zip(methods, walk.frames, strict=True):
         changing.settings = replace(settings, method=method, modes=True)

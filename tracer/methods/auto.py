@@ -72,12 +72,11 @@ class Auto(ShadowMethod):
                     self.payoff.made_ready()
 
     def prepare(self, frame: FrameView) -> None:
+        if self._plan.needs_certificates:
+            self._certified.take_requests(frame, self._plan.seconds)
         if self._plan.seconds > 0.0:
             with self._paid():
                 self._certified.certify(frame, self._plan.seconds)
-
-        if self._plan.needs_certificates:
-            self._certified.take_requests(frame)
 
     @property
     def finds_first(self) -> bool:

@@ -11,7 +11,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.certify import CERTIFICATES, COUNTERS, STEPS, TESTS
 from tracer.culling.certified.lookup import (
     CELL_POINT_ROWS,
     cell_points_in,
@@ -26,23 +25,20 @@ from tracer.culling.certified.requests import (
     request_at_points,
     requests_of,
 )
-from tracer.culling.certified.store import Budget, CertificateStore
+from tracer.culling.certified.scheduler import Budget, CertificateScheduler, Counts
+from tracer.culling.certified.store import CertificateStore
 from tracer.culling.certified.view import view_at
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
 from tracer.geometry.memory import borrowed
 from tracer.kernels import entry, kernel
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
-from tracer.parallel import for_each_chunk
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of
 from tracer.shading.wave import wave_in
 from tracer.simd import any_lane, i32x16, i64_at, select
 from tracer.simd.records import pack
 from tracer.statistics import FrameStatistics
-
-SHARES, SHARE = 8, 6  # of all tiles that each thread takes to look for requests; tiles of one, at least
-SEEKING = 0.5  # of the time for certificates, at most, is spent on looking for what primary hits need
 
 
 @entry
@@ -97,6 +93,7 @@ class CertifiedCells(ShadowMethod):
     def __init__(self, services: Services) -> None:
         super().__init__(services)
         self.store: CertificateStore | None = None
+        self.scheduler: CertificateScheduler | None = None
         self.made_now = False  # whether the store has been set up in this frame
         self._clear()
 
@@ -105,7 +102,7 @@ class CertifiedCells(ShadowMethod):
         self._requests: Requests | None = None
         self._cell = np.empty(0, np.int32)
         self._words: NDArray[np.unsignedinteger] | None = None
-        self._counts = np.zeros(COUNTERS, np.int64)
+        self._counts = Counts()
 
     def begin(self, frame: FrameView) -> None:
         self._clear()
@@ -120,37 +117,29 @@ class CertifiedCells(ShadowMethod):
             self.store = CertificateStore(
                 self.services.world, len(frame.lights), frame.workers, self.services.cost_model
             )
+            self.scheduler = CertificateScheduler(self.store, self.services.clock)
         self.store.follow(frame.lights, frame.resting, frame.workers)
 
     def prepare(self, frame: FrameView) -> None:
+        self.take_requests(frame, frame.settings.certificate_seconds)
         self.certify(frame, frame.settings.certificate_seconds)
-        self.take_requests(frame)
 
-    def take_requests(self, frame: FrameView) -> None:
-        """Make room for what this frame's rays request."""
-        self._requests = make_requests(len(frame.tiles))
+    def take_requests(self, frame: FrameView, seconds: float) -> None:
+        """Make room for what this frame's rays request; it may certify for so many seconds."""
+        assert self.scheduler is not None, "followed before"
+        self._requests = self.scheduler.begin(len(frame.tiles), Budget(frame.settings.certificates, seconds))
 
     def certify(self, frame: FrameView, seconds: float) -> None:
         """Certify for so many seconds, at most, what is requested."""
-        store, clock = self.store, self.services.clock
-        assert store is not None, "followed before"
-        start, tiles = clock(), frame.tiles
-        requests = make_requests(len(tiles))
-        view = pack(store.view(len(tiles), requests))
-        order = (store.next_tile + np.arange(len(tiles))) % len(tiles)
-        shares = np.array_split(order, max(1, min(SHARES * frame.workers, len(tiles) // SHARE)))
-        looked_at: list[int] = []
+        store, tiles = self.store, frame.tiles
+        assert store is not None and self.scheduler is not None, "followed before"
 
-        def work(chunk: int, worker: int) -> None:
-            if clock() - start < SEEKING * seconds:
-                request_in_tiles(view.ctypes.data, frame.rays, tiles, shares[chunk], frame.lights, frame.buffers)
-                looked_at.append(len(shares[chunk]))
+        def request(numbers: NDArray[np.int64], requests: Requests) -> None:
+            view = pack(store.view(len(tiles), requests))
+            request_in_tiles(view.ctypes.data, frame.rays, tiles, numbers, frame.lights, frame.buffers)
 
-        for_each_chunk(work, len(shares), frame.workers, frame.cancel)
-        store.next_tile += sum(looked_at)  # where time was short, others are the first in the next frame
-        budget = Budget(frame.settings.certificates, start + seconds)
-        lists, store.pending = [requests, *store.pending], []
-        self._counts = store.certify(lists, budget, store.cost_model, frame.cancel)
+        budget = Budget(frame.settings.certificates, seconds)
+        self._counts = self.scheduler.run(len(tiles), request, budget, frame.cancel)
 
     @property
     def finds_first(self) -> bool:
@@ -164,17 +153,19 @@ class CertifiedCells(ShadowMethod):
 
     def keep(self, frame: FrameView) -> None:
         self._words = self._words_seen()  # cells may get other numbers now
-        self._leave(frame)
+        if self.scheduler is not None and self._requests is not None:
+            self.scheduler.keep(self._requests)
+            self._keep_within(frame)
 
     def discard(self, frame: FrameView, begun: bool) -> None:
-        """What the frame's rays have requested stays requested."""
-        if begun:
-            self._leave(frame)
+        """Drop what was certified, or keep it where time is short (`CertificateScheduler.cancel`)."""
+        if self.scheduler is not None and self._requests is not None:
+            if self.scheduler.cancel(self._requests, begun) and begun:
+                self._keep_within(frame)
 
-    def _leave(self, frame: FrameView) -> None:
-        if self.store is not None and self._requests is not None:
-            self.store.pending = [self._requests]
-            self.store.keep_within(1e6 * frame.settings.certificate_memory, self._cell)
+    def _keep_within(self, frame: FrameView) -> None:
+        assert self.store is not None, "followed before"
+        self.store.keep_within(1e6 * frame.settings.certificate_memory, self._cell)
 
     def _words_seen(self) -> NDArray[np.unsignedinteger]:
         assert self.store is not None, "followed before"
@@ -186,19 +177,19 @@ class CertifiedCells(ShadowMethod):
         return {"cells": np.where(cell > 0, cell, np.int32(-1)), "certificates": words.reshape(shape)}
 
     def report(self, statistics: FrameStatistics) -> None:
-        statistics.certificates = int(self._counts[CERTIFICATES])
-        statistics.certificate_steps = int(self._counts[STEPS])
-        statistics.certificate_tests = int(self._counts[TESTS])
+        statistics.certificates = self._counts.certificates
+        statistics.certificate_steps = self._counts.steps
+        statistics.certificate_tests = self._counts.tests
 
     def finish(self, frame: FrameView, statistics: FrameStatistics) -> None:
-        if self.store is not None:
-            self.store.finish_frame(statistics.certificates, statistics.shadow.due)
+        if self.scheduler is not None:
+            self.scheduler.finish(statistics.certificates, statistics.shadow.due)
 
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
         return None if self.store is None else self.store.describe(primitive, point, light)
 
     def forget(self) -> None:
-        self.store = None
+        self.store = self.scheduler = None
 
     @property
     def memory_bytes(self) -> int:

@@ -1,14 +1,22 @@
-"""Certified cells: shadow answers that are proved for whole pieces of a surface, before they are asked for.
+"""Certified cells: shadow answers that are proved for whole pieces of a surface, before rays ask for them.
 
-A triangle is cut, virtually and lazily, into a quadtree of cells (`cells`).  Of a cell and a light, against
-all static geometry, one of these is found out (`certify`) by rules that leave room for all that rays
-may get wrong (`error_bounds`), in a tree that knows how far each triangle can be mistaken (`occluders`):
+A triangle is cut, virtually and on demand, into a quadtree of cells (`quadtree`, `cells`).  For a cell and a light,
+against all static geometry (`static_geometry`, `occluders`), `certify` finds one of these:
 
-- FULL: some triangles together hide the light from all of the cell;
-- LIT: no triangle comes between;
-- CANDIDATES: only these few triangles may;
-- else the cell is split, where rays request it, and its children start from what is left.
+- FULL: some triangles together hide the light from all of the cell (`fused`);
+- LIT: no primitive comes between;
+- CANDIDATES: only these few may;
+- else the cell is divided, where rays request it, and its parts start from what may come between.
 
-Rays look up the cells they end in (`lookup`), which costs no step through a tree, and request certificates where they
-find none (`requests`).  What is requested most is certified before the next frame is shaded (`store`).
+All shadow rays from a light to a cell are a `shaft`.  Primitives are classified against it (`classify`) by rules that
+leave room for all that float32 may get wrong (`error_bounds`).
+
+While a frame is shaded, rays look up the cells they end in (`view`, `lookup`), which costs no step through a tree, and
+test candidates instead of the tree (`candidates`, `light_space`).  Where they find too little they request more
+(`requests`).  The `scheduler` spends a budget on what is requested most, by what certificates are worth (`cost_model`):
+requests are gathered into tasks (`gather_requests`), which are run in parallel (`tasks`).  The `store` holds what is
+known, and drops what no longer holds when something moves (`invalidate`).  What a cancelled frame has certified can be
+undone (`journal`).
+
+docs/certified-cells.md tells it all.
 """

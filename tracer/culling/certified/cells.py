@@ -1,9 +1,8 @@
-"""The cells of a scene: for each side of each static triangle a quadtree, made where rays have asked for it.
+"""The cells of a scene: for each side of each static triangle a quadtree, made where rays have requested it.
 
-A cell is a triangle within its triangle: (u, v), (u + size, v), (u, v + size), the middle one of four having a
-negative size.  Its word is packed like that of a primitive (`tracer.culling.modes`): occlusion bits
-FULLY_RENDERED, for what it says can be trusted, then FULL, LIT or CANDIDATES for each light, or 0.  Children take
-over what is certified of the whole, so that a leaf's word says everything.  Cell 0 is none.
+`quadtree` tells how a cell is divided.  A cell's word is packed like that of a primitive (`tracer.culling.modes`):
+occlusion bits FULLY_RENDERED, for what it says can be trusted, then FULL, LIT or CANDIDATES for each light, or UNTRIED.
+Parts take over what is certified of the whole, so that a leaf's word says everything.  Cell 0 stands for none.
 """
 
 from __future__ import annotations
@@ -21,15 +20,15 @@ from tracer.kernels import kernel, subkernel
 
 UNTRIED, FULL, LIT, CANDIDATES = 0, FULL_SHADOW, NON_SHADOW, 3
 LEAF, FINAL, CONTENT = -1, -2, -3  # instead of children: none yet, none ever, and none needed as far as is known
-TOO_MANY = 255  # instead of how many a list names
-SETTLED = 64  # added to that where rays will ask these, and the cell need not be divided for the light
+TOO_MANY = 255  # instead of a list's length
+SETTLED = 64  # added to that where rays will test these, so that the cell need not be divided for the light
 OVERFLOW, NOBODY = 0, 1  # the lists of TOO_MANY and of none
-# Columns of a receiver's row: a corner, the dual vectors that give u and v, the normal, by how much u and v may
-# lie outside, and, as the bits of int32, the roots of both sides.
+# Columns of a receiver's row: a corner, the dual vectors that give u and v, the normal, by how much u and v may lie
+# outside, and, as the bits of int32, the roots of both sides.
 CORNER, ALONG_U, ALONG_V, NORMAL, BEYOND_U, BEYOND_V, ROOTS = 0, 3, 6, 9, 12, 13, 14
 RECEIVER = 16
-ARRAYS = 7  # with a row for each cell
-HIGHEST = 2.0  # times the scene's largest coordinate and RAY_OFFSET: rays that end higher above are traced
+ARRAYS = 7  # of `Cells`, the first ones: those with a row for each cell
+HIGHEST = 2.0  # times RAY_OFFSET and the scene's largest coordinate: rays that end higher above a surface are traced
 
 
 class Cells(NamedTuple):
@@ -66,7 +65,7 @@ class Cells(NamedTuple):
 
 
 def make_cells(primitives: int, lights: int, room: int = 1 << 22) -> Cells:
-    """None yet, of so many primitives, all without a row of their own.
+    """Memory for `room` cells of so many primitives: none yet, and all primitives without a row.
 
     Room that is not used takes no memory, as its pages are those that nobody has written to."""
     receivers = aligned_rows(max(primitives, 1), RECEIVER)
@@ -92,19 +91,20 @@ def make_cells(primitives: int, lights: int, room: int = 1 << 22) -> Cells:
 
 
 def bytes_of(cells: Cells) -> int:
-    """Memory that the cells in use take."""
+    """Memory that the cells in use take, in bytes."""
     each = sum(a.itemsize * (a.shape[1] if a.ndim > 1 else 1) for a in cells[:ARRAYS])
     return int(cells.used[0]) * each + 4 * int(cells.named[0])
 
 
 def _longer(array: NDArray, size: int) -> NDArray:
+    """A copy of an array with so many rows, the further ones 0."""
     result = np.zeros((size, *array.shape[1:]), array.dtype)
     result[: len(array)] = array
     return result
 
 
 def with_room(cells: Cells, more: int, names: int) -> Cells:
-    """The same with room for so many more cells and names."""
+    """The same cells with room for so many more of them, and of names."""
     need, size = int(cells.used[0]) + more, len(cells.words)
     if need > size:
         size = max(need, 2 * size)
@@ -116,15 +116,15 @@ def with_room(cells: Cells, more: int, names: int) -> Cells:
 
 
 @subkernel
-def _put_receiver(rows, i, largest, row):
-    """The row of triangle i of rows (n, ROW); False where it is too thin to have one."""
+def _put_receiver(rows, i, max_coordinate, row):
+    """Put the row (RECEIVER,) of triangle i of rows (n, ROW); False where it is too thin to have one."""
     a, e1, e2 = row_of(rows, i)
     n = cross(e1, e2)
     across = length(n)
     if not across > 0.0:
         return False
     along_u, along_v = cross(e2, n), cross(n, e1)
-    du, dv, _ = slack_of(e1, e2, largest)
+    du, dv, _ = slack_of(e1, e2, max_coordinate)
     if not (du < 0.01 and dv < 0.01):
         return False
     for axis in range(3):
@@ -132,25 +132,25 @@ def _put_receiver(rows, i, largest, row):
         row[ALONG_U + axis] = along_u[axis] / (across * across)
         row[ALONG_V + axis] = along_v[axis] / (across * across)
         row[NORMAL + axis] = n[axis] / across
-    row[BEYOND_U] = 3 * EPSILON * largest * length(e2) / across
-    row[BEYOND_V] = 3 * EPSILON * largest * length(e1) / across
+    row[BEYOND_U] = 3 * EPSILON * max_coordinate * length(e2) / across
+    row[BEYOND_V] = 3 * EPSILON * max_coordinate * length(e1) / across
     return True
 
 
 @kernel
-def put_receivers(rows, first, last, largest, receivers):
-    """Rows (p, RECEIVER) of triangles first to last - 1 of rows (n, ROW), in a scene of this largest coordinate.
+def put_receivers(rows, first, last, max_coordinate, receivers):
+    """Put the rows of triangles first to last - 1 of rows (n, ROW) into receivers (p, RECEIVER), without roots.
 
-    What had a root before has none then."""
+    No coordinate of the scene is larger than max_coordinate."""
     for i in range(first, last):
         receivers[i, :] = 0
-        if not _put_receiver(rows, i, largest, receivers[i]):
+        if not _put_receiver(rows, i, max_coordinate, receivers[i]):
             receivers[i, :] = 0
 
 
 @subkernel
 def add_cell(cells, parent, owner, u, v, size):
-    """A new leaf; its number.  There must be room."""
+    """Make a new leaf; its number.  There must be room."""
     number = cells.used[0]
     cells.used[0] = number + 1
     cells.words[number] = FULLY_RENDERED
@@ -163,13 +163,13 @@ def add_cell(cells, parent, owner, u, v, size):
 
 @subkernel
 def state_of(word, light):
-    """The certificate for a light in a word."""
+    """The state of a light in a word: UNTRIED, FULL, LIT or CANDIDATES."""
     return (np.int64(word) >> (2 + 2 * light)) & 3
 
 
 @subkernel
 def set_state(cells, number, light, state):
-    """Put a certificate for a light into a cell's word."""
+    """Put the state of a light into a cell's word."""
     shift = np.uint64(2 + 2 * light)
     word = np.uint64(cells.words[number]) & ~(np.uint64(3) << shift)
     cells.words[number] = word | (np.uint64(state) << shift)
@@ -177,8 +177,9 @@ def set_state(cells, number, light, state):
 
 @subkernel
 def set_below(cells, number, light, stack):
-    """Let all cells that a cell is divided into take over its certificate for a light: where it is CANDIDATES, those
-    that have none."""
+    """Let all cells that a cell is divided into take over its certificate for a light.
+
+    Where that is CANDIDATES, only those take it that have none.  stack (256,) int64 is memory."""
     state, named = state_of(cells.words[number], light), cells.lists[number, light]
     stack[0], pending = number, 1
     while pending > 0:
@@ -194,7 +195,8 @@ def set_below(cells, number, light, stack):
 
 
 def named_by(cells: Cells, number: int, light: int) -> NDArray[np.int32] | None:
-    """(k,) the primitives that a cell's certificate for a light names, None for too many; where it is FULL and names
-    nobody, it is taken over from the cell that this one is a part of."""
+    """The primitives (k,) int32 that a cell's certificate for a light names; None for too many.
+
+    A certificate that is FULL and names nobody is taken over from the cell that this one is a part of."""
     at = int(cells.lists[number, light])
     return None if at == OVERFLOW else cells.names[at + 1 : at + 1 + (cells.names[at] & (SETTLED - 1))]

@@ -1,6 +1,8 @@
 """Classify sixteen primitives against a shaft: which hide the whole cell from the light, and which none of it.
 
-`error_bounds` derives the rules.
+The four functions U, V, D - U - V and D - T of `error_bounds` are linear in where a ray ends, so their extremes over
+the shaft lie at its six corners.  What cannot be decided there is tried against the shaft's planes and boxes, and what
+is undecided then remains a candidate.
 """
 
 from __future__ import annotations
@@ -32,24 +34,28 @@ FUNCTIONS, BELOW = 4, CORNERS // 2
 
 @inlined
 def _short(a):
+    """Three numbers, in float32."""
     return np.float32(a[0]), np.float32(a[1]), np.float32(a[2])
 
 
 @inlined
 def _at(shaft, k):
-    """Direction to a shaft's corner, and that corner."""
+    """The direction to a shaft's k-th corner, and that corner, in float32."""
     d, p = shaft.directions, shaft.corners
     return _short((d[0, k], d[1, k], d[2, k])), _short((p[0, k], p[1, k], p[2, k]))
 
 
 @inlined
 def _both(extreme, x):
+    """The least and the greatest so far."""
     return minimum(extreme[0], x), maximum(extreme[1], x)
 
 
 @inlined
 def _over(t, shaft):
-    """(least and greatest U, V, D - U - V, D - T and D over a shaft's corners, their error bounds, greatest |D|)."""
+    """Extremes over a shaft's corners.
+
+    (least and greatest U, V, D - U - V, D - T and D; their error bounds; the greatest |D|), of triangles as seen."""
     start = f32x16(HUGE), f32x16(-HUGE)
     us, vs, ws, bs, ds, near, coordinates = start, start, start, start, start, f32x16(ZERO), ZERO
     for k in range(CORNERS):
@@ -59,13 +65,14 @@ def _over(t, shaft):
         near = maximum(near, length16((end[0] - t.corner[0], end[1] - t.corner[1], end[2] - t.corner[2])))
         coordinates = max(coordinates, abs(end[0]) + abs(end[1]) + abs(end[2]))
     along = maximum(ds[1], -ds[0])
-    return us, vs, ws, bs, ds, error_bounds(t, np.float32(shaft.reach[0]), near, along, coordinates), along
+    return us, vs, ws, bs, ds, error_bounds(t, np.float32(shaft.longest[0]), near, along, coordinates), along
 
 
 @inlined
 def _parting(x, y, low, high):
-    """Between which factors of y the sum of two functions, each with its error bound added, stays negative at one more
-    corner."""
+    """Narrow the range of factors for which x + factor y is negative by one more corner.
+
+    x and y are two functions there, error bounds added to both."""
     ratio = -x / y
     low = maximum(low, select(y < ZERO, ratio, ZERO))
     high = minimum(high, select(y > ZERO, ratio, HUGE))
@@ -74,7 +81,7 @@ def _parting(x, y, low, high):
 
 @inlined
 def _parted_by_two(t, shaft, m):
-    """Mask of those of which some sum of two functions with positive factors is negative at all corners."""
+    """Mask of triangles of which some sum of two functions with positive factors is negative at all corners."""
     start = f32x16(ZERO), f32x16(HUGE)
     ub, vb, wb, uv, uw, vw = start, start, start, start, start, start
     for k in range(CORNERS):
@@ -89,9 +96,9 @@ def _parted_by_two(t, shaft, m):
 
 @inlined
 def _before_planes(t, m, depth, light, shaft):
-    """Mask of triangles that lie before a plane of the shaft by more than a hit on them may lie beyond."""
-    # Twice the part that error bounds are of the depth, without our own errors.
-    part, beyond = maximum(m.u, maximum(m.v, m.w)) / depth, m.behind / depth * np.float32(shaft.reach[0])
+    """Mask of triangles that lie before a plane of the shaft, by more than a reported hit may lie beyond them."""
+    # Twice m / depth: the bounds are doubled for our own errors, which do not count here.
+    part, beyond = maximum(m.u, maximum(m.v, m.w)) / depth, m.behind / depth * np.float32(shaft.longest[0])
     parted = depth < ZERO
     for k in range(PLANES):
         plane = shaft.planes[k]
@@ -106,7 +113,7 @@ def _before_planes(t, m, depth, light, shaft):
 
 @inlined
 def _beside(row, away, shaft):
-    """Mask of those whose boxes, in which hits on them are reported, the shaft passes by."""
+    """Mask of primitives whose box, outside of which no hit on them is reported, the shaft passes by."""
     room = np.float32(REPORTED) * away
     apart = room < ZERO
     for axis in range(3):
@@ -123,14 +130,14 @@ def _beside(row, away, shaft):
 
 @subkernel
 def classify_occluders(rows, numbers, farthest, light, shaft):
-    """Bits of those primitives that every ray of a shaft is certain to hit, and of those that none is.
+    """Which of sixteen primitives every ray of a shaft is certain to hit, and which none is: bits of both.
 
-    There are sixteen of rows (n, ROW), whose numbers, int32, are at an address; the rays come from the light (3,).
-
-    A hit is certain only of rays shorter than `farthest`."""
+    rows (n, ROW); the primitives' numbers, int32, are at an address; light (3,); only rays that are shorter than
+    `farthest` (SureHitLength) are certain of a hit."""
     row = rows_at(rows, numbers)
     t = seen_from(_short(light), row)
     us, vs, ws, bs, ds, m, along = _over(t, shaft)
+    # Hit for certain: all functions clear their bounds at all corners.
     hit = (
         t.firm
         & (us[0] > np.float32(INSIDE) * m.u)
@@ -139,26 +146,34 @@ def classify_occluders(rows, numbers, farthest, light, shaft):
         & (bs[0] > m.behind)
     )
     hit = hit & (t.height > np.float32(LAMP) * along)
+
+    # Missed for certain: one function is negative by more than its bound at all corners.
     beyond = (us[1] < -m.u) | (vs[1] < -m.v) | (ws[1] < -m.w)
     missed = t.firm & (beyond | (bs[1] < -m.behind))
-    # Where the light lies in a triangle's plane, as far as one can tell, D may have either sign.
+
+    # Where the light lies in a triangle's plane, as far as float32 can tell, D may have either sign: try both.
     least, most, of_d = ds[0], ds[1], m.behind + m.w
     backwards = (us[0] > m.u) | (vs[0] > m.v) | (ws[0] > m.w) | (least > of_d)
     missed = missed | (t.sane & (beyond | (most < -of_d)) & backwards)
+
+    # Or a plane or box parts the triangle from the shaft.
     depth = maximum(select(t.firm, t.height - m.behind, ZERO), maximum(least - m.d, -most - m.d))
     missed = missed | (t.sane & _before_planes(t, m, depth, light, shaft)) | _beside(row, t.away, shaft)
+
+    # Or, which takes longest, a plane through one of the triangle's edges does.
     if any_lane(t.firm & ~missed & ~hit):
         missed = missed | (t.firm & _parted_by_two(t, shaft, m))
-    hit = hit & (sure_hit_length(farthest, numbers) > np.float32(shaft.reach[0]))
+    hit = hit & (sure_hit_length(farthest, numbers) > np.float32(shaft.longest[0]))
     return bits_of(hit), bits_of(missed)
 
 
 @subkernel
 def put_hidden_parts(rows, numbers, farthest, light, shaft, parts):
-    """Functions less their error bounds at a cell's three corners, whatever the height above, into parts
-    (FUNCTIONS, 3, 16), for sixteen of rows (n, ROW) whose numbers, int32, are at an address.
+    """The parts of a cell that each of sixteen triangles hides, where all four functions are positive.
 
-    Bits of those that hide the points of the cell where all their functions are positive."""
+    Functions less their error bounds go into parts (FUNCTIONS, 3, 16) float32 at the address `parts`, at the cell's
+    three corners, of floor and ceiling whichever is less.  Bits of the triangles of which they hold.  The numbers,
+    int32, of the triangles among rows (n, ROW) are at an address."""
     t = seen_from(_short(light), rows_at(rows, numbers))
     _us, _vs, _ws, _bs, _ds, m, along = _over(t, shaft)
     for k in range(BELOW):
@@ -171,5 +186,5 @@ def put_hidden_parts(rows, numbers, farthest, light, shaft, parts):
     return bits_of(
         t.firm
         & (t.height > np.float32(LAMP) * along)
-        & (sure_hit_length(farthest, numbers) > np.float32(shaft.reach[0]))
+        & (sure_hit_length(farthest, numbers) > np.float32(shaft.longest[0]))
     )

@@ -58,11 +58,11 @@ from tracer.kernels import inlined
 from tracer.simd import address_of, load_columns, load_i32x16, maximum, select, square_root
 
 EPSILON = 2.0**-24  # the largest relative error of a float32 rounding
-ENLARGED = 2.5e-6  # of a triangle, by which the fast structure takes it to be larger, and a little
-SURPLUS = 1.25
-INSIDE = 1.75  # error bounds that a hit is to be inside of a triangle by: 2.5 m and our own error
+ENLARGED = 2.5e-6  # the part of itself by which the fast structure takes a triangle to be larger, and a little
+SURPLUS = 1.25  # by which all bounds are enlarged
+INSIDE = 1.75  # bounds by which a certain hit lies inside of a triangle: 2.5 m and our own error
 LONGEST = 13 * EPSILON  # times a ray's length: what boxes must be padded by for it to be sure of a hit
-LAMP = 2e-5  # of a segment from the light: what lies in it may be nearer than rays begin
+LAMP = 2e-5  # of the way from the light: what lies in it may be nearer than rays begin
 # Columns of a primitive's row: a corner, two edges, how far its corners may be elsewhere, and a box (6,) outside of
 # which no hit is reported, but for REPORTED of the light's distance.  Quadrics have the box alone.
 BLUR, BOX, ROW = 9, 10, 16
@@ -77,9 +77,18 @@ _FIRM, _FIRM_BLUR = np.float32(44 * EPSILON), np.float32(1.25)
 
 
 class SeenTriangles(NamedTuple):
-    """Sixteen triangles as a light sees them: corner; s, from there to the light; edges e1 and e2; u, v and d, whose
-    dot products with a direction are U, V and D, times the sign of T; height, |T|; lengths of s, `away`, of both edges
-    and of the normal, `across`; blur; `firm`, whether the sign of T is sure, `sane`, whether float32 can tell at all.
+    """Sixteen triangles as a light sees them; vectors of lanes, lengths in units of the scene.
+
+    Attributes:
+        corner: the first corner, three coordinates.
+        s: from there to the light.
+        e1, e2: the two edges at that corner.
+        u, v, d: vectors whose dot products with a direction are U, V and D, times the sign of T.
+        height: |T|, the light's height above the plane times the normal's length.
+        away, first, second, across: lengths of s, e1, e2 and the normal.
+        blur: how far the corners may be elsewhere.
+        firm: whether the sign of T is certain.
+        sane: whether float32 can tell anything at all.
     """
 
     corner: Any
@@ -100,8 +109,13 @@ class SeenTriangles(NamedTuple):
 
 
 class SureHitLength(NamedTuple):
-    """How long rays are at most that can be sure to hit one of the first `fixed` triangles, which never move, and
-    others, that rest."""
+    """How long a ray may be to be certain of a hit, in units of the scene.
+
+    Attributes:
+        fixed: triangles with a lower number never move, the others rest.
+        static: for the former.
+        resting: for the latter.
+    """
 
     fixed: int
     static: float
@@ -109,7 +123,7 @@ class SureHitLength(NamedTuple):
 
 
 class ErrorBounds(NamedTuple):
-    """Of U, V, D - U - V and D - T, and of D."""
+    """By how much float32 may be wrong: of U, V, D - U - V (w), D - T (behind), and D."""
 
     u: Any
     v: Any
@@ -120,33 +134,37 @@ class ErrorBounds(NamedTuple):
 
 @inlined
 def cross(a, b):
+    """The cross product of two vectors, each three numbers or three vectors of lanes."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 @inlined
 def dot(a, b):
+    """The dot product of two vectors, like `cross`."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @inlined
 def length(a):
+    """The length of three numbers."""
     return math.sqrt(dot(a, a))
 
 
 @inlined
 def length16(a):
-    """No less than the length of three vectors."""
+    """Lengths (16,) float32 of sixteen vectors, rounded up."""
     return square_root(dot(a, a) + np.float32(1e-36))
 
 
 @inlined
 def _scaled(a, x):
+    """A vector times a number."""
     return a[0] * x, a[1] * x, a[2] * x
 
 
 @inlined
 def row_of(rows, i):
-    """Corner and edges of the i-th of rows (n, ROW), in float64."""
+    """Corner and edges of the i-th of rows (n, ROW), in float64: three vectors."""
     return (
         (np.float64(rows[i, 0]), np.float64(rows[i, 1]), np.float64(rows[i, 2])),
         (np.float64(rows[i, 3]), np.float64(rows[i, 4]), np.float64(rows[i, 5])),
@@ -156,27 +174,31 @@ def row_of(rows, i):
 
 @inlined
 def sure_hit_length(farthest, numbers):
-    """How long rays are at most that can be sure to hit those of sixteen numbers, int32, at an address."""
+    """Lengths (16,) that rays may have to be certain to hit the primitives whose numbers, int32, are at an address."""
     fixed = load_i32x16(numbers) < np.int32(farthest.fixed)
     return select(fixed, np.float32(farthest.static), np.float32(farthest.resting))
 
 
 @inlined
 def rows_at(rows, numbers):
-    """The columns of sixteen of rows (n, ROW), whose numbers, int32, are at an address."""
+    """The columns (ROW vectors of sixteen) of those of rows (n, ROW) whose numbers, int32, are at an address."""
     return load_columns(address_of(rows), numbers, ROW)
 
 
 @inlined
 def seen_from(light, row):
-    """Triangles, columns of their rows, from a light (3,) float32."""
+    """Sixteen triangles, columns of their rows, as a light (3,) float32 sees them."""
     e1, e2, blur = row[3:6], row[6:9], row[BLUR]
     s = light[0] - row[0], light[1] - row[1], light[2] - row[2]
     n = cross(e1, e2)
+
+    # Turn all functions so that T is positive.
     height = dot(s, n)
     turned = select(height >= ZERO, ONE, -ONE)
     height = height * turned
     away, first, second = length16(s), length16(e1), length16(e2)
+
+    # Is T's sign certain?
     unsure = away * (_FIRM * first * second + _FIRM_BLUR * blur * (first + second)) + blur * first * second
     sane = maximum(away, maximum(first, second)) < LARGE
     firm = sane & (height > unsure + SMALL)
@@ -186,28 +208,32 @@ def seen_from(light, row):
 
 @inlined
 def functions(t, direction, end):
-    """U, V, D - U - V and D - T of triangles, and D, for a direction to an end."""
+    """(U, V, D - U - V, D - T, D) of triangles as seen, for rays of a direction that end at a point."""
     u, v, d = dot(t.u, direction), dot(t.v, direction), dot(t.d, direction)
     behind = dot(t.d, (end[0] - t.corner[0], end[1] - t.corner[1], end[2] - t.corner[2]))
     return u, v, d - u - v, behind, d
 
 
 @inlined
-def error_bounds(t, reach, near, along, coordinates):
-    """Margins, our own errors included, for directions no longer than `reach`, ends no further than `near` from the
-    corner and with such a sum of absolute coordinates, and |D| no more than `along`."""
+def error_bounds(t, longest, near, along, coordinates):
+    """Bounds for triangles as seen, our own errors included.
+
+    They hold for directions no longer than `longest`, ends no further than `near` from the triangle's corner and with
+    no more than this sum of absolute `coordinates`, and |D| no more than `along`."""
+    # Bound what the ray kernels compute.
     blurred = FIVE * t.blur * maximum(t.first, t.second)
-    u = reach * (NINE * _EPSILON * t.away * t.second + blurred)
-    v = reach * (NINE * _EPSILON * t.away * t.first + blurred)
+    u = longest * (NINE * _EPSILON * t.away * t.second + blurred)
+    v = longest * (NINE * _EPSILON * t.away * t.first + blurred)
     tilt = FOUR * _EPSILON * t.first * t.second
-    d, enlarged = reach * (tilt + FIVE * _EPSILON * t.across), _LARGER * along
-    behind = near * tilt + FOUR * t.blur * t.across + FOUR * _EPSILON * t.across * (reach + t.away)
+    d, enlarged = longest * (tilt + FIVE * _EPSILON * t.across), _LARGER * along
+    behind = near * tilt + FOUR * t.blur * t.across + FOUR * _EPSILON * t.across * (longest + t.away)
     behind = behind + THREE * _EPSILON * t.height
+    # Bound what is computed here.
     ours = TWO * near * tilt + TWO * _EPSILON * t.across * coordinates
     return ErrorBounds(
         _TWICE * (u + enlarged) + SMALL,
         _TWICE * (v + enlarged) + SMALL,
         _TWICE * (u + v + d + enlarged) + SMALL,
         _SURPLUS * (behind + ours) + SMALL,
-        _TWICE * (d + reach * t.blur * (t.first + t.second)) + SMALL,
+        _TWICE * (d + longest * t.blur * (t.first + t.second)) + SMALL,
     )

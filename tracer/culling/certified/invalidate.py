@@ -1,4 +1,8 @@
-"""Dropping certificates that hold no longer, and cells that are used least."""
+"""Invalidate certificates that an object's motion makes untrue, and drop the cells that are used least.
+
+When an object starts to move, certificates that name one of its primitives go.  When it comes to rest, those that said
+that nothing comes between, or only these candidates, go where it may come between now.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +29,7 @@ from tracer.kernels import inlined, kernel, subkernel
 
 @inlined
 def _names_one(cells, cell, light, gone):
-    """Whether a certificate names a primitive that is gone."""
+    """Whether a certificate names one of the primitives that are gone (p,) bool."""
     at, found = np.int64(cells.lists[cell, light]), False
     for k in range(at + 1, at + 1 + (cells.names[at] & (SETTLED - 1) if at != OVERFLOW else 0)):
         found |= gone[cells.names[k]]
@@ -34,6 +38,7 @@ def _names_one(cells, cell, light, gone):
 
 @subkernel
 def _meets_any(s, boxes, light):
+    """Whether a box (k, 6) may meet the shaft from a light (3,) to the cell that s.shaft was put to."""
     if not put_light(s.shaft, (np.float64(light[0]), np.float64(light[1]), np.float64(light[2]))):
         return True
     met = False
@@ -43,15 +48,14 @@ def _meets_any(s, boxes, light):
 
 
 @kernel
-def invalidate_certificates(cells, o, lights, reach, gone, boxes, near, s):
-    """Drop the certificates that name primitives which are `gone` (p,) bool, and those that nothing comes between but
-    for what is in boxes (lights, k, 6) from now on.
+def invalidate_certificates(cells, o, lights, scale, gone, boxes, near, s):
+    """Drop the certificates that name primitives which are gone, and those that boxes may come between from now on.
 
-    lights (n, 3); reach is how high above rays may end, and the scene's largest coordinate; near (primitives,) are
-    words like modes, without the bits of those lights from which something in a box may come before a primitive.  A
-    cell that took its certificate over from another loses it with that one."""
+    gone (primitives,) bool; boxes (lights, k, 6), inverted for none; lights (n, 3) are positions; scale is the
+    `SceneScale`, o the `Occluders`, s a worker's `Scratch`.  near (primitives,) are words like modes, without the bits
+    of those lights from which something in a box may come before a primitive.  A cell that took its certificate over
+    from another loses it with that one."""
     cells, o, s = borrowed(cells), borrowed(o), borrowed(s)
-    highest, largest = reach
     dropped = np.zeros(cells.used[0], np.uint64)
     for cell in range(1, cells.used[0]):
         word, owner, parent = cells.words[cell], np.int64(cells.owner[cell]), np.int64(cells.parent[cell])
@@ -61,14 +65,18 @@ def invalidate_certificates(cells, o, lights, reach, gone, boxes, near, s):
             if state == UNTRIED or (state == CANDIDATES and cells.lists[cell, light] == OVERFLOW):
                 continue
             bit = np.uint64(1) << np.uint64(light)
+
+            # Drop what names a primitive that is gone, or was taken over from a cell that lost it.
             drop = _names_one(cells, cell, light, gone)
             if state == FULL and cells.lists[cell, light] == NOBODY:
                 drop = dropped[parent] & bit != 0
+
+            # Drop what something new may come between.
             if not drop and state != FULL and state_of(near[owner >> 1], light) == UNTRIED:
                 if not tried:
                     u, v, size = cells.place[cell, 0], cells.place[cell, 1], cells.place[cell, 2]
                     side, at = 1.0 - 2.0 * (owner & 1), (np.float64(u), np.float64(v), np.float64(size))
-                    placed = put_cell(s.shaft, o.rows, owner >> 1, side, at[0], at[1], at[2], highest, largest)
+                    placed = put_cell(s.shaft, o.rows, owner >> 1, side, at[0], at[1], at[2], scale)
                     tried = True
                 drop = not placed or _meets_any(s, boxes[light], lights[light])
             if drop:
@@ -106,6 +114,8 @@ def copy_kept(cells, kept, target):
                 target.named[0] = at + length
                 moved[start] = at
             target.lists[to, light] = moved[start]
+
+    # Renumber children and roots.
     for cell in range(1, target.used[0]):
         if target.child[cell] >= 0:
             target.child[cell] = place[target.child[cell]]
@@ -119,5 +129,5 @@ def copy_kept(cells, kept, target):
 
 
 def all_marked(primitives: int, word: type[np.unsignedinteger]) -> NDArray[np.unsignedinteger]:
-    """A word for each primitive with the mode LIT of every light, to be taken from those that something may darken."""
+    """A word for each primitive that marks every light as LIT, to be cleared where something may darken it."""
     return np.full(primitives, (~word(0) // word(3)) * word(LIT) & ~word(3) | word(FULLY_RENDERED), word)

@@ -1,7 +1,7 @@
-"""Which cell a shadow ray ends in, for sixteen points at a time.
+"""Look up the cells in which shadow rays end, for sixteen points at a time.
 
-A point is looked up where its shadow rays end, a little above the surface.  Its coordinates in the triangle are
-found from there, and one that is not where the prisms of `shaft` allow for it has no cell: its rays are traced.
+A point is looked up where its shadow rays end, a little above the surface.  Its coordinates in the triangle are found
+from there.  One that ends where no prism of a `shaft` reaches has no cell: its rays are traced.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from tracer.culling.certified.cells import (
     RECEIVER,
     ROOTS,
 )
+from tracer.culling.certified.quadtree import descend
 from tracer.culling.certified.shaft import LOWEST
 from tracer.culling.counters import CANDIDATES_ONLY, CULLED, DYNAMIC_ONLY, TESTS
 from tracer.culling.shadow_modes import answer, look_up, trusted, words_of
@@ -51,20 +52,28 @@ from tracer.simd import (
 )
 from tracer.simd.records import IntRow, Memory, Row, Rows, row_count, rows_of
 
-ZERO, HALF, ONE, TWO = np.float32(0), np.float32(0.5), np.float32(1), np.float32(2)
+ZERO, ONE = np.float32(0), np.float32(1)
 NOWHERE = -1  # instead of an owner
 
 
 @inlined
 def affine(row, first, x, y, z):
+    """The dot product of a vector, three columns of a receiver's row, and (x, y, z)."""
     return row[first] * x + row[first + 1] * y + row[first + 2] * z
 
 
 class CellPoints(NamedTuple):
-    """What is looked up for n points of a wave, in rows: the cell of each as its unit, and its word
-    (`tracer.culling.shadow_modes.PointWords`); u and v in the triangle, and the owner there, NOWHERE for none; as bits,
-    sixteen points a number, which have a light of which nothing is known yet (`untried`), and which have one of which
-    only candidates are (`doubtful`); and, one after the other, the points that test candidates, with room for that."""
+    """What is looked up for n points of a wave, in rows.
+
+    Attributes:
+        unit: the cell of each point, 0 for none.
+        low, high, looked_up: its word (`tracer.culling.shadow_modes.PointWords`).
+        u, v, owner: coordinates in the triangle, and the owner there, NOWHERE for none.
+        untried, doubtful: bits, sixteen points a number: those with a light for which nothing is known yet, and those
+            with one for which only candidates are.
+        asked: points that test candidates, one after the other.
+        questions: memory for that.
+    """
 
     memory: Memory
     unit: IntRow
@@ -86,9 +95,10 @@ CELL_POINT_ROWS = row_count(CellPoints)
 
 @subkernel
 def find_cells(certified, points, count, found):
-    """Find the cells in which the shadow rays of points end, sixteen by sixteen; points.lifted are those ends.
+    """Find the cells of `count` points: where their shadow rays end, points.lifted (3, n) float32.
 
-    Unless rays are costly, triangles without a root are not looked at any closer."""
+    certified is a `CertificateView`, found are `CellPoints`.  Unless rays are `costly_rays`, triangles without a root
+    are not looked at any closer."""
     highest, child, receivers = certified.highest, address_of(certified.child), address_of(certified.receivers)
     lifted, rooted_at = points.lifted, address_of(certified.rooted)
     stride = 4 * lifted.shape[1]
@@ -97,6 +107,8 @@ def find_cells(certified, points, count, found):
         at = 64 * k
         numbers = address_of(points.primitive) + at
         primitive = load_i32x16(numbers)
+
+        # Leave triangles without cells alone.
         if not certified.costly_rays:
             rooted = (gather_i32x16(rooted_at, primitive) > np.int32(0)) & mask16(lanes_below(count, k))
             if not any_lane(rooted):
@@ -104,7 +116,7 @@ def find_cells(certified, points, count, found):
                 store(address_of(found.owner) + at, i32x16(NOWHERE))
                 continue
 
-        # Lead the end of the ray into the triangle: coordinates along its sides, and the height above it.
+        # Find height and coordinates above the triangle.
         row = load_columns(receivers, numbers, RECEIVER)
         px = load_f32x16(address_of(lifted) + at)
         py = load_f32x16(address_of(lifted) + stride + at)
@@ -112,14 +124,14 @@ def find_cells(certified, points, count, found):
         x, y, z = px - row[CORNER], py - row[CORNER + 1], pz - row[CORNER + 2]
         u, v, height = affine(row, ALONG_U, x, y, z), affine(row, ALONG_V, x, y, z), affine(row, NORMAL, x, y, z)
 
-        # Leave out what does not lie in the prism that certificates speak of.
+        # Accept what ends within the prisms.
         above = maximum(height, -height)
         largest = maximum(maximum(px, -px), maximum(maximum(py, -py), maximum(pz, -pz)))
         inside = (above >= np.float32(LOWEST * RAY_OFFSET) * largest) & (above <= np.float32(highest)) & (above > ZERO)
         beyond = row[BEYOND_U] + row[BEYOND_V]
         inside = inside & (u >= -row[BEYOND_U]) & (v >= -row[BEYOND_V]) & (u + v <= ONE + beyond)
 
-        # Go down from the root of the side that the ray ends on.
+        # Go down from the root of that side.
         back = height < ZERO
         owner = (primitive << np.int32(1)) + select(back, i32x16(1), i32x16(0))
         u, v = minimum(maximum(u, ZERO), ONE), minimum(maximum(v, ZERO), ONE)
@@ -133,8 +145,10 @@ def find_cells(certified, points, count, found):
 
 @subkernel
 def cull_by_certificates(certified, points, found, light, number, count, asks, batch, counts):
-    """Answer the rays to light `number` at light (3,) that certificates say all about and, where it `asks`, those with
-    few candidates by testing these."""
+    """Answer the rays to light `number` at light (3,) of which certificates tell all.
+
+    Where it `asks`, also those with few candidates, by testing these.  batch is a `ShadowBatch`, counts are the shadow
+    counters."""
     if number >= len(certified.stationary) or certified.stationary[number] == 0:
         return
     words, asks, asked = certified.words, asks and certified.max_asked > 0, np.int64(0)
@@ -150,6 +164,7 @@ def cull_by_certificates(certified, points, found, light, number, count, asks, b
         live &= ~(full | non)
         if live == 0:
             continue
+
         # Take note of what is not known yet.
         _, field, shift = words_of(found, number, v)
         some = bits_of((field & np.int32(3 << shift)) == np.int32(CANDIDATES << shift)) & live
@@ -170,24 +185,3 @@ def record_cells(wave, found, place, cell):
     """Write the cells of primary hits into the picture; place (n,) says where each pixel of the tile is."""
     for i in range(wave.size):
         cell[place[wave.pixel[i]]] = found.unit[i]
-
-
-@inlined
-def descend(child, cell, u, v):
-    """From roots to the leaves that (u, v) lie in."""
-    below = gather_i32x16(child, cell)
-    inner = below > np.int32(-1)
-    while any_lane(inner):
-        first = u + v <= HALF
-        second, third = (u >= HALF) & ~first, (v >= HALF) & ~first
-        third = third & ~second
-        which = select(first, i32x16(0), select(second, i32x16(1), select(third, i32x16(2), i32x16(3))))
-        turned = ~(first | second | third)
-        u, v = u * TWO, v * TWO
-        nu = select(second, u - ONE, select(turned, ONE - u, u))
-        nv = select(third, v - ONE, select(turned, ONE - v, v))
-        cell = select(inner, below + which, cell)
-        u, v = select(inner, nu, u), select(inner, nv, v)
-        below = gather_i32x16(child, cell)
-        inner = below > np.int32(-1)
-    return cell

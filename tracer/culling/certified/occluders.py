@@ -1,8 +1,8 @@
-"""Which static primitives may come between a light and a cell: an 8-wide tree whose boxes know a light.
+"""The tree of static primitives that may come between a light and a cell: 8-wide, with boxes that know a light.
 
-Its shape is made once.  For each light every triangle's box is enlarged by how far from it a ray could
-still report a hit (`error_bounds`), and the boxes above follow.  Of a triangle in whose plane the light
-lies, as far as float32 can tell, that is all of the box in which the structure reports hits.
+Its shape is made once.  For each light every triangle's box is enlarged by how far from it float32 may still report a
+hit (`error_bounds`), its error radius, and the boxes above follow.  Of a triangle in whose plane the light lies, as far
+as float32 can tell, that is all of the box in which the structure reports hits.
 """
 
 from __future__ import annotations
@@ -45,24 +45,29 @@ from tracer.simd import (
 )
 
 BOXES = 6 * WIDTH  # float32 of a node: lower x of its eight children, then lower y and so on
-BLOCK = 9 * WIDTH
-NONE = -1
-STACK = 64 * 8 * 8
+BLOCK = 9 * WIDTH  # float32 of a leaf: corner and two edges of its triangles, x of all eight, then y and so on
+NONE = -1  # instead of a primitive's number
+STACK = 64 * 8 * 8  # bytes: nodes that wait on the deepest way down
 FAR = np.float32(3e37)
 DIAGONAL = np.float32(1.7321)  # of a cube, of its side
 ROUNDED = 1e-6  # of the largest coordinate, by which boxes are larger for planes in float32
 
 
 class Occluders(NamedTuple):
-    """All that is static, for any number of trees back to back.
+    """All static primitives, in any number of trees back to back.
 
-    rows (primitives, ROW) float32, in the world, by number (`error_bounds`), those from first_quadric on of quadrics;
-    children (nodes, 8) int32 as in a `Topology`; blocks (leaves, BLOCK) float32, corners and edges of a leaf's
-    triangles as structure of arrays, and numbers (leaves, 8) int32, NONE for none, or that of a quadric; roots
-    (trees,) int32; boxes (lights, nodes, BOXES) float32; error_radii (lights, n) float32, how far from each
-    triangle a ray from the light can report a hit, and leaf_radii (lights, leaves, 8), those of a leaf side by side,
-    negative for none; light_space (lights, primitives, LIGHT_ROW) float32, what rays from the light ask
-    (`light_space`), or (lights, 0, LIGHT_ROW).  `farthest` tells which rays are too long to be sure of a hit.
+    Attributes:
+        rows: (primitives, ROW) float32, in world space, by number (`error_bounds`).
+        first_quadric: rows from here on are those of quadrics.
+        children: (nodes, 8) int32, as in a `Topology`.
+        blocks: (leaves, BLOCK) float32, corners and edges of a leaf's triangles as structure of arrays.
+        numbers: (leaves, 8) int32, a leaf's triangles, NONE for none; or one quadric.
+        roots: (trees,) int32.
+        boxes: (lights, nodes, BOXES) float32, of the children of each node.
+        error_radii: (lights, n) float32, how far from each triangle a ray from the light can report a hit.
+        leaf_radii: (lights, leaves, 8) float32, the same side by side for each leaf, negative for none.
+        light_space: (lights, primitives, LIGHT_ROW) float32, or (lights, 0, LIGHT_ROW) where no ray tests candidates.
+        farthest: how long rays may be to be certain of a hit.
     """
 
     rows: NDArray[np.float32]
@@ -87,7 +92,7 @@ def shape_of(
 
 
 def joined(shapes: list[Topology]) -> tuple[Topology, NDArray[np.int32]]:
-    """Several shapes as one, and the roots (n,) int32 of each."""
+    """Several shapes as one, back to back, and the root of each, (n,) int32."""
     children, leaves, order, roots = [], [], [], []
     node = leaf = item = 0
     for shape in shapes:
@@ -103,7 +108,7 @@ def joined(shapes: list[Topology]) -> tuple[Topology, NDArray[np.int32]]:
 
 @subkernel
 def _find_error_radii(o, number, light, farthest, rounded):
-    """How far from each triangle a ray from the light can report a hit, into o.error_radii[number]."""
+    """Put how far from each triangle a ray from a light (3,) can report a hit into o.error_radii[number]."""
     error_radii, numbers = address_of(o.error_radii[number]), local_memory(64)
     light = np.float32(light[0]), np.float32(light[1]), np.float32(light[2])
     farthest, rounded = np.float32(farthest), np.float32(rounded)
@@ -112,13 +117,15 @@ def _find_error_radii(o, number, light, farthest, rounded):
         store(numbers, which)
         row = rows_at(o.rows, numbers)
         t = seen_from(light, row)
-        # In the error bounds |D| counts by the same part of itself, whatever it is: that is added at the end.
+        # |D| enters the bounds by the same part of itself, whatever it is: that is added at the end.
         m = error_bounds(t, TWO * farthest, farthest, t.height, ZERO)
         depth = t.height - m.behind
         part = maximum(m.u, maximum(m.v, m.w)) / depth + np.float32(1e-5)
         radius = part * (t.first + t.second) + (m.behind / depth + np.float32(1e-6)) * farthest + t.blur
         radius = select(t.firm & (depth > ZERO), radius, FAR)
-        room = f32x16(ZERO)  # from the triangle to anywhere in the box that hits are reported in, along an axis
+
+        # No hit is reported outside of the primitive's box: how far is that from the triangle, along an axis?
+        room = f32x16(ZERO)
         for axis in range(3):
             corner, e1, e2 = row[axis], row[3 + axis], row[6 + axis]
             low, high = corner + minimum(ZERO, minimum(e1, e2)), corner + maximum(ZERO, maximum(e1, e2))
@@ -129,6 +136,7 @@ def _find_error_radii(o, number, light, farthest, rounded):
 
 @inlined
 def _put_box(box, child, low, high):
+    """Put a box into a node's boxes."""
     for axis in range(3):
         box[axis * WIDTH + child] = low[axis]
         box[(3 + axis) * WIDTH + child] = high[axis]
@@ -136,11 +144,13 @@ def _put_box(box, child, low, high):
 
 @inlined
 def _empty():
+    """A box around nothing."""
     return (FAR, FAR, FAR), (-FAR, -FAR, -FAR)
 
 
 @inlined
 def _around(low, high, low2, high2):
+    """The box around two boxes."""
     return (
         (min(low[0], low2[0]), min(low[1], low2[1]), min(low[2], low2[2])),
         (max(high[0], high2[0]), max(high[1], high2[1]), max(high[2], high2[2])),
@@ -149,6 +159,7 @@ def _around(low, high, low2, high2):
 
 @inlined
 def _triangle_box(rows, i, more):
+    """The box around triangle i, `more` larger on each side."""
     low0, low1, low2 = rows[i, 0], rows[i, 1], rows[i, 2]
     more = np.float32(more)
     return (
@@ -167,7 +178,7 @@ def _triangle_box(rows, i, more):
 
 @subkernel
 def _leaf_box(o, leaf, number, farthest):
-    """The box of a leaf's primitives for a light; their error_radii are put side by side."""
+    """The box around a leaf's primitives for a light; their error radii are put side by side."""
     low, high = _empty()
     room = np.float32(REPORTED * farthest)
     leaf_radii = o.leaf_radii[number, leaf]
@@ -189,8 +200,9 @@ def _leaf_box(o, leaf, number, farthest):
 
 @kernel
 def enlarge_boxes(o, number, light, farthest, largest):
-    """Enlarge the boxes for light `number`, now at light (3,): no ray from it is longer than `farthest`, and no
-    coordinate larger than `largest`."""
+    """Fit all boxes, and the light-space triangles, to light `number`, which is at light (3,) float32 now.
+
+    No ray from it is longer than `farthest`, and no coordinate larger than `largest`, in units of the scene."""
     o = borrowed(o)
     boxes = o.boxes[number]
     _find_error_radii(o, number, light, farthest, ROUNDED * largest)
@@ -222,7 +234,7 @@ def children_met(box, shaft):
     met = met & (x1 >= np.float32(b[0])) & (y1 >= np.float32(b[1])) & (z1 >= np.float32(b[2]))
     for k in range(PLANES):
         nx, ny, nz = np.float32(shaft.planes[k, 0]), np.float32(shaft.planes[k, 1]), np.float32(shaft.planes[k, 2])
-        # The corner of each box that is farthest behind the plane.
+        # Take the corner of each box that is farthest behind the plane.
         x = x0 if nx > np.float32(0) else x1
         y = y0 if ny > np.float32(0) else y1
         z = z0 if nz > np.float32(0) else z1
@@ -232,8 +244,9 @@ def children_met(box, shaft):
 
 @inlined
 def triangles_met(block, leaf_radii, shaft):
-    """Bits of the eight triangles of a block, at an address, that may meet a shaft, made larger by their error_radii,
-    which are `beside` each other."""
+    """Bits of the eight triangles of a block that may meet a shaft when enlarged by their error radii.
+
+    Block and radii, leaf_radii, are at addresses."""
     x, y, z = load_f32x8(block), load_f32x8(block + 32), load_f32x8(block + 64)
     ax, ay, az = load_f32x8(block + 96), load_f32x8(block + 128), load_f32x8(block + 160)
     bx, by, bz = load_f32x8(block + 192), load_f32x8(block + 224), load_f32x8(block + 256)

@@ -1,4 +1,8 @@
-"""Requests for certificates: points whose shadow rays found none, or too little."""
+"""Requests for certificates: points whose shadow rays found none, or too little.
+
+Primary hits request what they are about to need before the frame is shaded (`request_at_hits`).  The rays of later
+bounces request what they have missed (`request_at_points`), and get it in the next frame.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +20,8 @@ from tracer.culling.certified.cells import (
     ROOTS,
     UNTRIED,
 )
-from tracer.culling.certified.lookup import NOWHERE, affine, descend
+from tracer.culling.certified.lookup import NOWHERE, affine
+from tracer.culling.certified.quadtree import descend
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.stages import vectors
 from tracer.kernels import inlined, subkernel
@@ -39,15 +44,19 @@ from tracer.simd import (
     store,
 )
 
-ZERO, HALF, ONE, TWO = np.float32(0), np.float32(0.5), np.float32(1), np.float32(2)
+ZERO, HALF, ONE = np.float32(0), np.float32(0.5), np.float32(1)
 ROOM = 4096  # requests that a tile can make
-FACING = 64 * MAX_CULLED_LIGHTS  # bytes
+FACING = 64 * MAX_CULLED_LIGHTS  # bytes: sixteen numbers for each light
 
 
 class Requests(NamedTuple):
-    """Points whose rays found no certificate: key (ROOM,) int32, the cell or, where there is none yet, -1 less the
-    owner; u and v (ROOM,) float32.  of (3,) int64: how many there are, of how many one is kept, and how many were
-    seen."""
+    """Points that request certificates, of one tile, or with a leading axis of many.
+
+    Attributes:
+        key: (ROOM,) int32, the cell or, where there is none yet, -1 less the owner.
+        u, v: (ROOM,) float32, coordinates in the triangle.
+        of: (3,) int64, how many there are, one in how many is kept, and how many were made.
+    """
 
     key: NDArray[np.int32]
     u: NDArray[np.float32]
@@ -71,8 +80,9 @@ def requests_of(rows, tile):
 
 @subkernel
 def request_at_points(certified, requests, found, count):
-    """Request what could be certified for points of a wave (`CellPoints`): those with a light of which nothing is known
-    yet, and those with one of which a part of the cell may tell more."""
+    """Request for `count` points of a wave of which more could be certified.
+
+    certified is a `CertificateView`, requests those of the tile, found are `CellPoints`."""
     for k in range(certified.first_vector, vectors(count), certified.stride):
         bits = np.int64(found.untried[k] | found.doubtful[k])
         if bits == 0:
@@ -89,12 +99,13 @@ def request_at_points(certified, requests, found, count):
 
 @inlined
 def _key(cell, owner):
+    """What a request is filed under: its cell, or its owner."""
     return cell if cell > 0 else -1 - owner
 
 
 @inlined
 def _add_request(requests, key, u, v):
-    """Keep a point: all at first and, each time there is no more room, every other one."""
+    """Keep a request: all at first and, each time there is no more room, every other one."""
     requests.of[2] += 1
     if requests.of[2] % requests.of[1] != 0:
         return
@@ -113,8 +124,9 @@ def _add_request(requests, key, u, v):
 
 @subkernel
 def _with_requests(certified, cell, facing):
-    """Bits of the cells of sixteen points in which a light of which more could be known faces them; facing
-    (lights, 16) are more than 0 where it does."""
+    """Bits of the points, of sixteen in cells, that a light faces for which more could be known.
+
+    facing (lights, 16) float32, at an address, are positive where a light does."""
     words, size = certified.words.address, certified.words.size
     low = gather_i32x16(words, cell if size == 4 else cell << np.int32(1))
     high = low if size == 4 else gather_i32x16(words + 4, cell << np.int32(1))
@@ -132,10 +144,10 @@ def _with_requests(certified, cell, facing):
 
 @subkernel
 def request_at_hits(certified, requests, lights, origin, hits, place, there):
-    """Request what sixteen primary hits are about to need, found by their coordinates in the triangle.
+    """Request what sixteen primary hits are about to need.
 
-    Rays come from origin (3,) and, where they are `there`, have hit what pixels at `place` of pictures say: primitive,
-    u and v (height, width)."""
+    Rays come from origin (3,) and, where they are `there`, have hit what pixels at `place` of the pictures `hits` say:
+    primitive, u and v (height, width).  lights (n, 3) float32 are positions; certified is a `CertificateView`."""
     receivers, child = address_of(certified.receivers), address_of(certified.child)
     facing, numbers = local_memory(FACING), local_memory(64)
     primitive = gather_i32x16(address_of(hits[0]), place)
@@ -143,19 +155,26 @@ def request_at_hits(certified, requests, lights, origin, hits, place, there):
     hit = there & (primitive > np.int32(NOWHERE))
     primitive = select(hit, primitive, i32x16(0))
     store(numbers, primitive)
+
+    # Find the side of each triangle that was hit.
     row = load_columns(receivers, numbers, RECEIVER)
     back = affine(row, NORMAL, origin[0] - row[CORNER], origin[1] - row[CORNER + 1], origin[2] - row[CORNER + 2]) < ZERO
     way = select(back, -ONE, ONE)
     with_cells = hit & (affine(row, NORMAL, row[NORMAL], row[NORMAL + 1], row[NORMAL + 2]) > HALF)
     if not any_lane(with_cells):
         return
+
+    # Find the lights on that side.
     for number in range(len(certified.stationary)):
         x, y, z = lights[number, 0], lights[number, 1], lights[number, 2]
         above = affine(row, NORMAL, x - row[CORNER], y - row[CORNER + 1], z - row[CORNER + 2])
         store(facing + 64 * number, way * above)
+
+    # Find the leaves; a root that is not there yet is cell 0, of which nothing is known.
     root = select(back, as_i32(row[ROOTS + 1]), as_i32(row[ROOTS]))
     cell = descend(child, select(with_cells, root, i32x16(0)), u, v)
-    # A root that is not there yet is cell 0, of which nothing is known: requested where any light faces it.
+
+    # Request where a light faces a leaf that has no answer for it.
     bits = _with_requests(certified, cell, facing) & bits_of(with_cells)
     while bits != 0:
         lane = lowest_bit(bits)

@@ -1,8 +1,12 @@
-"""The shaft of shadow rays from a light to a cell: its corners, and planes that bound it.
+"""The shaft of a cell: all shadow rays from a light that end in it, with planes around them.
 
-A cell is a piece of a triangle's plane, as wide as where its rays may truly end: they end above the surface,
-by no less than a part of the usual offset and no more than a bound, and look their cell up by coordinates that
-are rounded.  So it is a prism, of six corners, and `lookup` sends no ray to it that ends elsewhere.
+Shadow rays start at the light and end a little above the surface: no lower than a part of the usual offset, no higher
+than `SceneScale.max_height`.  They look their cell up by coordinates that are rounded.  So the cell is a prism, as wide
+as where its rays may truly end, and a shaft is what lies between the light and the six corners of that prism.  No ray
+that ends outside the prism is led to the cell (`lookup`).
+
+A shaft stands for all its rays, as in shaft culling (E. Haines and J. Wallace, "Shaft Culling for Efficient Ray-Traced
+Radiosity", Eurographics Workshop on Rendering, 1991).
 """
 
 from __future__ import annotations
@@ -17,48 +21,69 @@ from tracer.culling.certified.error_bounds import EPSILON, cross, dot, length, r
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.kernels import inlined, subkernel
 
-LOWEST = 0.5  # of RAY_OFFSET: what ends lower belongs to no cell
-CORNERS = 6  # of a cell: three below and three above
-PLANES = 4  # three through the light and an edge of the cell, and the cell's own
+LOWEST = 0.5  # of RAY_OFFSET: a ray that ends lower belongs to no cell
+CORNERS = 6  # of a cell: three of its floor, then three of its ceiling
+PLANES = 4  # around a shaft: three through the light and an edge of the cell, then the cell's floor
+
+
+class SceneScale(NamedTuple):
+    """What the errors of float32 grow with.
+
+    Attributes:
+        max_height: how far above a surface a ray may end that has a cell, in units of the scene.
+        max_coordinate: no coordinate of static geometry is larger, with room for what may come to rest.
+    """
+
+    max_height: float
+    max_coordinate: float
 
 
 class Shaft(NamedTuple):
-    """corners and directions from the light (3, CORNERS) float64, of which the first three are below and the others
-    above; planes (PLANES, 4), normals and offsets, behind which it lies; box (6,) around it; reach (1,), the longest
-    direction."""
+    """A cell and, once `put_light` has been called, a light.
+
+    Attributes:
+        corners: (3, CORNERS) float64, x, y and z of the prism's corners, floor first.
+        directions: (3, CORNERS) float64, from the light to each of them.
+        planes: (PLANES, 4) float64, outward unit normals and offsets: the shaft lies where normal . x <= offset.
+        box: (6,) float64, the lower and upper corner around it, light included.
+        longest: (1,) float64, the length of the longest direction.
+    """
 
     corners: NDArray[np.float64]
     directions: NDArray[np.float64]
     planes: NDArray[np.float64]
     box: NDArray[np.float64]
-    reach: NDArray[np.float64]
+    longest: NDArray[np.float64]
 
 
 def make_shaft() -> Shaft:
+    """Memory for a shaft."""
     return Shaft(np.zeros((3, CORNERS)), np.zeros((3, CORNERS)), np.zeros((PLANES, 4)), np.zeros(6), np.zeros(1))
 
 
 @inlined
-def slack_of(e1, e2, largest):
-    """By how much (u, v) of a point over a triangle may be wrong in look-up, (du, dv), and its height above it.
+def slack_of(e1, e2, max_coordinate):
+    """By how much the coordinates of a point may be wrong in look-up: (du, dv, height).
 
-    Of lookups in float32: a difference, a dot product and dual vectors that were rounded, no further from the corner
-    than the edges are long; and a little of the scene's largest coordinate, for points beyond the edges."""
+    e1 and e2 are the triangle's edges; u and v are barycentric, the height is above the triangle.  Look-up works in
+    float32: a difference, a dot product and dual vectors that were rounded, at points no further from the corner than
+    the edges are long; and points beyond the edges add a little of the largest coordinate."""
     l1, l2 = length(e1), length(e2)
     across = length(cross(e1, e2))
     far = 8 * EPSILON * (l1 + l2)
-    at = far + 4 * EPSILON * largest
+    at = far + 4 * EPSILON * max_coordinate
     return at * l2 / across + 4 * EPSILON, at * l1 / across + 4 * EPSILON, far
 
 
 @inlined
 def _corner(corners, k):
+    """The k-th corner, or direction to one."""
     return corners[0, k], corners[1, k], corners[2, k]
 
 
 @inlined
 def _least_coordinate(corners):
-    """No point between the corners has a smaller largest coordinate."""
+    """A number that the largest coordinate of any point between the corners is no smaller than."""
     least = 0.0
     for axis in range(3):
         low, high = np.inf, -np.inf
@@ -72,18 +97,20 @@ def _least_coordinate(corners):
 
 
 @subkernel
-def put_cell(shaft, rows, i, side, u, v, size, highest, largest):
-    """The corners of a cell of triangle i of rows (n, ROW), on its front for side 1 and on its back for -1.
+def put_cell(shaft, rows, i, side, u, v, size, scale):
+    """Put a shaft's corners and floor to a cell; False where the triangle is too thin to tell above from below.
 
-    Its place in the triangle is (u, v), (u + size, v) and (u, v + size); highest is how far above rays end at
-    most, largest the scene's largest coordinate.  False where it is too thin to tell above from below."""
+    The cell belongs to triangle i of rows (n, ROW), to its front for side 1 and to its back for -1; its corners are
+    (u, v), (u + size, v) and (u, v + size).  scale is a `SceneScale`."""
     a, e1, e2 = row_of(rows, i)
     normal = cross(e1, e2)
     across = length(normal)
     if not across > 0.0:
         return False
     normal = side * normal[0] / across, side * normal[1] / across, side * normal[2] / across
-    du, dv, wrong = slack_of(e1, e2, largest)
+
+    # Widen the cell by what look-up may mistake coordinates by.
+    du, dv, wrong = slack_of(e1, e2, scale.max_coordinate)
     way = 1.0 if size > 0.0 else -1.0
     dw = way * (du + dv + 4 * EPSILON)
     du, dv = way * du, way * dv
@@ -93,13 +120,15 @@ def put_cell(shaft, rows, i, side, u, v, size, highest, largest):
         y = v1 if k == 2 else v0
         for axis in range(3):
             shaft.corners[axis, k] = a[axis] + x * e1[axis] + y * e2[axis]
-    # Look-up goes by the largest coordinate of where rays end, which is not quite on the plane.
+
+    # Raise the floor to where the lowest rays end.  Look-up goes by the largest coordinate of where they end, which is
+    # not quite on the plane.
     lowest = 0.999 * LOWEST * RAY_OFFSET * _least_coordinate(shaft.corners) - wrong
     for axis in range(3):
         for k in range(3):
             at = shaft.corners[axis, k]
             shaft.corners[axis, k] = at + lowest * normal[axis]
-            shaft.corners[axis, 3 + k] = at + (highest + wrong) * normal[axis]
+            shaft.corners[axis, 3 + k] = at + (scale.max_height + wrong) * normal[axis]
         shaft.planes[3, axis] = -normal[axis]
     shaft.planes[3, 3] = -dot(normal, _corner(shaft.corners, 0))
     return True
@@ -107,9 +136,10 @@ def put_cell(shaft, rows, i, side, u, v, size, highest, largest):
 
 @subkernel
 def put_light(shaft, light):
-    """Directions from a light to the corners of a cell, and all that bounds the shaft.
+    """Put a shaft that has a cell to a light (3,): directions, box and side planes.
 
     False where the light is not clearly before the cell's plane."""
+    # Find the directions to the corners, and the longest.
     longest = 0.0
     for k in range(CORNERS):
         square = 0.0
@@ -118,15 +148,19 @@ def put_light(shaft, light):
             shaft.directions[axis, k] = d
             square += d * d
         longest = max(longest, square)
+    shaft.longest[0] = math.sqrt(longest)
+
+    # Bound light and corners by a box.
     for axis in range(3):
         low = high = light[axis]
         for k in range(CORNERS):
             low, high = min(low, shaft.corners[axis, k]), max(high, shaft.corners[axis, k])
         shaft.box[axis], shaft.box[3 + axis] = low, high
-    shaft.reach[0] = math.sqrt(longest)
+
+    # Refuse a light that does not see the cell's plane from above, at more than a graze.
     below = shaft.planes[3, 0], shaft.planes[3, 1], shaft.planes[3, 2]
-    for k in range(3, CORNERS):  # the light must see the cell's plane from above, at more than a graze
-        if not dot(below, _corner(shaft.directions, k)) > 1e-4 * shaft.reach[0]:
+    for k in range(3, CORNERS):
+        if not dot(below, _corner(shaft.directions, k)) > 1e-4 * shaft.longest[0]:
             return False
     for j in range(3):
         _put_side(shaft, light, j, (j + 1) % 3, (j + 2) % 3)
@@ -135,7 +169,7 @@ def put_light(shaft, light):
 
 @inlined
 def _put_side(shaft, light, i, j, opposite):
-    """The plane through the light and the cell's edge from corner i to j."""
+    """Put the plane through the light and the cell's edge from corner i to j, so far out that all lies behind it."""
     n = cross(_corner(shaft.directions, i), _corner(shaft.directions, j))
     ln = length(n)
     scale = 1.0 / ln if ln > 0.0 else 0.0
@@ -151,15 +185,15 @@ def _put_side(shaft, light, i, j, opposite):
 
 
 @subkernel
-def meets_box(b, box):
-    """Whether a box (6,) may meet a shaft."""
+def meets_box(shaft, box):
+    """Whether a box (6,), lower and upper corner, may meet a shaft."""
     for axis in range(3):
-        if box[axis] > b.box[3 + axis] or box[3 + axis] < b.box[axis]:
+        if box[axis] > shaft.box[3 + axis] or box[3 + axis] < shaft.box[axis]:
             return False
     for k in range(PLANES):
-        least = -b.planes[k, 3]
+        least = -shaft.planes[k, 3]
         for axis in range(3):
-            n = b.planes[k, axis]
+            n = shaft.planes[k, axis]
             least += n * (box[axis] if n > 0.0 else box[3 + axis])
         if least > 0.0:
             return False

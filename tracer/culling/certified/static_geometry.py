@@ -1,4 +1,7 @@
-"""What is static now, as certificates see it: all that never moves, and the objects that rest."""
+"""What is static now, as certificates see it: all that never moves, and the objects that rest.
+
+Each object has a tree of its own, made once it is static; `Occluders` hold these back to back.
+"""
 
 from __future__ import annotations
 
@@ -15,14 +18,22 @@ from tracer.geometry.wide_tree.topology import WIDTH, Topology
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 
-GROWTH = 4  # times what moves may grow before all is certified anew
-QUADRIC = 4e-6  # of the coordinates: how far from a quadric rays that are carried to it may hit it
+GROWTH = 4  # times that what moves may grow before all is certified anew
+QUADRIC = 4e-6  # of the coordinates: how far from a quadric a ray that is transformed to it may hit it
 
 
 class StaticGeometry:
-    """rows (t, ROW) float32 of triangles as in `Occluders`, of which those of objects that rest are where they rest;
-    bounds (2, 3) float64 around all that is static; largest, its largest coordinate.  Where rays ask candidates, it is
-    known how each light sees them."""
+    """Rows, trees and bounds of all static geometry.
+
+    Attributes:
+        rows: (t, ROW) float32 as in `Occluders`; those of objects that rest are where they rest.
+        first_quadric: rows from here on are those of quadrics.
+        occluders: all of it as a tree that knows lights.
+        bounds: (2, 3) float64, lower and upper corner around it.
+        largest: its largest coordinate.
+        allowed: the extent up to which what moves may grow before boxes, which are padded by a part of it, no longer
+            hold.
+    """
 
     def __init__(self, world: World, lights: int, threads: int, asks: bool) -> None:
         self._world, self._lights, self._threads = world, lights, threads
@@ -39,7 +50,7 @@ class StaticGeometry:
         self._join()
 
     def _add(self, index: int, outlines: Outlines) -> None:
-        """An object is static from now on, where it is."""
+        """Let an object be static from now on, where it is."""
         triangles, quadrics = self._rows_of(index)
         placed = self._world.triangles_of(index)
         self.rows[triangles, :BLUR], self.rows[triangles, BLUR], self.rows[triangles, BOX:] = placed
@@ -64,8 +75,9 @@ class StaticGeometry:
         return self._primitives.triangles_of(index), slice(first + quadrics.start, first + quadrics.stop)
 
     def reported_within(self, index: int, lights: list[int]) -> NDArray[np.float64]:
-        """Boxes (lights, 6) outside of which no ray from these lights, which are known, reports a hit on an object that
-        is static; inverted for an object of nothing."""
+        """Boxes (k, 6) outside of which no ray from these k lights reports a hit on an object that is static.
+
+        Boxes must have been fitted to the lights.  They are inverted for an object of nothing."""
         triangles, quadrics = self._rows_of(index)
         boxes = triangle_boxes(self.rows[triangles, :BLUR]).astype(np.float64)
         fixed, result = self.rows[quadrics, BOX:], np.empty((len(lights), 6))
@@ -76,11 +88,11 @@ class StaticGeometry:
 
     @staticmethod
     def _farthest(light: NDArray[np.float32], bounds: NDArray[np.float64]) -> float:
-        """No less than the distance of a light from any point of bounds (2, 3)."""
+        """No less than the distance of a light (3,) from any point of bounds (2, 3)."""
         return float(np.linalg.norm(np.abs(light - bounds).max(0))) * 1.001
 
     def follow(self, started: NDArray[np.int64], stopped: NDArray[np.int64], outlines: Outlines) -> None:
-        """Of these objects (k,) some move now, others rest."""
+        """Let objects (k,) that have started no longer be static, and those that have stopped be static."""
         for index in started:
             del self._shapes[int(index)], self._bounds_of[int(index)]
         for index in stopped:
@@ -88,7 +100,9 @@ class StaticGeometry:
         self._join()
 
     def update_lights(self, numbers: list[int], lights: NDArray[np.float32], highest: float) -> None:
-        """Know where lights of these numbers are, of lights (n, 3), whose rays end no higher above what is static."""
+        """Fit boxes and light-space triangles to where lights of these numbers are now, of lights (n, 3).
+
+        Their rays end no higher above what is static than `highest`."""
 
         def update(chunk: int, worker: int) -> None:
             light = lights[numbers[chunk]]
@@ -106,6 +120,7 @@ class StaticGeometry:
         return np.stack([every.min(0), every.max(0)]) if len(every) else np.zeros((2, 3))
 
     def _join(self) -> None:
+        """Put the trees of all objects back to back."""
         shape, roots = joined(list(self._shapes.values()))
         every = np.concatenate(list(self._bounds_of.values()))
         self.bounds = np.stack([every.min(0), every.max(0)])

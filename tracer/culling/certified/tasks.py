@@ -1,9 +1,9 @@
-"""Certifying the cells that rays requested, and their parts: round by round, each round in parallel.
+"""Certify the cells that rays requested, and their parts: round by round, each round in parallel.
 
-A task is a cell and the points in it that requested more.  Working on it finds certificates for all lights
-that have none there, and sorts the points by the part of the cell they lie in; nothing is written that others
-read.  `commit` then takes results over in the order of the tasks, so that cells get the same
-numbers whoever worked on what, and says which parts are the tasks of the next round.
+A task is a cell and the requests in it.  Running it finds certificates for all lights that have none there, and sorts
+the requests by the part of the cell that they lie in.  Nothing is written that others read.  `commit` then takes
+results over in the order of the tasks, so that cells get the same numbers whoever ran what, and says which parts are
+the tasks of the next round.
 """
 
 from __future__ import annotations
@@ -28,23 +28,30 @@ from tracer.culling.certified.cells import (
     set_state,
     state_of,
 )
-from tracer.culling.certified.certify import COUNTERS, MOST, certify
+from tracer.culling.certified.certify import MOST, certify
 from tracer.culling.certified.error_bounds import dot, row_of
 from tracer.culling.certified.gather_requests import facing_lights
+from tracer.culling.certified.quadtree import part_of, place_of_part
 from tracer.culling.certified.shaft import put_cell, put_light
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
 
 DEEPEST = 2.0**-12  # of a triangle's edges: no cell is smaller
-SMALLEST = 8.0  # times how far above a surface rays may end: shorter cells would be mostly error bound
+SMALLEST = 8.0  # times how far above a surface rays may end: shorter cells would be mostly error
 KEPT = 0xFF  # instead of a result: the light has its certificate, or needs none
 
 
 class Tasks(NamedTuple):
-    """n tasks: cell (n,) int32, and first and last (n,) int32 of its points; results: state (n, lights) uint8, KEPT for
-    no news, amount (n, lights) uint8 and names (n, lights, MOST) int32 of what each names; doubt (n,) bool, whether
-    there is more to be known of some light; and parts (n, 5) int32,
-    where the points of each part begin and the last end, or all 0 where the cell need not be looked into.
+    """n tasks and their results.
+
+    Attributes:
+        cell: (n,) int32.
+        first, last: (n,) int32, the requests in the cell are those from first to last - 1.
+        state: (n, lights) uint8, results; KEPT where there is none.
+        amount: (n, lights) uint8, how many primitives each names, as in `Cells.names`.
+        doubt: (n,) bool, whether a part of the cell may tell more for some light.
+        names: (n, lights, MOST) int32, the primitives.
+        parts: (n, 5) int32, where the requests of each part begin and the last end; all 0 where parts are not tasks.
     """
 
     cell: NDArray[np.int32]
@@ -58,7 +65,7 @@ class Tasks(NamedTuple):
 
 
 def make_tasks(n: int, lights: int) -> Tasks:
-    """Room for n tasks."""
+    """Memory for n tasks."""
     return Tasks(
         np.empty(n, np.int32),
         np.empty(n, np.int32),
@@ -72,7 +79,7 @@ def make_tasks(n: int, lights: int) -> Tasks:
 
 
 def tasks_in(room: Tasks, todo: NDArray[np.int32]) -> Tasks:
-    """Tasks for todo (n, 3) int32, cell, first and last point, in the room for more."""
+    """Tasks for todo (n, 3) int32, cell, first and last request, in the memory for more."""
     tasks = Tasks._make(a[: len(todo)] for a in room)
     tasks.cell[:], tasks.first[:], tasks.last[:] = todo.T
     return tasks
@@ -82,17 +89,13 @@ def tasks_in(room: Tasks, todo: NDArray[np.int32]) -> Tasks:
 def _part(cells, cell, u, v):
     """Which of a cell's four parts a point of its triangle lies in."""
     size = cells.place[cell, 2]
-    x, y = (u - cells.place[cell, 0]) / size, (v - cells.place[cell, 1]) / size
-    if x + y <= np.float32(0.5):
-        return 0
-    if x >= np.float32(0.5):
-        return 1
-    return 2 if y >= np.float32(0.5) else 3
+    part, _u, _v = part_of((u - cells.place[cell, 0]) / size, (v - cells.place[cell, 1]) / size)
+    return part
 
 
 @subkernel
 def _sort_points(cells, cell, points, first, last, parts):
-    """Sort points first to last - 1 by the parts of a cell; where they begin, into parts (5,)."""
+    """Sort requests first to last - 1 by the parts of a cell, in place; where they begin, into parts (5,)."""
     for k in range(5):
         parts[k] = 0
     for i in range(first, last):
@@ -122,38 +125,31 @@ def _sort_points(cells, cell, points, first, last, parts):
 
 
 @inlined
-def _can_split(cells, o, cell, highest):
+def _can_split(cells, o, cell, scale):
     """Whether a leaf may be divided: its parts are not too small."""
     size = abs(np.float64(cells.place[cell, 2])) * 0.5
     if size < DEEPEST:
         return False
     _a, e1, e2 = row_of(o.rows, cells.owner[cell] >> 1)
     shortest = min(dot(e1, e1), dot(e2, e2)) * size * size
-    return shortest > (SMALLEST * highest) ** 2
+    return shortest > (SMALLEST * scale.max_height) ** 2
 
 
 @subkernel
-def _put_cell(cells, o, cell, reach, s):
+def _put_cell(cells, o, cell, scale, s):
     """Put the worker's shaft to a cell; False where that cannot be certified."""
-    owner, (highest, largest) = np.int64(cells.owner[cell]), reach
-    return put_cell(
-        s.shaft,
-        o.rows,
-        owner >> 1,
-        1.0 - 2.0 * (owner & 1),
-        np.float64(cells.place[cell, 0]),
-        np.float64(cells.place[cell, 1]),
-        np.float64(cells.place[cell, 2]),
-        highest,
-        largest,
-    )
+    owner, place = np.int64(cells.owner[cell]), cells.place[cell]
+    u, v, size = np.float64(place[0]), np.float64(place[1]), np.float64(place[2])
+    return put_cell(s.shaft, o.rows, owner >> 1, 1.0 - 2.0 * (owner & 1), u, v, size, scale)
 
 
 @subkernel
 def _certify(cells, o, place, light, cell, few, s, counts):
-    """Certify the cell that the worker's shaft was put to for a light at a place: (certificate, how many it names)."""
+    """Certify the cell that the worker's shaft was put to for a light at a place: (state, how many it names)."""
     if not put_light(s.shaft, place):
         return np.int64(CANDIDATES), np.int64(TOO_MANY)
+
+    # Start from the candidates of the cell that this one is a part of, where they are known.
     parent, given, count = np.int64(cells.parent[cell]), cells.names[:0], np.int64(TOO_MANY)
     if parent != 0 and state_of(cells.words[parent], light) == CANDIDATES:
         start = np.int64(cells.lists[parent, light])
@@ -164,33 +160,39 @@ def _certify(cells, o, place, light, cell, few, s, counts):
 
 
 @subkernel
-def _run_task(cells, o, lights, stationary, reach, task, tasks, points, patience, few, s, counts):
+def _run_task(cells, o, lights, stationary, scale, task, tasks, points, patience, few, most, s, counts):
+    """Run one task, as `run_tasks` says."""
     cell = np.int64(tasks.cell[task])
     first, last = tasks.first[task], tasks.last[task]
-    owner, word, highest = np.int64(cells.owner[cell]), cells.words[cell], reach[0]
+    owner, word = np.int64(cells.owner[cell]), cells.words[cell]
     facing = facing_lights(o, lights, stationary, owner)
-    put, placed, doubt = False, True, False
+    put, placed, doubt, made = False, True, False, 0
     for light in range(len(lights)):
         tasks.state[task, light] = KEPT
         if not (facing >> np.uint64(2 * light)) & np.uint64(1):
             continue
-        place = np.float64(lights[light, 0]), np.float64(lights[light, 1]), np.float64(lights[light, 2])
         state = np.int64(state_of(word, light))
         if state != UNTRIED:
             doubt |= state == CANDIDATES and not _is_settled(cells, cell, light)
             continue
+        if made == most:
+            continue
+
+        # Certify the cell for this light.
+        made += 1
         if not put:
-            put, placed = True, _put_cell(cells, o, cell, reach, s)
-        amount = np.int64(TOO_MANY)
+            put, placed = True, _put_cell(cells, o, cell, scale, s)
+        state, amount = np.int64(CANDIDATES), np.int64(TOO_MANY)
         if placed:
+            place = np.float64(lights[light, 0]), np.float64(lights[light, 1]), np.float64(lights[light, 2])
             state, amount = _certify(cells, o, place, light, cell, few, s, counts)
-        else:
-            state = np.int64(CANDIDATES)
         tasks.state[task, light], tasks.amount[task, light] = state, amount
         if amount != TOO_MANY:
             for k in range(amount & (SETTLED - 1)):
                 tasks.names[task, light, k] = s.found[k]
         doubt |= state == CANDIDATES and (amount & SETTLED == 0 or amount == TOO_MANY)
+
+    # Let the parts be looked into where they may tell more: those that there are, or new ones.
     tasks.parts[task, :] = 0
     tasks.doubt[task] = doubt
     if doubt and placed:
@@ -198,39 +200,40 @@ def _run_task(cells, o, lights, stationary, reach, task, tasks, points, patience
         if cells.child[cell] >= 0 or (
             leaf
             and cells.requests[cell] + last - first >= patience
-            and _can_split(cells, o, cell, highest)
-            and (put or _put_cell(cells, o, cell, reach, s))
+            and _can_split(cells, o, cell, scale)
+            and (put or _put_cell(cells, o, cell, scale, s))
         ):
             _sort_points(cells, cell, points, first, last, tasks.parts[task])
 
 
 @inlined
 def _is_settled(cells, cell, light):
+    """Whether rays will test a cell's candidates for a light, so that it need not be divided for it."""
     length = cells.names[cells.lists[cell, light]]
     return length & SETTLED != 0 and length != TOO_MANY
 
 
 @kernel
-def run_tasks(cells, o, lights, stationary, reach, first, last, tasks, points, patience, few, s, counts):
-    """Certify tasks first to last - 1 for lights (n, 3), those of them that are `stationary` (n,) bool.
+def run_tasks(cells, o, lights, stationary, scale, first, last, tasks, points, patience, few, most, s, counts):
+    """Run tasks first to last - 1: find certificates, and sort requests into parts.
 
-    reach is how high above rays may end and the scene's largest coordinate; a leaf is divided once so many
-    points have requested it, but not for lights of which rays can ask a `few` candidates."""
+    cells are `Cells`, o the `Occluders`, scale the `SceneScale`, points the `RequestPoints`, s a worker's `Scratch`.
+    Certificates are for those of lights (n, 3) float32 that are `stationary` (n,) bool, `most` at a time.  A leaf is
+    divided once `patience` points have requested it, but not for a light with no more than `few` candidates, which rays
+    will test.  counts (COUNTERS,) int64 are added to."""
     cells, o, tasks, points, s = borrowed(cells), borrowed(o), borrowed(tasks), borrowed(points), borrowed(s)
     for task in range(first, last):
-        _run_task(cells, o, lights, stationary, reach, task, tasks, points, patience, few, s, counts)
+        _run_task(cells, o, lights, stationary, scale, task, tasks, points, patience, few, most, s, counts)
 
 
 @subkernel
 def _divide(cells, cell, stack):
-    """Make the four parts of a leaf, which take over what is certified of it."""
-    u, v, size = cells.place[cell, 0], cells.place[cell, 1], cells.place[cell, 2]
-    half = np.float32(0.5) * size
+    """Make the four parts of a leaf, which take over what is certified of it; the number of the first."""
     owner = cells.owner[cell]
-    child = add_cell(cells, cell, owner, u, v, half)
-    add_cell(cells, cell, owner, u + half, v, half)
-    add_cell(cells, cell, owner, u, v + half, half)
-    add_cell(cells, cell, owner, u + half, v + half, -half)
+    child = cells.used[0]
+    for part in range(4):
+        u, v, size = place_of_part(cells.place[cell, 0], cells.place[cell, 1], cells.place[cell, 2], part)
+        add_cell(cells, cell, owner, u, v, size)
     cells.child[cell] = child
     for light in range(cells.lists.shape[1]):
         if state_of(cells.words[cell], light) != CANDIDATES or _is_settled(cells, cell, light):
@@ -252,29 +255,37 @@ def _put_list(cells, cell, light, amount, names):
 
 
 @kernel
-def commit(cells, o, reach, tasks, following):
-    """Take over the results of tasks; how many tasks (n, 3) int32, cell, first and last point, follow from them."""
+def commit(cells, o, scale, tasks, following):
+    """Take over the results of tasks, in their order; how many tasks follow from them.
+
+    Those go into following (at least 4 per task, 3) int32: cell, first and last request.  cells need room for four new
+    ones for each task, and for all names."""
     stack = np.empty(256, np.int64)
     more = 0
-    highest, _largest = reach
     for task in range(len(tasks.cell)):
         cell = np.int64(tasks.cell[task])
+
+        # Take certificates over, unless a task of a whole that this cell is part of was first.
         for light in range(tasks.state.shape[1]):
             state = tasks.state[task, light]
-            if state == KEPT or state_of(cells.words[cell], light) != UNTRIED:  # or a task of the whole was first
+            if state == KEPT or state_of(cells.words[cell], light) != UNTRIED:
                 continue
             set_state(cells, cell, light, state)
             _put_list(cells, cell, light, tasks.amount[task, light], tasks.names[task, light])
             if cells.child[cell] >= 0 and (state != CANDIDATES or _is_settled(cells, cell, light)):
                 set_below(cells, cell, light, stack)
+
+        # Leave a cell alone whose parts are not looked into.
         parts = tasks.parts[task]
         if parts[4] == 0:
             if cells.child[cell] == LEAF or cells.child[cell] == CONTENT:
                 cells.requests[cell] += tasks.last[task] - tasks.first[task]
                 cells.child[cell] = LEAF if tasks.doubt[task] else CONTENT
-                if not _can_split(cells, o, cell, highest):
+                if not _can_split(cells, o, cell, scale):
                     cells.child[cell] = FINAL
             continue
+
+        # Let its parts be tasks, where they have requests.
         child = np.int64(cells.child[cell])
         if child < 0:
             child = _divide(cells, cell, stack)
@@ -283,8 +294,3 @@ def commit(cells, o, reach, tasks, following):
                 following[more, 0], following[more, 1], following[more, 2] = child + k, parts[k], parts[k + 1]
                 more += 1
     return more
-
-
-def counters(workers: int) -> NDArray[np.int64]:
-    """(workers, COUNTERS) of what certifying takes."""
-    return np.zeros((workers, COUNTERS), np.int64)
