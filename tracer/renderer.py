@@ -108,7 +108,8 @@ class Renderer:
         Raises
         ------
         Cancelled
-            If the frame was cancelled. The renderer has learnt nothing from it.
+            If the frame was cancelled. The renderer has learnt nothing from it, except for certificates that it made
+            while `Settings.certificate_seconds` limited the time for them.
         """
         frame = self.begin(time, camera, cancel)
         with _discarded_unless_done(frame):
