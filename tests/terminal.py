@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import pty
 import re
 import select
 import signal
@@ -13,6 +12,8 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parent.parent
 
 
@@ -20,6 +21,7 @@ class Terminal:
     """A command on a terminal of its own: what it says, and keys for it."""
 
     def __init__(self, *arguments: str) -> None:
+        pty = pytest.importorskip("pty", reason="Windows has no such terminals")
         self._end, inside = pty.openpty()
         command = [sys.executable, "-m", "viewer", *arguments]
         environment = os.environ | {"TERM": "xterm", "COLUMNS": "80"}

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.platforms import linux_only, posix_only
 from tracer import compilation, compile_beside, compile_steps
 from tracer.kernels import cache_folder
 from tracer.scene.model import Cancelled
@@ -119,7 +120,8 @@ def mounted(folder: Path, size: str) -> Iterator[None]:
     """A file system of its own; skips the test where that is not allowed."""
     folder.mkdir()
     command = ["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(folder)]
-    if os.geteuid() != 0 or not shutil.which("mount") or subprocess.run(command, capture_output=True).returncode:
+    is_root = os.name == "posix" and os.geteuid() == 0
+    if not is_root or not shutil.which("mount") or subprocess.run(command, capture_output=True).returncode:
         pytest.skip("only root may mount a file system, and not everywhere")
     try:
         yield
@@ -222,16 +224,18 @@ def test_cancelling_ends_the_processes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     with pytest.raises(Cancelled):
         compile_beside.compile_beside(report, 1, "bvh8", set())
-    assert [process.returncode for process in made] == [-signal.SIGKILL] * 2
+    assert [process.returncode for process in made] == [-signal.SIGKILL if os.name == "posix" else 1] * 2
 
 
+@posix_only
 def test_processes_that_cannot_be_had_cost_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys, "executable", "/bin/false")
+    monkeypatch.setattr(sys, "executable", shutil.which("false"))
     done: set[str] = set()
     compile_beside.compile_beside(lambda *what: None, 1, "bvh8", done)
     assert not done
 
 
+@linux_only
 def test_processes_end_with_the_one_that_wants_them(tmp_path: Path) -> None:
     code = (
         "from tracer import compilation, compile_beside\n"

@@ -25,7 +25,6 @@ from typing import Any
 
 import numba
 import platformdirs
-from filelock import FileLock
 from numba import njit, types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
 from numba.core.ccallback import CFunc
@@ -138,6 +137,8 @@ class _Cache(FunctionCache):
     @contextmanager
     def _alone(self) -> Iterator[None]:
         """Save one at a time: two processes that number two signatures at once may give both the same file."""
+        from filelock import FileLock  # takes as long to import as all of this, and is needed only after compiling
+
         with FileLock(cache_folder() / "lock", poll_interval=0.01):
             yield
 

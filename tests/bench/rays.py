@@ -17,7 +17,7 @@ from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.rays import Hits, Rays, ray_batch
 from tracer.scene.deformation import deformed
 from tracer.scene.model import Camera, Scene, empty_quadrics
-from tracer.shading.whitted import TILE
+from tracer.shading.buffers import TILE
 
 Vectors = NDArray[np.float32]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 
 import numpy as np
@@ -10,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tests.platforms import permissions
 from tracer.scene.aff import load_aff
 from tracer.scene.model import Scene, SceneError
 
@@ -87,7 +87,7 @@ def test_the_same_file_twice_is_no_circle(read):
     assert read("i 0 a.aff i 0 a.aff", a=TRIANGLE).triangle_count == 2
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="nothing is unreadable for root")
+@permissions
 def test_an_unreadable_include(write, tmp_path):
     path = write("i 0 secret.aff", secret=TRIANGLE)
     (tmp_path / "secret.aff").chmod(0)

@@ -8,6 +8,7 @@ import os
 import numpy as np
 import pytest
 
+from tests.platforms import permissions, posix_only
 from tracer.scene.load import load_scene, scene_info
 from tracer.scene.model import Cancelled, SceneError
 
@@ -36,7 +37,7 @@ def test_an_unknown_kind(tmp_path):
         load_scene(tmp_path / "a.txt")
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="nothing is unreadable for root")
+@permissions
 def test_an_unreadable_file(write):
     path = write(TRIANGLE)
     path.chmod(0)
@@ -44,6 +45,7 @@ def test_an_unreadable_file(write):
         load_scene(path)
 
 
+@posix_only
 def test_no_regular_file(tmp_path):
     os.mkfifo(tmp_path / "pipe.aff")
     with pytest.raises(SceneError, match=r"pipe\.aff: cannot be read: it is not a regular file; check the path"):

@@ -1,10 +1,10 @@
 """From pieces under nested transforms to the objects of a scene.
 
-While a file is read nobody knows which `x` moves: its `k` may come later.  So a piece is kept
-with its whole chain of transforms, and only at the end chains are *resolved*: names without
-tracks fall away, neighbouring matrices merge, and the matrix after the last moving name is
-baked into the vertices.  What shares the rest of the chain moves as one object; an empty rest
-is object 0, the static world.
+While a file is being read it is not known yet which transforms `x` are animated: a `k` for one may come later.  So
+every piece keeps its whole chain of transforms, and only at the end chains are *resolved*: names without tracks are
+dropped, neighbouring matrices are multiplied, and the matrix after the last animated name is baked into the vertices.
+Pieces that have the rest of the chain in common move as one object; those with nothing left are object 0, the static
+geometry.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Group:
 
 
 class Remarks:
-    """What is wrong with pieces, counted per source and kind; each source is named with the first place concerned."""
+    """Warnings about pieces, counted by source and kind; each names the first place in its source."""
 
     def __init__(self) -> None:
         self._found: dict[tuple[Hashable, str], tuple[str, int]] = {}
@@ -50,7 +50,7 @@ class Remarks:
 
 
 def resolve(chain: Chain, moving: Container[str]) -> tuple[Chain, Float64]:
-    """The chain without what stands still at its end, and that (4, 4) end."""
+    """The chain without the matrices at its end, and their product (4, 4)."""
     merged: list[Float64 | str] = []
     for element in chain:
         if isinstance(element, str):
@@ -164,7 +164,7 @@ Counted = tuple[Piece, int]
 
 
 def _with_parts(static: SceneObject, counted: list[Counted]) -> SceneObject:
-    """What stands still, with the names of its parts: of the innermost transform, else of the mesh or the file."""
+    """Static geometry, with the names of its parts: of the innermost transform, else of the mesh or the file."""
     named = [
         (next((e for e in reversed(piece.chain) if isinstance(e, str)), piece.shape.place.part), count)
         for piece, count in counted

@@ -1,8 +1,8 @@
-"""Where all objects of a scene are at a time, evaluated together.
+"""The matrices of all objects of a scene at a time, evaluated together.
 
-Objects that hang on one another begin with the same transforms.  Their chains are laid into a tree,
-in which every node is the product of its parent's matrix and one step, and all products at one depth
-are one array operation.  (One chain after the other took longer than all else that places hundreds of objects.)
+The chains of objects that move together begin with the same transforms.  So chains are kept as a tree: every node is
+the product of its parent's matrix and one more transform, and all products at one depth are one array operation.  (For
+hundreds of objects, one chain after the other took longer than everything else that placing them takes.)
 """
 
 from __future__ import annotations

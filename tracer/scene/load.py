@@ -1,4 +1,4 @@
-"""One way in: any scene file by its extension, and what there is to tell of a scene in a few numbers."""
+"""Loading a scene file of any kind, by its extension, and a summary of a scene in a few numbers."""
 
 from __future__ import annotations
 

@@ -1,12 +1,11 @@
-"""What is in the world: plain arrays, knowing nothing of rays.
+"""What is in the world, as plain arrays; nothing here knows of rays.
 
 A scene is a list of *objects*.  Object 0 is everything that never moves, already in world
 space; every other object is dynamic: it has geometry in its own space and either a chain of
 transforms that are evaluated for each frame, or triangles that deform by keyframes.
 
-Primitives have one numbering over the whole scene: first all triangles, object by object, then
-all quadrics (spheres and cones), object by object.  A primitive's number is what frames, modes
-and pictures of modes speak of.
+Primitives are numbered over the whole scene: first all triangles, object by object, then all quadrics (spheres and
+cones), object by object.  Frames, modes and pictures of modes refer to primitives by these numbers.
 """
 
 from __future__ import annotations
@@ -119,7 +118,7 @@ class SceneObject:
 
     chain, outermost first, holds (4, 4) float64 matrices and names of tracks
     (`Scene.animation.tracks`); empty for world space.  Where `deformation` is set, `triangles`
-    holds its first key.  What stands still has `parts`, names of what it is put together from, and
+    holds its first key.  Static geometry has `parts`, the names of what it is put together from, and
     part_of (primitives,) int32, which of them each triangle, and then each quadric, belongs to.
     """
 
@@ -195,7 +194,7 @@ class Scene:
         return int(np.searchsorted(offsets, primitive, side="right")) - 1
 
     def name_of(self, primitive: int) -> str:
-        """The name of the object that holds a primitive; of what stands still, that of its part."""
+        """The name of the object that holds a primitive; of static geometry, the name of the part."""
         o = self.object_of(primitive)
         held = self.objects[o]
         if held.part_of is None:

@@ -1,4 +1,4 @@
-"""Shapes as a file gives them: in the file's own space, in double precision, knowing where they came from."""
+"""Shapes as a file gives them: in the file's own space, in double precision, with where they were read for messages."""
 
 from __future__ import annotations
 

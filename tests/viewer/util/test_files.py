@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.platforms import linux_only, posix_only
 from viewer.output import exports
 from viewer.util.files import check_outputs, check_writable, write_each, write_text, write_whole
 
@@ -120,6 +121,7 @@ def test_two_names_of_one_file_are_not_two_files(tmp_path: Path) -> None:
         check_outputs({"--json": tmp_path / "file", "--csv": tmp_path / "link"})
 
 
+@posix_only
 @pytest.mark.parametrize("linked", [False, True])
 def test_what_is_no_regular_file_is_refused_and_stays(tmp_path: Path, linked: bool) -> None:
     path = pipe = tmp_path / "pipe"
@@ -137,11 +139,11 @@ def test_what_is_no_regular_file_is_refused_and_stays(tmp_path: Path, linked: bo
     ("path", "said"),
     [
         ("-", "not written to standard output"),
-        ("/dev/full", "a device"),
-        ("/proc/x", "no file can be made in the folder /proc|/proc cannot be written to"),
+        pytest.param("/dev/full", "a device", marks=linux_only),
+        pytest.param("/proc/x", "no file can be made in the folder /proc|/proc cannot be written to", marks=linux_only),
         ("loop", "cannot be written: "),
         ("away", "there is no folder .*gone"),
-        ("a" * 300, "cannot be written: File name too long"),
+        pytest.param("a" * 300, "cannot be written: File name too long", marks=posix_only),
     ],
 )
 def test_what_cannot_be_written_is_said_in_one_line(

@@ -112,6 +112,7 @@ def _closest_below(a, code, trees, stack, counts):
     pending, scratch = np.int64(0), stack - 64
     while code != NOTHING:
         while code >= 0:
+            # Test the ray against the node's children, and against quadrics among them right away.
             counts[STEPS] += 1
             node = trees.nodes + NODE * code
             enter, leave = children_of(node, r, best.t)
@@ -129,6 +130,7 @@ def _closest_below(a, code, trees, stack, counts):
             code = code_of(node, c)
             if children == 0:
                 continue
+            # Go on to the nearest child, and put the others on the stack in order of distance.
             store(scratch, maximum(enter, ZERO))
             nearest = _entry(load_i32(scratch + 4 * c), code)
             bottom = pending
@@ -140,6 +142,7 @@ def _closest_below(a, code, trees, stack, counts):
                 pending = push_sorted(stack, pending, bottom, max(entry, nearest))
                 nearest = min(entry, nearest)
             code = np.int64(np.int32(nearest & 0xFFFFFFFF))
+        # Test the triangles of a leaf, and take the nearest pending child that is not beyond the nearest hit.
         if code != NOTHING:
             counts[TESTS] += 1
             best = nearest_in_block(trees.blocks + BLOCK * ~code, r, best)

@@ -1,8 +1,8 @@
 """Building a kd-tree by the surface area heuristic.
 
-A node's references lie on top of a pool that works as a stack: to split, they are popped, the
-upper child's are pushed and then the lower child's, whose whole subtree is built before the upper
-child is on top again.  Large nodes choose among 32 planes an axis by counting (Popov et al. 2006),
+A node's references lie on top of a pool that works as a stack.  To split a node, its references are popped, the
+upper child's are pushed and then the lower child's, whose whole subtree is built before the upper child is on
+top again.  Large nodes choose among 32 planes an axis by counting (Popov et al. 2006),
 small ones sweep over every face of their boxes (MacDonald and Booth 1990).  A triangle that
 straddles the plane is clipped to each side, so that its box there is exact (Wald and Havran 2006).
 """
@@ -173,7 +173,7 @@ def _copy(prims, boxes, first, count, to_prims, to_boxes, to_first):
 
 @subkernel
 def _grown(array, used):
-    """The same numbers (n,) int32 in twice the room."""
+    """A copy of numbers (n,) int32 with twice the room."""
     larger = np.empty(2 * len(array), np.int32)
     for i in range(used):
         larger[i] = array[i]
@@ -182,7 +182,7 @@ def _grown(array, used):
 
 @subkernel
 def _partition(prims, boxes, first, last, box, axis, plane, triangles, side_prims, side_boxes, upper):
-    """Copy what lies on one side of a plane, clipped to it, and return how many that are."""
+    """Copy the references on one side of a plane, clipped to it; how many they are."""
     count = 0
     side, polygon, other = np.empty(6), np.empty((12, 3)), np.empty((12, 3))
     for k in range(6):
@@ -229,6 +229,7 @@ def _build(boxes, bounds, triangles, control):
         todo_box[0, k] = bounds[k]
     pending, top, node_count, item_count = 1, n, 0, 0
     while pending > 0 and control[CANCELLED] == 0:
+        # Take the next subtree, whose references are on top of the pool, and number its root.
         pending -= 1
         count, depth, parent = todo[pending, 0], todo[pending, 1], todo[pending, 2]
         for k in range(6):
@@ -239,6 +240,7 @@ def _build(boxes, bounds, triangles, control):
         if parent >= 0:
             words[2 * parent + 1] |= node_count << 2
         node, node_count = node_count, node_count + 1
+        # Look for the cheapest split; copy the references to its two sides if it costs less than a leaf.
         cost, axis, plane = np.inf, -1, 0.0
         if count > 1 and depth < max_depth:
             cost, axis, plane = _best_split(pool, first, top, box)
@@ -246,6 +248,7 @@ def _build(boxes, bounds, triangles, control):
         if cost < INTERSECTION_COST * count:
             lower = _partition(prims, pool, first, top, box, axis, plane, triangles, lower_prims, lower_boxes, False)
             upper = _partition(prims, pool, first, top, box, axis, plane, triangles, upper_prims, upper_boxes, True)
+        # Make a leaf where no split pays.
         if lower + upper == 0 or (lower == count and upper == count):
             while item_count + count > len(items):
                 items = _grown(items, item_count)
@@ -256,6 +259,7 @@ def _build(boxes, bounds, triangles, control):
             control[DONE] += count
             top = first
             continue
+        # Push the upper child's references and then the lower child's, which is built next.
         while first + lower + upper > len(prims):
             prims, old = _grown(prims, first), pool
             pool = np.empty((len(prims), 6), np.float32)

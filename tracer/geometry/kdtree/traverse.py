@@ -135,11 +135,13 @@ def _walk(s, trees, o, ray, enter, leave, best, nearest):
 
     Of hits at equal t the one on the lower number is the nearest.  `nearest` is a constant, so that either walk is
     compiled without the other."""
+    # Start at the root with the ray's interval in the object's box.
     near, far = hit_box(_between(ray, enter, leave), s.boxes, o)
     if near > far:
         return best
     pending = push(s.stack, 0, s.roots[o], near, far)
     while pending > 0 and (not nearest or s.stack.enter[pending - 1] <= best.t):
+        # Walk to the next leaf and test its primitives.
         leaf = next_leaf(trees, ray, s.stack, pending)
         pending = leaf.pending
         s.counts[STEPS] += leaf.steps
@@ -219,6 +221,7 @@ def closest(data, batch, first, last, counts):
     hit_t, hit_primitive = f32_at(load_i64(batch + HIT_T)), i32_at(load_i64(batch + HIT_PRIMITIVE))
     hit_u, hit_v = f32_at(load_i64(batch + HIT_U)), f32_at(load_i64(batch + HIT_V))
     for i in range(first, last):
+        # Search the static tree, then the objects that rest and those that move.
         ray = ray_at(rays, i)
         best = _no_hit(ray.t_max)
         best = _closest_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max, best)
@@ -240,6 +243,7 @@ def any_hit(data, batch, first, last, counts):
     named, occluders = load_i64(batch + OCCLUDER) != 0, i32_at(load_i64(batch + OCCLUDER))
     for i in range(first, last):
         ray = ray_at(rays, i)
+        # Search what is asked for, static geometry first, and stop at the first hit.
         found, primitive = 0, np.int32(MISS)
         if ray.t_min < ray.t_max:
             if which & STATIC_GEOMETRY:

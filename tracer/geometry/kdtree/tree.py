@@ -89,15 +89,18 @@ def push(stack, pending, node, enter, leave):
 @inlined
 def next_leaf(trees, ray, stack, pending):
     """Enter the newest of the pending nodes and walk down to a leaf, nearer child first."""
+    # Take the newest pending node, with the ray's interval in it.
     pending -= 1
     node, enter, leave = stack.node[pending], stack.enter[pending], stack.leave[pending]
     inverse_x, inverse_y, inverse_z = inverse(ray.dx), inverse(ray.dy), inverse(ray.dz)
     steps = 1
     while True:
+        # Stop at a leaf.
         word = trees.words[2 * node + 1]
         axis = word & 3
         if axis == LEAF:
             return Leaf(trees.words[2 * node], word >> 2, enter, leave, steps, pending)
+        # Find where the ray meets the plane, and which child it is in before.
         origin = ray.ox if axis == 0 else (ray.oy if axis == 1 else ray.oz)
         direction = ray.dx if axis == 0 else (ray.dy if axis == 1 else ray.dz)
         inverted = inverse_x if axis == 0 else (inverse_y if axis == 1 else inverse_z)
@@ -106,6 +109,7 @@ def next_leaf(trees, ray, stack, pending):
         lower_first = origin < plane or (origin == plane and direction <= ZERO)
         near = node + 1 if lower_first else word >> 2
         far = word >> 2 if lower_first else node + 1
+        # Go on to the only child that the ray meets; or to the nearer one, with the other pending.
         if t > leave or t <= ZERO:
             node = near
         elif t < enter:

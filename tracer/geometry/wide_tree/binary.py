@@ -206,7 +206,7 @@ def _partition(first, last, axis, plane, low, scale, count, target):
 
 @subkernel
 def _halve(first, last, target):
-    """Copy the items as they are, to be split in the middle, between blocks where there are several."""
+    """Copy the items in their order and return the number of the lower half, whole blocks where there are several."""
     for item in range(first, last, ITEM):
         store(target + item - first, load_f32x8(item))
     count = (last - first) // ITEM
@@ -216,7 +216,7 @@ def _halve(first, last, target):
 
 @subkernel
 def _levels(count):
-    """How often so many items must be halved until each is alone."""
+    """How often so many items must be halved until each is by itself."""
     levels = 0
     while count > 1 << levels:
         levels += 1
@@ -259,13 +259,16 @@ def grow(items, todo, pending, splits, max_depth, control):
         depth, side = todo[pending, DEPTH], todo[pending, SIDE]
         source, node = sides[side], nodes + ITEM * number
         start, end = source + ITEM * first, source + ITEM * last
+        # Find the box of the node's items and the bounds of their centres.
         weight = _measure(start, end, node, low, high)
+        # Make a leaf of few items.
         if weight <= LEAF_WEIGHT or last - first == 1:
             for i in range(first, last):
                 store(order + 4 * i, load_i32(source + ITEM * i + NUMBER))
             store(node + NUMBER, np.int32(first))
             store(node + WEIGHT, np.int32(weight))
             continue
+        # Split the others; where the tree would become too deep, in the middle.
         halving = depth + _levels(last - first) >= max_depth
         middle = first + _split(start, end, low, high, sides[1 - side] + ITEM * first, halving)
         upper = number + 2 * (middle - first)

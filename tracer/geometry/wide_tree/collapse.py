@@ -73,6 +73,7 @@ def plan(binary, levels):
         pending -= 1
         number, children_done = stack[pending, 0], stack[pending, 1]
         node = nodes + ITEM * number
+        # Price a leaf; come back to an inner node once both its children are priced.
         if _weight(node) > 0:
             weights[done], costs[done] = _weight(node), _leaf_cost(half_area(node), _weight(node))
             done += 1
@@ -82,6 +83,7 @@ def plan(binary, levels):
             stack[pending + 2, 0], stack[pending + 2, 1] = number + 1, 0
             pending += 3
         else:
+            # Plan an inner node from the costs of its children.
             done -= 1
             weights[done - 1] += weights[done]
             planned = _plan_node(half_area(node), weights[done - 1], costs[done - 1], costs[done], result)
