@@ -101,8 +101,8 @@ def bench() -> Parser:
         type=lambda text: [name.strip() for name in text.split(",")],
         default=["paper"],
         metavar="M,...",
-        help="like paper,cells,certified+cache,auto; none is always measured too; free is measured only: it replays the "
-        "answers of the frame, so that no culling can be faster (default: paper)",
+        help="like paper,cells,certified+cache,auto; none is always measured too; free is measured only: it replays "
+        "the answers of the frame, so that no culling can be faster (default: paper)",
     )
     add("--path-frames", type=count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
     add("--frames", metavar="A:B", help="only the frames A to B - 1 of the path")
