@@ -31,8 +31,7 @@ class Renderer:
     """Renders a scene frame by frame, and remembers modes and certificates between frames.
 
     `settings` may be replaced between frames. If they name another accelerator, the renderer builds another world,
-    unless
-    the world was given: then its accelerator is used, and `Frame.settings` says so.
+    unless the world was given: then its accelerator is used, and `Frame.settings` says so.
 
     Parameters
     ----------
@@ -139,12 +138,9 @@ class Renderer:
         """Render one picture step by step, finer each time.
 
         Each step shades more of the pixels, those first where it helps the most (`tracer.progressive`), and fills in
-        the others
-        from shaded pixels on the same surfaces. The whole picture is that of `render`, bit for bit. Only the whole
-        picture
-        teaches the renderer anything: if the generator is closed before it, nothing is remembered. Frames with 2 to
-        `samples`
-        samples per pixel follow; the last is that of `render` with so many samples.
+        the others from shaded pixels on the same surfaces. The whole picture is that of `render`, bit for bit. Only the
+        whole picture sets modes: a generator that is closed before it leaves, at most, certificates behind. Frames with
+        2 to `samples` samples per pixel follow; the last is that of `render` with so many samples.
 
         Parameters
         ----------

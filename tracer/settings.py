@@ -28,9 +28,8 @@ class Settings:
     zoom_factor : float
         A primitive that covers more than this many times its highest pixel count is judged again (§2.6).
     modes : bool
-        Keep the paper's modes also beside a method that does not cull by them: exactly those that "paper+rest"
-        would have.
-        Objects that rest then count as static for every method.
+        Keep the paper's modes also beside a method that does not cull by them: exactly those that "paper+rest" would
+        have. Objects that rest then count as static for every method.
     verify : bool
         Trace every culled answer as well, count the wrong ones, and fill `Frame.reference` and `Frame.wrong`.
     samples : int
@@ -38,9 +37,8 @@ class Settings:
     threads : int
         Threads that work at once; 0 for one on each core.
     accelerator : str
-        "bvh8", the fast structure, which counts steps and tests for whole packets of rays, or "kdtree", the
-        paper's, which
-        counts them ray by ray.
+        "bvh8", the fast structure, which counts steps and tests for whole packets of rays, or "kdtree", the paper's,
+        which counts them ray by ray.
     record_lights : bool
         Fill `Frame.due` and `Frame.lit`.
     record_work : bool
@@ -49,8 +47,7 @@ class Settings:
         Certificates that a frame makes, at most.
     certificate_seconds : float
         Seconds that a frame spends on certificates, at most; a quarter of them is reserved for making them. With a
-        limit,
-        chance decides how many are made. Without one (inf), counters repeat exactly.
+        limit, chance decides how many are made. Without one (inf), counters repeat exactly.
     patient : bool
         Nobody waits for the frame, so that "auto" may spend the whole budget and not only what certificates are worth.
     certificate_memory : float

@@ -134,8 +134,7 @@ def aim(frame: Frame, primitive: int) -> Aim:
 
     If the camera looks straight at the primitive already, with all pixels around its axis, it keeps its direction.
     Otherwise it turns to the middle of what is visible of the primitive: the visible point that is nearest to the mean
-    of
-    all visible points. Nothing may lie in between on the way there.
+    of all visible points. Nothing may lie in between on the way there.
 
     Parameters
     ----------
@@ -223,10 +222,8 @@ def run(
     """Move towards a primitive, once with each zoom factor, and yield the results after each frame.
 
     It always yields the same growing object, so that whoever stops early keeps what is done. The camera first stays
-    where it
-    is for STILL_FRAMES. Then each step ends at `ratio` of the distance before it, so that the camera comes near but
-    never
-    arrives. The method is always "paper", and every culled answer is verified.
+    where it is for STILL_FRAMES. Then each step ends at `ratio` of the distance before it, so that the camera comes
+    near but never arrives. The method is always "paper", and every culled answer is verified.
 
     Parameters
     ----------

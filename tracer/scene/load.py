@@ -35,8 +35,8 @@ def load_scene(path: str | Path, progress: Progress | None = None) -> Scene:
     Raises
     ------
     SceneError
-        If the file cannot be read. The message is one line that names the file, its line if it has lines, and what
-        to do.
+        If the file cannot be read. The message is one line that names the file, its line if it has lines, and what to
+        do.
     """
     path = Path(path)
     check_scene_file(path)
@@ -83,11 +83,9 @@ def scene_info(scene: Scene) -> dict[str, Any]:
     Returns
     -------
     dict
-        Plain lists and numbers. `dynamic_triangles` are those of objects that can move or deform, `materials`
-        counts every
-        material statement that was run, `textures` counts different images, and `bounds` is [lower corner, upper
-        corner] of
-        everything at the start time, or None for an empty scene.
+        Plain lists and numbers. `dynamic_triangles` are those of objects that can move or deform, `materials` counts
+        every material statement that was run, `textures` counts different images, and `bounds` is [lower corner, upper
+        corner] of everything at the start time, or None for an empty scene.
     """
     kinds = np.concatenate([o.quadrics.kind for o in scene.objects])
     static = len(scene.objects[0].triangles)
