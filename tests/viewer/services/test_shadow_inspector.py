@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tracer.explanation import explain
+from tracer.explanation import NO_CERTIFICATE, explain
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, scene_info
 from viewer.services.controller import Controller
@@ -119,6 +119,23 @@ def test_another_time_is_another_answer(desk: Desk):
     desk.until(lambda: not desk.c.active)
     desk.c.motion.step(3)
     desk.until(lambda: not desk.c.active and desk.answer is None)
+
+
+def test_nothing_is_proven_by_a_method_that_is_not_chosen_any_more(desk: Desk):
+    """Certificates that are no longer followed may be untrue by now."""
+    desk.c.settings.change(method="certified")
+    desk.until(lambda: not desk.c.active, ticks=20)
+    desk.c.selection.select(desk.shadow)
+    assert {one.certificate for one in desk.answered().lights} - {NO_CERTIFICATE}
+    old = desk.answer
+    desk.c.settings.change(method="paper")
+    desk.until(lambda: desk.answer is not None and desk.answer is not old)
+    assert {one.certificate for one in desk.answer.lights} == {NO_CERTIFICATE}
+    desk.c.motion.toggle_play()
+    desk.until(lambda: desk.c.session.frame >= 3)
+    desk.c.motion.toggle_play()
+    desk.until(lambda: not desk.c.active)
+    assert {one.certificate for one in desk.answered().lights} == {NO_CERTIFICATE}
 
 
 def test_a_run_has_the_world_to_itself(desk: Desk):

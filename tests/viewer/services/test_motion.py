@@ -1,0 +1,117 @@
+"""Camera and time, moved by hand, glided and played: driven by a session, preferences and a clock."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import pytest
+
+from tests.viewer.fakes import make_frame, make_scene
+from tracer.scene.model import Camera
+from viewer.services.motion import GLIDE_SECONDS, IDLE_AFTER, Motion
+from viewer.state.notices import Notices
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session
+
+ELSEWHERE = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def monotonic(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    clock = Clock()
+    monkeypatch.setattr(time, "monotonic", clock.monotonic)
+    return clock
+
+
+class Moving:
+    def __init__(self) -> None:
+        self.session, self.preferences, self.notices = Session(), Preferences(), Notices()
+        self.session.open(make_scene())
+        self.locked = False
+        self.motion = Motion(self.session, self.preferences, self.notices, lambda: self.locked)
+
+
+@pytest.fixture
+def moving(clock: Clock) -> Moving:
+    return Moving()
+
+
+def test_a_hand_that_moves_the_camera_is_motion_for_a_moment(moving: Moving, clock: Clock):
+    moving.motion.move(ELSEWHERE)
+    assert moving.session.camera == ELSEWHERE and moving.motion.under_way
+    clock.now += IDLE_AFTER
+    assert not moving.motion.under_way and not moving.motion.lively
+
+
+def test_a_glide_ends_where_it_goes_and_a_hand_ends_it(moving: Moving, clock: Clock):
+    start = moving.session.camera
+    for halt in (False, True):
+        moving.session.move(start)
+        moving.motion.glide(ELSEWHERE)
+        clock.now += 0.5 * GLIDE_SECONDS
+        moving.motion.follow(None)
+        assert moving.session.camera not in (start, ELSEWHERE) and moving.motion.under_way
+        if halt:
+            moving.motion.move(start)
+        clock.now += GLIDE_SECONDS
+        moving.motion.follow(None)
+        assert moving.session.camera == (start if halt else ELSEWHERE)
+
+
+def test_time_is_played_as_it_passes_or_frame_by_frame(moving: Moving, clock: Clock):
+    session, motion = moving.session, moving.motion
+    moving.preferences.playback_rate = 2.0
+    motion.toggle_play()
+    clock.now += 0.1
+    motion.follow(None)
+    assert session.time == pytest.approx(0.2) and motion.under_way
+    session.go_to_frame(0)
+    moving.preferences.every_frame = True
+    motion.follow(None)
+    assert session.frame == 0 and motion.lively and not motion.under_way, "this frame has not been traced yet"
+    motion.follow(session.time)
+    assert session.frame == 1
+    motion.step(-1)
+    assert session.frame == 0 and not session.playing
+    session.go_to_frame(session.scene.frames - 1)
+    motion.toggle_play()
+    assert session.frame == 0, "played from the beginning once the end is reached"
+
+
+def test_nothing_moves_while_it_is_locked(moving: Moving):
+    session, before = moving.session, (moving.session.camera, moving.session.time)
+    moving.locked = True
+    moving.motion.move(ELSEWHERE)
+    moving.motion.glide(ELSEWHERE)
+    moving.motion.follow_path(False)
+    moving.motion.step(1)
+    moving.motion.toggle_play()
+    moving.motion.follow(None)
+    assert (session.camera, session.time) == before and session.follow and not session.playing
+
+
+def test_a_scene_without_animation_says_so(moving: Moving):
+    moving.session.open(make_scene(frames=1))
+    moving.motion.toggle_play()
+    assert moving.notices.current.text == "this scene has no animation" and not moving.session.playing
+
+
+def test_the_pace_is_that_of_the_first_frame_until_another_scene(moving: Moving):
+    motion, frame = moving.motion, make_frame()
+    motion.enter(((-80.0, -80.0, -80.0), (80.0, 80.0, 80.0)))
+    wide = motion.pace
+    motion.look_around(frame)
+    assert motion.pace == pytest.approx(2.0 * 2.0 / 8.0) and motion.pace < wide, "all that is seen is 2 units away"
+    motion.look_around(replace(frame, depth=frame.depth * 100.0))
+    assert motion.pace == pytest.approx(0.5)
+    motion.enter(((-80.0, -80.0, -80.0), (80.0, 80.0, 80.0)))
+    assert motion.pace == wide

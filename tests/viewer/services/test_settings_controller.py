@@ -1,0 +1,89 @@
+"""Changes of settings, view and light; places that are kept."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from tests.viewer.fakes import make_scene
+from tracer.scene.model import Camera
+from viewer.services.bookmarks import Bookmarks
+from viewer.services.settings_controller import SettingsController
+from viewer.state.notices import Notices
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session
+from viewer.state.views import View
+
+
+class Parts:
+    def __init__(self) -> None:
+        self.preferences, self.notices = Preferences(), Notices()
+        self.session = Session(settings=self.preferences.settings())
+        self.session.open(make_scene(lights=3))
+        self.locked = False
+        self.settings = SettingsController(self.session, self.preferences, self.notices, lambda: self.locked)
+        self.bookmarks = Bookmarks(self.session, self.preferences, self.settings, self.notices)
+
+
+def test_a_setting_is_changed_and_remembered_unless_it_is_no_good_or_locked():
+    parts = Parts()
+    parts.settings.change(depth=3, symmetric=True)
+    assert parts.session.settings.depth == parts.preferences.depth == 3 and parts.preferences.symmetric
+    for wrong in ({"depth": -1}, {"method": "fast"}):
+        parts.settings.change(**wrong)
+        assert parts.session.settings.depth == 3 and parts.session.settings.method == parts.preferences.method
+        assert parts.notices.current.error
+    parts.locked = True
+    parts.settings.change(depth=5)
+    parts.settings.reset(())
+    assert parts.session.settings.depth == 3
+
+
+def test_culling_is_turned_off_and_on_as_it_was():
+    parts = Parts()
+    parts.settings.change(method="paper+rest")
+    parts.settings.toggle_culling()
+    assert parts.session.settings.method == "none" and not parts.preferences.culling
+    parts.settings.toggle_culling()
+    assert parts.session.settings.method == "paper+rest"
+
+
+def test_lights_are_counted_around():
+    parts = Parts()
+    for light, chosen in ((2, 2), (3, 0), (-1, 2)):
+        parts.settings.set_light(light)
+        assert parts.session.light == chosen
+
+
+def test_a_reset_keeps_what_it_is_told_to(own_settings: Path):
+    parts = Parts()
+    parts.bookmarks.add("here")
+    parts.settings.set_view(View.DEPTH)
+    parts.settings.change(depth=3)
+    parts.settings.reset(["bookmarks"])
+    assert parts.session.view is View.COLOR and parts.session.settings.depth == Preferences().depth
+    stored = json.loads((own_settings / "settings.json").read_text())
+    assert stored["view"] == "color" and len(stored["bookmarks"]) == 1
+
+
+def test_settings_that_cannot_be_written_are_one_line(own_settings: Path):
+    own_settings.write_text("a file where the folder should be")
+    parts = Parts()
+    parts.settings.save()
+    assert parts.notices.current.text.startswith("settings not saved: ") and parts.notices.current.error
+
+
+def test_bookmarks_are_found_again_without_settings_and_a_damaged_one_is_one_line():
+    parts, place = Parts(), Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
+    parts.session.move(place)
+    parts.bookmarks.add()
+    parts.bookmarks.add("  named ")
+    assert [mark["name"] for mark in parts.bookmarks.all] == ["frame 0", "named"]
+    found = parts.bookmarks.find(0)
+    assert found.camera == place and not found.follow and found.settings == {}
+    parts.bookmarks.all[1]["state"] = {"time": "noon"}
+    assert parts.bookmarks.find(1) is None and parts.notices.current.text.startswith("this bookmark is damaged")
+    parts.bookmarks.forget(0)
+    assert [mark["name"] for mark in parts.bookmarks.all] == ["named"]
+    parts.session.open(make_scene(path="other.aff"))
+    assert parts.bookmarks.all == []
