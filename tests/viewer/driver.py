@@ -71,7 +71,7 @@ class Driver:
             return quiet >= 5
 
         self.frames(3)
-        self.wait(rested, "a picture at rest")
+        self.wait(rested, "an idle picture")
         self.frames(3)
 
     def shown(self) -> np.ndarray:
@@ -109,7 +109,7 @@ class Driver:
         self.frames(5)
 
     def sizes(self) -> Iterator[tuple[int, int]]:
-        """Give the window each of SIZES, one after another, with a picture at rest in it."""
+        """Give the window each of SIZES, one after another, with an idle picture in it."""
         for size in SIZES:
             self.resize(*size)
             self.settle()

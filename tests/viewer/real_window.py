@@ -39,7 +39,7 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
         app.ui.tour.end()  # it comes by itself on the first start
     app.controller.preferences.screenshot_folder = str(Path(folder) / "pictures")
     app.controller.preferences.dynamic_resolution = True
-    app.controller.settings.change(samples=1)  # else pictures at rest go on changing
+    app.controller.settings.change(samples=1)  # else idle pictures go on changing
     failed: list[BaseException] = []
 
     def test(context) -> None:

@@ -1,11 +1,13 @@
-"""What the commands' `--help` tells below their options."""
+"""What the commands' `--help` says below their options."""
+
+from __future__ import annotations
 
 COMMANDS = """\
 commands:
   shadowcull [SCENE]       open the viewer
   shadowcull render SCENE  trace one frame into a picture, its buffers, or both; needs no display
   shadowcull bench SCENE   measure, over a path of frames, what culling saves
-  shadowcull zoom SCENE    go towards a primitive, and see whether its shadows stay right
+  shadowcull zoom SCENE    move towards a primitive, and see whether its shadows stay right
   shadowcull info SCENE    say what a scene holds
 
 examples:
@@ -29,11 +31,11 @@ examples:
   shadowcull render kitchen.aff -o same.png --camera saved.png
   shadowcull render bunny.ply -o bunny.png --camera '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
 
-The modes of primitives are learnt from frame to frame, so that culling acts only after some frames:
---warmup N traces the N frames before the one that is wanted first.
+Modes are set and certificates made from frame to frame, so culling acts only after some frames: --warmup N first
+traces the N frames before the one that is rendered.
 
-A picture that was saved by the window or by render carries its scene, camera, time, settings and view: in the
-place of SCENE it is rendered anew, and options change what they name. Without -o it goes to NAME-rendered.png.
+A picture saved by the window or by render carries its scene, camera, time, settings and view. Given instead of
+SCENE, it is rendered again, and options replace what it carries. Without -o the result is NAME-rendered.png.
 
 The .npz holds color (H,W,3 float32), depth (H,W float32, distance along the unit ray, inf for a miss),
 primitive and cell (H,W int32, -1 for a miss), occlusion_mode (H,W uint8, 255 for a miss), shadow_mode
@@ -43,9 +45,9 @@ wrong shadow answers of each pixel. A frame of the method certified has certific
 1 in full shadow, 2 lit, 3 a few candidates), and the views saved and cost have arrays of their names (H,W int32).
 
 --view difference and --view wipe verify by themselves: the first shows the pixels with wrong shadow answers,
-the second the picture left of a line and what it should be right of it; wipe:0.3 puts the line at 30 % of
-the width. Rings show where wrong pixels are; --no-marks leaves them out. --view saved and --view cost are maps
-of the shadow rays that culling saves at each pixel, and of all rays that are traced for it.
+the second the traced picture left of a line, and the correct one right of it; wipe:0.3 puts the line at 30 % of
+the width. Rings show where wrong pixels are, unless --no-marks is given. --view saved and --view cost are maps of
+the shadow rays that culling saves at each pixel, and of all rays that are traced for it.
 """
 
 BENCH = """\
@@ -56,13 +58,13 @@ examples:
   shadowcull bench default --methods none,paper --symmetric --json default.json --csv default.csv
   shadowcull bench kitchen.aff --path-frames 100 --verify --plot kitchen.svg
 
-Savings are those of shadow rays against the method none, averaged over frames, as in the paper's
-Table 1. Ctrl-C ends the run and keeps the frames that are done: the table and the files are of these,
-and the exit code is 130; a second one ends it at once.
+Savings compare the work of shadow rays with that of the method none, averaged over frames, as in the
+paper's Table 1. Ctrl-C ends the run and keeps the finished frames: the table and the files cover these,
+and the exit code is 130; a second Ctrl-C ends it at once.
 
-The JSON holds scene, size, frames, and for each method a list with an entry per frame of each figure;
-the CSV is the table. The plot shows what is saved frame by frame, with the average and the most, and
-with --verify the wrong answers.
+The JSON holds scene, size, frames, and for each method and figure a list with one entry per frame; the
+CSV is the table. The plot shows the savings of each frame, their average and maximum, and with --verify
+the wrong answers.
 """
 
 ZOOM = """\
@@ -71,16 +73,16 @@ examples:
   shadowcull zoom kitchen.aff --frame 100 --primitive 15548 --size 256x256 --ratio 0.9 --factors 4,64
   shadowcull zoom figure4 --pixel 64,64 --size 128x128 --json zoom.json --csv zoom.csv
 
-A primitive that was seen whole from afar is culled by what its few pixels met then, until it covers more
-than the zoom factor times its highest pixel count; then it is judged anew. The camera goes straight
-towards it, from its place at that time: where it looks at the primitive already straight ahead, else
-turned to the middle of what is to be seen of it. The first frames are still, for the modes to settle.
-Every culled shadow ray is verified, and a pixel with a wrong answer is a wrong pixel. Ctrl-C ends the test
-and keeps the frames that are done; the exit code is 130 then.
+A primitive that was fully rendered from afar is culled by what its few pixels met then, until it covers more
+pixels than the zoom factor times its highest pixel count; then it is examined again. The camera starts where
+it is at that time and moves straight towards the primitive: along its view if that meets the primitive, else
+turned to the middle of the visible part. The first frames stay in place until the modes settle. Every culled
+shadow ray is verified, and a pixel with a wrong answer is a wrong pixel. Ctrl-C ends the test and keeps the
+finished frames; the exit code is then 130.
 
-The tables show the steps where something happens, and what comes of each factor; the JSON and the CSV hold
-every step, the plot draws them. There, wrong_of_primitive are the wrong pixels of this primitive, wrong those
-of the whole picture. A primitive that is never seen whole is never culled: nothing is tested then.
+The tables show the steps where something changes, and a summary of each factor; the JSON and the CSV hold every
+step, and the plot draws them. In these, wrong_of_primitive counts the wrong pixels of this primitive, wrong those
+of the whole picture. A primitive that is never fully rendered is never culled, so nothing is tested.
 """
 
 INFO = """\
@@ -88,3 +90,12 @@ examples:
   shadowcull info kitchen.aff
   shadowcull info default --json
 """
+
+
+def methods() -> str:
+    """A line for each method, as the registry describes it."""
+    from tracer.method import additions, bases
+
+    lines = [(kind.name, kind.summary) for kind in bases(measures=True)]
+    lines += [(f"+{kind.name}", kind.summary) for kind in additions()]
+    return "\nmethods:\n" + "".join(f"  {name:10} {summary}\n" for name, summary in lines)

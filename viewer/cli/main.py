@@ -102,7 +102,7 @@ def _picture_instead(scene: str | None) -> int:
     say(f"{no_display_reason()}; rendering to a file instead")
     PICTURE.parent.mkdir(exist_ok=True)
     where = ["--frame", "12", "--warmup", "12"] if scene is None else ["--warmup", "8"]
-    where += ["--size", "640x480", "--method", "certified"]  # of which there is most to tell
+    where += ["--size", "640x480", "--method", "certified"]  # which culls most
     return _render([scene or resources.DEFAULT_SCENE, "-o", str(PICTURE.absolute()), *where])
 
 

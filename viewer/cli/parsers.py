@@ -53,10 +53,10 @@ def render() -> Parser:
     parser = Parser(
         prog="shadowcull render",
         description="Trace one frame of a scene, print its statistics, and write a picture, its buffers, or both.",
-        epilog=examples.RENDER,
+        epilog=examples.RENDER + examples.methods(),
     )
     add = parser.add_argument
-    add("scene", nargs="?", metavar="SCENE", help=f"{_scene_help()}, or a saved picture, whose state it is then")
+    add("scene", nargs="?", metavar="SCENE", help=f"{_scene_help()}, or a saved picture, to render it again")
     add("-o", "--output", type=Path, metavar="FILE", help="the picture; a .png also remembers how it was made")
     _add_moment(parser)
     add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
@@ -65,8 +65,8 @@ def render() -> Parser:
         "--method",
         type=method,
         metavar="M",
-        help="how shadow rays are culled: none, paper, cells, certified or auto; +cache and +rest add to any, as in "
-        "certified+cache (default: auto, or paper or certified for views that show what these do)",
+        help=f"how shadow rays are culled: {_methods()} (default: auto, or paper or certified for views that show "
+        "what these do)",
     )
     add(
         "--view",
@@ -79,7 +79,7 @@ def render() -> Parser:
     add("--legend", action="store_true", help="draw the view's legend into the picture")
     add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
     add("--camera", metavar="JSON", help=f"another camera: {_CAMERA}")
-    add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="trace the N frames before it first")
+    add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
     add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
     _add_tracing_options(parser, "bvh8")
     _add_zoom_factor(parser)
@@ -92,7 +92,7 @@ def bench() -> Parser:
     parser = Parser(
         prog="shadowcull bench",
         description="Render a path of frames by several methods and print what each saves, as the paper's Table 1.",
-        epilog=examples.BENCH,
+        epilog=examples.BENCH + examples.methods(),
     )
     add = parser.add_argument
     add("scene", nargs="?", metavar="SCENE", help=_scene_help())
@@ -101,8 +101,7 @@ def bench() -> Parser:
         type=lambda text: [name.strip() for name in text.split(",")],
         default=["paper"],
         metavar="M,...",
-        help="like paper,cells,certified+cache,auto; none is always measured too; free is measured only: it replays "
-        "the answers of the frame, so that no culling can be faster (default: paper)",
+        help=f"which methods: {_methods()}; none is always measured too (default: paper)",
     )
     add("--path-frames", type=count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
     add("--frames", metavar="A:B", help="only the frames A to B - 1 of the path")
@@ -120,7 +119,7 @@ def zoom() -> Parser:
     """Of `zoom`."""
     parser = Parser(
         prog="shadowcull zoom",
-        description="Move towards a primitive in steps, and tell whether its shadows stay right for each zoom factor.",
+        description="Move towards a primitive in steps, and show whether its shadows stay right for each zoom factor.",
         epilog=examples.ZOOM,
     )
     add = parser.add_argument
@@ -171,16 +170,25 @@ def _add_moment(parser: Parser) -> None:
 def _add_tracing_options(parser: Parser, accelerator: str) -> None:
     """What all commands that trace have in common, with the structure that is theirs by default."""
     add = parser.add_argument
-    told = f"the tree that rays are traced through (default: {accelerator})"
-    add("--accelerator", choices=("kdtree", "bvh8"), default=accelerator, help=told)
+    help_ = f"the tree that rays are traced through (default: {accelerator})"
+    add("--accelerator", choices=("kdtree", "bvh8"), default=accelerator, help=help_)
     add("--threads", type=count(0, 1024), default=0, metavar="N", help="0, the default: one per core")
     add("--depth", type=count(0, 100), default=10, metavar="D", help="the most bounces (default: 10)")
     add("--symmetric", action="store_true", help="occlusion tests in both directions between neighbouring pixels")
 
 
 def _add_zoom_factor(parser: Parser) -> None:
-    told = "a primitive that covers this many times its highest pixel count is judged anew (default: 4)"
-    parser.add_argument("--zoom-factor", type=number(1.0, 1e9), default=4.0, metavar="F", help=told)
+    help_ = "a primitive that covers this many times its highest pixel count is examined again (default: 4)"
+    parser.add_argument("--zoom-factor", type=number(1.0, 1e9), default=4.0, metavar="F", help=help_)
+
+
+def _methods() -> str:
+    """The bases, and what can be added to them."""
+    from tracer.method import additions, bases
+
+    names = [kind.name for kind in bases(measures=True)]
+    added = " or ".join(f"+{kind.name}" for kind in additions())
+    return f"{', '.join(names[:-1])} or {names[-1]}, each with or without {added}, as in certified+cache"
 
 
 def _scene_help() -> str:

@@ -36,7 +36,7 @@ from viewer.util.messages import say
 
 WHICH = (
     "zoom: towards which primitive? give --pixel X,Y, for what a pixel of the picture shows, or --primitive N; the "
-    "viewer's inspector tells its number, and so does the array 'primitive' of render --buffers"
+    "viewer's inspector shows its number, and so does the array 'primitive' of render --buffers"
 )
 
 

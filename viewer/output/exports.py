@@ -1,6 +1,6 @@
 """Results of runs as files: every figure as JSON, the table as CSV, the plot as a picture.
 
-The commands `bench` and `zoom` write them where they are told to; the window under a name that tells
+The commands `bench` and `zoom` write them where their options say; the window under a name that tells
 what and when, and never over a file that is there.
 """
 

@@ -22,7 +22,7 @@ from viewer.output.reports import frames_in_words
 from viewer.util.files import write_whole
 
 ENDINGS = (".png", ".svg", ".pdf")
-# Okabe and Ito's colours, those that read well as letters first; in greys, dashes and marks tell methods apart.
+# Okabe and Ito's colours, those that read well as letters first; in greys, dashes and marks distinguish methods.
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 DASHES: tuple[Any, ...] = ("-", (0, (4, 1.5)), (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5)), (0, (8, 2)), (0, (2, 2)))
 MARKS = ("o", "s", "^", "D", "v", "P")
@@ -100,12 +100,12 @@ def savings_figure(results: Results, verified: bool) -> Figure:
 
 def _title(results: Results, rows: list[Row], verified: bool) -> str:
     width, height = results.size
-    told = f"{Path(results.scene).name}, {width} × {height} pixels, {frames_in_words(results)}"
+    text = f"{Path(results.scene).name}, {width} × {height} pixels, {frames_in_words(results)}"
     if not verified:
-        told += ", answers not verified"
+        text += ", answers not verified"
     elif not any(row.wrong for row in rows):
-        told += ", no wrong answer"
-    return f"Work of shadow rays saved by culling\n{told}"
+        text += ", no wrong answer"
+    return f"Work of shadow rays saved by culling\n{text}"
 
 
 def _draw_savings(panel: Axes, results: Results, rows: list[Row], work: str) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from tracer.frame import Frame
 from tracer.method import Method
-from viewer.output.legends import (
+from viewer.output.legend_counts import (
     LegendRow,
     certificate_legend,
     difference_legend,
@@ -233,15 +233,15 @@ def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
     elif not shadow.culled + shadow.candidates_only + shadow.dynamic_only + shadow.cache_hits:
         note = Note("No shadow ray of this frame was culled, so none can be wrong.", Tone.WARNING)
     elif not found.pixels:
-        note = Note("Nothing is wrong: every culled shadow ray was answered as tracing answers it.", Tone.GOOD)
+        note = Note("Nothing is wrong: every culled shadow ray has the answer that tracing gives.", Tone.GOOD)
     else:
         return Legend(view.label, (), entries, facts=facts)
     return Legend(view.label, (), entries, notes=(note,))
 
 
-_BY_MODES = "of this frame, at all bounces, by the modes as the frame before left them: what the paper's method saves"
+_BY_MODES = "of this frame, at all bounces, by the modes after the frame before: what the paper's method saves"
 _IN_ALL_SAVED = "of the first sample of each pixel; the share is of the shadow rays due"
 _IN_ALL = "of the first sample of each pixel; the share is of the rays traced without culling"
 _WRONG_PIXELS = "with a wrong answer for any light, at any bounce, in any sample"
-_ANSWERS = "shadow rays that culling answered otherwise than tracing does; of the first sample of each pixel"
+_ANSWERS = "shadow rays for which culling and tracing disagree; of the first sample of each pixel"
 _LARGEST = "between a wrong pixel's colour and the right one; a wrong answer deep in reflections may change nothing"

@@ -1,6 +1,6 @@
 """Where the parts of a legend lie: rectangles of colour and lines of text, for whatever draws them.
 
-All lengths are those of the unit in which `measure` tells how wide a text is.
+All lengths are those of the unit in which `measure` gives the width of a text.
 """
 
 from __future__ import annotations
@@ -47,13 +47,13 @@ class Swatch:
 
 @dataclass(frozen=True)
 class Layout:
-    """The size of all, margins included, its parts, and lines (top, bottom, words) that have more to tell."""
+    """The size of all, margins included, its parts, and, for lines that have a tip, (top, bottom, tip)."""
 
     width: float
     height: float
     words: tuple[Words, ...]
     swatches: tuple[Swatch, ...]
-    told: tuple[tuple[float, float, str], ...]
+    tips: tuple[tuple[float, float, str], ...]
 
 
 def fitting(legend: Legend, measure: Measure, line: float, width: float, height: float) -> Layout | None:
@@ -88,7 +88,7 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
         names + sum(width + gap for width in widths), measure(legend.title), _scale_width(legend, measure, line)
     )
     inner = max(inner, NOTE_WIDTH * line if legend.notes else 0.0)
-    words, swatches, told = [Words(pad, pad, legend.title)], [], []
+    words, swatches, tips = [Words(pad, pad, legend.title)], [], []
     y = pad + step
 
     def values(texts: tuple[str, ...], color: Color) -> Iterator[Words]:
@@ -115,14 +115,14 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
         words.append(Words(pad + _indent(row, indent), y, row.name, TEXT if row.color is not None else QUIET))
         words += values(row.values, QUIET if row.quiet else TEXT)
         if row.meaning:
-            told.append((y, y + step, row.meaning))
+            tips.append((y, y + step, row.meaning))
         y += step
     for note in legend.notes:
         for text in wrapped(note.text, measure, inner):
             words.append(Words(pad, y, text, TONES[note.tone]))
             y += step
     height = y - (step - line) + pad
-    return Layout(inner + 2.0 * pad, height, tuple(words), tuple(swatches), tuple(told))
+    return Layout(inner + 2.0 * pad, height, tuple(words), tuple(swatches), tuple(tips))
 
 
 def _indent(row: Entry, indent: float) -> float:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame
-from viewer.output.legends import certificates_of
+from viewer.output.legend_counts import certificates_of
 from viewer.state.views import (
     BACKGROUND,
     BENEATH,

@@ -39,12 +39,12 @@ def frames_in_words(results: experiment.Results) -> str:
     done, path = len(results.frames), results.path_frames
     if results.planned < path:
         first, last = results.frames[0], results.frames[-1]
-        told = f"frames {first} to {last} of {path}" if done > 1 else f"frame {first} of {path}"
+        text = f"frames {first} to {last} of {path}" if done > 1 else f"frame {first} of {path}"
     elif done < path:
-        told = f"{done} of {path} frames"
+        text = f"{done} of {path} frames"
     else:
-        told = f"{done} frames over the whole path" if done > 1 else "1 frame"
-    return told + ", stopped" * results.stopped
+        text = f"{done} frames over the whole path" if done > 1 else "1 frame"
+    return text + ", stopped" * results.stopped
 
 
 def experiment_csv(results: experiment.Results) -> str:
@@ -66,7 +66,7 @@ def happenings(approach: Approach) -> list[Step]:
 
 
 def changes_in_words(changes: Sequence[Change]) -> list[str]:
-    """What changes in a step, e.g. "lights 0, 2: init → non shadow"; lights that change alike are told together."""
+    """What changes in a step, e.g. "lights 0, 2: init → non shadow"; lights that change alike are named together."""
     return [f"{who}{_spoken(before)} → {_spoken(after)}" for who, before, after in _gathered(changes)]
 
 
@@ -95,16 +95,16 @@ def zoom_title(results: zoom.Results) -> str:
     return f"{name}, {results.time:.3f} s, towards primitive {results.primitive}, {width} × {height}"
 
 
-NEVER_WHOLE = "never seen whole, so that it is never culled and the zoom factor does not matter"
+NEVER_WHOLE = "never fully rendered, so it is never culled, and the zoom factor does not matter"
 
 
 def never_whole(results: zoom.Results) -> bool:
-    """Whether NEVER_WHOLE is to be said of the primitive: nothing was tested then."""
+    """Whether NEVER_WHOLE applies to the primitive: nothing was tested then."""
     return any(a.steps for a in results.approaches) and not any(a.seen_whole for a in results.approaches)
 
 
 WRONG_PIXELS = "wrong pixels of this primitive"
-SUMMARY = ("factor", "judged anew", "wrong pixels", "most", "at the end", terms.CULLED, terms.DYNAMIC_ONLY)
+SUMMARY = ("factor", "re-examined", "wrong pixels", "most", "at the end", terms.CULLED, terms.DYNAMIC_ONLY)
 
 
 def summary(approach: Approach) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from viewer.output.reports import NEVER_WHOLE, WRONG_PIXELS, modes_in_words, nev
 from viewer.state.plans import MOST_FACTORS
 
 _LETTERS = 138  # of a line as wide as the figure
-_LINES = 9  # that tell of mode changes under a panel, at most
+_LINES = 9  # about changed modes under a panel, at most
 _LINES_OF_STEP = 3
 _INCHES_OF_LINE = 0.21
 _INCHES = 5.2  # of height for the panels
@@ -26,7 +26,7 @@ _WIDE = 4  # columns that have room for long titles
 def zoom_figure(results: zoom.Results) -> Figure:
     """A column for each factor of a zoom test, over its steps.
 
-    The primitive's pixels on a logarithmic scale, the count past which it is examined anew, and marks
+    The primitive's pixels on a logarithmic scale, the count past which it is examined again, and marks
     where its modes change; below, its pixels with wrong shadows, and what the modes are from each mark
     on.  Raises ValueError where there is no step, or more than MOST_FACTORS factors.
     """
@@ -36,9 +36,9 @@ def zoom_figure(results: zoom.Results) -> Figure:
     if len(approaches) > MOST_FACTORS:
         raise ValueError(f"{len(approaches)} zoom factors cannot be drawn side by side, only {MOST_FACTORS}")
     names = [_names_of_changes(approach, _LETTERS // len(approaches)) for approach in approaches]
-    told = _INCHES_OF_LINE * max(1, *(len(lines) for lines in names))
+    below = _INCHES_OF_LINE * max(1, *(len(lines) for lines in names))
     figure = Figure(figsize=SIZE, layout="constrained")
-    heights = [0.72 * (_INCHES - told), 0.28 * (_INCHES - told), told]
+    heights = [0.72 * (_INCHES - below), 0.28 * (_INCHES - below), below]
     panels: np.ndarray = figure.subplots(
         3, len(approaches), sharex="row", sharey="row", squeeze=False, gridspec_kw={"height_ratios": heights}
     )
@@ -57,7 +57,7 @@ def zoom_figure(results: zoom.Results) -> Figure:
     panels[1, 0].set_ylabel("\n".join(textwrap.wrap(WRONG_PIXELS.capitalize(), 15)), fontsize=12.0)
     figure.align_ylabels(panels[:2, 0])
     figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
-    told_above = f"A primitive seen from nearer and nearer, and its shadows\n{zoom_title(results)}"
+    told_above = f"A primitive approached step by step, and its shadows\n{zoom_title(results)}"
     if never_whole(results):
         told_above += f"\n{NEVER_WHOLE.capitalize()}"
     figure.suptitle(told_above, x=0.01, ha="left", fontsize=18.0)
@@ -65,20 +65,20 @@ def zoom_figure(results: zoom.Results) -> Figure:
 
 
 def _names_of_changes(approach: zoom.Approach, width: int) -> list[str]:
-    """_LINES of so many letters at most that tell which modes change, and when."""
+    """_LINES of so many letters at most about which modes change, and when."""
     changed = [step for step in approach.steps if step.changes]
-    # Where they are too many, those of the occlusion mode tell more.
+    # Where they are too many, those of the occlusion mode say more.
     by_weight = sorted(changed, key=lambda step: all(change.light is not None for change in step.changes))
-    told: dict[int, list[str]] = {}
+    shown: dict[int, list[str]] = {}
     for step in by_weight:
         text = f"step {step.number}: {modes_in_words(step.changes)}"
         indent = min(6, width // 4) * " "
         lines = textwrap.wrap(text, width, subsequent_indent=indent, max_lines=_LINES_OF_STEP, placeholder=" …")
-        if sum(map(len, told.values())) + len(lines) > _LINES - 1:
+        if sum(map(len, shown.values())) + len(lines) > _LINES - 1:
             break
-        told[step.number] = lines
-    lines = [line for number in sorted(told) for line in told[number]]
-    return lines if len(told) == len(changed) else [*lines, f"and {len(changed) - len(told)} more"]
+        shown[step.number] = lines
+    lines = [line for number in sorted(shown) for line in shown[number]]
+    return lines if len(shown) == len(changed) else [*lines, f"and {len(changed) - len(shown)} more"]
 
 
 class _PlainNumbers(LogFormatter):

@@ -1,4 +1,4 @@
-"""What the dialog that opens a file knows: what a folder offers, what of it is meant, how a beginning goes on."""
+"""The state of the dialog that opens a file: what a folder offers, which entry is meant, how a name is completed."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ class Browser:
     _listed: tuple[Path, list[Entry]] | None = None
 
     def begin(self) -> None:
-        """Come up anew, in the same folder."""
+        """Open again, in the same folder."""
         self.enter(self.folder)
         self._wanted = None
 
@@ -159,7 +159,7 @@ class Browser:
             self.marked = names[min(max(start + by, 0), len(names) - 1)]
 
     def completed(self) -> str:
-        """What was typed, as far as what there is in the folder tells how it goes on."""
+        """What was typed, completed as far as the names in the folder agree."""
         text, part = self.typed.strip(), self._place()[1]
         if text == "~" or part in (".", ".."):
             return f"{text}/"

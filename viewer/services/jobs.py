@@ -1,4 +1,4 @@
-"""Long work beside the window: a thread with progress, a cancel button and one result.
+"""Long work in the background: a thread with progress, a cancel button and one result.
 
 The tracer reports what it does through a `Progress` callable and stops when that raises
 `Cancelled`; a `Job` is the other end of it.  The window asks it each frame what to show and
@@ -26,7 +26,7 @@ JOB, TRACER = 2, 5  # niceness: what a window waits for, and what takes all core
 class Job(Generic[Result]):
     """Runs `work(progress)` on a thread of its own.
 
-    `label` and `fraction` tell how far it is; after `done`, `result` is set, or `failure` says what
+    `label` and `fraction` say how far it is; after `done`, `result` is set, or `failure` says what
     went wrong, or `cancelled` is true.  The end wakes the window; progress is seen often enough as it dozes.
     """
 

@@ -60,7 +60,7 @@ class Questions:
 
         self.question = Question(
             f"Stop the {run.name} and open {name}?",
-            f"{_so_far(run)} What is done is kept, and can still be saved from its panel.",
+            f"{_so_far(run)} These are kept, and can still be saved from its panel.",
             (("Keep running", _nothing), ("Stop and open", stop)),
         )
         self._wake()
@@ -78,7 +78,7 @@ class Questions:
 
         self.question = Question(
             f"Stop the {run.name} and quit?",
-            f"{_so_far(run)} What is done can be saved with the pictures: figures, table and plot.",
+            f"{_so_far(run)} Their figures, table and plot can be saved beside the pictures.",
             (("Keep running", _nothing), ("Save and quit", save), ("Quit", leave)),
         )
         self._wake()
@@ -95,7 +95,7 @@ class Questions:
 
         self.question = Question(
             "Reset all settings?",
-            "View, culling, quality, theme, sizes and the folder of pictures become what they were at first.",
+            "View, culling, quality, theme, sizes and the folder of pictures return to their defaults.",
             (("Keep them", _nothing), ("Reset", agree)),
             tuple(fields),
             ticked,

@@ -29,7 +29,7 @@ class Refinement:
         self._certificates_shown = False
 
     def forget(self) -> None:
-        """Begin anew: modes or certificates were lost, or the scene is another."""
+        """Start again: modes or certificates were lost, or the scene is another."""
         self._considered = self._settled = None
 
     def wants_another(self, newest: Traced | None, view: View, keep_tracing: bool) -> bool:
@@ -55,7 +55,7 @@ class Refinement:
 
 
 def _view_of(request: RenderRequest) -> RenderRequest:
-    """What tells views apart, and not how often or how closely they are looked at."""
+    """The request without what varies between frames of the same view."""
     settings = replace(request.settings, verify=False, record_work=False)
     return replace(request, settings=settings, serial=0, refinement_seconds=0.0)
 

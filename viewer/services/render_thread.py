@@ -1,4 +1,4 @@
-"""Tracing beside the window: one thread, and the newest request wins.
+"""Tracing in the background: one thread, and the newest request wins.
 
 The window submits what it wants to see and looks, frame after frame, whether a picture has come.
 Requests are not queued: one waits at most, and a newer one takes its place.  A picture is shown with
@@ -222,7 +222,7 @@ class RenderThread:
                 turn()
             except Exception as problem:  # a task that raises though it must not
                 with self._changed:
-                    self._failure = failure(problem, "work beside the window failed", _KNOWN)
+                    self._failure = failure(problem, "work in the background failed", _KNOWN)
                 self._wake()
 
     def _next(self) -> Callable[[], None] | None:

@@ -78,7 +78,7 @@ class Run(ABC, Generic[Results]):
 
     @property
     def verifies(self) -> bool:
-        """Whether its frames tell right answers from wrong ones."""
+        """Whether its frames know which answers are wrong."""
         return True
 
     def lacks(self, view: View) -> str:

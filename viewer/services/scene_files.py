@@ -1,4 +1,4 @@
-"""What becomes of a path that is opened or dropped: a scene, a capture to restore, or one clear line."""
+"""What a path that is opened or dropped is: a scene, a saved picture to restore, or one clear line."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CAPTURE_SUFFIXES = (".png",)
 
 @dataclass(frozen=True)
 class Opened:
-    """A scene, the renderer that holds its trees, and what `scene_info` tells of it."""
+    """A scene, the renderer that holds its trees, and what `scene_info` says of it."""
 
     scene: Scene
     renderer: Renderer

@@ -39,10 +39,10 @@ class Answer:
 class Part(Enum):
     """What a line on the picture stands for."""
 
-    REACHING = "the light's way as far as it gets"
-    STOPPED = "the rest of its way, in shadow"
+    REACHING = "the part of the shadow ray that light reaches"
+    STOPPED = "the rest of it, in shadow"
     BLOCKER = "what blocks it first"
-    OCCLUDER = "what its certificate rests on"
+    OCCLUDER = "what its certificate names"
 
 
 class DrawnLine(NamedTuple):

@@ -1,4 +1,4 @@
-"""Five short steps through the program: each says what to do, and is done when it has been done.
+"""Five short steps through the program: each says what to do, and ends when the user has done it.
 
 A step watches: a generator that is resumed once per frame, and ends when the user has done it, in whatever order.  It
 can be shown as well: a generator that does it, and yields how many seconds to wait before it goes on.
@@ -127,7 +127,7 @@ def _toggle_culling(c: Controller, show_panel: Callable[[str], None]) -> Iterato
     show_panel("Statistics")
     if not _culls(c):
         c.settings.change(method=with_base(before, BY_MODES))
-    for _ in range(50):  # it learns from a whole picture first
+    for _ in range(50):  # modes are set by a whole picture first
         yield 0.1
         if _culls(c):
             break
@@ -225,8 +225,8 @@ STEPS = (
     Step(
         "See the modes",
         lambda c: (
-            "Press 2: green surfaces were seen whole, orange ones are partly hidden. Press 3: what is in the shadow "
-            "of one light, lit by it, or both. L chooses the next light, 1 shows the picture again."
+            "Press 2: green surfaces were fully rendered, orange ones are partly hidden. Press 3: what is in the "
+            "shadow of one light, lit by it, or both. L chooses the next light, 1 shows the picture again."
         ),
         _has_seen_modes,
         _show_modes,
@@ -244,7 +244,7 @@ STEPS = (
         "Run a zoom test",
         lambda c: (
             "Open the panel Zoom test and press Start. The camera moves towards the surface that you clicked, and "
-            "the plot shows whether culling misses a shadow that can only be seen from near."
+            "the plot shows whether culling misses a shadow that can only be seen from close up."
         ),
         _has_run_a_zoom_test,
         _run_a_zoom_test,

@@ -108,7 +108,7 @@ class Tracing:
             self.again()
 
     def show(self, traced: Traced) -> None:
-        """Take up a frame that was not asked for here; what should be seen is asked for anew after it."""
+        """Take a frame that was not asked for here; what should be seen is asked for again after it."""
         self.traced, self._asked = traced, None
 
     def take(self) -> Traced | None:
@@ -154,7 +154,7 @@ class Tracing:
             return
         if not now.moving and not session.playing:
             self._refine()
-        if self._jumped():  # the next picture is another: it may come coarse at first, if that must be
+        if self._jumped():  # the next picture is another one, and may be coarse at first
             self._glance = True
         moving = now.moving or self._glance
         self._refines = self._refines and not moving and not session.playing
@@ -211,7 +211,7 @@ class Tracing:
         )
 
     def _answered(self, wanted: RenderRequest) -> bool:
-        """Whether a frame has been asked for, or is there.  One that holds more for a view serves the next view."""
+        """Whether a frame has been asked for, or is there.  One that holds more than the view needs will do."""
         if wanted == self._asked or self._same_picture(wanted):
             return True
         if self._session.settings != self._chosen:
@@ -252,7 +252,7 @@ class Tracing:
 
     @property
     def samples_wanted(self) -> int:
-        """How many it is to have at idle."""
+        """How many it should have at idle."""
         return self._session.settings.samples
 
     @property
@@ -303,7 +303,7 @@ class Tracing:
             return f"showing {run.label_shown}   {title}{f' (this run {lacks})' if lacks else ''}"
         if wanted is view:
             return title
-        if not (wanted.needs_verify or wanted.needs_work):  # why is told over the picture
+        if not (wanted.needs_verify or wanted.needs_work):  # the picture says why
             return f"{wanted.label}: none here, {view.label.lower()} shown"
         return f"{wanted.label}: {'verifying' if wanted.needs_verify else 'counting'} ..."
 

@@ -34,7 +34,7 @@ class Entry:
     at: datetime = datetime.min
 
     @property
-    def told(self) -> str:
+    def as_text(self) -> str:
         """All of it as text, to be copied."""
         times = f" ({self.count} times)" if self.count > 1 else ""
         head = f"{self.at:%Y-%m-%d %H:%M:%S}  {self.level.value}: {self.text}{times}"

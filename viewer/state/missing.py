@@ -31,7 +31,7 @@ def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) 
         return _nothing_saved(view, frame)
     if view.needs_verify and not method.uses_modes:
         why = "is exact" if method.kind.culls else "traces every shadow ray"
-        text = f"The method {method.base} {why}: no answer can be wrong. The paper's method is wrong now and then."
+        text = f"The method {method.base} {why}: no answer can be wrong. The paper's method is sometimes wrong."
         return Missing(text, BY_MODES)
     if view.of_modes and not view.can_draw(frame):
         return Missing(f"This run keeps no modes with the method {method}.", "")

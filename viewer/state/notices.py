@@ -1,4 +1,4 @@
-"""What the user is told: one line in the status bar, a log of all lines, and faults of the program."""
+"""Messages to the user: one line in the status bar, a log of all lines, and faults of the program."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What counters and phases are called wherever people read them, in the window and on the command line alike.
+"""The names of counters and phases wherever people read them, in the window and on the command line alike.
 
 JSON and CSV have names of their own, which do not change.
 """
@@ -18,19 +18,19 @@ MEANINGS = {
     CULLED: "known to be in shadow: not traced at all",
     DYNAMIC_ONLY: "nothing static is in the way: tested against dynamic objects, those that move",
     CANDIDATES_ONLY: "tested against a few primitives and dynamic objects instead of the whole scene",
-    CACHE_HITS: "blocked by what blocked a ray there before",
+    CACHE_HITS: "blocked by the primitive that blocked a ray there before",
     TRACED: "nothing was known: traced through the whole scene",
-    WRONG: "answers of culling that tracing contradicts",
+    WRONG: "shadow rays for which culling and tracing disagree",
 }
 
 PHASES = {
-    "place": ("dynamic objects", "moving them to where they are at this time, and making their trees anew"),
+    "place": ("dynamic objects", "moving them to where they are at this time, and rebuilding their trees"),
     "primary": ("primary rays", "from the camera to the first surface"),
     "occlusion testing": ("occlusion tests", "whether primitives hide each other at neighbouring pixels"),
     "certification": ("certificates", "proving what blocks a light, or that nothing does"),
-    "surfaces": ("surfaces", "what each pixel shows, and its light if nothing were in the way"),
+    "surfaces": ("surfaces", "what each pixel shows, and its light if nothing blocked it"),
     "shading": ("shading", "shadow rays, light, textures, reflections and refractions"),
     "filling": ("filling in", "pixels that are not shaded yet, from their neighbours"),
-    "mode setting": ("modes", "keeping what the frame has taught about each primitive"),
+    "mode setting": ("modes", "setting the modes of primitives by what this frame has found"),
 }
-"""What the phases of a frame are called, in their order, and what happens in each."""
+"""The phases of a frame, in their order: the name of each, and what happens in it."""

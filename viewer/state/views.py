@@ -1,8 +1,8 @@
 """What can be seen of a frame: the views, their colours, and what each colour stands for.
 
 A view turns the buffers of a frame into a picture; the shader of that name under `shaders/` does
-the turning, this module knows the names and the colours, `viewer.output.legends` counts what has which.  Nothing
-here needs GL.  The colours of modes are those of Okabe and Ito, told apart by every kind of
+the turning, this module knows the names and the colours, `viewer.output.legend_counts` counts what has which.  Nothing
+here needs GL.  The colours of modes are those of Okabe and Ito, distinguished by every kind of
 colour-blindness, and in greys.
 """
 
@@ -104,7 +104,7 @@ _KEYS = {
 _EXPLANATIONS = {
     View.COLOR: "The traced picture.",
     View.OCCLUSION: "How much of each primitive the camera has seen: only fully rendered ones are culled.",
-    View.SHADOW: "What the shadow rays of each primitive have met on their way to the chosen light.",
+    View.SHADOW: "What the shadow rays of each primitive have met on the way to the chosen light.",
     View.PRIMITIVE: "Every primitive in a colour of its own.",
     View.DEPTH: "Distance from the camera along the ray.",
     View.NORMAL: "The shading normal: x, y, z as red, green, blue.",
@@ -112,7 +112,7 @@ _EXPLANATIONS = {
     View.DIFFERENCE: "Pixels with a wrong shadow answer; where all answers are right, the picture is shown, dimmed.",
     View.WIPE: "Left of the line is the traced picture, right of it the picture with every shadow answer right. Drag "
     "the line.",
-    View.CERTIFICATE: "What is proven of each virtual cell for the chosen light; lines are the borders of cells. Each "
+    View.CERTIFICATE: "What is proven for each cell and the chosen light; lines are the borders of cells. Each "
     "frame proves more: T traces one more, K keeps tracing.",
     View.SAVED: "Shadow rays of each pixel, at all bounces, that culling saves tracing through the whole scene: how "
     "many, or which share of those due.",
@@ -167,9 +167,9 @@ CELL_LINE = 0.55
 """Brightness of the lines between cells, against that of the cells."""
 
 OCCLUSION_MEANING = {
-    OcclusionMode.INIT: "not seen yet, or to be judged again",
+    OcclusionMode.INIT: "not seen yet, or to be examined again",
     OcclusionMode.PARTIALLY_OCCLUDED: "something hides a part of it in this frame",
-    OcclusionMode.FULLY_RENDERED: "seen whole: culled by its shadow modes",
+    OcclusionMode.FULLY_RENDERED: "fully rendered: culled by its shadow modes",
     OcclusionMode.DYNAMIC: "it moves: never culled",
 }
 

@@ -1,4 +1,4 @@
-"""What an exception comes to for the user: one line, and the details for those who look into it."""
+"""An exception as the user sees it: one line, and the details for those who look into it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tracer.scene.model import SceneError
 from viewer.util.messages import in_one_line
 
 KNOWN = (SceneError, ValueError, OSError, MemoryError)
-"""Kinds of errors that tell of a file, a value, a disk or memory, in one line."""
+"""Kinds of errors whose one line speaks of a file, a value, a disk or memory."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Files that are whole or absent: known to be writable before the work, and written without a moment of being half."""
+"""Files that are whole or absent: checked to be writable before the work, and never seen half-written."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MOST_NUMBERS = 100_000
 
 
 def check_writable(path: Path) -> None:
-    """Raise OSError, whose message is one line, where a file of this path could not be written.
+    """Raise OSError, in one line, if a file of this path could not be written.
 
     A file is created beside it and removed again: permissions alone say too little of read-only or full disks.
     """

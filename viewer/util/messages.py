@@ -1,4 +1,4 @@
-"""What is told to people in one line."""
+"""Messages to people, each in one line."""
 
 from __future__ import annotations
 

@@ -10,7 +10,8 @@ from collections.abc import Callable
 class TimeLeft:
     """How long steps of uneven length will still take.
 
-    Along a path neighbours are alike: where n steps remain, the last n that were done tell, but no fewer than FEWEST.
+    Steps that are near each other on a path take about as long: where n steps remain, the estimate uses the last n that
+    were done, but at least FEWEST.
     """
 
     FEWEST = 8

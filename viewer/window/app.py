@@ -93,7 +93,7 @@ class App:
         style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
         step = self.ui.guard.step
         step("Full screen", self.ui.full_screen.follow)
-        step("Opening what was dropped", self._open_dropped)
+        step("Opening dropped files", self._open_dropped)
         step("Following the scene", lambda: self.controller.tick(self._room_for_picture()))
         step("Drawing the picture", self._draw)
         step("Drawing recorded pictures", self._bring_shots)

@@ -64,14 +64,14 @@ def _name(name: str, tip: str) -> None:
 
 
 def value(name: str, text: str, tip: str = "") -> None:
-    """A row that only tells something; long text is cut with an ellipsis and told in full on hovering."""
+    """A row of text; long text is cut with an ellipsis and shown in full on hovering."""
     imgui.table_next_row()
     imgui.table_next_column()
     _name(name, tip)
     clipped(text)
 
 
-def told(name: str, text: str, tip: str = "") -> None:
+def fact(name: str, text: str, tip: str = "") -> None:
     """The same with text that wraps."""
     imgui.table_next_row()
     imgui.table_next_column()
@@ -236,9 +236,9 @@ def paragraph(text: str, color: ImVec4 | None = None) -> None:
     imgui.pop_text_wrap_pos()
 
 
-def judged(highest: int) -> str:
-    """A primitive's highest pixel count in words: what its modes go by."""
-    return f"judged by {count(highest)}" if highest else "not judged yet"
+def highest_count(highest: int) -> str:
+    """A primitive's highest pixel count in words: the number of pixels by which its modes were set."""
+    return f"highest {count(highest)}" if highest else "no highest count yet"
 
 
 def short(number: float) -> str:

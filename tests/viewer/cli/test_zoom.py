@@ -40,7 +40,7 @@ def complaint(capfd: pytest.CaptureFixture[str], *arguments: object) -> str:
 
 
 def test_figure_4_in_tables_and_files(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    """With factor 4 the shadow comes when the primitive is judged anew; with 64 it is missing to the end."""
+    """With factor 4 the shadow comes when the primitive is examined again; with 64 it is missing to the end."""
     files = {kind: tmp_path / f"zoom.{kind}" for kind in ("json", "csv", "png")}
     outputs = ["--json", files["json"], "--csv", files["csv"], "--plot", files["png"]]
     assert main([*FIGURE_4, "--factors", "4,64", "--steps", "20", *map(str, outputs)]) == 0
@@ -230,7 +230,7 @@ def test_a_figure_draws_the_counts_and_the_wrong_pixels() -> None:
 def test_a_primitive_never_seen_whole_is_told_in_the_figure(highest: int) -> None:
     steps = [replace(step(n), pixels=10, highest=highest * n) for n in range(3)]
     figure = zoom_figure(Results("s.aff", (8, 8), 0, 0.0, (0, 0, 0), 0.9, approaches=[Approach(4.0, steps)]))
-    assert ("Never seen whole, so that" in figure.get_suptitle()) == (highest == 0)
+    assert ("Never fully rendered, so it" in figure.get_suptitle()) == (highest == 0)
 
 
 def test_a_primitive_never_seen_whole_is_told(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
@@ -238,7 +238,7 @@ def test_a_primitive_never_seen_whole_is_told(tmp_path: Path, capfd: pytest.Capt
     camera = '{"position": [0, 0, 1], "direction": [0, 0, -1], "angle": 20}'
     aim = ["--primitive", "0", "--camera", camera, "--steps", "2"]
     assert main(["zoom", "figure4", "--size", "32x32", *aim]) == 0
-    assert "primitive 0: never seen whole, so that" in capfd.readouterr().err
+    assert "primitive 0: never fully rendered, so it" in capfd.readouterr().err
 
 
 @pytest.mark.filterwarnings("error")

@@ -12,7 +12,7 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
-from viewer.output.legends import difference_legend
+from viewer.output.legend_counts import difference_legend
 from viewer.output.pictures import SHADING, picture
 from viewer.state.views import (
     BACKGROUND,
@@ -263,7 +263,7 @@ def test_a_frame_that_was_not_verified_is_refused(frame: Frame, view: View) -> N
 
 
 def test_a_shadow_that_culling_misses_is_drawn(figure4: list[Frame]) -> None:
-    """Figure 4: right, then a missing shadow in frame 20, right again once the triangle has been judged anew."""
+    """Figure 4: right, then a missing shadow in frame 20, right again once the triangle has been examined again."""
     drawn = [(picture(frame, View.DIFFERENCE, marked=False) == to_bytes(WRONG)).all(axis=-1) for frame in figure4]
     assert [bool(pixels.any()) for pixels in drawn] == [False, False, True, False]
     wrong = figure4[2]

@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
 from tracer.renderer import Renderer
-from viewer.output.legends import occlusion_legend
+from viewer.output.legend_counts import occlusion_legend
 from viewer.output.pictures import picture
 from viewer.services.shadow_inspector import Part
 from viewer.state.views import View
@@ -45,7 +45,7 @@ def culling(d: Driver) -> None:
 
 def certifying(d: Driver) -> None:
     """Modes are there at once whatever culls; where a view has nothing to show, a note says so and a button switches;
-    a method is chosen with what it takes along; key C is off."""
+    a method is chosen with its additions; key C is off."""
     d.settle()
     d.wait(lambda: d.c.loader.ready, "the kernels that make certificates")
     d.c.preferences.fixed_resolution, d.c.preferences.fixed_width, d.c.preferences.fixed_height = True, 240, 180

@@ -30,7 +30,7 @@ def failing(d: Driver) -> None:
     def fail(*_: object) -> None:
         raise ZeroDivisionError("made to fail")
 
-    def told(about: str, times: int = 1) -> None:
+    def noticed(about: str, times: int = 1) -> None:
         """There is a notice, of one failure only, with all that is known; it is copied, and goes."""
         d.wait(lambda: faults.notice is not None, f"a notice about {about}", 20.0)
         d.frames(8)  # a flood would be counted by now
@@ -48,7 +48,7 @@ def failing(d: Driver) -> None:
     before, frame = d.shown(), d.c.frame
     draw_into, display._draw_into = display._draw_into, fail
     d.press(KEY._5)
-    told("Drawing the picture")
+    noticed("Drawing the picture")
     assert np.array_equal(d.shown(), before)
     d.press(KEY.f12)
     d.frames(3)
@@ -74,11 +74,11 @@ def failing(d: Driver) -> None:
         d.frames(3)
         good = getattr(module, name)
         setattr(module, name, fail)
-        told(f"The panel {label}")
+        noticed(f"The panel {label}")
         assert f"The panel {label}" in guard.broken
         d.pause(QUIET_AFTER)
         d.context.item_click(f"//{label}/{again}")
-        told(f"The panel {label}", 2)
+        noticed(f"The panel {label}", 2)
         setattr(module, name, good)
         d.context.item_click(f"//{label}/{again}")
         d.frames(3)
@@ -88,7 +88,7 @@ def failing(d: Driver) -> None:
     for module, name, part in ((menus, "show", "The menus"), (status, "_summary", "The status bar")):
         good = getattr(module, name)
         setattr(module, name, fail)
-        told(part)
+        noticed(part)
         setattr(module, name, good)
         assert part in guard.broken
         guard.again(part)
@@ -96,29 +96,29 @@ def failing(d: Driver) -> None:
         assert not guard.broken
     good, browser._listing = browser._listing, fail
     d.press(int(KEY.o) | int(KEY.mod_ctrl))
-    told("The dialog that opens a file")
+    noticed("The dialog that opens a file")
     assert not d.ui.browser.open
     browser._listing = good
     d.ui.commands = [replace(c, run=fail) if c.name == "Depth" else c for c in d.ui.commands]
     d.press(KEY._5)
-    told("The command Depth")
+    noticed("The command Depth")
     d.pause(QUIET_AFTER)
     d.context.menu_click("//##MainMenuBar/View/Depth")
-    told("The command Depth", 2)
+    noticed("The command Depth", 2)
 
     # Threads.
     threading.Thread(target=fail, name="some thread").start()
-    told("some thread")
+    noticed("some thread")
     renderer = d.c.renderer._renderer
     refine, renderer.refine = renderer.refine, fail
     d.press(KEY.t)
-    told("frame not traced")
+    noticed("frame not traced")
     renderer.refine = refine
     d.press(KEY.t)
     d.settle()
     read, scene_files.load_visible_scene = scene_files.load_visible_scene, fail
     d.drop(embedded_scenes()["figure4"])
-    told("Loading figure4.aff failed")
+    noticed("Loading figure4.aff failed")
     scene_files.load_visible_scene = read
 
     # All of it is in the log, with what the status bar has said.

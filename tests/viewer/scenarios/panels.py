@@ -45,7 +45,7 @@ def panels(d: Driver) -> None:
     d.c.preferences.keep_tracing = True
     traced = d.c.history.frames
     d.c.tracing.trace_again()
-    d.wait(lambda: d.c.history.frames >= traced + 3, "frames at rest")
+    d.wait(lambda: d.c.history.frames >= traced + 3, "frames at idle")
     d.c.preferences.keep_tracing = False
 
 

@@ -43,7 +43,7 @@ def show(ui: Ui) -> None:
         if shown:
             row(
                 "Zoom factor",
-                "a primitive that covers this many times its highest pixel count is judged anew",
+                "a primitive that covers this many times its highest pixel count is examined again",
             )
             flags = int(imgui.SliderFlags_.logarithmic)
             changed, factor = imgui.slider_float("##zoom", s.zoom_factor, 1.0, 64.0, "%.1f", flags)

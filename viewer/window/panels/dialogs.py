@@ -15,7 +15,7 @@ def show(ui: Ui) -> None:
     ui.guard.overlay(browser.NAME, lambda: browser.show(ui), lambda: setattr(ui.browser, "open", False))
     ui.guard.overlay("The question", lambda: questions.show(ui), ui.controller.questions.drop)
     ui.guard.overlay("The list of keys", lambda: _shortcuts(ui), lambda: setattr(ui, "shortcuts_open", False))
-    ui.guard.overlay("The words about the program", lambda: _about(ui), lambda: setattr(ui, "about_open", False))
+    ui.guard.overlay("The dialog about the program", lambda: _about(ui), lambda: setattr(ui, "about_open", False))
 
 
 def _shortcuts(ui: Ui) -> None:

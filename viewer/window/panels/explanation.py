@@ -55,11 +55,11 @@ def rows(ui: Ui) -> None:
 
 @contextmanager
 def light_rows(name: str) -> Iterator[bool]:
-    """A table of two columns that wrap, a light on the left and what is told of it; yields whether it is visible."""
+    """A table of two columns that wrap, a light on the left and what is known of it; yields whether it is visible."""
     shown = imgui.begin_table(name, 2, int(imgui.TableFlags_.sizing_stretch_prop))
     if shown:
         imgui.table_setup_column("light", int(imgui.TableColumnFlags_.width_stretch), 1.0)
-        imgui.table_setup_column("told", int(imgui.TableColumnFlags_.width_stretch), 1.5)
+        imgui.table_setup_column("answer", int(imgui.TableColumnFlags_.width_stretch), 1.5)
     try:
         yield shown
     finally:
@@ -69,14 +69,14 @@ def light_rows(name: str) -> Iterator[bool]:
 
 def _row(ui: Ui, one: Explanation, receiver: int) -> None:
     """A light; resting on it picks it out over the picture."""
-    told, color = _answer(one)
+    text, color = _answer(one)
     imgui.table_next_column()
     swatch(color)
     imgui.selectable(f"{ui.light_name(one.light)}##light", False)
     if imgui.is_item_hovered():
         ui.pointed_light = one.light
     imgui.table_next_column()
-    paragraph(told)
+    paragraph(text)
     _certificate(one.certificate)
     for sentence in sentences(ui, one, receiver):
         paragraph(sentence, QUIET)
@@ -100,18 +100,18 @@ def _certificate(name: str) -> None:
 
 def sentences(ui: Ui, one: Explanation, receiver: int) -> list[str]:
     """What blocks a light on its way to a primitive, and what its certificate rests on besides; each is named once."""
-    told, certificate = [], one.certificate.upper()
+    parts, certificate = [], one.certificate.upper()
     among = {Certificate.CANDIDATES.name: ", one of its candidates", Certificate.FULL.name: ", which hides all of it"}
     if one.blocker is not None:
         by = _own(ui, receiver) if one.blocker == receiver else _named(ui, one.blocker)
-        told.append(f"blocked by {by}{among.get(certificate, '') if one.blocker in one.named else ''}")
+        parts.append(f"blocked by {by}{among.get(certificate, '') if one.blocker in one.named else ''}")
     others = others_named(one)
     if others:
         names = [_named(ui, number) if number != receiver else "its own surface" for number in others[:MOST_OCCLUDERS]]
         more = f" and {len(others) - MOST_OCCLUDERS} more" if len(others) > MOST_OCCLUDERS else ""
         first, besides = _RESTS_ON.get(certificate, ("certified by", "certified by"))
-        told.append(f"{besides if one.blocker in one.named else first} {', '.join(names)}{more}")
-    return told
+        parts.append(f"{besides if one.blocker in one.named else first} {', '.join(names)}{more}")
+    return parts
 
 
 def _own(ui: Ui, receiver: int) -> str:

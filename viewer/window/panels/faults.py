@@ -42,7 +42,7 @@ def notice(ui: Ui) -> None:
 def copy_button(ui: Ui, entry: Entry) -> None:
     """Puts all that is known on the clipboard."""
     if imgui.button(f"{icons.ICON_FA_COPY}  Copy details"):
-        imgui.set_clipboard_text(entry.told)
+        imgui.set_clipboard_text(entry.as_text)
         ui.controller.notices.say("details copied")
 
 

@@ -61,10 +61,10 @@ def _thumbnail(ui: Ui, test: ZoomTest, shot: Shot, step: Step, height: float) ->
     color = _CHOSEN if chosen else ERROR if step.wrong_of_primitive else MARK if step.changes else None
     if color is not None:
         draw.add_rect(start, end, imgui.get_color_u32(color), 0.0, em(0.15 if chosen else 0.1))
-    tooltip("\n".join([*told(step), "click to see it large"]))
+    tooltip("\n".join([*in_words(step), "click to see it large"]))
 
 
-def told(step: Step) -> list[str]:
+def in_words(step: Step) -> list[str]:
     """A step in numbers and words."""
     wrong = f"{count(step.wrong_of_primitive)} of them wrong, {count(step.wrong)} in the picture"
     return [f"step {step.number}: {count(step.pixels)} pixels, {wrong}", *changes_in_words(step.changes)]
@@ -103,7 +103,7 @@ def _caption(ui: Ui, shown: Screening, top: ImVec2, room: ImVec2) -> None:
     if imgui.begin_child("recorded", ImVec2(min(room.x - em(0.8), em(25.0)), 0.0), int(flags)):
         step = shown.step()
         paragraph(f"Recorded with zoom factor {shown.shot.factor:g}")
-        for line in told(step) if step is not None else ():
+        for line in in_words(step) if step is not None else ():
             paragraph(line, QUIET)
         _turn(ui, shown, -1, icons.ICON_FA_CHEVRON_LEFT, "the step before")
         imgui.same_line()

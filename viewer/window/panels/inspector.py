@@ -10,7 +10,7 @@ from viewer.state.picking import Pick
 from viewer.state.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
 from viewer.window.panels import explanation
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, count, heading, judged, paragraph, properties, swatch, told, tooltip
+from viewer.window.widgets import QUIET, count, fact, heading, highest_count, paragraph, properties, swatch, tooltip
 
 
 def show(ui: Ui) -> None:
@@ -46,22 +46,22 @@ def _details(ui: Ui, pick: Pick) -> None:
     heading("Surface")
     with properties("primitive", 5.8) as shown:
         if shown:
-            told("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""))
-            told("Primitive", f"{pick.primitive}  ({pick.kind})")
+            fact("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""))
+            fact("Primitive", f"{pick.primitive}  ({pick.kind})")
             if pick.in_cells:
-                told("Cell", f"{pick.unit}", "the part of it that carries modes and counts")
+                fact("Cell", f"{pick.unit}", "the part of it that carries modes and counts")
             if pick.material is not None:
-                told("Material", pick.material.name, _describe(pick))
-            tip = "that it covers now; it was judged by the most it covered while fully rendered"
-            told("Pixels", f"{count(pick.pixels)} now{f', {judged(pick.highest)}' if by_modes else ''}", tip)
+                fact("Material", pick.material.name, _describe(pick))
+            tip = "that it covers now; the highest count is the most it covered while fully rendered"
+            fact("Pixels", f"{count(pick.pixels)} now{f', {highest_count(pick.highest)}' if by_modes else ''}", tip)
             if pick.wrong is not None:
                 answers = f"{count(pick.wrong)} shadow {'answer' if pick.wrong == 1 else 'answers'}"
-                told("Wrong here", answers, "for any light, at any bounce: what is seen in mirrors counts too")
-            told("Depth", f"{pick.depth:.5g}")
+                fact("Wrong here", answers, "for any light, at any bounce: what is seen in mirrors counts too")
+            fact("Depth", f"{pick.depth:.5g}")
             if pick.point is not None:
-                told("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
+                fact("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
             if pick.normal is not None:
-                told("Normal", "{:.2f}, {:.2f}, {:.2f}".format(*pick.normal))
+                fact("Normal", "{:.2f}, {:.2f}, {:.2f}".format(*pick.normal))
 
 
 def _modes(ui: Ui, pick: Pick) -> None:
@@ -103,12 +103,12 @@ def _verdict(pick: Pick) -> str:
     if pick.occlusion is OcclusionMode.DYNAMIC:
         return "It moves, so its shadow rays are always traced."
     if pick.occlusion is not OcclusionMode.FULLY_RENDERED:
-        return "Not seen whole yet, so its shadow rays are traced."
+        return "Not fully rendered yet, so its shadow rays are traced."
     lights = len(pick.shadows)
     full = sum(mode is ShadowMode.FULL_SHADOW for mode in pick.shadows)
     free = sum(mode is ShadowMode.NON_SHADOW for mode in pick.shadows)
     if not full and not free:
-        return "Seen whole, but partly lit by each light, so its shadow rays are traced."
+        return "Fully rendered, but partly lit by each light, so its shadow rays are traced."
     saved = (f"{full} of {lights} lights are culled" if full else "", _dynamic_only(free, lights) if free else "")
     return f"By its modes, shadow rays to {' and those to '.join(filter(None, saved))}."
 

@@ -119,7 +119,7 @@ def _fill(draw: imgui.ImDrawList, swatch: Swatch, at: ImVec2) -> None:
 def _tell(layout: Layout, at: ImVec2) -> None:
     """What the line under the pointer stands for."""
     y = imgui.get_io().mouse_pos.y - at.y
-    for top, bottom, text in layout.told:
+    for top, bottom, text in layout.tips:
         if top <= y < bottom:
             tooltip_at(text)
 

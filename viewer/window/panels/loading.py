@@ -13,7 +13,7 @@ from viewer.window.widgets import QUIET, centred, clipped, em, paragraph
 
 
 def show(ui: Ui) -> None:
-    """A small window, while the rest stays usable.  What is compiled behind a picture is told by the status bar."""
+    """A small window, while the rest stays usable.  What is compiled behind a picture is shown in the status bar."""
     c, opener = ui.controller, ui.controller.loader
     preparing = opener.warm_up_job if c.frame is None else None
     jobs = [job for job in (preparing, opener.load_job) if job is not None]

@@ -24,7 +24,7 @@ def show(ui: Ui) -> None:
     _, ui.log_errors_only = imgui.checkbox("errors only", ui.log_errors_only)
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_COPY}  Copy all") and entries:
-        imgui.set_clipboard_text("".join(e.told for e in entries))
+        imgui.set_clipboard_text("".join(e.as_text for e in entries))
     tooltip("everything that is listed, oldest first")
     imgui.same_line()
     if imgui.button("Clear"):
@@ -48,14 +48,14 @@ def _entry(entry: Entry) -> None:
     paragraph(entry.text + (f"  ({entry.count} times)" if entry.count > 1 else ""))
     if imgui.begin_popup_context_item("copy"):
         if imgui.menu_item("Copy", "", False)[0]:
-            imgui.set_clipboard_text(entry.told)
+            imgui.set_clipboard_text(entry.as_text)
         imgui.end_popup()
     if not entry.details:
         return
     imgui.indent(em(5.8))
     if imgui.tree_node("details"):
         if imgui.button(f"{icons.ICON_FA_COPY}  Copy details"):
-            imgui.set_clipboard_text(entry.told)
+            imgui.set_clipboard_text(entry.as_text)
         imgui.text_unformatted(entry.details.rstrip())
         imgui.tree_pop()
     imgui.unindent(em(5.8))

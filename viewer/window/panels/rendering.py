@@ -24,7 +24,7 @@ def show(ui: Ui) -> None:
             (p.fixed_width, p.fixed_height), LONGEST_SIDE, ui.controller.notices.say
         )
     tip = "show pictures before all of their pixels are shaded, so that frames come fast"
-    checkbox("Shade in parts", p.dynamic_resolution, lambda on: setattr(p, "dynamic_resolution", on), tip)
+    checkbox("Progressive refinement", p.dynamic_resolution, lambda on: setattr(p, "dynamic_resolution", on), tip)
     with properties("quality", 5.0) as shown:
         if shown:
             if p.dynamic_resolution:

@@ -134,20 +134,20 @@ def _work(ui: Ui) -> None:
     if Method.parse(frame.settings.method).has_certificates:
         rows.append(("certificates", (0, s.certificate_steps, s.certificate_tests)))
     rows.append(("all", tuple(sum(numbers[n] for _, numbers in rows) for n in range(3))))
-    told = "steps: nodes of the tree that rays enter; tests: rays against primitives"
+    meaning = "steps: nodes of the tree that rays enter; tests: rays against primitives"
     if frame.settings.accelerator != "kdtree":
-        told += "; of whole packets of rays where these are coherent (an experiment counts each ray's, in a kd-tree)"
+        meaning += "; of whole packets of rays where these are coherent (an experiment counts each ray's, in a kd-tree)"
     if imgui.get_content_region_avail().x > em(_WIDE):
-        _work_table(rows, told)
+        _work_table(rows, meaning)
         return
     with _amounts("work, narrow") as shown:  # a narrow panel has no room for four columns
         for name, numbers in rows if shown else ():
             for title, number in zip(_WORK, numbers, strict=True):
                 if number:
-                    amount(f"{name}, {title}", short(number), f"{count(number)}; {told}")
+                    amount(f"{name}, {title}", short(number), f"{count(number)}; {meaning}")
 
 
-def _work_table(rows: list[tuple[str, tuple[int, ...]]], told: str) -> None:
+def _work_table(rows: list[tuple[str, tuple[int, ...]]], meaning: str) -> None:
     if not imgui.begin_table("work", 4, int(imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg)):
         return
     imgui.table_setup_column("kind", int(imgui.TableColumnFlags_.width_fixed), em(5.2))
@@ -156,7 +156,7 @@ def _work_table(rows: list[tuple[str, tuple[int, ...]]], told: str) -> None:
     for title in ("", *_WORK):
         imgui.table_next_column()
         right(title, QUIET)
-        tooltip(told)
+        tooltip(meaning)
     for name, numbers in rows:
         imgui.table_next_column()
         clipped(name, QUIET)

@@ -18,7 +18,7 @@ def show(ui: Ui) -> None:
     width = imgui.calc_text_size(right).x + em(1.0)
     room = imgui.get_content_region_avail().x
     left = imgui.get_cursor_pos_x()
-    if width > 0.6 * room:  # a narrow window: what happens is told first
+    if width > 0.6 * room:  # a narrow window: what happens comes first
         right, width = "", 0.0
     if imgui.begin_child("message", (max(em(4.0), room - width), imgui.get_text_line_height() + 2.0)):
         if message is not None:
@@ -57,7 +57,7 @@ def doing(c: Controller) -> str:
 
 
 def _learns(c: Controller) -> bool:
-    """Whether the picture is there, and is traced again so that culling learns."""
+    """Whether the picture is there, and whether it is being refined."""
     return c.frame is not None and not c.tracing.outdated and c.frame.camera == c.session.camera
 
 

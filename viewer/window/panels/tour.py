@@ -84,10 +84,10 @@ def _strip(ui: Ui, left: float, top: float, width: float) -> None:
 
 def _marks(done: int) -> None:
     """How many steps are done, where there is room for it."""
-    told = f"{icons.ICON_FA_CHECK} {done} done"
+    text = f"{icons.ICON_FA_CHECK} {done} done"
     imgui.same_line()
-    if done and imgui.calc_text_size(told).x <= imgui.get_content_region_avail().x:
-        imgui.text_colored(GOOD, told)
+    if done and imgui.calc_text_size(text).x <= imgui.get_content_region_avail().x:
+        imgui.text_colored(GOOD, text)
 
 
 def _all_steps(ui: Ui) -> None:

@@ -57,10 +57,10 @@ def show(ui: Ui) -> None:
 def _explanation(ui: Ui) -> None:
     """What the view shows, and what it costs."""
     c = ui.controller
-    view, run, told = c.session.view, c.runs.current, c.session.view.explanation
+    view, run, text = c.session.view, c.runs.current, c.session.view.explanation
     lacks = run.lacks(view) if run is not None else ""
     if lacks:
         paragraph(f"This run {lacks}.", WARNING)
     elif view.needs_verify:
-        told += " It traces every culled ray as well, so that frames take longer."
-    paragraph(told, QUIET)
+        text += " It traces every culled ray as well, so that frames take longer."
+    paragraph(text, QUIET)

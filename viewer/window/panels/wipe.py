@@ -39,7 +39,7 @@ def _near(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
 
 
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
-    """The line, its handle, and the names of both sides near the picture's upper edge, below what is told there."""
+    """The line, its handle, and the names of both sides near the picture's upper edge, below the text there."""
     c = ui.controller
     if c.tracing.drawn_view is not View.WIPE or c.frame is None:
         return

@@ -22,7 +22,7 @@ from viewer.window.widgets import (
     clipped,
     count,
     em,
-    judged,
+    highest_count,
     paragraph,
     properties,
     row,
@@ -84,7 +84,7 @@ def _plan(ui: Ui) -> None:
                 plan.same_start = True
         row(
             "Factors",
-            "the primitive is judged anew at so many times its highest pixel count; give several to compare",
+            "the primitive is examined again at so many times its highest pixel count; give several to compare",
         )
         _, plan.factors = imgui.input_text("##factors", plan.factors)
         row("Steps", "how many, and which part of the distance is left after each")
@@ -108,7 +108,7 @@ def _plots(ui: Ui, test: ZoomTest | None, results: Results | None, size: ImVec2)
     if test is None or not approaches:
         if imgui.begin_child("nothing", size):
             paragraph(
-                "Does a shadow that can only be seen from near appear in time? Click a primitive, and start.", QUIET
+                "Does a shadow that can only be seen from close up appear in time? Click a primitive, and start.", QUIET
             )
         imgui.end_child()
         return
@@ -153,7 +153,7 @@ def _plot_and_film(
 
 
 def _plot(ui: Ui, test: ZoomTest, approaches: list[Approach], approach: Approach, name: str, size: ImVec2) -> None:
-    """Pixels, and the count past which the primitive is examined anew, on a logarithmic scale; wrong pixels as bars."""
+    """Pixels, and the count past which the primitive is examined again, on a logarithmic scale; wrong ones as bars."""
     low = size.y < em(_LOW)
     if not implot.begin_plot(name, size, FLAGS | int(implot.Flags_.no_legend) if low else FLAGS):
         return
@@ -195,7 +195,7 @@ def _explain(step: Step) -> None:
     """A step in numbers and words."""
     if imgui.begin_tooltip():
         what = " (highest count while fully rendered)" if step.highest else ""
-        imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {judged(step.highest)}{what}")
+        imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {highest_count(step.highest)}{what}")
         imgui.text_unformatted(f"{count(step.wrong_of_primitive)} of them wrong, {count(step.wrong)} in the picture")
         for line in changes_in_words(step.changes):
             imgui.text_unformatted(line)
