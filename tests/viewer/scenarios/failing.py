@@ -39,7 +39,7 @@ def failing(d: Driver) -> None:
         assert notice.count == times and len([e for e in log.entries() if e.text == notice.text]) == 1
         d.context.item_click(f"//##fault/{icons.ICON_FA_COPY}  Copy details")
         d.frames(2)
-        assert imgui.get_clipboard_text() == notice.told
+        assert imgui.get_clipboard_text() == notice.as_text
         d.context.item_click("//##fault/Dismiss")
         d.frames(3)
         assert faults.notice is None and d.c.frame is not None

@@ -13,7 +13,7 @@ from tests.viewer.colors import luminance
 from tests.viewer.fakes import in_cells, make_frame, make_scene, with_certificates
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
-from viewer.output import legends
+from viewer.output import legend_counts
 from viewer.state import views
 from viewer.state.history import SERIES, History
 from viewer.state.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
@@ -21,7 +21,7 @@ from viewer.window.widgets import in_window_style, percent
 
 
 def test_the_occlusion_legend_counts_primitives_and_pixels():
-    rows = {r.name: r for r in legends.occlusion_legend(make_frame())}
+    rows = {r.name: r for r in legend_counts.occlusion_legend(make_frame())}
     assert {name: r.units for name, r in rows.items()} == {
         "INIT": 1, "PARTIALLY_OCCLUDED": 1, "FULLY_RENDERED": 3, "DYNAMIC": 2,
     }  # fmt: skip
@@ -31,15 +31,15 @@ def test_the_occlusion_legend_counts_primitives_and_pixels():
 
 
 def test_the_shadow_legend_counts_what_moves_apart():
-    rows = {r.name: r.units for r in legends.shadow_legend(make_frame(), 0)}
+    rows = {r.name: r.units for r in legend_counts.shadow_legend(make_frame(), 0)}
     assert rows == {"INIT": 2, "FULL_SHADOW": 1, "NON_SHADOW": 1, "PARTIAL_SHADOW": 1, "DYNAMIC": 2}
-    assert legends.shadow_legend(make_frame(), 31) == []
-    assert legends.shadow_legend(make_frame(), 15) == []
+    assert legend_counts.shadow_legend(make_frame(), 31) == []
+    assert legend_counts.shadow_legend(make_frame(), 15) == []
 
 
 def test_the_certificate_legend_counts_the_cells_that_are_seen():
     frame = with_certificates(make_frame())
-    rows = {r.name: r for r in legends.certificate_legend(frame, 1)}
+    rows = {r.name: r for r in legend_counts.certificate_legend(frame, 1)}
     dynamic = np.isin(frame.primitive, (4, 5))
     for number, name in enumerate(("NONE", "FULL", "LIT", "CANDIDATES")):
         there = (frame.primitive >= 0) & ~dynamic & ((frame.certificates >> 4) & 3 == number)
@@ -48,13 +48,13 @@ def test_the_certificate_legend_counts_the_cells_that_are_seen():
     assert (rows["DYNAMIC"].pixels, rows["DYNAMIC"].units) == (dynamic.sum(), 0)
     assert sum(r.pixel_share for r in rows.values()) == pytest.approx(1.0)
     assert sum(r.units for r in rows.values()) == frame.cells.max() + 1
-    assert legends.certificate_legend(make_frame(), 1) == legends.certificate_legend(frame, 15) == []
+    assert legend_counts.certificate_legend(make_frame(), 1) == legend_counts.certificate_legend(frame, 15) == []
 
 
 @pytest.mark.parametrize("view", [views.View.SAVED, views.View.COST])
 def test_the_legend_of_work_sums_it_up(view):
     frame = with_certificates(make_frame(Settings(width=160, height=80)))
-    found = legends.work_legend(frame, view)
+    found = legend_counts.work_legend(frame, view)
     work = frame.saved if view is views.View.SAVED else frame.cost
     assert (found.total, found.most) == (work.sum(), work.max())
     assert found.whole == (frame.due_rays if view is views.View.SAVED else frame.saved + frame.cost).sum()
@@ -62,16 +62,16 @@ def test_the_legend_of_work_sums_it_up(view):
     assert found.per_pixel == pytest.approx(work.mean())
     assert np.percentile(work[frame.primitive >= 0], 98) <= found.top <= work.max()
     for empty in (replace(frame, saved=work * 0, cost=work * 0), replace(frame, primitive=work * 0 - 1)):
-        assert legends.work_legend(empty, view).top == 1.0
+        assert legend_counts.work_legend(empty, view).top == 1.0
     with pytest.raises(ValueError, match="did not record"):
-        legends.work_legend(make_frame(), view)
+        legend_counts.work_legend(make_frame(), view)
 
 
 def test_wide_words_reach_light_30():
     frame = make_frame()
     words = frame.modes.astype(np.uint64) | (np.uint64(2) << np.uint64(62))
     frame = replace(frame, modes=words)
-    rows = {r.name: r.units for r in legends.shadow_legend(frame, 30)}
+    rows = {r.name: r.units for r in legend_counts.shadow_legend(frame, 30)}
     assert rows["NON_SHADOW"] == 5
     assert shadow_mode_of(frame, 0, 30) is ShadowMode.NON_SHADOW
     assert shadow_mode_of(frame, 0, 31) is None
@@ -97,11 +97,11 @@ def test_the_colour_of_wrong_answers_is_unmistakable():
 
 
 def test_the_difference_legend_counts_what_is_wrong():
-    legend = legends.difference_legend(make_frame(Settings(width=16, height=8, verify=True)))
+    legend = legend_counts.difference_legend(make_frame(Settings(width=16, height=8, verify=True)))
     assert (legend.answers, legend.due, legend.pixels) == (3, 4 * 128, 2)
     assert legend.pixel_share == pytest.approx(2 / 128) and legend.largest == pytest.approx(0.1)
     with pytest.raises(ValueError, match="not verified"):
-        legends.difference_legend(make_frame())
+        legend_counts.difference_legend(make_frame())
 
 
 @pytest.mark.parametrize(
