@@ -100,7 +100,7 @@ class Script:
         had = self.c.traced
         self._before()
         if self.c.notices.faults.notice is not None:  # the window lives on, but what it shows is worth nothing
-            raise RuntimeError(self.c.notices.faults.notice.told)
+            raise RuntimeError(self.c.notices.faults.notice.as_text)
         new = self.c.traced
         if new is had or new is None or self.burst is None:
             return
