@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.certified.certify import COUNTERS as CERTIFYING
 from tracer.culling.certified.cost_model import CostModel
+from tracer.frame_in_progress import FrameInProgress
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
 from tracer.geometry.queries import HIT_PRIMITIVE, HIT_T, Placed
@@ -101,14 +102,18 @@ def _frame(lights: int, accelerator: str) -> Iterator[str]:
     for name, phase in (
         ("primary rays", frame.trace_primary_rays),
         ("occlusion testing", frame.test_occlusion),
-        ("surfaces", frame.see_surfaces),
-        ("surfaces", frame.find_first),
+        ("surfaces", lambda: _see_and_find(frame)),
         ("shading and shadow testing", frame.shade),
         ("filling", lambda: to_screen(frame.so_far().color.reshape(-1, 3), np.empty((16, 4), np.uint8))),
         ("mode setting", frame.set_modes),
     ):
         yield name
         phase()
+
+
+def _see_and_find(frame: FrameInProgress) -> None:
+    frame.see_surfaces()
+    frame.find_first()
 
 
 def certificate_steps(lights: int, accelerator: str) -> Iterator[str]:
@@ -131,7 +136,7 @@ def certificate_steps(lights: int, accelerator: str) -> Iterator[str]:
 def _renderer(lights: int, accelerator: str, method: str = "cells+cache+rest") -> Renderer:
     # As many lights as make a word of that size, no more: each is traced.
     scene = _tiny_scene(1 if lights <= 15 else 16)
-    # Methods differ in what their kernels are told; what they take along, and certificates, have kernels more each.
+    # This method has the kernels of the paper's and of both additions; others have kernels of their own.
     return Renderer(scene, Settings(width=4, height=4, method=method, threads=1, accelerator=accelerator))
 
 
@@ -160,7 +165,9 @@ def _tiny_scene(lights: int) -> Scene:
 
 
 def steps_of(part: str, lights: int, accelerator: str) -> Iterator[str]:
-    """The steps of a part, none of which compiles what is another's."""
+    """The steps of a part, none of which compiles what is another's.
+
+    Changes what structures there are: for a process that does nothing else."""
     structures: dict[str, Any] = STRUCTURES
     if part == "queries":
         return _queries(accelerator)

@@ -36,7 +36,8 @@ Cancel = Callable[[], bool] | None
 class FrameInProgress:
     """The phases of `tracer.Renderer`, each a method, and the buffers that they fill.
 
-    Public names are those of `tracer.methods.interface.FrameView`, which methods are given.
+    Public attributes are what methods may read (`tracer.methods.interface.FrameView`).  The frames of a renderer take
+    turns: one that is discarded or finished is over.
     """
 
     def __init__(
@@ -45,7 +46,8 @@ class FrameInProgress:
         self._state, self._camera, self._time = state, camera, time
         self.settings, self.cancel = settings, cancel
         self.workers = thread_count(settings.threads)
-        self._started = state.clock()
+        self._started, self._paused = state.clock(), 0.0
+        self.over = False  # finished, or discarded
         self.phases: dict[str, float] = {}
         self.progressive = progressive
         self.methods = state.methods(settings, time)
@@ -74,8 +76,17 @@ class FrameInProgress:
 
     @property
     def seconds(self) -> float:
-        """Seconds since the frame began."""
-        return self._state.clock() - self._started
+        """Seconds since the frame began, without those in which it was shown to somebody."""
+        return self._state.clock() - self._started - self._paused
+
+    @contextmanager
+    def shown(self) -> Iterator[None]:
+        """The time that whoever is shown the picture so far takes is not the frame's."""
+        start = self._state.clock()
+        try:
+            yield
+        finally:
+            self._paused += self._state.clock() - start
 
     @contextmanager
     def phase(self, name: str) -> Iterator[None]:
@@ -204,13 +215,14 @@ class FrameInProgress:
         count_pixels(self.units, self.history.pixel_count)
         if self.settings.keeps_modes:
             self.history.keep_frame(self.settings.zoom_factor)
-        else:
-            self.history.discard_frame()
         for method in self.methods:
             method.keep(self)
 
     def discard(self) -> None:
-        """Learn nothing from this frame."""
+        """Learn nothing from this frame, unless it is over."""
+        if self.over:
+            return
+        self.over = True
         self.history.discard_frame()
         for method in self.methods:
             method.discard(self, self._begun)
@@ -244,7 +256,11 @@ class FrameInProgress:
         self._for_each_tile(work)
 
     def shade_part(self, part: float) -> None:
-        """Shade what is left until so many sixteenths of the pixels are shaded."""
+        """Shade what is left until so many sixteenths of the pixels are shaded.
+
+        Raises RuntimeError where the frame is over, as another one has begun."""
+        if self.over:
+            raise RuntimeError("another frame of this renderer has begun: this one cannot go on")
         if self._parts is None:
             with self.phase("shading"):
                 self.shade()
@@ -270,7 +286,7 @@ class FrameInProgress:
         shaded, frame.color = frame.color, self._parts.give()
         with self.phase("filling"):
             self._parts.stretch_records(frame, shaded)
-        frame.statistics.phases = dict(self.phases)
+        frame.statistics.phases["filling"] = self.phases["filling"]
         return frame
 
     # --- further samples -------------------------------------------------------------------------------
@@ -306,7 +322,7 @@ class FrameInProgress:
 
     def finished(self) -> Frame:
         """The frame, all phases of which are done."""
-        frame = self._frame()
+        frame, self.over = self._frame(), True
         for method in self.methods:
             method.finish(self, frame.statistics)
         return frame

@@ -1,8 +1,9 @@
 """Which pixels of a picture are shaded first, and what the others show until their turn comes.
 
-Each part of a picture is told in sixteenths of its pixels.  Of 1, 2, 4 or 16 each block of 4 x 4 pixels has
-as many, of a half every other block has one; what is over goes to the blocks whose pixels are the most in
-doubt (`tracer.shading.filling`): borders of shadows and reflections are shaded before what is even.
+A picture is refined in parts, which are counted in sixteenths of its pixels.  With 1, 2, 4 or 16 sixteenths, as many
+pixels are shaded in each block of 4 x 4; with half a sixteenth, one pixel in every other block.  Pixels beyond these
+numbers go to the blocks that are most in doubt (`tracer.shading.filling`), so that the borders of shadows and
+reflections are shaded before even surfaces.
 """
 
 from __future__ import annotations
@@ -133,6 +134,8 @@ class Parts:
         if frame.reference is not None and frame.wrong is not None:
             frame.reference = frame.color + self.stretched(frame.reference - shaded)
             frame.wrong = frame.wrong.copy()
+        if frame.due is not None and frame.lit is not None:
+            frame.due, frame.lit = self.stretched(frame.due), self.stretched(frame.lit)
         if frame.saved is not None and frame.cost is not None and frame.due_rays is not None:
             frame.saved, frame.cost, frame.due_rays = (
                 self.stretched(work) for work in (frame.saved, frame.cost, frame.due_rays)

@@ -73,6 +73,7 @@ class Renderer:
         self.state = State(scene, self.world, *self._measures)
         self._turn = 0
         self._last: Sequence[ShadowMethod] = ()
+        self._unfinished: FrameInProgress | None = None
 
     @property
     def scene(self) -> Scene:
@@ -124,7 +125,7 @@ class Renderer:
                 frame.shade()  # with shadow testing and shadow-mode setting
             with frame.phase("mode setting"):
                 frame.set_modes()
-        return frame.finished()
+        return self._finished(frame)
 
     def refine(
         self,
@@ -182,13 +183,15 @@ class Renderer:
             for part in parts:
                 frame.shade_part(part)
                 if part < TURNS:
-                    yield frame.so_far()
+                    so_far = frame.so_far()
+                    with frame.shown():
+                        yield so_far
             # Only a picture that nobody has left becomes whole, and teaches.
             with frame.phase("occlusion testing"):
                 frame.test_occlusion()
             with frame.phase("mode setting"):
                 frame.set_modes(samples_follow=samples > 1)
-        whole = frame.finished()
+        whole = self._finished(frame)
         yield whole
         yield from frame.sampled(whole, samples)
 
@@ -203,9 +206,16 @@ class Renderer:
         """A frame whose phases are still to come."""
         settings = self._fitted((settings or self.settings).validated())
         camera = camera or self.scene.camera_at(time)
-        frame = FrameInProgress(self.state, settings, camera, time, cancel, progressive)
+        if self._unfinished is not None:
+            self._unfinished.discard()  # somebody has left it half done
+        self._unfinished = frame = FrameInProgress(self.state, settings, camera, time, cancel, progressive)
         self._last = frame.methods
         return frame
+
+    def _finished(self, frame: FrameInProgress) -> Frame:
+        """The frame, all phases of which are done."""
+        self._unfinished = None
+        return frame.finished()
 
     def _fitted(self, settings: Settings) -> Settings:
         """Let world and settings have the same accelerator."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import weakref
 from collections.abc import Callable
 
 import numpy as np
@@ -44,7 +45,9 @@ class State:
         materials = self.shading.materials
         bounces = bool((materials[:, SHINE] > 0.0).any() or (materials[:, TRANSMISSION] > 0.0).any())
         model = cost_model or cost_model_for(world.accelerator, bounces)
-        self._services = Services(world, self.shading, model, clock, thread_clock, self.method)
+        itself = weakref.proxy(self)  # a circle of references would keep the world alive
+        by_name = lambda name: itself.method(name)  # noqa: E731
+        self._services = Services(world, self.shading, model, clock, thread_clock, by_name)
         self._methods: dict[Kind, ShadowMethod] = {}
         self.histories: dict[tuple[int, int, bool], ModeHistory] = {}
         self._workspaces: list[Workspace] = []
@@ -58,8 +61,8 @@ class State:
             method.forget()
 
     def method(self, name: str) -> ShadowMethod:
-        """The method that is a base or an addition of this name, with all that it has learnt."""
-        return self._of_kind(next(kind for kind in Method.parse(name).kinds))
+        """The base of this name, with all that it has learnt."""
+        return self._of_kind(Method.parse(name).kind)
 
     def _of_kind(self, kind: Kind) -> ShadowMethod:
         if kind not in self._methods:
@@ -69,8 +72,8 @@ class State:
     def methods(self, settings: Settings, time: float) -> list[ShadowMethod]:
         """The base, its additions, and what keeps modes beside them, for a frame at `time`.
 
-        Methods that are not used are dropped, with all that they know, once the scene has moved on: they have not
-        followed it."""
+        Methods that are not used are dropped, with all that they know, once the scene has moved on: what they know is
+        no longer true, and would hold memory."""
         method = Method.parse(settings.method)
         beside = (MODES_BESIDE,) if settings.modes and not method.uses_modes else ()
         chosen = [self._of_kind(kind) for kind in (*method.kinds, *beside)]

@@ -22,8 +22,8 @@ def tiles_of(width: int, height: int, side: int = TILE) -> list[Tile]:
 
 
 def tiles_to_shade(width: int, height: int, lanes: NDArray[np.int32], workers: int) -> list[Tile]:
-    """Larger squares where few pixels of each block are to be shaded, lest packets of rays remain half empty, unless
-    these are too few for all threads.  lanes (rows, columns) int32 have the bits of the pixels of each block."""
+    """Tiles for shading: larger ones where few pixels of each block are to be shaded, so that packets of rays are full,
+    unless there would be too few for all threads.  lanes (rows, columns) int32 have the bits of each block's pixels."""
     tiles = tiles_of(width, height)
     few = int(np.bitwise_count(lanes).sum()) <= FEW * np.count_nonzero(lanes)
     return tiles_of(width, height, 2 * TILE) if few and len(tiles) >= 4 * EACH * workers else tiles
@@ -31,4 +31,4 @@ def tiles_to_shade(width: int, height: int, lanes: NDArray[np.int32], workers: i
 
 def nearest_first(tiles: list[Tile], x: float, y: float) -> list[Tile]:
     """The tiles, those near a point of the picture first."""
-    return sorted(tiles, key=lambda tile: math.hypot(tile[0] + TILE / 2 - x, tile[1] + TILE / 2 - y))
+    return sorted(tiles, key=lambda tile: math.hypot((tile[0] + tile[2]) / 2 - x, (tile[1] + tile[3]) / 2 - y))

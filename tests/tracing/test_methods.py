@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -10,14 +12,17 @@ import pytest
 
 import tracer
 from tests.tracing.nasty_worlds import nasty_walk
-from tests.tracing.shades import shadow_scene
+from tests.tracing.shades import roof, shadow_scene
+from tests.tracing.worlds import scene
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, vectors
 from tracer.geometry.world import ACCELERATORS
 from tracer.kernels import entry
 from tracer.method import Kind, Method, bases, register, unregister
 from tracer.methods.interface import ShadowMethod, Stage
+from tracer.scene.model import Camera, Material
 
+BELOW = Camera((0.3, 0.2, 0.0), (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), 40.0)
 SETTINGS = tracer.Settings(width=64, height=48, depth=1, method="none", threads=2, record_lights=True)
 
 
@@ -140,3 +145,61 @@ def test_every_base_is_made_from_its_name_alone() -> None:
     for kind in bases(measures=True):
         frame = tracer.Renderer(scene, replace(SETTINGS, method=kind.name)).render()
         assert frame.settings.method == kind.name and Method.parse(kind.name).kind is kind
+
+
+def test_waves_that_outgrow_their_memory_are_shaded_with_memory_of_their_own() -> None:
+    """Glass that sends on two rays for each that comes: waves of eight times as many as a tile has pixels."""
+    glass = Material(diffuse=(0.2, 0.2, 0.2), specular=(0.6, 0.6, 0.6), transmission=0.6, ior=1.0)
+    panes = [t for z in range(1, 6) for t in roof(float(z), 40.0)]
+    hall = scene(panes, lights=[(3.0, 2.0, 9.0), (-2.0, 1.0, 0.5)], camera=BELOW, materials=(glass,))
+    settings = tracer.Settings(64, 64, 4, "none", modes=True, threads=1)
+    none, certified = (tracer.Renderer(hall, replace(settings, method=name)) for name in ("none", "certified"))
+    for _ in range(2):
+        expected, frame = none.render(), certified.render()
+        assert expected.statistics.secondary.rays > 8 * 64 * 64
+        assert frame.color.tobytes() == expected.color.tobytes() and np.array_equal(frame.modes, expected.modes)
+
+
+def test_a_picture_that_another_has_overtaken_teaches_nothing_and_cannot_go_on() -> None:
+    walk = nasty_walk(3, frames=2)
+    settings = replace(SETTINGS, method="paper+cache")
+    disturbed, straight = tracer.Renderer(walk.scene, settings), tracer.Renderer(walk.scene, settings)
+    left = disturbed.refine(*walk.frames[0], parts=(8, 16))
+    next(left)
+    for time, camera in walk.frames:
+        expected, frame = straight.render(time, camera), disturbed.render(time, camera)
+        assert np.array_equal(frame.modes, expected.modes) and frame.statistics.shadow == expected.statistics.shadow
+    with pytest.raises(RuntimeError, match="another frame"):
+        next(left)
+    left.close()
+    expected, frame = straight.render(*walk.frames[0]), disturbed.render(*walk.frames[0])
+    assert np.array_equal(frame.modes, expected.modes)
+
+
+def test_the_time_in_which_a_picture_is_looked_at_is_not_the_frames() -> None:
+    now = [0.0]
+    renderer = tracer.Renderer(shadow_scene(), SETTINGS, clock=lambda: now[0])
+    for number, frame in enumerate(renderer.refine(parts=(4, 8, 16))):
+        assert frame.statistics.seconds == 0.0, number
+        now[0] += 10.0
+
+
+def test_what_a_picture_so_far_records_stays_as_it_is() -> None:
+    frames = tracer.Renderer(shadow_scene(), replace(SETTINGS, method="paper")).refine(parts=(1, 16))
+    early = next(frames)
+    before = early.lit.copy()
+    whole = next(frames)
+    assert np.array_equal(early.lit, before) and not np.array_equal(early.lit, whole.lit)
+
+
+def test_a_renderer_that_is_dropped_leaves_nothing_in_a_circle() -> None:
+    gc.collect()
+    gc.disable()
+    try:
+        renderer = tracer.Renderer(shadow_scene(), replace(SETTINGS, method="auto"))
+        renderer.render()
+        world = weakref.ref(renderer.world)
+        del renderer
+        assert world() is None
+    finally:
+        gc.enable()

@@ -4,7 +4,7 @@ Shading knows no method.  It is given a table of stages, and calls up to four ke
 
     find(data, call, 0, count, counts)          once for a wave: what is known of these points?
     choose(data, call, light, count, counts)    for each light: answers rays, so that they need not be traced
-    learn(data, call, light, count, counts)     for each light: told of all answers
+    learn(data, call, light, count, counts)     for each light: learns from all answers
     finish(data, call, 0, count, counts)        once for a wave, after all lights
 
 `data` is the address of the stage's own block, and `call` that of a `Call`; `count` is the number of points, and
@@ -46,7 +46,9 @@ class Call(NamedTuple):
     """What a stage is given: the stage's first row in `scratch`; the number of the tile; the bounce, 0 for primary
     hits; the memory of the surface points, of the rays that hit them, of the shadow batch, and of the stages,
     (rows, n) float32 each; light positions (l, 3) float32; and place (n,) int32, where in the picture the pixels of the
-    tile are, by their numbers in the wave."""
+    tile are, by their numbers in the wave.
+
+    All of this is memory of whoever calls, who keeps it until the wave is done."""
 
     first_row: int
     tile: int

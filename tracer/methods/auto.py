@@ -13,10 +13,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.counters import SHADOW
 from tracer.methods.certified import CertifiedCells
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.methods.payoff import Payoff, Plan, Trial
-from tracer.shading.whitted import SHADOW
 from tracer.statistics import FrameStatistics, shadow_counts
 
 GOLDEN = 0.618033988749895  # steps of it visit all tiles evenly

@@ -27,10 +27,11 @@ ROOM = 1024  # vectors of answers of a tile and a light, to begin with
 
 
 class Answers(NamedTuple):
-    """Of each tile the bits of lit points, vector by vector, (tiles, n) int32; and how many vectors have been written,
-    or read, (tiles, 1) int64."""
+    """Of each tile the bits of points that are lit, and of those that static geometry leaves unblocked, vector by
+    vector, (tiles, n) int32; and how many vectors have been written, or read, (tiles, 1) int64."""
 
     lit: I32x2D
+    unblocked: I32x2D
     at: I64x2D
 
 
@@ -53,6 +54,7 @@ def record(data, call, light, count, counts):
     if first + vectors(count) <= answers.lit.shape[1]:
         for v in range(vectors(count)):
             answers.lit[given.tile, first + v] = batch.lit[v]
+            answers.unblocked[given.tile, first + v] = batch.unblocked[v]
     answers.at[given.tile, 0] = first + vectors(count)
 
 
@@ -69,6 +71,15 @@ def replay(data, call, light, count, counts):
     answers.at[given.tile, 0] = first + vectors(count)
 
 
+@entry
+def restore(data, call, light, count, counts):
+    """Say what static geometry has answered, for modes that are kept beside; `replay` has moved on by now."""
+    given, answers = call_at(call), answers_at(data)
+    batch, first = shadow_batch_in(given.shadows), answers.at[given.tile, 0] - vectors(count)
+    for v in range(vectors(count)):
+        batch.unblocked[v] = answers.unblocked[given.tile, first + v]
+
+
 class Free(ShadowMethod):
     """Replays the answers of the same frame."""
 
@@ -82,22 +93,24 @@ class Free(ShadowMethod):
         self._replays, start = not frame.progressive, self.services.clock()
         if self._replays:
             tiles = len(frame.tiles)
-            if len(self._lit) != tiles:
+            if len(self._answers.lit) != tiles:
                 self._make_room(tiles, ROOM * len(frame.lights))
             while not self._recorded(frame):
-                self._make_room(tiles, int(self._at.max()))
+                self._make_room(tiles, int(self._answers.at.max()))
         self._seconds = self.services.clock() - start
 
     def _make_room(self, tiles: int, room: int) -> None:
-        self._lit, self._at = np.empty((tiles, room), np.int32), np.zeros((tiles, 1), np.int64)
+        lit, unblocked = np.empty((2, tiles, room), np.int32)
+        self._answers = Answers(lit, unblocked, np.zeros((tiles, 1), np.int64))
 
     def _recorded(self, frame: FrameView) -> bool:
         """Whether there was room for all answers."""
-        frame.rehearse([Stage(Answers(self._lit, self._at), find=find, learn=record)])
-        return int(self._at.max(initial=0)) <= self._lit.shape[1]
+        frame.rehearse([Stage(self._answers, find=find, learn=record)])
+        return int(self._answers.at.max(initial=0)) <= self._answers.lit.shape[1]
 
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
-        return [Stage(Answers(self._lit, self._at), find=find, choose=replay)] if self._replays and learns else []
+        replays = self._replays and learns
+        return [Stage(self._answers, find=find, choose=replay, learn=restore)] if replays else []
 
     def report(self, statistics: FrameStatistics) -> None:
         """Leave out the time of recording."""
@@ -106,4 +119,4 @@ class Free(ShadowMethod):
 
     @property
     def memory_bytes(self) -> int:
-        return int(self._lit.nbytes)
+        return self._answers.lit.nbytes + self._answers.unblocked.nbytes

@@ -102,6 +102,8 @@ class ShadowMethod:
     def __init__(self, services: Services) -> None:
         self.services = services
 
+    # Of a method with additions, the hooks `first_units`, `begin_shading` and `shade` are called for the base alone.
+
     def first_units(self) -> NDArray[np.int32]:
         """(primitives + 1,) int32, the first unit of each primitive where modes belong to cells, else empty."""
         return primitives_are_units()
@@ -161,8 +163,8 @@ class ShadowMethod:
 
     @property
     def memory_bytes(self) -> int:
-        """Memory that this method holds, in bytes."""
-        return 0
+        """Memory that this method holds, in bytes, with that of its parts."""
+        return sum(part.memory_bytes for part in self.parts)
 
 
 class StageTable:

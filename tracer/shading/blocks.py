@@ -1,9 +1,8 @@
-"""A picture that is shaded in parts: what is known of its pixels, block by block, and whose turn it is.
+"""Blocks of 4 x 4 pixels: what a progressive picture knows of each pixel, and the order in which they are shaded.
 
-Pixels are shaded in turns: each pixel of a block of 4 x 4 has its own, in the order of Bayer's matrix
-(1973), so that the first turns, and any later run of 4, lie as evenly as can be.  Which pixels of a block
-have been shaded is told by the bits of a number; a block has a border of others on all sides, none of
-whose pixels ever is.
+Each pixel of a block has its turn, in the order of Bayer's matrix (1973), so that the first turns, and any later run
+of 4, lie as evenly as possible.  The bits of a number say which pixels of a block have been shaded.  Around the picture
+there is a border of blocks, none of whose pixels is ever shaded.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ TURNS = BLOCK * BLOCK
 # The turn of each pixel of a block, row by row.
 BAYER = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]])
 
-# Planes of a block, one number of each of its pixels: the surface's number, as the bits of int32 (MISS for none); its
+# Planes of a block, one number for each of its pixels: the surface's number, as the bits of int32 (MISS for none); its
 # normal; where it is, seen from the eye; the local light it has where nothing is in the way; of those that have been
 # shaded, what arrives of that, and what mirrors and glass send besides.
 SURFACE, NORMAL, POSITION, UNSHADOWED, LOCAL, SENT, PLANES = 0, 1, 4, 7, 10, 13, 16

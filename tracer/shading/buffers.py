@@ -94,13 +94,13 @@ class TilePixels(NamedTuple):
     local: NDArray[np.float64]
 
 
-def workspace(stage_rows: int = 0) -> Workspace:
+def workspace() -> Workspace:
     """For waves of four times as many rays as a tile has pixels; larger ones find memory as they go.
 
-    stage_rows is how many rows of memory stages work in (`tracer.culling.stages`)."""
+    Of stages' rows (`tracer.culling.stages`) there are none yet."""
 
     def rows(count: int, n: int, kind: type = np.float32) -> NDArray:
-        # A line of the cache more than whole pages, lest all rows meet in the same lines.
+        # A cache line more than whole pages: rows of whole pages would share the same few lines of the cache.
         return np.empty((count, -(-n // 1024) * 1024 + 16), kind)
 
     n = 4 * TILE * TILE
@@ -109,7 +109,7 @@ def workspace(stage_rows: int = 0) -> Workspace:
         rows(WAVE_ROWS, n),
         rows(POINT_ROWS, n),
         rows(SHADOW_ROWS, n),
-        rows(stage_rows, n),
+        rows(0, n),
         rows(PIXEL_ROWS, n, np.float64),
     )
 

@@ -1,13 +1,13 @@
-"""Pixels that are not shaded yet, filled in from those that are, and where that is the least to be trusted.
+"""Filling in pixels that are not shaded yet from those that are, and saying where the result is in doubt.
 
-A pixel whose turn has not come asks the shaded pixels of its block and of the eight around it which part
-of their unshadowed light, all taken together, arrives and what they get by reflection and refraction,
-and believes those the most that are near and lie on the same surface: the same material and object, normals alike, in
-one plane (the guides of a joint bilateral filter, Eisemann and Durand 2004).  Its own light, texture and highlight
-are exact; what is soft are borders of shadows, and reflections.
+A pixel that is not shaded yet looks at the shaded pixels of its block and of the eight blocks around it.  It takes from
+them which part of their unshadowed light arrives, and what they get by reflection and refraction.  Those count most
+that are near and lie on the same surface: the same material and object, similar normals, one plane (the guides of a
+joint bilateral filter, Eisemann and Durand 2004).  The pixel's own light, texture and highlight are exact; only the
+borders of shadows and reflections are soft.
 
-Where those that it asks disagree, or none of them lies on its surface, a pixel is in doubt, and so is its
-block: there more pixels are worth shading than elsewhere (adaptive sampling, Mitchell 1987).
+Where the neighbours disagree, or none lies on the pixel's surface, the pixel and its block are in doubt: there it is
+worth shading more pixels than elsewhere (adaptive sampling, Mitchell 1987).
 """
 
 from __future__ import annotations

@@ -92,7 +92,9 @@ def shade_tile(world, shading, camera, tile, lanes, depth, stages, buffers, coun
 
 @subkernel
 def _add_lights(world, shading, wave, points, stages, counts, pixels, tile, bounce, buffers, space):
-    """Local light of a wave, with shadow testing for every light."""
+    """Local light of a wave, with shadow testing for every light.
+
+    Returns the memory that stages were given by address: numba frees an array after the last line that names it."""
     counts = counts[SHADOW:]
     batch = shadow_batch_in(room(space.shadows, wave.size))
     scratch, call = room(space.scratch, wave.size), local_memory(CALL)
@@ -115,6 +117,7 @@ def _add_lights(world, shading, wave, points, stages, counts, pixels, tile, boun
     accumulate(wave, points.light, pixels.light)
     if stages.verify:
         accumulate(wave, points.reference, pixels.reference)
+    return scratch, batch.memory
 
 
 @subkernel
@@ -140,6 +143,13 @@ def find_in_tile(world, shading, camera, tile, lanes, stages, buffers, space):
     read_hits(wave, pixels.place, buffers)
     wave = drop_misses(wave, shading.background, pixels.light, pixels.reference)
     points = points_at(world, shading, wave, space.points, camera.spread, False)
+    _find(shading, wave, points, stages, uncounted, pixels, tile[4], space)
+
+
+@subkernel
+def _find(shading, wave, points, stages, counts, pixels, tile, space):
+    """Call the stages' kernels for a new wave; returns the memory that they were given, as `_add_lights` does."""
     shadows, scratch, call = room(space.shadows, wave.size), room(space.scratch, wave.size), local_memory(CALL)
-    write_call(call, Call(0, tile[4], 0, points.memory, wave.memory, shadows, scratch, shading.lights, pixels.place))
-    run_stages(stages, FIND, call, 0, wave.size, uncounted)
+    write_call(call, Call(0, tile, 0, points.memory, wave.memory, shadows, scratch, shading.lights, pixels.place))
+    run_stages(stages, FIND, call, 0, wave.size, counts)
+    return shadows, scratch

@@ -110,8 +110,8 @@ def pack(value: Any) -> NDArray[np.int64]:
     for (name, hint), given in zip(_fields(type(value)).items(), value):
         mark = _array_of(hint)
         if mark is not None:
-            size = np.dtype(mark.kind).itemsize
-            if given.ndim != mark.dimensions or given.itemsize != size or not given.flags.c_contiguous:
+            same = given.dtype == mark.kind or (mark.kind == "uint8" and given.dtype == np.bool_)
+            if given.ndim != mark.dimensions or not same or not given.flags.c_contiguous:
                 raise TypeError(f"{type(value).__name__}.{name} is not {mark}")
             numbers += [given.ctypes.data, *given.shape]
         elif hasattr(hint, "_fields"):
@@ -130,11 +130,15 @@ def reading(record: type) -> Any:
 
 
 def writing(record: type) -> Any:
-    """The kernel that writes a block of a record of arrays and whole numbers: (address, record)."""
+    """The kernel that writes a block of a record of arrays and whole numbers: (address, record).
+
+    Raises TypeError for a record with other fields."""
     code, at = "(address, given):\n", 0
     for field, hint in _fields(record).items():
         mark = _array_of(hint)
         if mark is None:
+            if hint is not int and hint is not bool:
+                raise TypeError(f"{record.__name__}.{field} is no array or whole number")
             code += f"  store(address + {8 * at}, int64(given.{field}))\n"
             at += 1
             continue
