@@ -128,14 +128,15 @@ class Parts:
         return np.where(known, values, values[rows, columns])
 
     def stretch_records(self, frame: Frame, shaded: NDArray[np.float32]) -> None:
-        """Let pixels that have not been shaded show what is recorded of the nearest that have; wrong ones do not.
+        """Let pixels that have not been shaded show the work of the nearest that have; what is wrong, due or lit there is
+        not known yet.
 
         shaded (height, width, 3) are the colours before the others were filled in."""
         if frame.reference is not None and frame.wrong is not None:
             frame.reference = frame.color + self.stretched(frame.reference - shaded)
             frame.wrong = frame.wrong.copy()
         if frame.due is not None and frame.lit is not None:
-            frame.due, frame.lit = self.stretched(frame.due), self.stretched(frame.lit)
+            frame.due, frame.lit = frame.due.copy(), frame.lit.copy()
         if frame.saved is not None and frame.cost is not None and frame.due_rays is not None:
             frame.saved, frame.cost, frame.due_rays = (
                 self.stretched(work) for work in (frame.saved, frame.cost, frame.due_rays)
