@@ -15,6 +15,7 @@ A kernel that names the fields is made from the declaration, so that neither can
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Annotated, Any, NamedTuple, get_type_hints
 
 import numpy as np
@@ -38,6 +39,7 @@ Row3 = Annotated[NDArray[np.float32], Rows(3, "float32")]  # (3, n)
 IntRow = Annotated[NDArray[np.int32], Rows(1, "int32")]  # (n,)
 
 
+@cache  # blocks are packed many times a frame, and evaluating hints takes longer than packing
 def _fields(record: type) -> dict[str, Any]:
     hints = get_type_hints(record, include_extras=True)
     return {name: hints[name] for name in record._fields}  # type: ignore[attr-defined]
@@ -107,7 +109,7 @@ def pack(value: Any) -> NDArray[np.int64]:
 
     Raises TypeError for an array that is not what the declaration says."""
     numbers: list[int] = []
-    for (name, hint), given in zip(_fields(type(value)).items(), value):
+    for (name, hint), given in zip(_fields(value.__class__).items(), value):
         mark = _array_of(hint)
         if mark is not None:
             same = given.dtype == mark.kind or (mark.kind == "uint8" and given.dtype == np.bool_)
