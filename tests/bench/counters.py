@@ -58,8 +58,7 @@ class Edit:
 
 
 EDITS = (
-    Edit("tracer/geometry/kdtree/traverse.py", "        s.counts[STEPS] += leaf.steps\n", 4),
-    Edit("tracer/geometry/kdtree/traverse.py", "        s.counts[TESTS] += leaf.size\n", 1),
+    Edit("tracer/geometry/kdtree/traverse.py", "        s.counts[STEPS] += leaf.steps\n", 2),
     Edit("tracer/geometry/kdtree/traverse.py", "            s.counts[TESTS] += 1\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "    steps = 1\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "        steps += 1\n", 1),
@@ -68,16 +67,15 @@ EDITS = (
     *(  # the deepest first: they end like the others
         Edit(f"tracer/geometry/bvh8/{file}.py", f"{indent * ' '}counts[{what}] += {by}\n", times)
         for file, indent, what, by, times in (
-            ("packet_tree", 12, "TESTS", "1", 2),
+            ("packet_tree", 12, "TESTS", "1", 1),
             ("packet_tree", 8, "TESTS", "1", 1),
-            ("packet_tree", 8, "STEPS", "1", 2),
+            ("packet_tree", 8, "STEPS", "1", 1),
             ("packet_tree", 4, "TESTS", "1", 1),
             ("single_ray", 16, "TESTS", "1", 1),
             ("single_ray", 12, "TESTS", "1", 4),
             ("single_ray", 12, "STEPS", "1", 1),
             ("single_ray", 12, "STEPS", "rays", 1),
             ("single_ray", 8, "STEPS", "1", 1),
-            ("single_ray", 8, "STEPS", "rays", 1),
         )
     ),
     *(  # likewise
