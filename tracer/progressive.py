@@ -128,8 +128,9 @@ class Parts:
         return np.where(known, values, values[rows, columns])
 
     def stretch_records(self, frame: Frame, shaded: NDArray[np.float32]) -> None:
-        """Let pixels that have not been shaded show the work of the nearest that have; what is wrong, due or lit there is
-        not known yet.
+        """Let pixels that have not been shaded show the work of the nearest that have.
+
+        What is wrong, due or lit there is not known yet.
 
         shaded (height, width, 3) are the colours before the others were filled in."""
         if frame.reference is not None and frame.wrong is not None:
