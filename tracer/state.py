@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 import weakref
 from collections.abc import Callable
 
@@ -35,9 +34,9 @@ class State:
         self,
         scene: Scene,
         world: World,
-        clock: Callable[[], float] = time.perf_counter,
-        thread_clock: Callable[[], float] = time.thread_time,
-        cost_model: CostModel | None = None,
+        clock: Callable[[], float],
+        thread_clock: Callable[[], float],
+        cost_model: CostModel | None,
     ) -> None:
         self.scene, self.world, self.clock = scene, world, clock
         self.rest = Rest(len(scene.objects))
