@@ -44,15 +44,15 @@ from tracer.simd import f32_at, i32_at, load_i64
 # What is made ready, with about how much of the whole time it takes when compiled.
 SHARES = {
     "nearest hits": 0.17,
-    "shadow rays": 0.04,
-    "the builder": 0.10,
+    "shadow rays": 0.03,
+    "the builder": 0.12,
     "primary rays": 0.04,
-    "occlusion testing": 0.02,
-    "surfaces": 0.11,
-    "shading and shadow testing": 0.16,
-    "filling": 0.02,
+    "occlusion testing": 0.03,
+    "surfaces": 0.13,
+    "shading and shadow testing": 0.11,
+    "filling": 0.01,
     "mode setting": 0.01,
-    "certificates": 0.33,
+    "certificates": 0.35,
 }
 
 # None compiles what another does, once the parts that it needs are done.

@@ -29,6 +29,8 @@ from numba import njit, types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
 from numba.core.ccallback import CFunc
 
+from tracer.subkernels import SubkernelCompiler
+
 _KERNEL_FOLDERS = ("simd", "geometry", "culling", "shading", "methods")
 _ROOM = 1 << 25  # bytes; all kernels take a tenth of it
 _KEPT = 16  # folders of as many sources, some 3 MB each
@@ -39,6 +41,7 @@ def _source_hash() -> str:
     root = Path(__file__).parent
     for path in [
         Path(__file__),
+        root / "subkernels.py",
         root / "scene" / "model.py",
         *sorted(p for f in _KERNEL_FOLDERS for p in (root / f).rglob("*.py")),
     ]:
@@ -146,6 +149,7 @@ class _Cache(FunctionCache):
 _njit: Any = njit
 _cfunc: Any = CFunc
 _OPTIONS = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+_LINKED = _OPTIONS | {"no_cpython_wrapper": True, "pipeline_class": SubkernelCompiler}
 
 
 def kernel(function: Callable) -> Any:
@@ -156,13 +160,13 @@ def kernel(function: Callable) -> Any:
 
 
 def subkernel(function: Callable) -> Any:
-    """Compile a function that only kernels call (from Python it crashes): cached with them, it needs no way in."""
-    return _njit(no_cpython_wrapper=True, **_OPTIONS)(function)
+    """Compile a function that only kernels call (from Python it crashes): cached with them, and linked into them."""
+    return _njit(**_LINKED)(function)
 
 
 def inlined(function: Callable) -> Any:
     """A small subkernel that disappears into its callers."""
-    return _njit(no_cpython_wrapper=True, forceinline=True, **_OPTIONS)(function)
+    return _njit(forceinline=True, **_LINKED)(function)
 
 
 _ENTRY: Any = types.void(*[types.int64] * 5)

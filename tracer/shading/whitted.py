@@ -67,7 +67,9 @@ def shade_tile(world, shading, camera, tile, lanes, depth, stages, buffers, coun
         if bounce == 0:
             record_normals(wave, points, pixels, buffers)
             if progressive:
-                pixels.local[:, :count] = pixels.light[:, :count]
+                for c in range(3):
+                    for i in range(count):
+                        pixels.local[c, i] = pixels.light[c, i]
         if bounce == depth:
             break
         # Send reflected and refracted rays on to the next one.
@@ -142,7 +144,7 @@ def find_in_tile(world, shading, camera, tile, lanes, stages, buffers, space):
     wave = primary_wave(camera, tile, buffers.primitive.shape[1], lanes, space.wave, pixels.place)
     read_hits(wave, pixels.place, buffers)
     wave = drop_misses(wave, shading.background, pixels.light, pixels.reference)
-    points = points_at(world, shading, wave, space.points, camera.spread, False)
+    points = points_at(world, shading, wave, space.points, camera.spread, stages.verify)
     _find(shading, wave, points, stages, uncounted, pixels, tile[4], space)
 
 

@@ -93,7 +93,9 @@ def _cut_off(s, lane, pieces):
         # The piece's own place is free for what is left of it.
         left -= 1
         s.vertices[p] = s.vertices[left]
-        s.pieces[p] = s.pieces[left]
+        for k in range(s.vertices[left]):
+            for axis in range(3):
+                s.pieces[p, k, axis] = s.pieces[left, k, axis]
         for j in range(FUNCTIONS):
             if left >= PIECES:
                 return -1

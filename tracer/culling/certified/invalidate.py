@@ -110,7 +110,8 @@ def copy_kept(cells, kept, target):
                 continue
             if moved[start] == 0:  # several cells may share a list
                 at, length = target.named[0], 1 + (cells.names[start] & (SETTLED - 1))
-                target.names[at : at + length] = cells.names[start : start + length]
+                for k in range(length):
+                    target.names[at + k] = cells.names[start + k]
                 target.named[0] = at + length
                 moved[start] = at
             target.lists[to, light] = moved[start]

@@ -250,7 +250,8 @@ def _put_list(cells, cell, light, amount, names):
     at, count = cells.named[0], np.int64(amount) & (SETTLED - 1)
     cells.lists[cell, light] = at
     cells.names[at] = amount
-    cells.names[at + 1 : at + 1 + count] = names[:count]
+    for k in range(count):
+        cells.names[at + 1 + k] = names[k]
     cells.named[0] = at + 1 + count
 
 
