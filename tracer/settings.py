@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
+from tracer.scene.lights import MAX_SAMPLES
 
 MAX_SIDE = 16384
 
@@ -32,6 +33,10 @@ class Settings:
         have. Objects that rest then count as static for every method.
     verify : bool
         Trace every culled answer as well, count the wrong ones, and fill `Frame.reference` and `Frame.wrong`.
+    lamp_radius : float or None
+        Every point light and sphere of the scene becomes a sphere of this radius, or a point with 0; None leaves them.
+    lamp_samples : int or None
+        Points from which each lamp shines (`tracer.scene.lights`); None leaves what the scene says.
     samples : int
         Rays per pixel, averaged. Modes and statistics are those of the first, which goes through the pixel's centre.
     threads : int
@@ -63,6 +68,8 @@ class Settings:
     modes: bool = False
     verify: bool = False
     samples: int = 1
+    lamp_radius: float | None = None
+    lamp_samples: int | None = None
     threads: int = 0
     accelerator: str = "bvh8"
     record_lights: bool = False
@@ -92,6 +99,14 @@ class Settings:
             (math.isfinite(self.zoom_factor) and self.zoom_factor >= 1.0, "zoom_factor is a finite number from 1 up"),
             (self.accelerator in ACCELERATORS, f"accelerator is one of {', '.join(ACCELERATORS)}"),
             (1 <= self.samples <= 4096, "samples lie in 1 to 4096"),
+            (
+                self.lamp_radius is None or (math.isfinite(self.lamp_radius) and self.lamp_radius >= 0),
+                "lamp_radius is 0 or more",
+            ),
+            (
+                self.lamp_samples is None or 1 <= self.lamp_samples <= MAX_SAMPLES,
+                f"lamp_samples lie in 1 to {MAX_SAMPLES}",
+            ),
             (0 <= self.threads <= 1024, "threads lie in 0 to 1024"),
             (
                 all(budget >= 0 for budget in (self.certificates, self.certificate_seconds, self.certificate_memory)),

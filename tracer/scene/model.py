@@ -22,6 +22,7 @@ from tracer.scene.animation import Animation
 from tracer.scene.arrays import Float32, Float64, Int32
 from tracer.scene.camera import Camera
 from tracer.scene.deformation import Deformation
+from tracer.scene.lights import Light
 
 SPHERE = 0
 CONE = 1
@@ -61,16 +62,6 @@ class Texture:
 
     name: str
     pixels: NDArray[np.uint8]
-
-
-@dataclass(frozen=True)
-class Light:
-    """A point light.  `track` names the translation track that moves it (AFF `la`), if any."""
-
-    name: str
-    position: tuple[float, float, float]
-    color: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    track: str | None = None
 
 
 @dataclass(frozen=True)
