@@ -7,6 +7,7 @@ these say of the point.  The world is asked as it stands: it must be placed for 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,15 +43,19 @@ class Explanation:
     due : bool
         Whether the light is on the viewer's side of the surface.
     lit : bool
-        Whether the light really reaches the point; false if no ray is due.
+        Whether any of the light really reaches the point; false if no ray is due.
+    samples, reached : int
+        How many samples of the light are due, and how many of these reach the point.
     certificate : str
         What is known from certificates, in a word.
     blocker : int or None
-        The first primitive that blocks the light, possibly the one that the point is on.
+        The first primitive that blocks the light, possibly the one that the point is on: of the first of its samples
+        that anything blocks.
     named : tuple of int
         The primitives that the certificate names, each once.
     light_position, point : tuple of float
-        Where the light is, and where its shadow rays end, a little above the surface.
+        Where that sample is, or the first that is due, or else the light's centre; and where its shadow rays end, a
+        little above the surface.
     blocked_at : tuple of float or None
         Where the first primitive blocks the light.
     """
@@ -64,6 +69,8 @@ class Explanation:
     light_position: Point
     point: Point
     blocked_at: Point | None
+    samples: int = 1
+    reached: int = 0
 
 
 def explain(renderer: Renderer, frame: Frame, x: int, y: int) -> tuple[Explanation, ...]:
@@ -89,32 +96,36 @@ def explain(renderer: Renderer, frame: Frame, x: int, y: int) -> tuple[Explanati
     if primitive < 0:
         return ()
     position, normal, point = _surface(renderer.world, frame, x, y)
-    lights = renderer.scene.light_positions(frame.time).astype(np.float32)
-    ways = point - lights
-    due = (lights - position) @ normal > 0
+    lamps = renderer.state.lamps(frame.settings).at(renderer.scene.light_positions(frame.time))
+    ways = point - lamps.samples
+    due = (lamps.samples - position) @ normal > 0
     asked = np.flatnonzero(due)
-    hits = renderer.world.closest_hits(ray_batch(lights[asked], ways[asked], LIGHT_MARGIN, 1.0), threads=1)
-    met = np.full(len(lights), -1)
-    reach = np.zeros(len(lights))
+    hits = renderer.world.closest_hits(ray_batch(lamps.samples[asked], ways[asked], LIGHT_MARGIN, 1.0), threads=1)
+    met = np.full(len(lamps.samples), -1)
+    reach = np.zeros(len(lamps.samples))
     met[asked], reach[asked] = hits.primitive, hits.t
     explanations = []
-    for light in range(len(lights)):
+    for light, (first, end) in enumerate(pairwise(lamps.first)):
+        facing = first + np.flatnonzero(due[first:end])
+        blocked = facing[met[facing] >= 0]
         certificate = NO_CERTIFICATE
         named: tuple[int, ...] = ()
-        if due[light] and (answer := renderer.explain(primitive, point, light)) is not None:
+        if len(facing) and (answer := renderer.explain(primitive, point, light)) is not None:
             certificate, named = answer
-        blocked = met[light] >= 0
+        shown = blocked[0] if len(blocked) else facing[0] if len(facing) else None
         explanations.append(
             Explanation(
                 light=light,
-                due=bool(due[light]),
-                lit=bool(due[light] and not blocked),
+                due=len(facing) > 0,
+                lit=len(blocked) < len(facing),
                 certificate=certificate,
-                blocker=int(met[light]) if blocked else None,
+                blocker=int(met[shown]) if len(blocked) else None,
                 named=tuple(dict.fromkeys(int(number) for number in named)),
-                light_position=_triple(lights[light]),
+                light_position=_triple(lamps.places[light] if shown is None else lamps.samples[shown]),
                 point=_triple(point),
-                blocked_at=_triple(lights[light] + reach[light] * ways[light]) if blocked else None,
+                blocked_at=_triple(lamps.samples[shown] + reach[shown] * ways[shown]) if len(blocked) else None,
+                samples=len(facing),
+                reached=len(facing) - len(blocked),
             )
         )
     return tuple(explanations)

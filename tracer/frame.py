@@ -42,8 +42,9 @@ class Frame:
         Pixels that a unit covers now, and the most it covered while fully rendered.
     lights : int
         How many lights there are.
-    due, lit : (h, w, lights) bool
-        Whether the shadow ray of the primary hit is due, and whether it reaches the light; with `record_lights`.
+    asked, reached : (h, w, lights) uint16
+        How many samples of a light the primary hit faces, and how many of their shadow rays reach it; with
+        `record_lights`. A point has one sample.
     reference : (h, w, 3) float32
         The picture with every shadow answer right, that of "none" bit for bit; with `verify`.
     wrong : (h, w) int32
@@ -76,8 +77,8 @@ class Frame:
     pixel_count: NDArray[np.int32]
     highest_count: NDArray[np.int32]
     lights: int
-    due: NDArray[np.bool_] | None = None
-    lit: NDArray[np.bool_] | None = None
+    asked: NDArray[np.uint16] | None = None
+    reached: NDArray[np.uint16] | None = None
     reference: NDArray[np.float32] | None = None
     wrong: NDArray[np.int32] | None = None
     cells: NDArray[np.int32] | None = None
@@ -95,6 +96,16 @@ class Frame:
     @property
     def height(self) -> int:
         return self.primitive.shape[0]
+
+    @property
+    def due(self) -> NDArray[np.bool_] | None:
+        """(h, w, lights) bool: whether any shadow ray of the primary hit to the light is due; with `record_lights`."""
+        return None if self.asked is None else self.asked > 0
+
+    @property
+    def lit(self) -> NDArray[np.bool_] | None:
+        """(h, w, lights) bool: whether any of them reaches the light; with `record_lights`."""
+        return None if self.reached is None else self.reached > 0
 
     @property
     def cell(self) -> NDArray[np.int32]:

@@ -66,7 +66,9 @@ class FrameInProgress:
         self.history = state.history(settings, self.first, self.workers)
         self.words = self.history.words
         self.units = np.empty_like(self.buffers.primitive) if len(self.first) else self.buffers.primitive
-        self.lights, self.resting = state.shading.lights, state.rest.now
+        self._lamps = state.lamps(settings)
+        self.shading = state.shading
+        self.lights, self.single, self.resting = self.shading.lamps.places, self._lamps.single, state.rest.now
         self._counts = np.zeros((self.workers, COUNTERS), np.int64)
         self._occlusion_tests = np.zeros(self.workers, np.int64)
         self._begun = False  # shading
@@ -113,9 +115,10 @@ class FrameInProgress:
         else:
             state.rest.forget()
             state.world.place(poses)
-        self.lights[:] = state.scene.light_positions(self._time)
+        self.shading = self.shading._replace(lamps=self._lamps.at(state.scene.light_positions(self._time)))
+        self.lights = self.shading.lamps.places
         self.resting = state.rest.now
-        self.history.follow_lights(self.lights)
+        self.history.follow_lights(self.lights, self._lamps)
         self.history.follow_rest(self.resting, state.world.outlines, self.workers)
         for method in self.methods:
             method.follow(self)
@@ -183,7 +186,7 @@ class FrameInProgress:
         self, rays: Pinhole, lanes: NDArray[np.int32], buffers: Buffers, tables: list[StageTable]
     ) -> Callable[[Tile, int, StageTable, NDArray[np.int64]], None]:
         """What shades a tile, with a table of stages that needs no more memory than these."""
-        placed, shading, depth = self._state.world.placed, self._state.shading, self.settings.depth
+        placed, shading, depth = self._state.world.placed, self.shading, self.settings.depth
         spaces = self._state.workspaces(self.workers, max(table.given.rows for table in tables))
 
         def shade(tile: Tile, worker: int, table: StageTable, counts: NDArray[np.int64]) -> None:
@@ -237,7 +240,7 @@ class FrameInProgress:
     def see_surfaces(self, first: int = 0) -> None:
         """What do all primary hits look like before any shadow ray is traced?  `first` says which pixels
         are to be shaded first (`tracer.progressive`)."""
-        placed, shading, rays, buffers = self._state.world.placed, self._state.shading, self.rays, self.buffers
+        placed, shading, rays, buffers = self._state.world.placed, self.shading, self.rays, self.buffers
         self._parts = Parts(self.settings.width, self.settings.height, buffers.planes, float(rays.spread), first)
         self._for_each_tile(lambda tile, worker: see_surfaces(placed, shading, rays, tile, buffers))
         if any(method.finds_first for method in self.methods):
@@ -245,7 +248,7 @@ class FrameInProgress:
 
     def find_first(self) -> None:
         """Let methods find out what they know of all primary hits, before any is shaded."""
-        placed, shading, rays, buffers = self._state.world.placed, self._state.shading, self.rays, self.buffers
+        placed, shading, rays, buffers = self._state.world.placed, self.shading, self.rays, self.buffers
         tables = self._stage_tables(learns=True)[True]
         spaces = self._state.workspaces(self.workers, max(table.given.rows for table in tables))
 
@@ -353,8 +356,8 @@ class FrameInProgress:
             pixel_count=history.pixel_count.copy(),
             highest_count=history.highest_count.copy(),
             lights=lights,
-            due=per_pixel(buffers.due, settings.record_lights),
-            lit=per_pixel(buffers.lit, settings.record_lights),
+            asked=per_pixel(buffers.asked, settings.record_lights),
+            reached=per_pixel(buffers.reached, settings.record_lights),
             reference=per_pixel(buffers.reference, settings.verify),
             wrong=per_pixel(buffers.wrong, settings.verify),
             cells=layers.pop("cells", None),

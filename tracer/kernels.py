@@ -43,6 +43,7 @@ def _source_hash() -> str:
         Path(__file__),
         root / "subkernels.py",
         root / "scene" / "model.py",
+        root / "scene" / "lamps.py",
         *sorted(p for f in _KERNEL_FOLDERS for p in (root / f).rglob("*.py")),
     ]:
         digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())

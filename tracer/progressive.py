@@ -136,8 +136,8 @@ class Parts:
         if frame.reference is not None and frame.wrong is not None:
             frame.reference = frame.color + self.stretched(frame.reference - shaded)
             frame.wrong = frame.wrong.copy()
-        if frame.due is not None and frame.lit is not None:
-            frame.due, frame.lit = frame.due.copy(), frame.lit.copy()
+        if frame.asked is not None and frame.reached is not None:
+            frame.asked, frame.reached = frame.asked.copy(), frame.reached.copy()
         if frame.saved is not None and frame.cost is not None and frame.due_rays is not None:
             frame.saved, frame.cost, frame.due_rays = (
                 self.stretched(work) for work in (frame.saved, frame.cost, frame.due_rays)

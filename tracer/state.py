@@ -15,6 +15,8 @@ from tracer.geometry.world import World
 from tracer.method import Kind, Method
 from tracer.methods.interface import Services, ShadowMethod
 from tracer.methods.paper import ModesBeside
+from tracer.scene.lamps import LampTable
+from tracer.scene.lights import Light, as_lamps
 from tracer.scene.model import Progress, Scene
 from tracer.settings import Settings
 from tracer.shading.blocks import Planes, make_planes
@@ -50,6 +52,8 @@ class State:
         self._methods: dict[Kind, ShadowMethod] = {}
         self.histories: dict[tuple[int, int, bool], ModeHistory] = {}
         self._workspaces: list[Workspace] = []
+        self._lamps: LampTable | None = None
+        self._lamps_made_of: tuple[tuple[Light, ...], float | None, int | None] | None = None
         self._planes: tuple[tuple[int, int], Planes] | None = None
         self._time: float | None = None
 
@@ -94,6 +98,13 @@ class State:
             del self.histories[next(iter(self.histories))]
         history.make_room(workers)
         return history
+
+    def lamps(self, settings: Settings) -> LampTable:
+        """The scene's lights, made lamps as the settings say; the same table until these say otherwise."""
+        made_of = self.scene.lights, settings.lamp_radius, settings.lamp_samples
+        if self._lamps is None or self._lamps_made_of != made_of:
+            self._lamps, self._lamps_made_of = LampTable(as_lamps(*made_of)), made_of
+        return self._lamps
 
     def workspaces(self, workers: int, stage_rows: int = 0) -> list[Workspace]:
         """One for each worker at least, with so many rows for stages."""

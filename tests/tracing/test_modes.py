@@ -17,6 +17,8 @@ from tracer.culling.mode_history import ModeHistory
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.culling.occlusion import occlusion_testing, set_occlusion_modes
 from tracer.geometry.camera import pinhole
+from tracer.scene.lamps import LampTable
+from tracer.scene.lights import Light
 from tracer.scene.model import Camera
 
 
@@ -87,12 +89,13 @@ def test_words_over_many_frames_are_what_the_naive_twin_says(lights, dynamic, da
     twin = naive.Modes(dynamic, lights)
     positions = np.zeros((lights, 3), np.float32)
     light, unit = st.integers(0, lights - 1), st.integers(0, UNITS - 1)
-    memory.follow_lights(positions)
+    points = LampTable(tuple(Light(f"light {i}", (0.0, 0.0, 0.0)) for i in range(lights)))
+    memory.follow_lights(positions, points)
     for _ in range(data.draw(st.integers(1, 8))):
         for moved in data.draw(st.sets(light, max_size=2)):
             positions[moved, 0] += 1.0
             twin.forget(moved)
-        memory.follow_lights(positions)
+        memory.follow_lights(positions, points)
         rays = data.draw(st.lists(st.tuples(unit, light, st.sampled_from([1, 2])), max_size=12))
         for worker, (u, number, mode) in enumerate(rays):
             if number < modes.MAX_CULLED_LIGHTS and not dynamic[u]:  # as the shadow test has it

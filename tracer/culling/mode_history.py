@@ -14,6 +14,7 @@ from tracer.culling.dependence import drop_dependent
 from tracer.culling.occlusion import set_occlusion_modes
 from tracer.culling.rest import Resting, changes, nothing_rests
 from tracer.geometry.primitives import Outlines
+from tracer.scene.lamps import LampTable
 
 
 class ModeHistory:
@@ -35,6 +36,7 @@ class ModeHistory:
         self.hidden = np.zeros(units, np.bool_)
         self.gained = np.zeros((workers, units), word)
         self.light_positions: np.ndarray | None = None
+        self._lamps: LampTable | None = None
         self._object_of, self._resting = object_of, nothing_rests(0)
 
     def make_room(self, workers: int) -> None:
@@ -42,13 +44,17 @@ class ModeHistory:
         if len(self.gained) < workers:
             self.gained = np.zeros((workers, len(self.words)), self.words.dtype)
 
-    def follow_lights(self, positions: np.ndarray) -> None:
-        """Forget what is known of lights that are not where the last frame had them; positions (lights, 3)."""
+    def follow_lights(self, positions: np.ndarray, lamps: LampTable) -> None:
+        """Forget what is known of lights that are not where the last frame had them, or of another shape or with other
+        samples; positions (lights, 3) are their centres."""
         before, self.light_positions = self.light_positions, positions.copy()
-        if before is not None:
-            moved = np.flatnonzero((before != positions).any(axis=1))
-            if len(moved):
-                modes.forget_lights(self.words, [int(i) for i in moved])
+        shapes, self._lamps = self._lamps, lamps
+        if before is not None and shapes is not None:
+            moved = (before != positions).any(axis=1)
+            if shapes is not lamps:
+                moved |= [a != b for a, b in zip(shapes.lights, lamps.lights, strict=True)]
+            if moved.any():
+                modes.forget_lights(self.words, np.flatnonzero(moved).tolist())
 
     def follow_rest(self, resting: Resting, outlines: Callable[[], Outlines], threads: int) -> None:
         """Let the units of what rests carry modes, and no others of dynamic objects; after `follow_lights`.
@@ -65,6 +71,9 @@ class ModeHistory:
             self.words[concerned[self._object_of]] = mode
         for changed, mode in ((started, modes.FULL_SHADOW), (stopped, modes.NON_SHADOW)):
             self._drop_dependent(outlines(), changed.boxes, mode, threads)
+        # What lies between a unit and a lamp of several samples is not looked into.
+        assert self._lamps is not None
+        modes.forget_lights(self.words, np.flatnonzero(~self._lamps.single).tolist())
 
     def _drop_dependent(self, outlines: Outlines, boxes: np.ndarray, mode: int, threads: int) -> None:
         """Drop a shadow mode of what may depend on boxes (k, 6); the cells of a primitive as one."""

@@ -3,8 +3,8 @@
 Shading knows no method.  It is given a table of stages, and calls up to four kernels of each:
 
     find(data, call, 0, count, counts)          once for a wave: what is known of these points?
-    choose(data, call, light, count, counts)    for each light: answers rays, so that they need not be traced
-    learn(data, call, light, count, counts)     for each light: learns from all answers
+    choose(data, call, light, count, counts)    for each sample of a light: answers rays, which are not traced then
+    learn(data, call, light, count, counts)     for each sample of a light: learns from all answers
     finish(data, call, 0, count, counts)        once for a wave, after all lights
 
 `data` is the address of the stage's own block, and `call` that of a `Call`; `count` is the number of points, and
@@ -43,21 +43,22 @@ class Stages(NamedTuple):
 
 
 class Call(NamedTuple):
-    """What a stage is given: the stage's first row in `scratch`; the number of the tile; the bounce, 0 for primary
-    hits; the memory of the surface points, of the rays that hit them, of the shadow batch, and of the stages,
-    (rows, n) float32 each; light positions (l, 3) float32; and place (n,) int32, where in the picture the pixels of the
-    tile are, by their numbers in the wave.
+    """What a stage is given: the stage's first row in `scratch`; which of the samples it is asked about; the number of
+    the tile; the bounce, 0 for primary hits; the memory of the surface points, of the rays that hit them, of the
+    shadow batch, and of the stages, (rows, n) float32 each; the positions of all lights' samples (s, 3) float32; and
+    place (n,) int32, where in the picture the pixels of the tile are, by their numbers in the wave.
 
     All of this is memory of whoever calls, who keeps it until the wave is done."""
 
     first_row: int
+    sample: int
     tile: int
     bounce: int
     points: F32x2D
     rays: F32x2D
     shadows: F32x2D
     scratch: F32x2D
-    lights: F32x2D
+    samples: F32x2D
     place: I32
 
 
@@ -74,6 +75,12 @@ def run_stages(stages, which, call, light, count, counts):
         if entry != 0:
             store(call, stages.table[k, FIRST_ROW])
             call_entry(entry, stages.table[k, DATA], call, np.int64(light), np.int64(count), address_of(counts))
+
+
+@inlined
+def write_sample(call, sample):
+    """Say which sample the stages are asked about next."""
+    store(call + 8, np.int64(sample))
 
 
 @inlined

@@ -36,7 +36,7 @@ class Auto(ShadowMethod):
 
     def forget(self) -> None:
         services = self.services
-        price = (SET_UP + SET_UP_LIGHT * len(services.shading.lights)) * len(services.world.object_of)
+        price = (SET_UP + SET_UP_LIGHT * len(services.shading.lamps.places)) * len(services.world.object_of)
         self.payoff = Payoff(price, services.cost_model.costly_rays)
         self._plan = Plan()
         self._next_trial = 0  # of the tiles that are shaded both ways

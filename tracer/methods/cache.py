@@ -36,7 +36,7 @@ def choose(data, call, light, count, counts):
     """Rays that a cached occluder surely blocks need not be traced."""
     given, cache = call_at(call), cache_at(data)
     points, batch, slots = points_in(given.points), shadow_batch_in(given.shadows), scratch_of(given)[0].view(np.int32)
-    test_slots(cache, points, given.lights[light], light, count, batch, slots, i64_at(counts))
+    test_slots(cache, points, given.samples[given.sample], light, count, batch, slots, i64_at(counts))
 
 
 @entry

@@ -56,8 +56,8 @@ def choose(data, call, light, count, counts):
     """Answer rays by certificates; candidates are asked where packets of primary hits' rays are not quicker."""
     given, certified = call_at(call), view_at(data)
     points, batch, found = points_in(given.points), shadow_batch_in(given.shadows), cell_points_in(scratch_of(given))
-    asks = given.bounce > 0 or certified.costly_rays
-    cull_by_certificates(certified, points, found, given.lights[light], light, count, asks, batch, i64_at(counts))
+    asks, position = given.bounce > 0 or certified.costly_rays, given.samples[given.sample]
+    cull_by_certificates(certified, points, found, position, light, count, asks, batch, i64_at(counts))
 
 
 @entry
@@ -118,7 +118,7 @@ class CertifiedCells(ShadowMethod):
                 self.services.world, len(frame.lights), frame.workers, self.services.cost_model
             )
             self.scheduler = CertificateScheduler(self.store, self.services.clock)
-        self.store.follow(frame.lights, frame.resting, frame.workers)
+        self.store.follow(frame.lights, frame.resting, frame.workers, frame.single)
 
     def prepare(self, frame: FrameView) -> None:
         self.take_requests(frame, frame.settings.certificate_seconds)

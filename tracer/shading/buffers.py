@@ -19,7 +19,7 @@ PIXEL_ROWS = 10
 
 class Buffers(NamedTuple):
     """One picture: color and normal (height * width, 3), depth, u and v (height, width) float32,
-    primitive (height, width) int32; due and lit (height * width, lights) bool, or without rows;
+    primitive (height, width) int32; asked and reached (height * width, lights) uint16, or without rows;
     reference like color and wrong (height * width,) int32, or without rows where nothing is verified; saved, cost and
     due_rays (height * width,) int32, or without rows; and planes for a picture that is refined progressively."""
 
@@ -29,8 +29,8 @@ class Buffers(NamedTuple):
     primitive: NDArray[np.int32]
     u: NDArray[np.float32]
     v: NDArray[np.float32]
-    due: NDArray[np.bool_]
-    lit: NDArray[np.bool_]
+    asked: NDArray[np.uint16]
+    reached: NDArray[np.uint16]
     reference: NDArray[np.float32]
     wrong: NDArray[np.int32]
     saved: NDArray[np.int32]
@@ -59,8 +59,8 @@ def empty_buffers(
         primitive=np.empty((height, width), np.int32),
         u=np.empty((height, width), np.float32),
         v=np.empty((height, width), np.float32),
-        due=np.zeros((recorded, lights), np.bool_),
-        lit=np.zeros((recorded, lights), np.bool_),
+        asked=np.zeros((recorded, lights), np.uint16),
+        reached=np.zeros((recorded, lights), np.uint16),
         reference=np.zeros((verified, 3), np.float32),
         wrong=np.zeros(verified, np.int32),
         saved=np.zeros(worked, np.int32),

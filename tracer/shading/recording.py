@@ -15,11 +15,11 @@ def record_normals(wave, points, pixels, buffers):
 
 @subkernel
 def record_lights(wave, light, batch, pixels, buffers):
-    """Which shadow rays of primary hits to a light are due, and their answers."""
+    """How many shadow rays of primary hits to a light's samples are due, and how many reach it."""
     for i in range(wave.size):
         place = pixels.place[wave.pixel[i]]
-        buffers.due[place, light] = (batch.due[i >> 4] >> (i & 15)) & 1
-        buffers.lit[place, light] = (batch.lit[i >> 4] >> (i & 15)) & 1
+        buffers.asked[place, light] += (batch.due[i >> 4] >> (i & 15)) & 1
+        buffers.reached[place, light] += (batch.lit[i >> 4] >> (i & 15)) & 1
 
 
 @subkernel

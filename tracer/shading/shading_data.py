@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.memory import aligned_rows
+from tracer.scene.lamps import Lamps, LampTable
 from tracer.scene.model import Scene
 from tracer.shading.textures import mapping_rows, pack_textures
 
@@ -18,16 +19,14 @@ MATERIAL_COLUMNS = 16
 
 class ShadingData(NamedTuple):
     """attributes (p, 16) float32 (`tracer.geometry.attributes`), materials (m, 16) float32, mappings (t, 8) float32,
-    texels and texture_levels (`tracer.shading.textures`); lights (l, 3) and light_colors (l, 3); ambient and
-    background (3,), float32."""
+    texels and texture_levels (`tracer.shading.textures`); the frame's lamps; ambient and background (3,), float32."""
 
     attributes: NDArray[np.float32]
     materials: NDArray[np.float32]
     mappings: NDArray[np.float32]
     texels: NDArray[np.uint32]
     texture_levels: NDArray[np.int32]
-    lights: NDArray[np.float32]
-    light_colors: NDArray[np.float32]
+    lamps: Lamps
     ambient: NDArray[np.float32]
     background: NDArray[np.float32]
 
@@ -48,8 +47,7 @@ def make_shading_data(scene: Scene, attributes: NDArray[np.float32]) -> ShadingD
         mappings=mapping_rows(uvs, np.concatenate([t.texture for t in triangles]), levels, numbers),
         texels=texels,
         texture_levels=levels,
-        lights=np.array([light.position for light in scene.lights], np.float32).reshape(-1, 3),
-        light_colors=np.array([light.color for light in scene.lights], np.float32).reshape(-1, 3),
+        lamps=LampTable(scene.lights).at(scene.light_positions(scene.time_range[0])),
         ambient=np.array(scene.ambient, np.float32),
         background=np.array(scene.background, np.float32),
     )

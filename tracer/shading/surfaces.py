@@ -16,7 +16,7 @@ from tracer.geometry.memory import borrowed, data_pointer
 from tracer.geometry.rays import MISS
 from tracer.kernels import inlined, kernel
 from tracer.shading.blocks import NORMAL, PLANE, POSITION, SURFACE, UNSHADOWED, block_of, planes_at
-from tracer.shading.phong import highlight, toward
+from tracer.shading.phong import fall_off, highlight, toward
 from tracer.shading.points import ambient_at, colors_at, diffuse_at, material_at, normals_at
 from tracer.shading.primary import BLOCK, block_at, blocks_of
 from tracer.shading.shading_data import EXPONENT, SHINE, SPECULAR
@@ -48,17 +48,21 @@ def _unshadowed(shading, m, color, position, geometric, normal, direction, hit):
     """The light that points of these materials and colours send to the viewer where nothing is in the way."""
     r, g, b = ambient_at(shading, m, color)
     red, green, blue = diffuse_at(m, color)
-    for number in range(len(shading.lights)):
-        place, strength = shading.lights[number], shading.light_colors[number]
+    lamps = shading.lamps
+    for number in range(len(lamps.places)):
+        # All samples of a lamp shine from its centre here.
+        place, row = lamps.places[number], lamps.rows[number]
+        samples = np.float32(lamps.first[number + 1] - lamps.first[number])
         x, y, z = place[0] - position[0], place[1] - position[1], place[2] - position[2]
         faces = hit & (geometric[0] * x + geometric[1] * y + geometric[2] * z > ZERO)
-        cosine, reached, mirrored = toward(place, position, normal, direction, faces)
+        cosine, reached, mirrored, near = toward(place, position, normal, direction, faces)
         if not any_lane(reached):
             continue
         specular = highlight(reached, m[SHINE], m[EXPONENT], mirrored)
-        r = r + select(reached, strength[0] * (red * cosine + m[SPECULAR] * specular), ZERO)
-        g = g + select(reached, strength[1] * (green * cosine + m[SPECULAR + 1] * specular), ZERO)
-        b = b + select(reached, strength[2] * (blue * cosine + m[SPECULAR + 2] * specular), ZERO)
+        cosine, specular = fall_off(row, near, cosine, specular)
+        r = r + select(reached, samples * row[0] * (red * cosine + m[SPECULAR] * specular), ZERO)
+        g = g + select(reached, samples * row[1] * (green * cosine + m[SPECULAR + 1] * specular), ZERO)
+        b = b + select(reached, samples * row[2] * (blue * cosine + m[SPECULAR + 2] * specular), ZERO)
     return r, g, b
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from tracer.culling.counters import PRIMARY, RAYS, SECONDARY, SHADOW, SHADOW_COUNTERS
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.shadow_testing import shadow_testing
-from tracer.culling.stages import CALL, FIND, FINISH, Call, run_stages, write_call
+from tracer.culling.stages import CALL, FIND, FINISH, Call, run_stages, write_call, write_sample
 from tracer.geometry.memory import borrowed
 from tracer.kernels import kernel, subkernel
 from tracer.shading.blocks import BLOCK, LOCAL, PLANE, SENT, block_of, planes_at
@@ -82,7 +82,7 @@ def shade_tile(world, shading, camera, tile, lanes, depth, stages, buffers, coun
         wave = drop_misses(wave, shading.background, pixels.light, pixels.reference)
         if wave.size == 0:
             break
-        if len(shading.lights) > 1:
+        if len(shading.lamps.samples) > 1:
             wave, spare = sorted_by_position(wave, spare)
 
     write(buffers.color, pixels.place, count, pixels.light)
@@ -94,27 +94,29 @@ def shade_tile(world, shading, camera, tile, lanes, depth, stages, buffers, coun
 
 @subkernel
 def _add_lights(world, shading, wave, points, stages, counts, pixels, tile, bounce, buffers, space):
-    """Local light of a wave, with shadow testing for every light.
+    """Local light of a wave, with shadow testing for every sample of every light.
 
     Returns the memory that stages were given by address: numba frees an array after the last line that names it."""
-    counts = counts[SHADOW:]
+    counts, lamps = counts[SHADOW:], shading.lamps
     batch = shadow_batch_in(room(space.shadows, wave.size))
     scratch, call = room(space.scratch, wave.size), local_memory(CALL)
     write_call(
         call,
-        Call(0, tile, bounce, points.memory, wave.memory, batch.memory, scratch, shading.lights, pixels.place),
+        Call(0, 0, tile, bounce, points.memory, wave.memory, batch.memory, scratch, lamps.samples, pixels.place),
     )
     run_stages(stages, FIND, call, 0, wave.size, counts)
-    for light in range(len(shading.lights)):
-        shadow_testing(world, points, wave.size, shading.lights[light], light, stages, call, batch, counts)
-        add_light(points, shading, light, batch.lit, wave, points.light)
-        if stages.verify:
-            add_light(points, shading, light, batch.truth, wave, points.reference)
-            count_wrong(wave, batch, pixels, buffers.wrong)
-        if bounce == 0 and len(buffers.due) > 0:
-            record_lights(wave, light, batch, pixels, buffers)
-        if len(buffers.saved) > 0:
-            count_shadow_rays(wave, batch, pixels, buffers)
+    for light in range(len(lamps.places)):
+        for sample in range(lamps.first[light], lamps.first[light + 1]):
+            write_sample(call, sample)
+            shadow_testing(world, points, wave.size, lamps.samples[sample], light, stages, call, batch, counts)
+            add_light(points, lamps, light, sample, batch.lit, wave, points.light)
+            if stages.verify:
+                add_light(points, lamps, light, sample, batch.truth, wave, points.reference)
+                count_wrong(wave, batch, pixels, buffers.wrong)
+            if bounce == 0 and len(buffers.asked) > 0:
+                record_lights(wave, light, batch, pixels, buffers)
+            if len(buffers.saved) > 0:
+                count_shadow_rays(wave, batch, pixels, buffers)
     run_stages(stages, FINISH, call, 0, wave.size, counts)
     accumulate(wave, points.light, pixels.light)
     if stages.verify:
@@ -152,6 +154,7 @@ def find_in_tile(world, shading, camera, tile, lanes, stages, buffers, space):
 def _find(shading, wave, points, stages, counts, pixels, tile, space):
     """Call the stages' kernels for a new wave; returns the memory that they were given, as `_add_lights` does."""
     shadows, scratch, call = room(space.shadows, wave.size), room(space.scratch, wave.size), local_memory(CALL)
-    write_call(call, Call(0, tile, 0, points.memory, wave.memory, shadows, scratch, shading.lights, pixels.place))
+    samples = shading.lamps.samples
+    write_call(call, Call(0, 0, tile, 0, points.memory, wave.memory, shadows, scratch, samples, pixels.place))
     run_stages(stages, FIND, call, 0, wave.size, counts)
     return shadows, scratch

@@ -128,23 +128,27 @@ class CertificateStore:
 
     # --- what moves -------------------------------------------------------------------------------------
 
-    def follow(self, lights: NDArray[np.float32], resting: Resting, threads: int) -> None:
+    def follow(
+        self, lights: NDArray[np.float32], resting: Resting, threads: int, single: NDArray[np.bool_] | None = None
+    ) -> None:
         """Drop what no longer holds, with lights (n, 3) and objects where they are now, and nothing else.
 
-        A light is certified once it has not moved for a frame.  From now on work is done by so many threads."""
+        A light is certified once it has not moved for a frame, if it is a `single` point (n,).  From now on work is
+        done by so many threads."""
         self.threads, self._journal = threads, None
         self._scratch += [make_scratch() for _ in range(len(self._scratch), threads)]
         if self._world.extent > self._static.allowed:  # boxes may have grown beyond those that are known
             self._start()
         self._follow_rest(resting)
         lights = lights[: self.count]
-        moved = ~(lights == self.lights).all(axis=1)
+        points = np.ones(self.count, np.bool_) if single is None else single[: self.count]
+        moved = ~(lights == self.lights).all(axis=1) | (self.stationary & ~points)
         words = self.cells.words[: self.cells.used[0]]
         for number in np.flatnonzero(moved):
             words &= ~words.dtype.type(3 << (2 + 2 * int(number)))
             self.cells.lists[: len(words), number] = NOBODY
         new = np.isnan(self.lights).any(axis=1)
-        stationary = ~moved | new
+        stationary = (~moved | new) & points
         settled = stationary & ~self.stationary
         self.lights[:] = lights
         self.stationary[:] = stationary

@@ -1,0 +1,148 @@
+"""Lamps: lights that shine from many points."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.tracing.same import assert_same
+from tests.tracing.shades import BEHIND, floor, going, kite, roof
+from tests.tracing.worlds import scene
+from tracer.culling.modes import FULLY_RENDERED, ShadowMode
+from tracer.explanation import explain
+from tracer.geometry.world import ACCELERATORS
+from tracer.renderer import Renderer
+from tracer.scene.animation import Animation
+from tracer.scene.lights import Light
+from tracer.scene.model import Scene
+from tracer.settings import Settings
+
+LAMP = Light("lamp", (0.0, 0.0, 20.0), (0.9, 0.8, 0.7), kind="sphere", radius=3.0, samples=16)
+POINT = Light("point", (2.0, 3.0, 12.0), (0.3, 0.2, 0.1))
+SETTINGS = Settings(width=96, height=96, depth=2, method="none", threads=2, record_lights=True)
+
+
+def room(*lights: Light, kites: bool = False) -> Scene:
+    """A floor below a roof, under these lights, perhaps with a kite that rests, flies and rests again."""
+    flight = Animation({"kite": going([(0, -1.5), (1, -1.5), (2, 1.5), (4, 1.5)])})
+    moving = {"dynamic": (kite("kite"),), "animation": flight} if kites else {}
+    return replace(scene(floor() + roof(6.0, 1.0), camera=BEHIND, **moving), lights=lights)
+
+
+def as_points(lamp: Light) -> tuple[Light, ...]:
+    """A point light for each sample of a lamp."""
+    color = tuple(np.float32(np.array(lamp.color) / lamp.samples).tolist())
+    places = np.float32(np.array(lamp.position) + lamp.offsets()).tolist()
+    return tuple(Light(f"{lamp.name} {k}", tuple(p), color, falloff=lamp.falloff) for k, p in enumerate(places))
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+@pytest.mark.parametrize("falloff", ["none", "inverse square"])
+def test_a_lamp_is_the_lights_that_its_samples_are(accelerator: str, falloff: str):
+    lamp, settings = replace(LAMP, falloff=falloff), replace(SETTINGS, accelerator=accelerator)
+    frame = Renderer(room(lamp, POINT), settings).render(0.0)
+    points = Renderer(room(*as_points(lamp), POINT), settings).render(0.0)
+    assert frame.color.tobytes() == points.color.tobytes()
+    assert frame.asked is not None and points.due is not None and frame.reached is not None and points.lit is not None
+    assert (frame.asked[..., 0] == points.due[..., :16].sum(axis=-1)).all()
+    assert (frame.reached[..., 0] == points.lit[..., :16].sum(axis=-1)).all()
+    assert frame.asked[..., 1].tobytes() == points.asked[..., 16].tobytes()
+    penumbra = (frame.reached[..., 0] > 0) & (frame.reached[..., 0] < frame.asked[..., 0])
+    assert penumbra.sum() > 50, "no penumbra: this shows nothing"
+    assert frame.statistics.shadow.due == points.statistics.shadow.due
+
+
+def test_light_falls_off_with_the_square_of_the_distance():
+    """At the foot of the lamp on a floor of reflectance 0.8: 0.8 / 20 squared, beside the ambient light."""
+    lamp = Light("lamp", (0.0, 0.0, 20.0), (400.0, 200.0, 100.0), falloff="inverse square")
+    bare = replace(scene(floor(), camera=BEHIND), lights=(lamp,))
+    dark = replace(bare, lights=())
+    lit, ambient = (Renderer(s, SETTINGS).render(0.0).color[48, 48] for s in (bare, dark))
+    assert lit - ambient == pytest.approx([0.8, 0.4, 0.2], rel=1e-3)
+
+
+@pytest.mark.parametrize("method", ["auto", "certified", "certified+cache", "free", "none+cache"])
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_exact_methods_give_the_picture_of_none(method: str, accelerator: str):
+    """Also those that know nothing of lamps: they answer for the point light alone."""
+    settings = replace(SETTINGS, accelerator=accelerator)
+    lamps = room(LAMP, POINT)
+    renderer, truth = Renderer(lamps, replace(settings, method=method)), Renderer(lamps, settings)
+    for time in (0.0, 0.1, 0.2):
+        assert renderer.render(time).color.tobytes() == truth.render(time).color.tobytes(), time
+
+
+def test_modes_are_kept_for_the_lamp_and_speak_for_all_its_samples():
+    """FULL_SHADOW where every sample is blocked, NON_SHADOW where none is, PARTIAL_SHADOW in the penumbra."""
+    renderer = Renderer(room(LAMP), replace(SETTINGS, method="paper"))
+    frame = renderer.render(0.0)
+    assert frame.asked is not None and frame.reached is not None
+    seen = {mode: 0 for mode in ShadowMode}
+    for unit in np.unique(frame.primitive[frame.primitive >= 0]):
+        here = (frame.primitive == unit) & (frame.asked[..., 0] > 0)
+        if not here.any():
+            continue
+        asked, reached = frame.asked[here][:, 0].sum(), frame.reached[here][:, 0].sum()
+        expected = (reached < asked) * ShadowMode.FULL_SHADOW | (reached > 0) * ShadowMode.NON_SHADOW
+        assert frame.shadow_mode[here][0, 0] == expected, unit
+        seen[ShadowMode(expected)] += 1
+    assert min(seen[mode] for mode in (ShadowMode.FULL_SHADOW, ShadowMode.NON_SHADOW, ShadowMode.PARTIAL_SHADOW)) > 0
+    again = renderer.render(0.1)
+    assert (again.occlusion_mode == FULLY_RENDERED).any() and again.statistics.shadow.culled > 0
+
+
+def test_other_samples_or_another_size_teach_modes_anew():
+    renderer = Renderer(room(LAMP, POINT), replace(SETTINGS, method="paper"))
+    renderer.render(0.0)
+    for change in ({"lamp_samples": 4}, {"lamp_samples": None}, {"lamp_radius": 2.0}):
+        before = renderer.render(0.0)
+        assert before.statistics.shadow.culled > 0
+        renderer.settings = replace(renderer.settings, **change)
+        frame = renderer.render(0.0)
+        assert frame.statistics.by_modes[0].full_shadow == 0, f"{change}: the lamp is another one"
+        fresh = Renderer(renderer.scene, renderer.settings).render(0.0)
+        assert frame.color.tobytes() == fresh.color.tobytes()
+
+
+@pytest.mark.parametrize("method", ["certified", "certified+cache", "paper+rest", "cells+rest"])
+def test_what_moves_beside_lamps_leaves_no_old_shadow(method: str):
+    renderer = Renderer(room(LAMP, POINT, kites=True), replace(SETTINGS, method=method, verify=True))
+    allowed = 0.0 if "certified" in method else 0.01  # the paper's modes are sampled
+    for time in (0.0, 0.4, 0.8, 1.2, 1.6, 2.4, 2.8, 3.2):
+        shadow = renderer.render(time).statistics.shadow
+        assert shadow.wrong <= allowed * shadow.due, time
+
+
+def test_pictures_repeat_for_any_number_of_threads():
+    lamps = room(LAMP, POINT)
+    settings = replace(SETTINGS, method="paper", verify=True, record_work=True)
+    for time in (0.0, 0.1):
+        one, four = (Renderer(lamps, replace(settings, threads=n)).render(time) for n in (1, 4))
+        assert_same(one, four, f"at {time}")
+
+
+def test_a_verified_frame_counts_wrong_samples():
+    frame = Renderer(room(LAMP), replace(SETTINGS, method="paper", verify=True)).render(0.0)
+    none = Renderer(room(LAMP), SETTINGS).render(0.0)
+    assert frame.reference is not None and frame.reference.tobytes() == none.color.tobytes()
+
+
+def test_an_explanation_counts_the_samples_that_reach_the_point():
+    renderer = Renderer(room(LAMP, POINT), SETTINGS)
+    frame = renderer.render(0.0)
+    assert frame.asked is not None and frame.reached is not None
+    partly = np.argwhere((frame.reached[..., 0] > 0) & (frame.reached[..., 0] < frame.asked[..., 0]))
+    for y, x in partly[:: len(partly) // 12]:
+        lamp, point = explain(renderer, frame, int(x), int(y))
+        assert (lamp.samples, lamp.reached) == (frame.asked[y, x, 0], frame.reached[y, x, 0])
+        assert lamp.lit and lamp.blocker is not None and lamp.blocked_at is not None
+        assert point.samples == frame.asked[y, x, 1] and point.reached == frame.reached[y, x, 1]
+
+
+def test_a_picture_that_is_refined_becomes_the_whole_one():
+    lamps = room(LAMP, POINT)
+    whole = Renderer(lamps, replace(SETTINGS, method="paper")).render(0.0)
+    *_, last = Renderer(lamps, replace(SETTINGS, method="paper")).refine(0.0, parts=(1, 16))
+    assert last.color.tobytes() == whole.color.tobytes() and last.modes.tobytes() == whole.modes.tobytes()
