@@ -76,7 +76,7 @@ def test_exact_methods_give_the_picture_of_none(method: str, accelerator: str):
 
 def test_modes_are_kept_for_the_lamp_and_speak_for_all_its_samples():
     """FULL_SHADOW where every sample is blocked, NON_SHADOW where none is, PARTIAL_SHADOW in the penumbra."""
-    renderer = Renderer(room(LAMP), replace(SETTINGS, method="paper"))
+    renderer = Renderer(room(replace(LAMP, radius=0.5)), replace(SETTINGS, method="paper"))
     frame = renderer.render(0.0)
     assert frame.asked is not None and frame.reached is not None
     seen = {mode: 0 for mode in ShadowMode}
