@@ -19,6 +19,7 @@ from PIL import Image
 
 import tracer
 from tracer import experiment
+from tracer.scene.load import load_scene
 from viewer.__main__ import main
 from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
@@ -130,6 +131,15 @@ def test_options_in_the_text_exist(capsys: pytest.CaptureFixture[str]) -> None:
     for page in (README, *(DOCS / f"{name}.md" for name in ("viewer", "command-line", "methods", "results"))):
         named = set(re.findall(r"`[^`\n]*?(--[a-z-]+)", page.read_text()))
         assert named <= known, page
+
+
+def test_lamps_are_read_as_shown(tmp_path: Path) -> None:
+    (shown,) = re.findall(r"^```\n(lamp.*?)^```", (DOCS / "scenes.md").read_text(), re.MULTILINE | re.DOTALL)
+    path = tmp_path / "shown.aff"
+    path.write_text(f"v from 0 0 5 at 0 0 0\np 3 0 0 0 1 0 0 0 1 0\n{shown}")
+    scene = load_scene(path)
+    assert [light.kind for light in scene.lights] == ["sphere", "rectangle", "dome", "point"]
+    assert scene.warnings == ()
 
 
 @each_page

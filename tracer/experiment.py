@@ -36,7 +36,8 @@ _FIGURES: dict[str, Callable[[FrameStatistics], float]] = {
 }
 
 
-_SHARED = ("depth", "zoom_factor", "symmetric", "verify", "accelerator", "threads")  # settings of all methods
+# Settings of all methods.
+_SHARED = ("depth", "zoom_factor", "symmetric", "verify", "accelerator", "threads", "lamp_radius", "lamp_samples")
 
 
 @dataclass

@@ -36,7 +36,8 @@ class Settings:
     lamp_radius : float or None
         Every point light and sphere of the scene becomes a sphere of this radius, or a point with 0; None leaves them.
     lamp_samples : int or None
-        Points from which each lamp shines (`tracer.scene.lights`); None leaves what the scene says.
+        Points from which each lamp shines (`tracer.scene.lights`). None leaves what the scene says, and gives 16 to a
+        point that becomes a sphere.
     samples : int
         Rays per pixel, averaged. Modes and statistics are those of the first, which goes through the pixel's centre.
     threads : int

@@ -123,6 +123,8 @@ class Results:
     ratio: float
     still_frames: int = STILL_FRAMES
     approaches: list[Approach] = field(default_factory=list)
+    lamp_radius: float | None = None
+    lamp_samples: int | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Plain lists and numbers, for JSON."""
@@ -261,6 +263,7 @@ def run(
     world = world or World(scene, start.time, settings.accelerator)
     size = (settings.width, settings.height)
     results = Results(str(scene.path), size, start.primitive, start.time, start.target, ratio)
+    results.lamp_radius, results.lamp_samples = settings.lamp_radius, settings.lamp_samples
     for test in tests:
         renderer = Renderer(scene, test, world=world)
         approach = Approach(test.zoom_factor)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tracer.scene.lights import Light, as_lamps, sobol
+from tracer.scene.lights import DEFAULT_SAMPLES, Light, as_lamps, sobol
 
 SPHERE = Light("lamp", (1.0, 2.0, 3.0), kind="sphere", radius=2.0, samples=64)
 PANEL = Light("panel", (0.0, 0.0, 0.0), kind="rectangle", edges=((2.0, 0.0, 0.0), (0.0, 4.0, 0.0)), samples=64)
@@ -57,6 +57,9 @@ def test_points_become_lamps_and_spheres_points_again():
     assert as_lamps((lamp, point), 0.0, None) == (replace(point, name="point"), point)
     assert as_lamps((point, SPHERE, PANEL), None, None) == (point, SPHERE, PANEL)
     assert as_lamps((point,), None, 64) == (point,), "a point has no surface to take samples of"
+    (alone,) = as_lamps((point,), 0.5, None)
+    assert alone.samples == DEFAULT_SAMPLES, "a radius alone makes shadows soft"
+    assert as_lamps((SPHERE,), 0.5, None) == (replace(SPHERE, radius=0.5),), "a sphere keeps its samples"
 
 
 @pytest.mark.parametrize(

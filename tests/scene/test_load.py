@@ -101,6 +101,7 @@ def test_info(write):
         "frames": 60,
         "time": [0.0, 2.0],
         "warnings": [],
+        "light_kinds": [{"kind": "point", "samples": 1, "falloff": "none", "lights": 1}],
     }
 
 

@@ -15,13 +15,13 @@ from time import perf_counter
 import numpy as np
 
 from tracer.scene import aff_blocks, rotations
-from tracer.scene.aff_blocks import WordPlace
+from tracer.scene.aff_lights import FoundLight, read_lamp, read_light, settled
 from tracer.scene.aff_tokens import AffFile, Cursor, quoted, reason
 from tracer.scene.animation import Animation, Chain, TrackSet
-from tracer.scene.assembly import Geometry, resolve
+from tracer.scene.assembly import Geometry
 from tracer.scene.framing import bounds, framing_camera
-from tracer.scene.model import Camera, Light, Material, Progress, Scene, SceneError
-from tracer.scene.pieces import Mesh, Piece, Place, Quadric
+from tracer.scene.model import Camera, Material, Progress, Scene, SceneError
+from tracer.scene.pieces import Mesh, Piece, Quadric
 from tracer.scene.textures import TextureTable
 
 SECONDS_BETWEEN_REPORTS = 0.02
@@ -55,18 +55,18 @@ class _Reader:
         self.material = -1
         self.textures = TextureTable(path)
         self.tracks: dict[str, TrackSet] = {}
-        self.lights: list[tuple[Light, Chain, Place]] = []
+        self.lights: list[FoundLight] = []
         self.camera: Camera | None = None
         self.background = (0.0, 0.0, 0.0)
         self.ambient = (1.0, 1.0, 1.0)
         self.time_range = (0.0, 0.0)
         self.frames = 1
-        self.warnings: list[str] = []
         self.statements: dict[bytes, Callable[[Cursor], None]] = {
             b"b": self.read_background,
             b"v": self.read_viewpoint,
             b"l": self.read_light,
-            b"la": self.read_moving_light,
+            b"la": lambda at: self.read_light(at, at.name("the name of a light")),
+            b"lamp": lambda at: self.lights.append(read_lamp(at, self.chain, len(self.lights))),
             b"am": self.read_ambient,
             b"a": self.read_animation,
             b"f": self.read_fill,
@@ -192,15 +192,7 @@ class _Reader:
         self.camera = Camera((x, y, z), tuple(direction.tolist()), (up[0], up[1], up[2]), angle)
 
     def read_light(self, at: Cursor, name: str | None = None) -> None:
-        place = WordPlace(at.file, at.position - 1)
-        position = np.append(at.numbers(3, "the position of a light"), 1.0)
-        color = at.triple("the colour of a light") if at.at_number() else (1.0, 1.0, 1.0)
-        x, y, z = (resolve(self.chain, ())[1] @ position)[:3].tolist()
-        light = Light(name or f"light {len(self.lights)}", (x, y, z), color, name)
-        self.lights.append((light, self.chain, place))
-
-    def read_moving_light(self, at: Cursor) -> None:
-        self.read_light(at, at.name("the name of a light"))
+        self.lights.append(read_light(at, self.chain, len(self.lights), name))
 
     def read_fill(self, at: Cursor) -> None:
         """NFF knows a colour, Kd, Ks and no ambient: diffuse is Kd times the colour, highlights and
@@ -259,7 +251,7 @@ class _Reader:
     # The end
 
     def scene(self) -> Scene:
-        lights = self.settled_lights()
+        lights, left_out = settled(self.lights, self.tracks)
         objects, remarks = self.geometry.objects(self.tracks)
         animation = Animation(self.tracks)
         camera = self.camera
@@ -282,16 +274,5 @@ class _Reader:
             ambient=self.ambient,
             time_range=self.time_range,
             frames=self.frames,
-            warnings=(*self.warnings, *self.textures.warnings, *remarks),
+            warnings=(*left_out, *self.textures.warnings, *remarks),
         )
-
-    def settled_lights(self) -> tuple[Light, ...]:
-        """The lights; only those that a translation moves keep the name of their track."""
-        settled = []
-        for light, chain, place in self.lights:
-            if any(isinstance(e, str) and e in self.tracks for e in chain):
-                self.warnings.append(f"{place()}: a light does not move with the transform around it; use 'la'")
-            tracks = self.tracks.get(light.track or "")
-            moves = tracks is not None and tracks.translation is not None
-            settled.append(light if moves else replace(light, track=None))
-        return tuple(settled)

@@ -21,6 +21,8 @@ Vector = tuple[float, float, float]
 KINDS = ("point", "sphere", "rectangle", "dome")
 FALLOFFS = ("none", "inverse square")
 MAX_SAMPLES = 1024
+DEFAULT_SAMPLES = 16
+"""Of a lamp, where nobody says how many."""
 _BITS = 32
 
 
@@ -127,12 +129,14 @@ def _on_sphere(z: Float64, turn: Float64) -> Float64:
 def as_lamps(lights: tuple[Light, ...], radius: float | None, samples: int | None) -> tuple[Light, ...]:
     """These lights, each point light made a sphere of some radius, and every lamp given so many samples.
 
-    None leaves the radius or the samples as they are; a radius of 0 makes spheres points."""
+    None leaves the radius or the samples as they are, and gives 16 samples to a point that becomes a sphere; a radius
+    of 0 makes spheres points."""
     return tuple(_as_lamp(light, radius, samples) for light in lights)
 
 
 def _as_lamp(light: Light, radius: float | None, samples: int | None) -> Light:
     if radius is not None and light.kind in ("point", "sphere"):
-        kind = "sphere" if radius > 0 else "point"
-        light = replace(light, kind=kind, radius=radius, samples=light.samples if radius > 0 else 1)
+        kind, count = ("sphere", DEFAULT_SAMPLES) if radius > 0 else ("point", 1)
+        count = light.samples if kind == light.kind else count
+        light = replace(light, kind=kind, radius=radius, samples=count)
     return light if samples is None or light.kind == "point" else replace(light, samples=samples)

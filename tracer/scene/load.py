@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -85,11 +86,13 @@ def scene_info(scene: Scene) -> dict[str, Any]:
     dict
         Plain lists and numbers. `dynamic_triangles` are those of objects that can move or deform, `materials` counts
         every material statement that was run, `textures` counts different images, and `bounds` is [lower corner, upper
-        corner] of everything at the start time, or None for an empty scene.
+        corner] of everything at the start time, or None for an empty scene. `light_kinds` lists lights that are alike,
+        in the order of the scene: their `kind`, their `samples`, their `falloff`, and how many `lights` there are.
     """
     kinds = np.concatenate([o.quadrics.kind for o in scene.objects])
     static = len(scene.objects[0].triangles)
     box = bounds(scene.objects, scene.animation, scene.time_range[0])
+    alike = Counter((light.kind, light.samples, light.falloff) for light in scene.lights)
     return {
         "triangles": scene.triangle_count,
         "static_triangles": static,
@@ -103,4 +106,8 @@ def scene_info(scene: Scene) -> dict[str, Any]:
         "time": list(scene.time_range),
         "bounds": None if box is None else box.tolist(),
         "warnings": list(scene.warnings),
+        "light_kinds": [
+            {"kind": kind, "samples": samples, "falloff": falloff, "lights": number}
+            for (kind, samples, falloff), number in alike.items()
+        ],
     }

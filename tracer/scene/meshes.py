@@ -2,7 +2,8 @@
 
 Such files say little of how a surface shines in a Whitted world, and most have neither camera
 nor lights.  Colours and textures are kept as they would be displayed; roughness and metalness
-become a diffuse and a mirror part; a camera that frames the model and two lights are added.
+become a diffuse and a mirror part; where the file has none, a camera that frames the model and two
+lights are added.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from tracer.scene.framing import bounds, framing_camera, framing_lights
 from tracer.scene.mesh_materials import MaterialTable
 from tracer.scene.model import Camera, Progress, Scene, SceneError
 from tracer.scene.pieces import Mesh, Piece
+from tracer.scene.punctual_lights import punctual_lights
 from tracer.scene.textures import open_image
 
 MESH_EXTENSIONS = (".obj", ".ply", ".stl", ".gltf", ".glb")
@@ -71,16 +73,17 @@ def load_mesh(path: str | Path, progress: Progress | None = None) -> Scene:
         remarks.append(f"{path}: no triangle; only the background is seen")
     box = bounds(objects, Animation.empty(), 0.0)
     camera = _own_camera(model) or framing_camera(box)
+    lights, dark = punctual_lights(model, path, objects, box)
     return Scene(
         path=path,
         objects=objects,
         materials=tuple(table.materials),
         textures=tuple(table.textures),
-        lights=framing_lights(box, camera),
+        lights=lights or framing_lights(box, camera),
         camera=camera,
         animation=Animation.empty(),
         background=(0.6, 0.7, 0.8),
-        warnings=(*troubles, *table.warnings, *skipped, *remarks),
+        warnings=(*troubles, *table.warnings, *skipped, *remarks, *dark),
     )
 
 

@@ -12,7 +12,7 @@ commands:
 
 examples:
   shadowcull
-  shadowcull kitchen.aff
+  shadowcull kitchen.aff --lamp-radius 0.1
   shadowcull render kitchen.aff -o kitchen.png --frame 50 --warmup 10 --view occlusion
   shadowcull info kitchen.aff --json
 
@@ -23,6 +23,7 @@ RENDER = """\
 examples:
   shadowcull render -o room.png
   shadowcull render kitchen.aff -o kitchen.png --size 1024x768 --samples 16
+  shadowcull render kitchen.aff -o soft.png --frame 100 --lamp-radius 0.1 --lamp-samples 64
   shadowcull render kitchen.aff -o modes.png --frame 50 --warmup 20 --view shadow:2
   shadowcull render kitchen.aff -o wrong.png --frame 50 --warmup 20 --view difference
   shadowcull render kitchen.aff -o cells.png --frame 50 --warmup 20 --method certified --view certificate:0
@@ -55,6 +56,7 @@ examples:
   shadowcull bench kitchen.aff --path-frames 100
   shadowcull bench Robot.aff --frames 100:200 --size 256x256 --verify
   shadowcull bench kitchen.aff --path-frames 100 --methods paper,cells,certified,certified+cache
+  shadowcull bench kitchen.aff --path-frames 100 --lamp-radius 0.1
   shadowcull bench default --methods none,paper --symmetric --json default.json --csv default.csv
   shadowcull bench kitchen.aff --path-frames 100 --verify --plot kitchen.svg
 

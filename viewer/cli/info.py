@@ -26,9 +26,12 @@ def _facts_table(path: Path, facts: dict[str, Any]) -> Table:
     table.add_column()
     table.add_column(justify="right")
     for name, value in facts.items():
-        if name in ("bounds", "time", "warnings"):
+        if name in ("bounds", "time", "warnings", "light_kinds"):
             continue
         table.add_row(name.replace("_", " "), f"{value:,}")
+        if name == "lights":
+            for alike in facts["light_kinds"]:
+                table.add_row(f"  {_light_kind(alike)}", f"{alike['lights']:,}")
     table.add_row("time", "{:g} to {:g} s".format(*facts["time"]))
     if facts["bounds"] is not None:
         for name, corner in zip(("least corner", "greatest corner"), facts["bounds"]):
@@ -36,3 +39,10 @@ def _facts_table(path: Path, facts: dict[str, Any]) -> Table:
     for warning in facts["warnings"]:
         say(f"warning: {warning}")
     return table
+
+
+def _light_kind(alike: dict[str, Any]) -> str:
+    """What lights that are alike are, in a few words."""
+    samples = f", {alike['samples']} sample{'s' * (alike['samples'] > 1)}" if alike["kind"] != "point" else ""
+    falloff = f", falloff {alike['falloff']}" if alike["falloff"] != "none" else ""
+    return f"{alike['kind']}{samples}{falloff}"

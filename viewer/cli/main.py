@@ -15,8 +15,10 @@ from __future__ import annotations
 import difflib
 import os
 import sys
+from argparse import Namespace
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from viewer.cli import parsers
 from viewer.cli.parsers import MISUSED
@@ -24,8 +26,9 @@ from viewer.util import resources
 from viewer.util.messages import ERROR, say
 from viewer.util.screen import has_display, no_display_reason
 
-OpenWindow = Callable[[Path | None], int]
-"""Opens the viewer on a scene or a saved picture; returns the exit code, or raises OSError in one line."""
+OpenWindow = Callable[[Path | None, dict[str, Any]], int]
+"""Opens the viewer on a scene or a saved picture, with some settings; returns the exit code, or raises OSError in one
+line."""
 
 FAILED, INTERRUPTED = 1, 130
 PICTURE = Path("out") / "first-light.png"
@@ -81,11 +84,13 @@ def _view(arguments: list[str], commands: list[str], open_window: OpenWindow) ->
     options = parser.parse_args(arguments)
     if not has_display():
         if options.or_picture:
-            return _picture_instead(options.scene)
+            return _picture_instead(options)
         named = options.scene or resources.DEFAULT_SCENE
         say(f"{no_display_reason()}; without one, use: shadowcull render {named} -o out.png")
         return MISUSED
-    return open_window(resources.scene_path(options.scene) if options.scene is not None else None)
+    lamps = {name: getattr(options, name) for name in ("lamp_radius", "lamp_samples")}
+    settings = {name: value for name, value in lamps.items() if value is not None}
+    return open_window(resources.scene_path(options.scene) if options.scene is not None else None, settings)
 
 
 def _check_is_scene(parser: parsers.Parser, name: str, commands: list[str]) -> None:
@@ -97,13 +102,16 @@ def _check_is_scene(parser: parsers.Parser, name: str, commands: list[str]) -> N
     parser.error(f"{name!r} is not a command, a file or a scene that comes with the program: {hint}")
 
 
-def _picture_instead(scene: str | None) -> int:
+def _picture_instead(options: Namespace) -> int:
     """Without a display, `make run` still does the main job: a frame after enough others for culling to act."""
     say(f"{no_display_reason()}; rendering to a file instead")
     PICTURE.parent.mkdir(exist_ok=True)
-    where = ["--frame", "12", "--warmup", "12"] if scene is None else ["--warmup", "8"]
+    where = ["--frame", "12", "--warmup", "12"] if options.scene is None else ["--warmup", "8"]
     where += ["--size", "640x480", "--method", "certified"]  # which culls most
-    return _render([scene or resources.DEFAULT_SCENE, "-o", str(PICTURE.absolute()), *where])
+    for name in ("lamp_radius", "lamp_samples"):
+        if getattr(options, name) is not None:
+            where += [f"--{name.replace('_', '-')}", str(getattr(options, name))]
+    return _render([options.scene or resources.DEFAULT_SCENE, "-o", str(PICTURE.absolute()), *where])
 
 
 def _render(arguments: list[str]) -> int:

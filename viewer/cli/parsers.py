@@ -15,6 +15,7 @@ from viewer.util.version import program_version
 
 MISUSED = 2
 """Exit code where a command line is wrong."""
+MAX_LAMP_SAMPLES = 1024
 _CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
 
 
@@ -43,6 +44,7 @@ def viewer() -> Parser:
         epilog=examples.COMMANDS,
     )
     parser.add_argument("scene", nargs="?", metavar="SCENE", help=_scene_help())
+    _add_lamps(parser)
     parser.add_argument("--version", action="version", version=f"shadowcull {program_version()}")
     parser.add_argument("--or-picture", action="store_true", help=argparse.SUPPRESS)
     return parser
@@ -175,6 +177,16 @@ def _add_tracing_options(parser: Parser, accelerator: str) -> None:
     add("--threads", type=count(0, 1024), default=0, metavar="N", help="0, the default: one per core")
     add("--depth", type=count(0, 100), default=10, metavar="D", help="the most bounces (default: 10)")
     add("--symmetric", action="store_true", help="occlusion tests in both directions between neighbouring pixels")
+    _add_lamps(parser)
+
+
+def _add_lamps(parser: Parser) -> None:
+    """What makes lamps of a scene's lights; without an option, they are as the scene, or a saved picture, says."""
+    add = parser.add_argument
+    help_ = "make every point light and sphere a sphere of this radius, in the scene's units; 0 makes them points"
+    add("--lamp-radius", type=number(0.0, 1e9), metavar="R", help=help_)
+    help_ = "points from which each lamp shines (default: as the scene says, and 16 for what --lamp-radius makes)"
+    add("--lamp-samples", type=count(1, MAX_LAMP_SAMPLES), metavar="N", help=help_)
 
 
 def _add_zoom_factor(parser: Parser) -> None:

@@ -13,7 +13,7 @@ from viewer.output import capture
 from viewer.services.scene_files import find_scene, is_capture
 
 _A_CAMERA = '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
-_SETTINGS = ("method", "samples", "depth", "symmetric", "zoom_factor", "verify")
+_SETTINGS = ("method", "samples", "depth", "symmetric", "zoom_factor", "verify", "lamp_radius", "lamp_samples")
 
 
 def defaults(path: Path) -> tuple[Path, dict[str, Any]]:

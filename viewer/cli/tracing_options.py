@@ -37,6 +37,8 @@ def tracing_settings(options: Namespace) -> Settings:
         depth=options.depth,
         symmetric=options.symmetric,
         zoom_factor=options.zoom_factor,
+        lamp_radius=options.lamp_radius,
+        lamp_samples=options.lamp_samples,
         verify=options.verify,
         threads=options.threads,
         accelerator=options.accelerator,

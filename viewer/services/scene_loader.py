@@ -6,9 +6,10 @@ is cancelled.  A second request to open takes the place of the first.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.scene.model import Scene
@@ -51,6 +52,7 @@ class SceneLoader:
         self._place: Snapshot | None = None  # where to go once the scene is loaded
         self._restored: Arrival | None = None
         self._from_shell = False  # whether what is being opened was named on the command line
+        self._given: dict[str, Any] = {}  # settings from there, for what is opened first
 
     @property
     def busy(self) -> bool:
@@ -62,8 +64,12 @@ class SceneLoader:
         """Whether all kernels are; those that make certificates come last, and pictures without them look the same."""
         return self.warm_up_job is None
 
-    def start(self, path: Path | None) -> None:
-        """Compile or load the kernels in the background, and open a first scene meanwhile."""
+    def start(self, path: Path | None, settings: Mapping[str, Any] | None = None) -> None:
+        """Compile or load the kernels in the background, and open a first scene meanwhile.
+
+        `settings` hold for what is opened first, also where a saved place in it has others."""
+        self._given = dict(settings or {})
+        self._session.settings = replace(self._session.settings, **self._given)
         title = "Loading the tracer" if compiled_before() else "Compiling the tracer (first start only)"
         self.warm_up_job = Job(title, warm_up, self._wake)
         if path is not None:
@@ -163,6 +169,9 @@ class SceneLoader:
         if self.load_job is not None:
             self.load_job.cancel()
             self._abandoned.append(self.load_job)
+        if then is not None:
+            then = replace(then, settings=then.settings | self._given)
+        self._given = {}
         self._place = then
         settings = self._session.settings
         self.load_job = Job(

@@ -23,6 +23,7 @@ _NOT_RESTORED = {
     "width", "height", "threads", "accelerator", "modes", "record_lights", "record_work", "certificates",
     "certificate_seconds", "patient",
 }  # fmt: skip
+_OPTIONAL: dict[str, type] = {"lamp_radius": float, "lamp_samples": int}  # None: as the scene says
 
 
 @dataclass(frozen=True)
@@ -79,9 +80,8 @@ def settings_from_json(data: Any) -> dict[str, Any]:
     names = {f.name for f in fields(Settings)} - _NOT_RESTORED
     known = {name: value for name, value in data.items() if name in names}
     for name, value in known.items():
-        if type(value) is not type(getattr(Settings(), name)) and not (
-            isinstance(value, int) and isinstance(getattr(Settings(), name), float)
-        ):
+        kinds = (type(None), _OPTIONAL[name]) if name in _OPTIONAL else (type(getattr(Settings(), name)),)
+        if type(value) not in kinds and not (type(value) is int and float in kinds):
             raise ValueError(f"its setting {name} is not understood")
     replace(Settings(), **known).validated()
     return known

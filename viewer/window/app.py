@@ -47,13 +47,13 @@ DRAWN_BY_PROCESSOR = ("llvmpipe", "softpipe", "swrast", "software")
 class App:
     """The window's life: made, run once, closed."""
 
-    def __init__(self, scene_path: Path | None) -> None:
+    def __init__(self, scene_path: Path | None, settings: dict[str, Any] | None = None) -> None:
         preferences, problem = load_preferences()
         self.controller = Controller(preferences)
         self.ui = Ui(self.controller)
         self.ui.guard = Guard(self.controller.notices, lambda name, fault: faults.instead(self.ui, name, fault))
         self.ui.commands = commands.build(self.ui)
-        self.scene_path = scene_path
+        self.scene_path, self.given_settings = scene_path, settings or {}
         self.layout_file = LayoutFile(config_folder())
         self.params = self._params()
         self.layout = Layout(self.ui, self.params)
@@ -248,7 +248,7 @@ class App:
         glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
         opener = self.controller.loader
-        opener.start(self.scene_path)
+        opener.start(self.scene_path, self.given_settings)
         if self.scene_path is None and not (self.controller.preferences.start_where_left and opener.go_on()):
             opener.open(default_scene())
 
@@ -287,7 +287,8 @@ def _configure_imgui() -> None:
     configure_recovery()
 
 
-def run(scene_path: Path | None = None) -> int:
+def run(scene_path: Path | None = None, settings: dict[str, Any] | None = None) -> int:
     """Open the viewer on a scene or a saved picture; without one on what was open last, where that is wanted, else on
-    the embedded room.  Returns the exit code."""
-    return App(scene_path).run()
+    the embedded room.  `settings` are fields of `tracer.Settings` that win over what is opened first.  Returns the exit
+    code."""
+    return App(scene_path, settings).run()

@@ -39,6 +39,7 @@ def test_bench_writes_an_entry_per_frame_and_prints_the_table(tmp_path: Path, ca
     assert results["times"] == whole["times"][1:5] and results["path_frames"] == 6
     assert (results["planned_frames"], results["stopped"]) == (4, False)
     shared = {"depth": 10, "zoom_factor": 4.0, "symmetric": False, "accelerator": "kdtree", "threads": 0}
+    shared |= {"lamp_radius": None, "lamp_samples": None}
     assert results["settings"] == {**shared, "verify": True} and whole["settings"] == {**shared, "verify": False}
     assert results["version"] == program_version()
     assert results["size"] == [48, 32]
@@ -94,6 +95,11 @@ def test_options_of_the_paper_reach_it(tmp_path: Path):
     assert not any(symmetric["none"]["occlusion_tests"])
     soon, never = (bench(tmp_path, "--zoom-factor", factor)["methods"]["paper"] for factor in ("1", "1e9"))
     assert sum(soon["shadow_traversal_steps"]) > sum(never["shadow_traversal_steps"])
+
+
+def test_lamps_are_in_the_settings(tmp_path: Path):
+    settings = bench(tmp_path, "--lamp-radius", "0.25", "--lamp-samples", "4")["settings"]
+    assert (settings["lamp_radius"], settings["lamp_samples"]) == (0.25, 4)
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -14,6 +15,9 @@ from PIL import Image
 
 from tests.commands import CAMERA, ROOM, complaint, render, run
 from tests.terminal import Terminal
+from tracer.scene.lights import MAX_SAMPLES
+from viewer.cli import main as command_line
+from viewer.cli.parsers import MAX_LAMP_SAMPLES
 from viewer.output import capture
 from viewer.state.views import BENEATH
 
@@ -36,8 +40,9 @@ def test_info_json_holds_the_promised_keys(capfd: pytest.CaptureFixture[str], ro
     assert code == 0
     assert list(facts) == [
         "triangles", "static_triangles", "dynamic_triangles", "spheres", "cones", "lights", "materials",
-        "textures", "frames", "time", "bounds", "warnings",
+        "textures", "frames", "time", "bounds", "warnings", "light_kinds",
     ]  # fmt: skip
+    assert facts["light_kinds"] == [{"kind": "point", "samples": 1, "falloff": "none", "lights": 2}]
     assert (facts["triangles"], facts["dynamic_triangles"], facts["spheres"]) == (3, 1, 1)
     assert (facts["lights"], facts["frames"], facts["time"]) == (2, 10, [0.0, 9.0])
 
@@ -46,6 +51,59 @@ def test_info_as_a_table(capfd: pytest.CaptureFixture[str], room: Path) -> None:
     code, out, _ = run(capfd, "info", room)
     assert code == 0
     assert "dynamic triangles" in out and "0 to 9 s" in out
+    assert re.search(r"lights\W+2\W+point\W+2\W+materials", out)
+
+
+def test_info_groups_lights_that_are_alike(capfd: pytest.CaptureFixture[str], room: Path) -> None:
+    spheres = "".join(f"lamp sphere at {x} 3 0 radius 0.1 samples 4\n" for x in range(5))
+    room.write_text(ROOM + spheres + "lamp dome at 0 0 0 radius 9 samples 1 falloff inverse-square\n")
+    code, out, _ = run(capfd, "info", room)
+    assert code == 0
+    for said in (r"lights\W+8\W+point", r"sphere, 4 samples\W+5", r"dome, 1 sample, falloff inverse square\W+1"):
+        assert re.search(said, out), said
+    kinds = json.loads(run(capfd, "info", room, "--json")[1])["light_kinds"]
+    assert [(k["kind"], k["samples"], k["falloff"], k["lights"]) for k in kinds] == [
+        ("point", 1, "none", 2),
+        ("sphere", 4, "none", 5),
+        ("dome", 1, "inverse square", 1),
+    ]
+
+
+@pytest.mark.parametrize("command", [["render", "-o", "x.png"], ["bench"], ["zoom", "--primitive", "0"], []])
+@pytest.mark.parametrize(
+    ("option", "value", "said"),
+    [
+        ("--lamp-radius", "-0.1", "-0.1 is not in 0 to 1,000,000,000"),
+        ("--lamp-radius", "nan", "nan is not in 0 to"),
+        ("--lamp-radius", "wide", "'wide' is not a number"),
+        ("--lamp-samples", "0", "0 is not in 1 to 1024"),
+        ("--lamp-samples", "1025", "1025 is not in 1 to 1024"),
+        ("--lamp-samples", "2.5", "'2.5' is not a whole number"),
+    ],
+)
+def test_lamps_that_cannot_be_are_said(
+    capfd: pytest.CaptureFixture[str], room: Path, command: list[str], option: str, value: str, said: str
+) -> None:
+    arguments = [*command[:1], room, *command[1:], option, value]
+    line = complaint(run(capfd, *arguments))
+    assert f"argument {option}: {said}" in line
+
+
+def test_the_window_is_given_the_lamps(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[tuple[Path | None, dict[str, object]]] = []
+
+    def open_window(scene: Path | None, settings: dict[str, object]) -> int:
+        opened.append((scene, settings))
+        return 0
+
+    monkeypatch.setattr("viewer.cli.main.has_display", lambda: True)
+    for arguments in ([str(room), "--lamp-radius", "0.1", "--lamp-samples", "9"], ["--lamp-radius", "0"], []):
+        assert command_line.main(arguments, open_window) == 0
+    assert opened == [(room, {"lamp_radius": 0.1, "lamp_samples": 9}), (None, {"lamp_radius": 0.0}), (None, {})]
+
+
+def test_as_many_samples_are_allowed_as_the_tracer_has() -> None:
+    assert MAX_LAMP_SAMPLES == MAX_SAMPLES
 
 
 @pytest.mark.parametrize(

@@ -49,6 +49,15 @@ def test_options_change_what_they_name(saved: Path, capfd: pytest.CaptureFixture
     assert not Path("saved-rendered.png").exists()
 
 
+def test_its_lamps_come_back(room: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    size = ("--size", "16x16")
+    assert run(capfd, "render", room, "-o", "lamps.png", *size, "--lamp-radius", 0.5, "--lamp-samples", 4)[0] == 0
+    assert run(capfd, "render", "lamps.png", "-o", "again.png")[0] == 0
+    assert run(capfd, "render", "lamps.png", "-o", "points.png", "--lamp-radius", 0)[0] == 0
+    kept = [capture.read(Path(name)).settings for name in ("lamps.png", "again.png", "points.png")]
+    assert [(s["lamp_radius"], s["lamp_samples"]) for s in kept] == [(0.5, 4), (0.5, 4), (0.0, 4)]
+
+
 def test_its_scene_is_told_of(saved: Path, room: Path, capfd: pytest.CaptureFixture[str]) -> None:
     of_picture, of_room = (run(capfd, "info", path, "--json") for path in (saved, room))
     assert of_picture[0] == 0 and json.loads(of_picture[1]) == json.loads(of_room[1])

@@ -43,11 +43,12 @@ def test_figure_4_in_tables_and_files(tmp_path: Path, capfd: pytest.CaptureFixtu
     """With factor 4 the shadow comes when the primitive is examined again; with 64 it is missing to the end."""
     files = {kind: tmp_path / f"zoom.{kind}" for kind in ("json", "csv", "png")}
     outputs = ["--json", files["json"], "--csv", files["csv"], "--plot", files["png"]]
-    assert main([*FIGURE_4, "--factors", "4,64", "--steps", "20", *map(str, outputs)]) == 0
+    assert main([*FIGURE_4, "--factors", "4,64", "--steps", "20", "--lamp-radius", "0", *map(str, outputs)]) == 0
     out, err = capfd.readouterr()
     assert err == ""
 
     results = json.loads(files["json"].read_text())
+    assert (results["lamp_radius"], results["lamp_samples"]) == (0.0, None)
     four, sixty_four = results["approaches"]
     assert [a["factor"] for a in (four, sixty_four)] == [4.0, 64.0]
     wrong = [[step["wrong_of_primitive"] for step in a["steps"]] for a in (four, sixty_four)]

@@ -109,3 +109,20 @@ def test_a_saved_picture_of_the_open_scene_is_a_place_in_it(door: Door, tiny_sce
     door.loader.open(picture)
     arrival = door.arrival()
     assert arrival.opened.scene.path == tiny_scene_file and arrival.place.camera == frame.camera
+
+
+def test_settings_from_the_command_line_win_over_the_first_picture_alone(
+    door: Door, tiny_scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr("viewer.services.scene_loader.warm_up", lambda progress: None)
+    door.session.open(door_opened(door, tiny_scene_file))
+    door.captures.capture(make_frame(time=1.0), np.zeros((8, 16, 3), np.uint8))
+    assert door.captures.saving[0].join(20.0)
+    (picture,) = (tmp_path / "pictures").iterdir()
+    door.session.scene = None
+    door.loader.start(picture, {"lamp_radius": 0.5})
+    first = door.arrival().place
+    assert first.settings["lamp_radius"] == 0.5 and first.settings["lamp_samples"] is None
+    assert door.session.settings.lamp_radius == 0.5, "also where a scene is opened that says nothing of it"
+    door.loader.open(picture)
+    assert door.arrival().place.settings["lamp_radius"] is None

@@ -1,0 +1,177 @@
+"""The lights of AFF: its own points, `l` and `la`, and `lamp`, a statement of ours for lights of some size.
+
+    lamp point     at x y z
+    lamp sphere    at x y z  radius r
+    lamp rectangle at x y z  edges x y z  x y z
+    lamp dome      at x y z  radius r  [up x y z]
+
+each with [samples n] [color r g b] [falloff none | inverse-square] [name track], in any order.  Words introduce the
+values as they do in `v`.  BART's own reader takes the first letters for those of `la` and stops at the word after them,
+which is no number: a file with lamps is refused there, and not shown with other lights.
+
+A lamp is placed, turned and scaled by the static transforms around it.  As a light of `la`, it moves by the translation
+track of its name, but does not turn: what asks for more is warned of.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tracer.scene.aff_blocks import WordPlace
+from tracer.scene.aff_tokens import Cursor, quoted
+from tracer.scene.animation import Chain, TrackSet
+from tracer.scene.arrays import Float64
+from tracer.scene.assembly import resolve
+from tracer.scene.lights import DEFAULT_SAMPLES, FALLOFFS, KINDS, MAX_SAMPLES, Light
+
+_SIMILAR = 1e-6  # part of its square by which a scale may differ between directions
+_NUMBERS = {b"at": 3, b"radius": 1, b"edges": 6, b"up": 3, b"color": 3}
+_OF_ALL = (b"at", b"color", b"falloff", b"name")
+_OWN = {
+    "point": (),
+    "sphere": (b"radius", b"samples"),
+    "rectangle": (b"edges", b"samples"),
+    "dome": (b"radius", b"up", b"samples"),
+}
+_NEEDED = {"point": (), "sphere": (b"radius",), "rectangle": (b"edges",), "dome": (b"radius",)}
+_WORDS = (*_NUMBERS, b"samples", b"falloff", b"name")
+_FALLOFFS = {falloff.replace(" ", "-").encode(): falloff for falloff in FALLOFFS}
+
+
+@dataclass(frozen=True)
+class FoundLight:
+    """A light in world space, with the transforms around it and its place in the file."""
+
+    light: Light
+    chain: Chain
+    place: WordPlace
+
+
+def read_light(at: Cursor, chain: Chain, number: int, name: str | None = None) -> FoundLight:
+    """`l` and, with a name, `la`; `number` counts the lights before it."""
+    place = WordPlace(at.file, at.position - 1)
+    position = at.numbers(3, "the position of a light")
+    color = at.triple("the colour of a light") if at.at_number() else (1.0, 1.0, 1.0)
+    light = Light(name or f"light {number}", _moved(_static(chain), position), color, name)
+    return FoundLight(light, chain, place)
+
+
+def read_lamp(at: Cursor, chain: Chain, number: int) -> FoundLight:
+    """`lamp`."""
+    place = WordPlace(at.file, at.position - 1)
+    kind = at.word("the kind of a lamp").decode("latin-1")
+    if kind not in KINDS:
+        raise at.error(f"{quoted(kind.encode('latin-1'))} is no kind of lamp; there are {', '.join(KINDS)}")
+    given = _read_words(at, kind)
+    for word in (b"at", *_NEEDED[kind]):
+        if word not in given:
+            raise at.error(f"the {kind} lamp has no '{word.decode()}'; add it", place.index)
+    matrix = _static(chain)
+    linear = matrix[:3, :3]
+    edges: Iterable[Float64] = ()
+    if kind == "rectangle":
+        edges = given[b"edges"].reshape(2, 3)
+    elif kind == "dome":
+        edges = [given.get(b"up", np.array([0.0, 1.0, 0.0]))]
+        if not (linear @ edges[0]).any():
+            raise at.error("'up' of a dome has no length; give the direction of its top", place.index)
+    name = given.get(b"name")
+    r, g, b = given.get(b"color", np.ones(3)).tolist()
+    light = Light(
+        name or f"light {number}",
+        _moved(matrix, given[b"at"]),
+        (r, g, b),
+        name,
+        kind,
+        radius=float(given.get(b"radius", np.zeros(1))[0]) * _scale(linear),
+        edges=tuple(_moved(linear, edge) for edge in edges),
+        samples=1 if kind == "point" else given.get(b"samples", DEFAULT_SAMPLES),
+        falloff=given.get(b"falloff", "none"),
+    )
+    return FoundLight(light, chain, place)
+
+
+def _read_words(at: Cursor, kind: str) -> dict[bytes, Any]:
+    """What the words of a lamp introduce: numbers as arrays, samples, a falloff, a name."""
+    given: dict[bytes, Any] = {}
+    known = (*_OF_ALL, *_OWN[kind])
+    while at.peek() in _WORDS:
+        word = at.word("a lamp")
+        what = f"{word.decode()} of the lamp"
+        if word not in known:
+            takes = ", ".join(w.decode() for w in known)
+            raise at.error(f"a {kind} lamp has no '{word.decode()}', it takes {takes}; remove it")
+        if word == b"samples":
+            given[word] = at.count("samples", least=1)
+            if given[word] > MAX_SAMPLES:
+                raise at.error(f"{given[word]} samples; give at most {MAX_SAMPLES}")
+        elif word == b"falloff":
+            falloff = at.word(what)
+            if falloff not in _FALLOFFS:
+                raise at.error(f"{quoted(falloff)} is no falloff; there are {b', '.join(_FALLOFFS).decode()}")
+            given[word] = _FALLOFFS[falloff]
+        elif word == b"name":
+            given[word] = at.name("the name of a lamp")
+        else:
+            given[word] = at.numbers(_NUMBERS[word], what)
+            if word == b"radius" and given[word][0] < 0:
+                raise at.error(f"a radius of {given[word][0]:g}; give 0 or more")
+    return given
+
+
+def settled(found: Iterable[FoundLight], tracks: Mapping[str, TrackSet]) -> tuple[tuple[Light, ...], list[str]]:
+    """The lights, once all tracks are known, and warnings; only those that a track moves keep its name."""
+    lights, warnings = [], []
+    for one in found:
+        light = one.light
+        of_name = tracks.get(light.track or "")
+        moves = of_name is not None and of_name.translation is not None
+        lights.append(light if moves else replace(light, track=None))
+        warnings += [f"{one.place()}: {what}" for what in _left_out(one, tracks, of_name)]
+    return tuple(lights), warnings
+
+
+def _left_out(found: FoundLight, tracks: Mapping[str, TrackSet], of_name: TrackSet | None) -> Iterable[str]:
+    """What is asked of a light that it does not do."""
+    light = found.light
+    round_ = light.kind in ("sphere", "dome")
+    if any(isinstance(e, str) and e in tracks for e in found.chain):
+        if light.kind == "point":
+            yield "a light does not move with the transform around it; use 'la'"
+        else:
+            yield "a lamp neither moves nor turns with the transform around it; name a translation track with 'name'"
+    if of_name is not None and light.kind != "point":
+        turns = of_name.rotation is not None and light.kind != "sphere"
+        if turns or of_name.scale is not None:
+            name = quoted(os.fsencode(light.name))
+            yield f"the track {name} moves the lamp, but neither turns nor scales it; only its translation counts"
+    if round_ and not _is_similar(_static(found.chain)[:3, :3]):
+        yield f"a {light.kind} lamp stays round under a transform that scales it unevenly; scale it alike in x, y and z"
+
+
+def _static(chain: Chain) -> Float64:
+    """(4, 4): the product of a chain's matrices, as if its tracks did nothing."""
+    return resolve(chain, ())[1]
+
+
+def _moved(matrix: Float64, vector: Float64) -> tuple[float, float, float]:
+    """A point under a matrix (4, 4), or a direction under one (3, 3)."""
+    moved = matrix[:3, :3] @ vector
+    x, y, z = (moved + matrix[:3, 3] if len(matrix) == 4 else moved).tolist()
+    return x, y, z
+
+
+def _scale(linear: Float64) -> float:
+    """The factor by which a matrix (3, 3) scales lengths, on average."""
+    return float(abs(np.linalg.det(linear))) ** (1 / 3)
+
+
+def _is_similar(linear: Float64) -> bool:
+    """Whether a matrix (3, 3) scales all directions alike."""
+    square = _scale(linear) ** 2
+    return bool(np.abs(linear.T @ linear - square * np.eye(3)).max() <= _SIMILAR * square)
