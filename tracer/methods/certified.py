@@ -118,7 +118,7 @@ class CertifiedCells(ShadowMethod):
                 self.services.world, len(frame.lights), frame.workers, self.services.cost_model
             )
             self.scheduler = CertificateScheduler(self.store, self.services.clock)
-        self.store.follow(frame.lights, frame.resting, frame.workers, frame.single)
+        self.store.follow(frame.corners, frame.resting, frame.workers)
 
     def prepare(self, frame: FrameView) -> None:
         self.take_requests(frame, frame.settings.certificate_seconds)

@@ -64,7 +64,7 @@ class FrameView(Protocol):
     tiles: NDArray[np.int64]  # (n, 5): left, top, right, bottom, number
     buffers: Buffers
     lights: NDArray[np.float32]  # (l, 3) their centres
-    single: NDArray[np.bool_]  # (l,) lights of one sample, which is at their centre
+    corners: NDArray[np.float32]  # (l, 8, 3) corners of boxes around their samples
     resting: Resting
     workers: int
     progressive: bool  # whether the picture is shown before all of it is shaded

@@ -40,6 +40,10 @@ close to the triangle.
   asks that (`hit_triangle`), and the fast structure tests the box of a triangle's block.  What passes that box by
   does not hit.
 
+A lamp shines from many points. All of them lie in a box, and U, V, D and D - T are linear in where the ray starts, too,
+as long as their sign is not turned: d x s has no square of L. So over the cell and the box they are greatest and least
+where a corner of the one meets a corner of the other. The bounds grow with lengths that are greatest there as well.
+
 What rests under a transform is known less well in the kd-tree: rays are carried to it, in float32.  Its
 corners are then somewhere within `blur` of where they are taken to be, and a ray that hits it passes that near
 by a point of the triangle as it is taken.  U changes by no more than |e| |d| for each unit of length between two such
@@ -55,7 +59,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tracer.kernels import inlined
-from tracer.simd import address_of, load_columns, load_i32x16, maximum, select, square_root
+from tracer.simd import address_of, load_columns, load_i32x16, maximum, minimum, select, square_root
 
 EPSILON = 2.0**-24  # the largest relative error of a float32 rounding
 ENLARGED = 2.5e-6  # the part of itself by which the fast structure takes a triangle to be larger, and a little
@@ -84,8 +88,9 @@ class SeenTriangles(NamedTuple):
         s: from there to the light.
         e1, e2: the two edges at that corner.
         u, v, d: vectors whose dot products with a direction are U, V and D, times the sign of T.
-        height: |T|, the light's height above the plane times the normal's length.
+        height, highest: |T|, the light's height above the plane times the normal's length: at least, and at most.
         away, first, second, across: lengths of s, e1, e2 and the normal.
+        turned: the sign of T, by which u, v and d are turned.
         blur: how far the corners may be elsewhere.
         firm: whether the sign of T is certain.
         sane: whether float32 can tell anything at all.
@@ -99,10 +104,12 @@ class SeenTriangles(NamedTuple):
     v: Any
     d: Any
     height: Any
+    highest: Any
     away: Any
     first: Any
     second: Any
     across: Any
+    turned: Any
     blur: Any
     firm: Any
     sane: Any
@@ -188,14 +195,45 @@ def rows_at(rows, numbers):
 @inlined
 def seen_from(light, row):
     """Sixteen triangles, columns of their rows, as a light (3,) float32 sees them."""
+    # Turn all functions so that T is positive.
+    s = light[0] - row[0], light[1] - row[1], light[2] - row[2]
+    return _seen(light, row, select(dot(s, cross(row[3:6], row[6:9])) >= ZERO, ONE, -ONE))
+
+
+@inlined
+def seen_from_corner(corners, k, row):
+    """Sixteen triangles as the k-th of a lamp's corners (any, 3) float32 sees them.
+
+    Functions are turned by the sign that T has at the first corner, so that they are linear from corner to corner."""
+    light = corners[0, 0], corners[0, 1], corners[0, 2]
+    s = light[0] - row[0], light[1] - row[1], light[2] - row[2]
+    turned = select(dot(s, cross(row[3:6], row[6:9])) >= ZERO, ONE, -ONE)
+    return _seen((corners[k, 0], corners[k, 1], corners[k, 2]), row, turned)
+
+
+@inlined
+def seen_from_all(corners, count, row):
+    """Sixteen triangles as the first of a lamp's corners sees them, with the least height, and the greatest height and
+    distance of its `count` corners; firm and sane only where they are from each."""
+    t = seen_from_corner(corners, 0, row)
+    height, highest, away, firm, sane = t.height, t.highest, t.away, t.firm, t.sane
+    for k in range(1, count):
+        other = seen_from_corner(corners, k, row)
+        height, highest = minimum(height, other.height), maximum(highest, other.highest)
+        away, firm, sane = maximum(away, other.away), firm & other.firm, sane & other.sane
+    return SeenTriangles(
+        t.corner, t.s, t.e1, t.e2, t.u, t.v, t.d, height, highest, away,
+        t.first, t.second, t.across, t.turned, t.blur, firm, sane,
+    )  # fmt: skip
+
+
+@inlined
+def _seen(light, row, turned):
+    """Sixteen triangles as a light sees them, their functions turned by this sign."""
     e1, e2, blur = row[3:6], row[6:9], row[BLUR]
     s = light[0] - row[0], light[1] - row[1], light[2] - row[2]
     n = cross(e1, e2)
-
-    # Turn all functions so that T is positive.
-    height = dot(s, n)
-    turned = select(height >= ZERO, ONE, -ONE)
-    height = height * turned
+    height = dot(s, n) * turned
     away, first, second = length16(s), length16(e1), length16(e2)
 
     # Is T's sign certain?
@@ -203,7 +241,10 @@ def seen_from(light, row):
     sane = maximum(away, maximum(first, second)) < LARGE
     firm = sane & (height > unsure + SMALL)
     u, v, d = _scaled(cross(e2, s), turned), _scaled(cross(s, e1), turned), _scaled(n, -turned)
-    return SeenTriangles(row[0:3], s, e1, e2, u, v, d, height, away, first, second, length16(n), blur, firm, sane)
+    highest, across = maximum(height, -height), length16(n)
+    return SeenTriangles(
+        row[0:3], s, e1, e2, u, v, d, height, highest, away, first, second, across, turned, blur, firm, sane
+    )
 
 
 @inlined
@@ -227,7 +268,7 @@ def error_bounds(t, longest, near, along, coordinates):
     tilt = FOUR * _EPSILON * t.first * t.second
     d, enlarged = longest * (tilt + FIVE * _EPSILON * t.across), _LARGER * along
     behind = near * tilt + FOUR * t.blur * t.across + FOUR * _EPSILON * t.across * (longest + t.away)
-    behind = behind + THREE * _EPSILON * t.height
+    behind = behind + THREE * _EPSILON * t.highest
     # Bound what is computed here.
     ours = TWO * near * tilt + TWO * _EPSILON * t.across * coordinates
     return ErrorBounds(

@@ -151,7 +151,8 @@ def cull_by_certificates(certified, points, found, light, number, count, asks, b
     counters."""
     if number >= len(certified.stationary) or certified.stationary[number] == 0:
         return
-    words, asks, asked = certified.words, asks and certified.max_asked > 0, np.int64(0)
+    asks = asks and certified.max_asked > 0 and certified.points[number] != 0
+    words, asked = certified.words, np.int64(0)
     for v in range(vectors(count)):
         live = np.int64(batch.live[v])
         if live == 0:

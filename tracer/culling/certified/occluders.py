@@ -21,10 +21,10 @@ from tracer.culling.certified.error_bounds import (
     SureHitLength,
     error_bounds,
     rows_at,
-    seen_from,
+    seen_from_all,
 )
 from tracer.culling.certified.light_space import put_light_space
-from tracer.culling.certified.shaft import PLANES
+from tracer.culling.certified.shaft import LAMP_CORNERS, PLANES, is_point
 from tracer.geometry.memory import borrowed
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import VACANT, WIDTH, Topology
@@ -107,18 +107,19 @@ def joined(shapes: list[Topology]) -> tuple[Topology, NDArray[np.int32]]:
 
 
 @subkernel
-def _find_error_radii(o, number, light, farthest, rounded):
-    """Put how far from each triangle a ray from a light (3,) can report a hit into o.error_radii[number]."""
+def _find_error_radii(o, number, lamp, farthest, rounded):
+    """Put how far from each triangle a ray from a light with these corners can report a hit into
+    o.error_radii[number]."""
     error_radii, numbers = address_of(o.error_radii[number]), local_memory(64)
-    light = np.float32(light[0]), np.float32(light[1]), np.float32(light[2])
+    corners = 1 if is_point(lamp) else LAMP_CORNERS
     farthest, rounded = np.float32(farthest), np.float32(rounded)
     for first in range(0, len(o.rows), LANES):
         which = minimum(lane_numbers_x16() + np.int32(first), i32x16(np.int32(len(o.rows) - 1)))
         store(numbers, which)
         row = rows_at(o.rows, numbers)
-        t = seen_from(light, row)
+        t = seen_from_all(lamp, corners, row)
         # |D| enters the bounds by the same part of itself, whatever it is: that is added at the end.
-        m = error_bounds(t, TWO * farthest, farthest, t.height, ZERO)
+        m = error_bounds(t, TWO * farthest, farthest, t.highest, ZERO)
         depth = t.height - m.behind
         part = maximum(m.u, maximum(m.v, m.w)) / depth + np.float32(1e-5)
         radius = part * (t.first + t.second) + (m.behind / depth + np.float32(1e-6)) * farthest + t.blur
@@ -199,14 +200,15 @@ def _leaf_box(o, leaf, number, farthest):
 
 
 @kernel
-def enlarge_boxes(o, number, light, farthest, largest):
-    """Fit all boxes, and the light-space triangles, to light `number`, which is at light (3,) float32 now.
+def enlarge_boxes(o, number, lamp, farthest, largest):
+    """Fit all boxes, and the light-space triangles, to light `number` with corners lamp (LAMP_CORNERS, 3) float32.
 
     No ray from it is longer than `farthest`, and no coordinate larger than `largest`, in units of the scene."""
     o = borrowed(o)
     boxes = o.boxes[number]
-    _find_error_radii(o, number, light, farthest, ROUNDED * largest)
-    put_light_space(o.rows, o.farthest, light, o.light_space[number])
+    _find_error_radii(o, number, lamp, farthest, ROUNDED * largest)
+    if is_point(lamp):  # candidates are asked about points alone
+        put_light_space(o.rows, o.farthest, lamp[0], o.light_space[number])
     for node in range(len(o.children) - 1, -1, -1):  # children come after their parents
         for child in range(WIDTH):
             code = o.children[node, child]

@@ -24,7 +24,7 @@ class CertificateView(NamedTuple):
     Attributes:
         words, child, receivers, rooted, lists, names: of all cells (`tracer.culling.certified.cells.Cells`).
         light_space: (lights, n, LIGHT_ROW) float32, rows of the primitives that certificates name.
-        stationary: (lights,) bool, which lights are certified.
+        stationary, points: (lights,) bool, which lights are certified, and which of these are points.
         highest: how high above a cell a ray may end, in units of the scene.
         max_asked: candidates that a ray tests at most (`CostModel`).
         costly_rays: whether rays cost so much that every look-up pays (`CostModel`).
@@ -41,6 +41,7 @@ class CertificateView(NamedTuple):
     names: I32
     light_space: F32x3D
     stationary: Bytes
+    points: Bytes
     highest: float
     max_asked: int
     costly_rays: bool
