@@ -218,6 +218,32 @@ def nasty_walk(seed: int, lights: int = 0, frames: int = 5) -> NastyWalk:
     return NastyWalk(seed, made, _way(rng, turn, move, frames))
 
 
+def with_lamps(walk: NastyWalk) -> NastyWalk:
+    """The same walk by the light of lamps: points, thin ones, and some around all that they shine on."""
+    rng = np.random.default_rng(walk.seed)
+    size = float(np.ptp(walk.scene.objects[0].triangles.corners.reshape(-1, 3), axis=0).max())
+    lamps = tuple(_lamp(rng, light, size) for light in walk.scene.lights)
+    return replace(walk, scene=replace(walk.scene, lights=lamps))
+
+
+def _lamp(rng: np.random.Generator, light: Light, size: float) -> Light:
+    kind = str(rng.choice(["point", "sphere", "sphere", "rectangle", "dome"]))
+    radius = float(size * 10.0 ** rng.uniform(-4, 0))
+    edges = rng.normal(size=(2, 3)) * radius * rng.choice([1.0, 1.0, 1e-3, 0.0], (2, 1))
+    if rng.random() < 0.5:
+        edges *= rng.permuted(np.eye(3), axis=1)[:2]  # along axes
+    top = rng.normal(size=3).tolist()
+    shape = {
+        "point": {},
+        "sphere": {"radius": radius},
+        "rectangle": {"edges": tuple(tuple(edge) for edge in edges.tolist())},
+        "dome": {"radius": radius, "edges": (tuple(top),)},
+    }[kind]
+    samples = 1 if kind == "point" else int(rng.choice([1, 2, 4, 9, 16]))
+    falloff = str(rng.choice(["none", "inverse square"]))
+    return replace(light, kind=kind, samples=samples, falloff=falloff, **shape)
+
+
 def _materials(rng: np.random.Generator, made: Quadrics) -> Quadrics:
     made.material[:] = rng.integers(len(MATERIALS), size=len(made))
     made.inside[:] = rng.random(len(made)) < 0.2

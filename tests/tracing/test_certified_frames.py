@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import tracer
-from tests.tracing.nasty_worlds import NastyWalk, nasty_walk
+from tests.tracing.nasty_worlds import NastyWalk, nasty_walk, with_lamps
 from tests.tracing.same import contents
 from tests.tracing.worlds import certificates_of
 from tracer.culling.certified.cost_model import CostModel
@@ -61,6 +61,15 @@ def test_pictures_of_nasty_scenes_are_those_without_culling(method: str, acceler
     seen: Counter[str] = Counter()
     assert not [wrong for seed in range(40) for wrong in _differing(nasty_walk(seed), seen, **settings)]
     assert min(seen[name] for name in ("culled", "dynamic_only", "candidates_only", "certificates")) > 1000
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_pictures_by_nasty_lamps_are_those_without_culling(accelerator: str):
+    settings = {"method": "certified", "width": 24, "height": 24, "depth": 2, "accelerator": accelerator}
+    seen: Counter[str] = Counter()
+    walks = [with_lamps(nasty_walk(seed)) for seed in range(200, 240)]
+    assert not [wrong for walk in walks for wrong in _differing(walk, seen, **settings)]
+    assert min(seen[name] for name in ("culled", "dynamic_only", "certificates")) > 1000
 
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)

@@ -10,6 +10,7 @@ import pytest
 from tests.tracing.same import assert_same
 from tests.tracing.shades import BEHIND, floor, going, kite, roof
 from tests.tracing.worlds import scene
+from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.modes import FULLY_RENDERED, ShadowMode
 from tracer.explanation import explain
 from tracer.geometry.world import ACCELERATORS
@@ -72,6 +73,20 @@ def test_exact_methods_give_the_picture_of_none(method: str, accelerator: str):
     renderer, truth = Renderer(lamps, replace(settings, method=method)), Renderer(lamps, settings)
     for time in (0.0, 0.1, 0.2):
         assert renderer.render(time).color.tobytes() == truth.render(time).color.tobytes(), time
+
+
+def test_certificates_speak_for_all_samples_of_a_lamp():
+    """Where every sample is known to be blocked, or none: the others, of the penumbra, are traced."""
+    lamp = replace(LAMP, position=(0.3, 0.2, 12.0), radius=0.3)
+    settings, eager = replace(SETTINGS, method="certified", depth=0), CostModel(2, 4, 3, 48, True, 1)
+    renderer = Renderer(room(lamp), settings, cost_model=eager)
+    for _ in range(8):
+        frame = renderer.render(0.0)
+    shadow = frame.statistics.shadow
+    assert frame.asked is not None and frame.reached is not None and shadow.candidates_only == 0
+    penumbra = int(frame.asked[(frame.reached > 0) & (frame.reached < frame.asked)].sum())
+    assert penumbra > 500 and shadow.culled > 1000 and shadow.dynamic_only > 1000
+    assert 0.4 * (shadow.due - penumbra) < shadow.culled + shadow.dynamic_only <= shadow.due - penumbra
 
 
 def test_modes_are_kept_for_the_lamp_and_speak_for_all_its_samples():

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from tracer.culling.certified.lookup import (
     CELL_POINT_ROWS,
     cell_points_in,
+    cull_again,
     cull_by_certificates,
     find_cells,
     record_cells,
@@ -56,6 +57,9 @@ def choose(data, call, light, count, counts):
     """Answer rays by certificates; candidates are asked where packets of primary hits' rays are not quicker."""
     given, certified = call_at(call), view_at(data)
     points, batch, found = points_in(given.points), shadow_batch_in(given.shadows), cell_points_in(scratch_of(given))
+    if given.again:
+        cull_again(certified, light, count, found, batch, i64_at(counts))
+        return
     asks, position = given.bounce > 0 or certified.costly_rays, given.samples[given.sample]
     cull_by_certificates(certified, points, found, position, light, count, asks, batch, i64_at(counts))
 

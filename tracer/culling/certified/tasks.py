@@ -32,7 +32,7 @@ from tracer.culling.certified.certify import MOST, certify
 from tracer.culling.certified.error_bounds import dot, row_of
 from tracer.culling.certified.gather_requests import facing_lights
 from tracer.culling.certified.quadtree import part_of, place_of_part
-from tracer.culling.certified.shaft import put_cell, put_light
+from tracer.culling.certified.shaft import is_point, put_cell, put_light
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
 
@@ -184,7 +184,8 @@ def _run_task(cells, o, lights, lamps, stationary, scale, task, tasks, points, p
             put, placed = True, _put_cell(cells, o, cell, scale, s)
         state, amount = np.int64(CANDIDATES), np.int64(TOO_MANY)
         if placed:
-            state, amount = _certify(cells, o, lamps[light], light, cell, few, s, counts)
+            asked = few if is_point(lamps[light]) else 0  # rays test no candidates of larger lamps
+            state, amount = _certify(cells, o, lamps[light], light, cell, asked, s, counts)
         tasks.state[task, light], tasks.amount[task, light] = state, amount
         if amount != TOO_MANY:
             for k in range(amount & (SETTLED - 1)):
