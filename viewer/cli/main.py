@@ -106,7 +106,7 @@ def _picture_instead(options: Namespace) -> int:
     """Without a display, `make run` still does the main job: a frame after enough others for culling to act."""
     say(f"{no_display_reason()}; rendering to a file instead")
     PICTURE.parent.mkdir(exist_ok=True)
-    where = ["--frame", "12", "--warmup", "12"] if options.scene is None else ["--warmup", "8"]
+    where = ["--frame", "12", "--warmup", "12"] if options.scene is None else []  # others may have no frames before
     where += ["--size", "640x480", "--method", "certified"]  # which culls most
     for name in ("lamp_radius", "lamp_samples"):
         if getattr(options, name) is not None:
