@@ -22,7 +22,7 @@ export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
 export MPLCONFIGDIR := $(CURDIR)/.cache/matplotlib
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run test quick test-all golden bench frames quickest counters window motion memory growth docs linkcheck pictures lint format lock clean distclean help
+.PHONY: run test quick test-all golden bench frames quickest lamps counters window motion memory growth docs linkcheck pictures lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -55,6 +55,10 @@ frames:  ## time frames with and without culling, phase by phase (ARGS="--frames
 quickest:  ## hold frames by `auto` against those by `none`, fifty at a time (ARGS="--frames 100 SCENE ...")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.quickest $(ARGS)
+
+lamps:  ## hold frames by the light of lamps against those by `none` (ARGS="--radius 0.1 --frames 20 SCENE ...")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.lamps $(ARGS)
 
 counters:  ## time frames with and without counters of steps and tests (ARGS="--frames 10 SCENE")
 	@tools/environment.sh dev
