@@ -12,7 +12,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from generate import figures, icon, pictures, room, textures
+from generate import courtyard, figures, icon, office, pictures, room, textures
 from generate.images import png, ppm
 from generate.mesh import Array
 
@@ -40,6 +40,12 @@ def make() -> dict[str, bytes]:
     for name, model in room.study().files().items():
         files[f"scenes/study/{name}.aff"] = model.text().encode()
     files["scenes/study/tracks.aff"] = room.tracks().encode()
+    for name, root, model in (
+        ("office", office.text("office"), office.office()),
+        ("courtyard", courtyard.text("courtyard"), courtyard.courtyard()),
+    ):
+        files[f"scenes/{name}.aff"] = root.encode()
+        files |= {f"scenes/{name}/{part}.aff": held.text().encode() for part, held in model.files().items()}
     files["scenes/figure3.aff"] = figures.figure3().encode()
     files["scenes/figure4.aff"] = figures.figure4().encode()
     for name, draw in TEXTURES.items():

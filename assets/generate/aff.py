@@ -47,6 +47,26 @@ def numbers(values: Iterable[float], decimals: int = 4) -> str:
     return " ".join(number(float(v), decimals) for v in values)
 
 
+@dataclass(frozen=True)
+class Lamp:
+    """A light that falls off with the square of the distance: a point or, given two edges, a rectangle of samples.
+
+    `colour` is what arrives at a distance of 1 m from all of it.
+    """
+
+    at: Point
+    colour: Colour
+    edges: tuple[Point, Point] | None = None
+    samples: int = 1
+
+    def text(self) -> str:
+        words = ["lamp point" if self.edges is None else "lamp rectangle", f"at {numbers(self.at)}"]
+        if self.edges is not None:
+            first, second = (numbers(edge) for edge in self.edges)
+            words.append(f"edges {first}  {second}  samples {self.samples}")
+        return "  ".join([*words, f"color {numbers(self.colour, 4)}", "falloff inverse-square"])
+
+
 @dataclass
 class Model:
     """What one AFF file holds.  `decimals` are those of positions, in metres."""
@@ -57,6 +77,7 @@ class Model:
     quadrics: dict[Material, list[str]] = field(default_factory=dict)
     placed: list[tuple[Model, str]] = field(default_factory=list)
     bare: list[str] = field(default_factory=list)
+    lamps: list[Lamp] = field(default_factory=list)
 
     def add(self, material: Material, *meshes: Mesh) -> None:
         self.meshes.setdefault(material, []).extend(meshes)
@@ -107,6 +128,8 @@ class Model:
                 block.append(mesh_text(join(self.meshes[material]), material.texture, self.decimals))
             block.extend(self.quadrics.get(material, []))
             blocks.append("\n".join(block))
+        if self.lamps:
+            blocks.append("\n".join(lamp.text() for lamp in self.lamps))
         for model, transform in self.placed:
             blocks.append(f"{transform} {{ i 0 {model.name}.aff }}")
         return "\n\n".join(blocks) + "\n"
