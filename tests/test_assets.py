@@ -48,7 +48,7 @@ def test_the_generator_writes_the_committed_files(make_scenes: ModuleType) -> No
 
 
 def test_the_embedded_files_stay_small() -> None:
-    assert sum(p.stat().st_size for p in SCENES.rglob("*") if p.is_file()) < 6_000_000
+    assert sum(p.stat().st_size for p in SCENES.rglob("*") if p.is_file()) < 7_000_000
 
 
 def test_the_study_has_what_a_first_look_needs(study: tracer.Scene) -> None:
@@ -100,6 +100,56 @@ def test_the_camera_never_touches_anything(study: tracer.Scene) -> None:
         world = tracer.World(study, time)
         rays = tracer.RayBatch(np.broadcast_to(origin, directions.shape), directions)
         assert world.closest_hits(rays).t.min() > 0.12, f"frame {frame}"
+
+
+@pytest.fixture(scope="module", params=["office", "courtyard"])
+def many_lights(request: pytest.FixtureRequest) -> tracer.Scene:
+    return tracer.load_scene(SCENES / f"{request.param}.aff")
+
+
+def test_the_office_has_256_panels_of_16_samples() -> None:
+    info = tracer.scene_info(tracer.load_scene(SCENES / "office.aff"))
+    panels = {"kind": "rectangle", "samples": 16, "falloff": "inverse square", "lights": 256}
+    assert info["light_kinds"] == [panels]
+    assert info["warnings"] == [] and info["triangles"] < 400_000
+
+
+def test_the_courtyard_has_10_000_coloured_bulbs() -> None:
+    scene = tracer.load_scene(SCENES / "courtyard.aff")
+    info = tracer.scene_info(scene)
+    assert info["light_kinds"] == [{"kind": "point", "samples": 1, "falloff": "inverse square", "lights": 10_000}]
+    assert info["warnings"] == [] and info["triangles"] < 100_000
+    assert len({light.color for light in scene.lights}) == 6
+    distinct = {tuple(np.round(light.position, 3)) for light in scene.lights}
+    assert len(distinct) == 10_000
+
+
+def test_files_with_many_lights_are_small() -> None:
+    for name in ("office", "courtyard"):
+        sizes = [p.stat().st_size for p in [SCENES / f"{name}.aff", *(SCENES / name).iterdir()]]
+        assert max(sizes) < 64_000 and sum(sizes) < 400_000
+
+
+def test_a_walk_past_many_lights_is_smooth_and_closes(many_lights: tracer.Scene) -> None:
+    cameras = [many_lights.camera_at(many_lights.frame_time(i)) for i in range(many_lights.frames)]
+    positions = np.array([c.position for c in cameras])
+    views = np.array([c.basis()[2] for c in cameras])
+    assert np.linalg.norm(np.diff(positions, axis=0), axis=1).max() < 0.4
+    turn = np.degrees(np.arccos(np.clip((views[1:] * views[:-1]).sum(axis=1), -1, 1)))
+    assert turn.max() < 12
+    assert np.allclose(positions[0], positions[-1], atol=1e-3), "so that it can loop"
+
+
+@pytest.mark.slow
+def test_a_walk_past_many_lights_touches_nothing(many_lights: tracer.Scene) -> None:
+    random = np.random.default_rng(0)
+    directions = random.normal(size=(120, 3))
+    directions = (directions / np.linalg.norm(directions, axis=1, keepdims=True)).astype(np.float32)
+    world = tracer.World(many_lights, 0.0)  # nothing in it moves
+    for frame in range(0, many_lights.frames, cases(20, 4)):
+        origin = np.asarray(many_lights.camera_at(many_lights.frame_time(frame)).position, np.float32)
+        rays = tracer.RayBatch(np.broadcast_to(origin, directions.shape), directions)
+        assert world.closest_hits(rays).t.min() > 0.3, f"frame {frame}"
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ is a small sphere that glows, and a point light just beyond it, so that a bulb s
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -15,8 +16,8 @@ import numpy as np
 from generate import materials as m
 from generate.aff import Colour, Lamp, Material, Model, Point, number, numbers
 from generate.images import generator
-from generate.mesh import Array, Mesh, join, lattice
-from generate.shapes import box, grid, lathe, rounded_box
+from generate.mesh import Array, Mesh, lattice
+from generate.shapes import box, flat_quad, grid, lathe, rounded_box
 from generate.tracks import Flight
 
 BAYS, FIRS, STRINGS = 24, 8, 48
@@ -81,7 +82,7 @@ def bulbs(model: Model, points: Array, outward: Array, pattern: list[int], power
 
 
 def wire(model: Model, points: Array) -> None:
-    for a, b in zip(points, points[1:]):
+    for a, b in itertools.pairwise(points):
         model.cone(WIRE, a, 0.006, b, 0.006)
 
 
@@ -124,12 +125,11 @@ def bay(lit: bool) -> Model:
     model = Model("bay_lit" if lit else "bay")
     back, outer_half = -WALK, (APOTHEM + WALK) * math.tan(math.pi / BAYS)
     model.add(STONE, spandrel(0.0, False), spandrel(-PIER, True))
-    ring = [arch_ring(RADIUS, 16, z) for z in (0.0, -PIER)]
+    ring = [arch_ring(RADIUS, 16, z) for z in (-PIER, 0.0)]
     inward = np.stack([[(-x / RADIUS, -(y - SPRING) / RADIUS, 0) for x, y, _ in r] for r in ring])
-    model.add(TRIM, lattice(np.stack(ring), inward, np.zeros((2, 17, 2))).flipped().flipped())
-    for low, high in ((arch_ring(RADIUS, 16, 0.03), arch_ring(RADIUS + 0.16, 16, 0.03)),):
-        rows = np.stack([low, high])
-        model.add(TRIM, lattice(rows, np.broadcast_to([0.0, 0.0, 1.0], rows.shape), np.zeros((2, 17, 2))))
+    model.add(TRIM, lattice(np.stack(ring), inward, np.zeros((2, 17, 2))))
+    rows = np.stack([arch_ring(RADIUS, 16, 0.03), arch_ring(RADIUS + 0.16, 16, 0.03)])
+    model.add(TRIM, lattice(rows, np.broadcast_to([0.0, 0.0, 1.0], rows.shape), np.zeros((2, 17, 2))))
     # Half a pier on either side, from the floor to the spring.
     for side in (-1, 1):
         inner, outer = side * RADIUS, side * HALF
@@ -172,11 +172,11 @@ def quad(a: Point, b: Point, c: Point, d: Point, rows: int) -> Mesh:
     """A flat trapezium, counter-clockwise, cut into rows between ab and dc."""
     p = [np.asarray(x, np.float64) for x in (a, b, c, d)]
     s = np.linspace(0, 1, rows + 1)[:, None]
-    lines = [np.stack([p[0] + s * (p[3] - p[0]), p[0] + s * (p[3] - p[0]) / 2 + (p[1] + s * (p[2] - p[1]) - p[0]) / 2,
-                       p[1] + s * (p[2] - p[1])], axis=1)]  # fmt: skip
-    points = lines[0]
+    left, right = p[0] + s * (p[3] - p[0]), p[1] + s * (p[2] - p[1])
+    points = np.stack([left, (left + right) / 2, right], axis=1)
     normal = np.cross(p[1] - p[0], p[3] - p[0])
-    return lattice(points, np.broadcast_to(normal / np.linalg.norm(normal), points.shape), np.zeros((*points.shape[:2], 2)))
+    normals = np.broadcast_to(normal / np.linalg.norm(normal), points.shape)
+    return lattice(points, normals, np.zeros((*points.shape[:2], 2)))
 
 
 def door() -> list[Mesh]:
@@ -206,9 +206,11 @@ def garland(name: str, shift: int) -> Model:
     order = [0, 4] if shift == 0 else [0, 5] if shift == 1 else [0, 3]
     bulbs(model, arch, np.tile([0.0, 0.0, 1.0], (len(a), 1)), order)
     s = np.linspace(-1, 1, ON_A_CORNICE)
-    swag = np.stack([0.98 * HALF * s, CORNICE - 0.14 - 0.30 * np.abs(np.sin(math.pi * s)), np.full_like(s, 0.21)], axis=1)
+    swag = np.stack(
+        [0.955 * HALF * s, CORNICE - 0.14 - 0.30 * np.abs(np.sin(math.pi * s)), np.full_like(s, 0.21)], axis=1
+    )
     bulbs(model, swag, np.tile([0.0, -0.3, 1.0], (len(s), 1)), [0, 1, 2, 3, 4, 5][shift:] + [0, 1, 2, 3, 4, 5][:shift])
-    wire(model, swag[:: (ON_A_CORNICE - 1) // 6] + (0, 0.035, -0.01))
+    wire(model, swag[:: (ON_A_CORNICE - 1) // 6] + np.array([0, 0.035, -0.01]))
     return model
 
 
@@ -260,11 +262,11 @@ def fir_lights(name: str, pattern: list[int]) -> Model:
 def well() -> Model:
     """The well in the middle, and the mast that carries the strings."""
     model = Model("well")
-    model.add(MARBLE, lathe([(1.9, 0), (1.9, 0.12), (1.55, 0.12), (1.50, 0.55), (1.62, 0.60), (1.62, 0.68), (1.30, 0.68),
-                             (1.30, 0.20)], 40).mapped("y", 0.7))  # fmt: skip
+    wall = [(1.9, 0), (1.9, 0.12), (1.55, 0.12), (1.50, 0.55), (1.62, 0.60), (1.62, 0.68), (1.30, 0.68), (1.30, 0.20)]
+    model.add(MARBLE, lathe(wall, 40).mapped("y", 0.7))
     model.add(WATER, lathe([(1.31, 0.52), (0, 0.52)], 40))
-    model.add(MARBLE, lathe([(0.34, 0.2), (0.30, 0.7), (0.16, 0.9), (0.14, 1.3), (0.70, 1.52), (0.74, 1.60), (0.66, 1.60),
-                             (0.10, 1.46)], 28).mapped("y", 0.9))  # fmt: skip
+    bowl = [(0.34, 0.2), (0.30, 0.7), (0.16, 0.9), (0.14, 1.3), (0.70, 1.52), (0.74, 1.60), (0.66, 1.60), (0.10, 1.46)]
+    model.add(MARBLE, lathe(bowl, 28).mapped("y", 0.9))
     model.cone(WOOD, (0, 1.4, 0), 0.09, (0, MAST + 0.1, 0), 0.06)
     model.sphere(GLASS[0], (0, MAST + 0.32, 0), 0.2)
     return model
@@ -275,19 +277,15 @@ def paving() -> Model:
     model = Model("paving")
     radii = np.linspace(1.7, APOTHEM / math.cos(math.pi / BAYS), 13)
     sides = 2 * BAYS
-    for k, (inner, outer) in enumerate(zip(radii, radii[1:])):
+    for k, (inner, outer) in enumerate(itertools.pairwise(radii)):
         for j in range(sides):
             a, b = 2 * math.pi * (j - 0.5) / sides, 2 * math.pi * (j + 0.5) / sides
-            corners = [(r * math.cos(t), 0.0, -r * math.sin(t)) for r, t in ((inner, a), (outer, a), (outer, b), (inner, b))]
+            corners = [
+                (r * math.cos(t), 0.0, -r * math.sin(t)) for r, t in ((inner, a), (outer, a), (outer, b), (inner, b))
+            ]
             dark = k in (3, 10) or (k in (4, 9) and j % 2 == 0)
             model.add(PAVING_DARK if dark else PAVING, flat_quad(corners))
     return model
-
-
-def flat_quad(corners: list[tuple[float, float, float]]) -> Mesh:
-    p = np.array(corners)
-    triangles = np.stack([p[[0, 1, 2]], p[[0, 2, 3]]])
-    return Mesh(triangles, np.zeros_like(triangles), np.zeros((2, 3, 2))).flat()
 
 
 def courtyard() -> Model:
@@ -307,7 +305,7 @@ def courtyard() -> Model:
     for k in range(STRINGS):
         court.place(strings[k % 3], (0, 0, 0), 360 * (k + 0.5) / STRINGS)
     tree = fir()
-    around = [fir_lights("fir_lights_warm", [0, 0, 4]), fir_lights("fir_lights_gay", [1, 0, 2, 3, 5])]
+    around = [fir_lights("fir_lights_warm", [0, 0, 4]), fir_lights("fir_lights_bright", [1, 0, 2, 3, 5])]
     for k in range(FIRS):
         a = 2 * math.pi * (k + 0.5) / FIRS
         at = (FIR_AT * math.cos(a), 0, -FIR_AT * math.sin(a))

@@ -12,9 +12,9 @@ import numpy as np
 
 from generate import materials as m
 from generate import office_things as things
-from generate.aff import Colour, Lamp, Material, Model, number, numbers
+from generate.aff import Colour, Lamp, Model, number, numbers
 from generate.images import generator
-from generate.mesh import Mesh, join
+from generate.mesh import Mesh
 from generate.office_things import GREY, STEEL, matte
 from generate.shapes import box, grid
 from generate.tracks import Flight
@@ -199,7 +199,7 @@ def layouts() -> list[Model]:
 
     lounge = Model("room_lounge")
     rug = Model("rug")
-    rug.add(things.RUG, box((-1.0, 0, -1.3), (1.0, 0.012, 1.3)).mapped("z", 0.5), )  # fmt: skip
+    rug.add(things.RUG, box((-1.0, 0, -1.3), (1.0, 0.012, 1.3)).mapped("z", 0.5))
     lounge.place(rug, (1.75, 0, 2.4))
     lounge.place(things.sofa(), (WALL + 0.02, 0, 2.4), west)
     lounge.place(things.coffee_table(), (1.75, 0.012, 2.4), west)

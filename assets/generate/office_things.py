@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 
 from generate import materials as m
 from generate.aff import Colour, Material, Model
 from generate.images import generator
-from generate.mesh import Mesh
-from generate.shapes import box, grid, lathe, rounded_box
+from generate.mesh import Mesh, join
+from generate.shapes import box, flat_quad, grid, lathe, rounded_box
 
 AMBIENT = 0.16  # less than in the study: panels are everywhere
 
@@ -87,7 +88,9 @@ def swivel_chair(name: str, fabric: Material) -> Model:
         model.sphere(DARK, (x, 0.035, z), 0.035)
     model.cone(STEEL, (0, 0.09, 0), 0.030, (0, 0.42, 0), 0.024)
     model.add(fabric, rounded_box((-0.25, 0.42, -0.24), (0.25, 0.50, 0.25), 0.035, 2))
-    model.add(fabric, rounded_box((-0.22, 0, -0.03), (0.22, 0.48, 0.03), 0.028, 2).turned("x", -8).moved(0, 0.60, -0.27))
+    model.add(
+        fabric, rounded_box((-0.22, 0, -0.03), (0.22, 0.48, 0.03), 0.028, 2).turned("x", -8).moved(0, 0.60, -0.27)
+    )
     model.add(DARK, box((-0.03, 0.43, -0.30), (0.03, 0.80, -0.27)))
     for x in (-0.29, 0.26):
         model.add(DARK, box((x, 0.66, -0.12), (x + 0.03, 0.69, 0.14)), box((x, 0.45, -0.02), (x + 0.03, 0.66, 0.02)))
@@ -101,7 +104,9 @@ def side_chair() -> Model:
         for z in (-0.2, 0.2):
             model.cone(STEEL, (1.1 * x, 0, 1.1 * z), 0.012, (x, 0.44, z), 0.012)
     model.add(FABRICS[0], rounded_box((-0.23, 0.43, -0.22), (0.23, 0.48, 0.23), 0.02))
-    model.add(FABRICS[0], rounded_box((-0.22, 0, -0.02), (0.22, 0.30, 0.02), 0.018).turned("x", -10).moved(0, 0.58, -0.22))
+    model.add(
+        FABRICS[0], rounded_box((-0.22, 0, -0.02), (0.22, 0.30, 0.02), 0.018).turned("x", -10).moved(0, 0.58, -0.22)
+    )
     for x in (-0.17, 0.17):
         model.cone(STEEL, (x, 0.44, -0.2), 0.011, (x, 0.80, -0.255), 0.011)
     return model
@@ -154,25 +159,14 @@ def plant() -> Model:
 
 def leaf(rise: float, out: float, width: float = 0.05) -> Mesh:
     """A leaf that rises from the origin and arches out to +x: three quads."""
-    from generate.mesh import join
-
     points = [(0.0, 0.0, 0.2), (0.25 * out, 0.6 * rise, 0.8), (0.65 * out, rise, 1.0), (out, 0.92 * rise, 0.15)]
     quads = []
-    for (x0, y0, w0), (x1, y1, w1) in zip(points, points[1:]):
+    for (x0, y0, w0), (x1, y1, w1) in itertools.pairwise(points):
         a, b = width * w0, width * w1
         corners = [(x0, y0, -a), (x0, y0, a), (x1, y1, b), (x1, y1, -b)]
-        quads.append(quad(corners))
-        quads.append(quad(corners[::-1]).moved(0, -0.001, 0))
+        quads.append(flat_quad(corners))
+        quads.append(flat_quad(corners[::-1]).moved(0, -0.001, 0))
     return join(quads)
-
-
-def quad(corners: list[tuple[float, float, float]]) -> Mesh:
-    """Two triangles through four corners, counter-clockwise."""
-    import numpy as np
-
-    p = np.array(corners, np.float64)
-    triangles = np.stack([p[[0, 1, 2]], p[[0, 2, 3]]])
-    return Mesh(triangles, np.zeros_like(triangles), np.zeros((2, 3, 2))).flat()
 
 
 def meeting_table() -> Model:
@@ -211,7 +205,9 @@ def sofa() -> Model:
         model.add(fabric, rounded_box((x, 0.12, 0.05), (x + 0.18, 0.58, 0.85), 0.05, 2))
     for x in (-0.715, 0.005):
         model.add(fabric, rounded_box((x, 0.33, 0.24), (x + 0.71, 0.46, 0.87), 0.05, 2))
-    model.add(FABRICS[1], rounded_box((-0.2, -0.2, -0.06), (0.2, 0.2, 0.06), 0.05, 2).turned("x", -22).moved(-0.5, 0.64, 0.36))
+    model.add(
+        FABRICS[1], rounded_box((-0.2, -0.2, -0.06), (0.2, 0.2, 0.06), 0.05, 2).turned("x", -22).moved(-0.5, 0.64, 0.36)
+    )
     for x in (-0.82, 0.80):
         for z in (0.12, 0.78):
             model.add(DARK, box((x, 0, z), (x + 0.03, 0.13, z + 0.03)))

@@ -21,6 +21,13 @@ def grid(origin: Point, right: Point, up: Point, columns: int = 1, rows: int = 1
     return lattice(points, np.broadcast_to(normal, points.shape), np.stack([s, t], axis=2))
 
 
+def flat_quad(corners: Sequence[Point]) -> Mesh:
+    """Two triangles through four corners, counter-clockwise."""
+    p = np.asarray(corners, np.float64)
+    triangles = np.stack([p[[0, 1, 2]], p[[0, 2, 3]]])
+    return Mesh(triangles, np.zeros_like(triangles), np.zeros((2, 3, 2))).flat()
+
+
 def box(low: Point, high: Point) -> Mesh:
     """An axis-aligned box with sharp edges, 12 triangles."""
     (x0, y0, z0), (x1, y1, z1) = low, high
