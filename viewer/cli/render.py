@@ -42,6 +42,8 @@ PICTURES = {
     ".bmp": "BMP",
     ".ppm": "PPM",
 }
+MOST_BUFFERS = 4e9  # bytes for what --buffers has of each pixel and light
+BYTES_OF_A_LIGHT = 7  # of a pixel: samples asked and reached in 2 each, lit, due and shadow_mode in 1 each
 LEGEND_PLACE = 0.0, 1.0  # the lower left corner
 
 
@@ -62,6 +64,8 @@ def render(path: Path, options: Namespace) -> None:
             work.note(f"warning: {warning}")
         if view.of_light and light >= len(scene.lights):
             raise ValueError(f"--view {view.value}:{light}: {lights_in_words(len(scene.lights))}")
+        if options.buffers is not None:
+            _check_memory(settings.width * settings.height, len(scene.lights))
         time = moment(scene, options.frame, options.time)
         prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)
@@ -110,6 +114,16 @@ def buffers(frame: Frame) -> dict[str, np.ndarray]:
     work = {"saved": frame.saved, "cost": frame.cost, "due_rays": frame.due_rays}
     arrays |= {name: array for name, array in work.items() if array is not None}
     return arrays
+
+
+def _check_memory(pixels: int, lights: int) -> None:
+    needed = BYTES_OF_A_LIGHT * pixels * lights
+    if needed > MOST_BUFFERS:
+        most = int(MOST_BUFFERS / BYTES_OF_A_LIGHT / lights)
+        raise ValueError(
+            f"--buffers: {lights:,} lights at {pixels:,} pixels take {needed / 1e9:.1f} GB, "
+            f"{MOST_BUFFERS / 1e9:.0f} GB at most; give a smaller --size, of up to {most:,} pixels"
+        )
 
 
 def _check_outputs(output: Path | None, npz: Path | None) -> None:

@@ -127,6 +127,13 @@ def test_info_of_bart(
 # --- render ----------------------------------------------------------------------------------------
 
 
+def test_buffers_that_no_memory_holds_are_refused(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    out = tmp_path / "courtyard.npz"
+    said = complaint(run(capfd, "render", "courtyard", "--buffers", out, "--size", "512x512"))
+    assert "--buffers: 10,000 lights at 262,144 pixels take 18.4 GB, 4 GB at most" in said and "57,142 pixels" in said
+    assert not out.exists()
+
+
 def test_render_writes_a_picture_that_remembers(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
     output = tmp_path / "room.png"
     code, out, _ = render(capfd, room, "-o", output, "--frame", 3, "--warmup", 2, "--camera", json.dumps(CAMERA))
