@@ -22,15 +22,17 @@ export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
 export MPLCONFIGDIR := $(CURDIR)/.cache/matplotlib
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run test quick test-all golden bench frames quickest lamps counters window motion memory growth docs linkcheck pictures lint format lock clean distclean help
+.PHONY: run kernels test quick test-all golden bench frames quickest lamps counters window motion memory growth docs linkcheck pictures lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
 	@$(RUN) -m viewer --or-picture $(ARGS)
 
-test:  ## run the tests; without a display, on a virtual one (ARGS="-k culling")
+kernels:  ## compile all that the tests use
 	@tools/environment.sh dev
 	@$(RUN) -m tests.compiled
+
+test: kernels  ## run the tests; without a display, on a virtual one (ARGS="-k culling")
 	@$(RUN) tools/with_screen.py $(RUN) -m pytest $(PARALLEL) $(ARGS)
 
 quick:  ## run the tests that show soonest whether something is broken, one window among them

@@ -6,29 +6,70 @@ would compile what it meets, one kernel after another.
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+import time
 from pathlib import Path
+from typing import NamedTuple
 
-from tracer.compilation import compiled_before
+from tracer import compilation
+from tracer.compilation import compiled_before, warm_up
 
-# Lights (modes in 32 and in 64 bits) and structure.  The two of a line have nothing in common, and the second line
-# only what the first has not.
-VARIANTS = (((1, "bvh8"), (16, "kdtree")), ((1, "kdtree"), (16, "bvh8")))
-WARM_UP = "import sys; from tracer import compilation; compilation.warm_up(None, int(sys.argv[1]), sys.argv[2])"
+# Lights (modes in 32 and in 64 bits) and structure.
+VARIANTS = ((1, "bvh8"), (1, "kdtree"), (16, "bvh8"), (16, "kdtree"))
+
+
+class Part(NamedTuple):
+    """What a process of its own compiles (`tracer.compile_beside`)."""
+
+    name: str
+    lights: int
+    accelerator: str
+
+
+# Each part after those that it shares kernels with, so that none is compiled twice; what most waits for comes first.
+TREES, FRAME = Part("trees", 1, "bvh8"), Part("frame", 1, "bvh8")
+CERTIFICATES = Part("certificates", 1, "bvh8")
+AFTER = {
+    TREES: (),
+    FRAME: (),
+    CERTIFICATES: (TREES,),
+    Part("certificates", 16, "bvh8"): (CERTIFICATES,),
+    Part("queries", 1, "bvh8"): (),
+    Part("queries", 1, "kdtree"): (),
+    Part("frame", 16, "bvh8"): (FRAME,),
+    Part("trees", 1, "kdtree"): (TREES,),
+}
 
 
 def main() -> int:
-    if not all(compiled_before(*variant) for together in VARIANTS for variant in together):
-        print("compiling the kernels, once for all tests", flush=True)
-    for together in VARIANTS:
-        missing = [variant for variant in together if not compiled_before(*variant)]
-        commands = [[sys.executable, "-c", WARM_UP, str(lights), accelerator] for lights, accelerator in missing]
-        processes = [subprocess.Popen(command, cwd=Path(__file__).parents[1]) for command in commands]
-        codes = [process.wait() for process in processes]
-        if any(codes):
-            return 1
+    if all(compiled_before(*variant) for variant in VARIANTS):
+        return 0
+    print("compiling the kernels, once for all tests", flush=True)
+    compile_parts(max(2, os.cpu_count() or 1))
+    compilation.compile_beside = lambda *arguments: None  # type: ignore[assignment]  # that has been done
+    for variant in VARIANTS:
+        warm_up(None, *variant)  # loads what the parts made, compiles what they left, and says that all is there
     return 0
+
+
+def compile_parts(slots: int) -> None:
+    """Compile all parts into the cache, so many at once; one that fails costs time only."""
+    waiting, running, ended = list(AFTER), {}, set()
+    while waiting or running:
+        for part in [part for part in waiting if ended.issuperset(AFTER[part])][: slots - len(running)]:
+            waiting.remove(part)
+            running[part] = subprocess.Popen(
+                [sys.executable, "-m", "tracer.compile_beside", *map(str, part)],
+                cwd=Path(__file__).parents[1],
+                stdin=subprocess.PIPE,  # it ends when this closes, so with this process
+                stdout=subprocess.DEVNULL,
+            )
+        time.sleep(0.05)
+        for part in [part for part, process in running.items() if process.poll() is not None]:
+            ended.add(part)
+            del running[part]
 
 
 if __name__ == "__main__":

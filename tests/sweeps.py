@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+from typing import TypeVar
 
 ALL = os.environ.get("SHADOWCULL_TESTS") == "all"
 MORE = 8  # times as many examples of random scenes
 
+T = TypeVar("T")
 
-def cases(usual: int, in_all: int) -> int:
+
+def cases(usual: T, in_all: T) -> T:
     return in_all if ALL else usual
 
 

@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 
 import tracer
+from tests.scenes import loaded
 from tests.sweeps import cases
 from tracer.culling.modes import OcclusionMode, ShadowMode, occlusion_mode, shadow_mode
 
@@ -30,7 +31,7 @@ def make_scenes() -> ModuleType:
 
 @pytest.fixture(scope="module")
 def study() -> tracer.Scene:
-    return tracer.load_scene(SCENES / "default.aff")
+    return loaded(SCENES / "default.aff")
 
 
 @pytest.mark.slow
@@ -161,7 +162,7 @@ def test_a_walk_past_many_lights_touches_nothing(many_lights: tracer.Scene) -> N
     ],
 )
 def test_figure_3_marks_what_goes_on_behind_something(size: int, symmetric: bool, expected: str) -> None:
-    scene = tracer.load_scene(SCENES / "figure3.aff")
+    scene = loaded(SCENES / "figure3.aff")
     renderer = tracer.Renderer(scene, tracer.Settings(width=size, height=size, symmetric=symmetric))
     modes = occlusion_mode(renderer.render(0.0).modes)
     names = {
@@ -173,7 +174,7 @@ def test_figure_3_marks_what_goes_on_behind_something(size: int, symmetric: bool
 
 
 def test_figure_4_shows_its_shadow_only_after_zooming_in() -> None:
-    scene = tracer.load_scene(SCENES / "figure4.aff")
+    scene = loaded(SCENES / "figure4.aff")
     culled = tracer.Renderer(scene, tracer.Settings(width=128, height=128))
     traced = tracer.Renderer(scene, tracer.Settings(width=128, height=128, method="none"))
     modes: list[int] = []

@@ -28,6 +28,10 @@ def test_a_bumpy_sphere_is_closed_and_as_large_as_asked(frequency: int) -> None:
     assert 2.0 < volume < 5.0  # wound counterclockwise from outside
 
 
+# Of meshes on which nothing is measured.
+SMALLER = ("--fewest", "4000", "--most", "40000", "--repeats", "1")
+
+
 def run_growth(tmp_path: Path, *arguments: str) -> tuple[int, dict]:
     out = tmp_path / "out" / "growth.json"
     small = ["--fewest", "15000", "--most", "150000", "--sizes", "4", "--side", "96", "--repeats", "3"]
@@ -70,7 +74,7 @@ def test_growth_that_is_none_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyP
         return cost | {"steps": 2.0**asked, "ns": 1000.0 / asked}, hits
 
     monkeypatch.setattr(growth, "ask", dearer)
-    code, _ = run_growth(tmp_path)
+    code, _ = run_growth(tmp_path, *SMALLER)
     assert code == 1
     told = capsys.readouterr().err
     assert "incoherent rays, steps: a logarithm explains only" in told
@@ -80,7 +84,7 @@ def test_growth_that_is_none_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyP
 def test_rays_that_find_another_surface_fail_growth(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     made = growth.bumpy_sphere
     monkeypatch.setattr(growth, "bumpy_sphere", lambda n: made(n) * np.float32(1.0 + 0.01 * (n % 7)))
-    assert run_growth(tmp_path)[0] == 1
+    assert run_growth(tmp_path, *SMALLER)[0] == 1
     assert "find the same surface" in capsys.readouterr().err
 
 

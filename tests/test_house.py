@@ -47,14 +47,17 @@ def test_no_test_imports_another() -> None:
         assert not found, f"{path.relative_to(ROOT)}: {found[0]}"
 
 
-def test_commands_without_a_window_load_no_gl() -> None:
-    """Not even on the way: a machine without libGL can render, and `--help` is quick."""
+def test_commands_without_a_window_load_neither_gl_nor_matplotlib() -> None:
+    """Not even on the way: a machine without libGL can render, and `--help` is quick.  Only a plot loads matplotlib, so
+    that the window and the other commands start no slower."""
     code = (
-        "import sys, viewer.__main__, viewer.cli.render, viewer.services.controller, tracer\n"
+        "import sys, viewer.__main__, viewer.cli.bench, viewer.cli.render, tracer\n"
+        "print([m for m in ('matplotlib',) if m in sys.modules])\n"
+        "import viewer.services.controller\n"
         "print([m for m in ('moderngl', 'glfw', 'imgui_bundle', 'OpenGL', 'glcontext') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
-    assert done.stdout.strip() == "[]", done.stdout + done.stderr
+    assert done.stdout.split() == ["[]", "[]"], done.stdout + done.stderr
 
 
 @pytest.mark.parametrize("name", LOCKS)

@@ -73,9 +73,10 @@ else
 fi
 
 say "installing the packages of tools/$kind.lock into .venv (once)"
+# Python compiles a module when it is first imported: most of these packages' modules never are.
 quiet=(--quiet --no-input)
 [[ -t 2 ]] && quiet=(--no-input)
-if ! "${pip[@]}" install "${quiet[@]}" --only-binary :all: --require-hashes -r "tools/$kind.lock"; then
+if ! "${pip[@]}" install "${quiet[@]}" --no-compile --only-binary :all: --require-hashes -r "tools/$kind.lock"; then
     say "the packages could not be installed (pip's message is above); the first run needs the network"
     exit 1
 fi

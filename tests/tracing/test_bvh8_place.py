@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import tracer
+from tests.scenes import loaded
 from tests.tracing.trees8 import NO_BOXES, assert_sound, corners_of, cost, same
 from tests.tracing.worlds import affine, moved, quadrics, random_corners, scene
 from tracer.geometry.bvh8.build import build_tree
@@ -60,7 +61,7 @@ def assert_placed(world: tracer.World, time: float, rounding: float = 2e-7) -> N
 @pytest.mark.parametrize("name", SCENES)
 def test_what_moves_and_deforms_is_where_the_animation_puts_it(bart, name):
     """And the tree is that of a world that never was at any other time."""
-    content = tracer.load_scene(bart / name)
+    content = loaded(bart / name)
     world = tracer.World(content, accelerator="bvh8")
     assert_sound(world.structure.static, *in_world(world, 0.0, static=True), rounding=1e-6)
     for time in np.linspace(*content.time_range, 4):
@@ -77,7 +78,7 @@ def test_what_moves_and_deforms_is_where_the_animation_puts_it(bart, name):
 
 def test_a_tree_of_what_deforms_stays_good(bart):
     """Between the times for which shapes are made, too: not much worse than one built for the moment."""
-    content = tracer.load_scene(bart / "museum/museum5.aff")
+    content = loaded(bart / "museum/museum5.aff")
     world = tracer.World(content, accelerator="bvh8")
     for time in np.linspace(0.02, 3.98, 40):
         world.place(time)

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import tracer
 from tests.bench.rays import Surfaces, incoherent_rays, joined, mirror_rays, points_of, primary_rays, shadow_rays
+from tests.scenes import loaded
 from tests.tracing import brute
 from tests.tracing.answers import Answers, ask, chosen
 from tests.tracing.brute8 import meet_all8
@@ -32,7 +33,7 @@ def of_8(content: tracer.Scene, time: float = 0.0) -> tracer.World:
 @cache
 def view(path: Path, number: int) -> tuple[tracer.World, tracer.World, dict[str, Rays]]:
     """A frame's world in both structures, and rays of four kinds that belong to it."""
-    content = tracer.load_scene(path)
+    content = loaded(path)
     time = content.frame_time(number)
     wide, kd = of_8(content, time), tracer.World(content, time, accelerator="kdtree")
     primary = primary_rays(content.camera_at(time), SIDE, SIDE)

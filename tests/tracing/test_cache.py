@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
+from tests.scenes import world_of
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.worlds import affine, moved, quad, quadrics, scene
 from tracer.culling import cells
@@ -158,10 +159,11 @@ def test_frames_of_random_scenes_are_those_without_a_cache(
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
 @pytest.mark.parametrize("method", ["none", "paper", "cells"])
 def test_frames_of_kitchen_are_those_without_a_cache(bart: Path, method: str, accelerator: str):
-    kitchen = tracer.load_scene(bart / "kitchen" / "kitchen.aff")
+    world = world_of(bart / "kitchen" / "kitchen.aff", accelerator)
+    kitchen = world.scene
     settings = tracer.Settings(96, 96, 10, method, verify=True, record_lights=True, accelerator=accelerator)
-    without = tracer.Renderer(kitchen, settings)
-    cached = tracer.Renderer(kitchen, replace(settings, method=method + "+cache"), world=without.world)
+    without = tracer.Renderer(kitchen, settings, world=world)
+    cached = tracer.Renderer(kitchen, replace(settings, method=method + "+cache"), world=world)
     for number in range(395, 398):
         frame = cached.render(kitchen.frame_time(number))
         assert_only_asked_less(frame, without.render(kitchen.frame_time(number)))

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import tracer
+from tests.scenes import loaded
 from tests.tracing.brute import meet_all
 from tests.tracing.shades import BEHIND, GOING, MIDDLES, floor, going, kite, roof
 from tests.tracing.worlds import GREY, certificates_of, quad, scene
@@ -149,7 +150,7 @@ def test_pictures_stay_right_while_objects_start_and_stop(accelerator: str):
 
 
 def test_frames_of_a_kitchen_in_which_things_start_and_stop(bart: Path):
-    made = tracer.load_scene(bart / "kitchen/kitchen.aff")
+    made = loaded(bart / "kitchen/kitchen.aff")
     none, certified = _pair(made, SETTINGS)
     changed = 0
     for number in range(116, 125):

@@ -12,6 +12,7 @@ from hypothesis import event, given
 from hypothesis import strategies as st
 
 import tracer
+from tests.scenes import loaded
 from tests.tracing.certified_twin import NAMES, Twin
 from tests.tracing.nasty_worlds import nasty_walk, static_part
 from tests.tracing.random_worlds import quickly
@@ -56,7 +57,7 @@ def test_cells_of_nasty_scenes_are_what_dense_sampling_says(accelerator: str):
 
 def test_cells_of_kitchen_are_what_dense_sampling_says(bart: Path):
     """Without what moves; every tenth certificate against every triangle in turn."""
-    whole = tracer.load_scene(bart / "kitchen" / "kitchen.aff")
+    whole = loaded(bart / "kitchen" / "kitchen.aff")
     frames = [(whole.frame_time(0), whole.camera_at(whole.frame_time(number))) for number in (0, 60, 65, 300, 500)]
     twin, rng = _certified(static_part(whole), 64, frames, "kdtree"), np.random.default_rng(0)
     chosen = _chosen(twin, rng, 100)

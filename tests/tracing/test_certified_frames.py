@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 
 import tracer
+from tests.scenes import loaded
+from tests.sweeps import cases
 from tests.tracing.nasty_worlds import NastyWalk, nasty_walk, with_lamps
 from tests.tracing.same import contents
 from tests.tracing.worlds import certificates_of
@@ -59,7 +61,7 @@ def test_pictures_of_nasty_scenes_are_those_without_culling(method: str, acceler
     """Moving cameras, lights and objects."""
     settings = {"method": method, "width": 24, "height": 24, "depth": 3, "accelerator": accelerator}
     seen: Counter[str] = Counter()
-    assert not [wrong for seed in range(40) for wrong in _differing(nasty_walk(seed), seen, **settings)]
+    assert not [wrong for seed in range(cases(20, 40)) for wrong in _differing(nasty_walk(seed), seen, **settings)]
     assert min(seen[name] for name in ("culled", "dynamic_only", "candidates_only", "certificates")) > 1000
 
 
@@ -139,7 +141,7 @@ def test_pictures_counters_and_cells_are_the_same_for_any_number_of_threads(ligh
 
 
 def _assert_frames_alike(path: Path, frames: list[int], size: int, depth: int) -> None:
-    scene = tracer.load_scene(path)
+    scene = loaded(path)
     none, certified = _renderers(scene, width=size, height=size, depth=depth, accelerator="bvh8")
     seen: Counter[str] = Counter()
     for number in frames:

@@ -11,6 +11,7 @@ from embreex import rtcore_scene
 from embreex.mesh_construction import TriangleMesh
 
 import tracer
+from tests.scenes import loaded
 from tracer.geometry.camera import pinhole
 from tracer.scene.deformation import deformed
 from tracer.scene.model import Light, empty_quadrics
@@ -112,7 +113,7 @@ def lay_in_plane(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
 @MOMENTS
 def test_depth_primitive_due_and_lit_agree_with_embree(bart: Path, name: str, times: tuple[float, ...]):
     """What each pixel sees, and, for every light, whether its shadow ray is due and what it meets."""
-    scene = triangles_alone(tracer.load_scene(bart / name))
+    scene = triangles_alone(loaded(bart / name))
     # A lamp near where the viewer will be: Robot's only light is above the roof of its city, which is all in shadow.
     x, y, z = scene.camera_at(times[-1]).position
     lamp = Light("lamp", (x + 0.31, y + 0.43, z - 0.23))
@@ -147,7 +148,7 @@ def test_depth_primitive_due_and_lit_agree_with_embree(bart: Path, name: str, ti
 @MOMENTS
 def test_rays_from_surfaces_agree_with_embree(bart: Path, name: str, times: tuple[float, ...]):
     """The rays of bounces: from what is seen, in all directions, each to the nearest hit, and for any up to a limit."""
-    scene = triangles_alone(tracer.load_scene(bart / name))
+    scene = triangles_alone(loaded(bart / name))
     renderer = tracer.Renderer(scene, tracer.Settings(width=SIZE, height=SIZE, depth=0, method="none"))
     rng = np.random.default_rng(7)
     for time in times[1:]:

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
+from tests.sweeps import cases
 from tests.tracing.naive_frame import NaiveRenderer
 from tests.tracing.nasty_worlds import nasty_walk
 from tests.tracing.random_worlds import Walk, quickly, walks
@@ -66,13 +67,13 @@ def test_modes_beside_any_exact_method_are_the_papers(accelerator: str):
     seen: Counter[str] = Counter()
     settings = {"width": 26, "height": 20, "depth": 2, "accelerator": accelerator}
 
-    @quickly(12)
+    @quickly(8)
     @given(walks(), st.booleans())
     def check(walk: Walk, symmetric: bool) -> None:
         assert not _differing(walk.scene, walk.frames, seen, symmetric=symmetric, **settings)
 
     check()
-    for seed in range(8):
+    for seed in range(cases(5, 8)):
         walk = nasty_walk(seed)
         assert not _differing(walk.scene, walk.frames, seen, **settings), f"seed {seed}"
     assert min(seen[f"certified: {name}"] for name in ("culled", "candidates_only")) > 1000

@@ -41,7 +41,7 @@ def assert_whole(frame: tracer.Frame, expected: tracer.Frame, where: str) -> Non
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
 @given(walk=walks())
-@quickly(12)
+@quickly(8)
 def test_what_becomes_whole_is_what_is_rendered_at_once(accelerator: str, walk: Walk):
     """Bit for bit, all that a frame holds and learns, frame after frame, whichever parts come first."""
     for number, method in enumerate(("paper", "cells", "certified")):

@@ -12,6 +12,8 @@ import pytest
 from hypothesis import given
 
 import tracer
+from tests.scenes import loaded, world_of
+from tests.sweeps import cases
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.shades import BEHIND, GOING, MIDDLES, floor, going, kite, roof
 from tests.tracing.worlds import random_corners, scene, triangles
@@ -77,7 +79,7 @@ def test_a_box_is_around_what_started_where_it_rested():
 
 
 def test_what_deforms_does_not_rest(bart: Path):
-    content = tracer.load_scene(bart / "museum/museum5.aff")
+    content = loaded(bart / "museum/museum5.aff")
     (index,) = (i for i, item in enumerate(content.objects) if item.deformation is not None)
     world, rest = tracer.World(content), Rest(len(content.objects))
     deforms, rests, shape = [], [], np.empty(0)
@@ -212,15 +214,17 @@ def test_pictures_are_those_without_culling_in_random_scenes():
 
 def test_kitchens_car_starts_and_stops_and_no_picture_differs(bart: Path, accelerator):
     """Where its poses say so, and, in view of the camera, where time stands still."""
-    content = tracer.load_scene(bart / "kitchen/kitchen.aff")
+    world = world_of(bart / "kitchen/kitchen.aff", accelerator)
+    content = world.scene
     chain = content.objects[1].chain
     poses = [content.animation.matrix(chain, content.frame_time(i)).tobytes() for i in range(content.frames)]
     start = next(i for i in range(1, content.frames) if poses[i] != poses[i - 1])
     in_view = (700, 701, 702, 702, 702, 702, 703, 704, 704, 704, 704, 705, 706, 707, 708)
     numbers = [*range(start - 8, start + 7), *in_view]
     still = [True] + [poses[a] == poses[b] for a, b in pairwise(numbers)]
-    world, rests = tracer.World(content, accelerator=accelerator), []
-    settings = tracer.Settings(width=96, height=64, depth=2, record_lights=True, accelerator=accelerator)
+    rests = []
+    width, height = cases((64, 48), (96, 64))
+    settings = tracer.Settings(width, height, depth=2, record_lights=True, accelerator=accelerator)
     methods = ("none", "none+rest", "paper+rest")
     none, resting, paper = (
         tracer.Renderer(content, replace(settings, method=m, verify="paper" in m), world=world) for m in methods

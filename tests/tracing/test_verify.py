@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 import tracer
+from tests.scenes import loaded, world_of
+from tests.sweeps import cases
 from tests.tracing.same import assert_verified
 from tracer.geometry.world import ACCELERATORS
 
@@ -17,12 +19,13 @@ SETTINGS = tracer.Settings(width=128, height=128, depth=10, verify=True)
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
 def test_the_reference_of_kitchen_is_the_picture_without_culling(bart: Path, accelerator: str):
-    scene = tracer.load_scene(bart / "kitchen" / "kitchen.aff")
+    world = world_of(bart / "kitchen" / "kitchen.aff", accelerator)
+    scene = world.scene
     settings = replace(SETTINGS, accelerator=accelerator)
-    paper = tracer.Renderer(scene, settings)
-    none = tracer.Renderer(scene, replace(settings, method="none"), world=paper.world)
+    paper = tracer.Renderer(scene, settings, world=world)
+    none = tracer.Renderer(scene, replace(settings, method="none"), world=world)
     wrong = 0
-    for number in range(395, 405):
+    for number in range(395, cases(401, 405)):
         time = scene.frame_time(number)
         frame = paper.render(time)
         assert_verified(frame, none.render(time))
@@ -33,7 +36,7 @@ def test_the_reference_of_kitchen_is_the_picture_without_culling(bart: Path, acc
 
 @pytest.mark.parametrize("method", ["none", "paper", "certified+cache"])
 def test_the_work_at_pixels_adds_up_to_that_of_the_frame(method: str):
-    scene = tracer.load_scene(SCENES / "default.aff")
+    scene = loaded(SCENES / "default.aff")
     renderer = tracer.Renderer(scene, tracer.Settings(width=96, height=64, depth=3, method=method, record_work=True))
     for number in range(20, 24):
         frame = renderer.render(scene.frame_time(number))

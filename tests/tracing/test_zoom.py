@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import tracer
+from tests.scenes import loaded
 from tests.tracing.worlds import affine, moved, quad, quadrics, scene
 from tracer import zoom
 from tracer.scene.model import SPHERE, Camera
@@ -34,7 +35,7 @@ def run(world: tracer.Scene, primitive: int, settings: tracer.Settings = SETTING
 
 @pytest.fixture(scope="module")
 def figure4() -> zoom.Results:
-    return run(tracer.load_scene(FIGURE_4), 0, factors=[4.0, 64.0], steps=20)
+    return run(loaded(FIGURE_4), 0, factors=[4.0, 64.0], steps=20)
 
 
 def test_figure_4_is_mended_by_examining_anew(figure4: zoom.Results):
@@ -57,7 +58,7 @@ def test_figure_4_is_mended_by_examining_anew(figure4: zoom.Results):
 
 def test_a_step_records_what_the_frame_says(figure4: zoom.Results):
     """Against frames traced here, by hand, along the same way."""
-    world = tracer.load_scene(FIGURE_4)
+    world = loaded(FIGURE_4)
     renderer = tracer.Renderer(world, replace(SETTINGS, verify=True))
     for step in figure4.approaches[0].steps:
         frame = renderer.render(camera=step.camera)
@@ -200,7 +201,7 @@ def test_stopping_keeps_whole_steps_and_frames_are_shown():
 
 
 def test_modes_start_afresh_for_each_factor():
-    results = run(tracer.load_scene(FIGURE_4), 0, factors=[4.0, 4.0], steps=18)
+    results = run(loaded(FIGURE_4), 0, factors=[4.0, 4.0], steps=18)
     assert results.approaches[0].steps == results.approaches[1].steps
 
 

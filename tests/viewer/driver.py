@@ -12,12 +12,14 @@ from imgui_bundle import glfw_utils, imgui
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
+from tests.sweeps import cases
 from tests.viewer.fakes import with_certificates
 from viewer.window.app import App
 
 PATIENCE = 240.0  # a first run compiles the kernels
 SIZES = ((1280, 800), (1600, 1000))  # of windows that people have
 FASTEST = 120.0  # frames a second
+SELDOM = 0.02  # seconds from frame to frame while others work, who need the processor more than the window does
 
 
 class Driver:
@@ -47,6 +49,8 @@ class Driver:
             said = self.c.notices.message
             assert self.c.frame is not None or said is None or not said.error, said.text
             assert time.monotonic() < end, f"waited in vain: {what}; the status says {said}"
+            if self.c.active:
+                time.sleep(SELDOM)
             self.context.yield_()
         self.context.yield_()
 
@@ -70,9 +74,9 @@ class Driver:
             quiet, traced = quiet + 1 if still else 0, self.c.history.frames
             return quiet >= 5
 
-        self.frames(3)
+        self.frames(1)
         self.wait(rested, "an idle picture")
-        self.frames(3)
+        self.frames(2)
 
     def shown(self) -> np.ndarray:
         """The drawn view, read where GL work is done: scenarios run on a thread without the window's context."""
@@ -109,8 +113,9 @@ class Driver:
         self.frames(5)
 
     def sizes(self) -> Iterator[tuple[int, int]]:
-        """Give the window each of SIZES, one after another, with an idle picture in it."""
-        for size in SIZES:
+        """Give the window each of SIZES, one after another, with an idle picture in it; the smaller alone but for
+        `make test-all`."""
+        for size in cases(SIZES[:1], SIZES):
             self.resize(*size)
             self.settle()
             yield size

@@ -5,8 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -226,10 +224,3 @@ def test_ctrl_c_keeps_what_is_done(tmp_path: Path):
     assert told and len(json.loads(path.read_text())["frames"]) == int(told[1]) >= 2
     assert f"default.aff, 64 × 64, {told[1]} of 100000 frames, stopped" in terminal.said
     assert list(tmp_path.iterdir()) == [path]
-
-
-def test_matplotlib_is_loaded_only_for_a_plot():
-    """So that the window and the other commands start no slower."""
-    code = "import sys, viewer.__main__, viewer.cli.bench, viewer.cli.render; print('matplotlib' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
-    assert done.stdout == "False\n", done.stderr

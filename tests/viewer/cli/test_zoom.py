@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from tests.sweeps import cases
 from tests.terminal import Terminal
 from tracer.scene.model import Camera
 from tracer.zoom import STILL_FRAMES, Approach, Change, Results, Step
@@ -243,7 +244,7 @@ def test_a_primitive_never_seen_whole_is_told(tmp_path: Path, capfd: pytest.Capt
 
 
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("factors", range(1, MOST_FACTORS + 1))
+@pytest.mark.parametrize("factors", cases((1, 4, MOST_FACTORS), range(1, MOST_FACTORS + 1)))
 def test_a_figure_of_many_changes_of_many_lights_keeps_its_room(tmp_path: Path, factors: int) -> None:
     results = busy_results(factors, lights=6)
     figure = zoom_figure(results)

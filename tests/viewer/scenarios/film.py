@@ -37,6 +37,7 @@ def filmstrip(d: Driver) -> None:
             _screened(d, test.results, factor)
         assert d.c.session.camera == camera
     _ways_back(d)
+    d.scroll_down("Zoom test")
     d.context.item_click(f"//Zoom test/**/{icons.ICON_FA_FLOPPY_DISK} Film")
     d.wait(lambda: not d.c.captures.busy, "the film to be written")
     d.frames(2)

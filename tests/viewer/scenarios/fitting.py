@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from imgui_bundle import imgui
 
+from tests.sweeps import cases
 from tests.viewer.driver import Driver
 from viewer.window.panels.catalogue import PANELS, PICTURE
 
@@ -41,7 +42,9 @@ def _check_panels(d: Driver, size: tuple[int, int]) -> None:
         d.frames(5)
         _check_fit(d, f"{label} at {size}")
     d.ui.show_panel("Plots")
-    for count in (1, 11, 101, 1001):  # frames of which the last has a tick of its own, on the plots' edge
+    for count in cases(
+        (11, 1001), (1, 11, 101, 1001)
+    ):  # frames of which the last has a tick of its own, on the plots' edge
         d.c.history.frames = count
         d.frames(3)
         _check_fit(d, f"Plots of {count} frames at {size}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import glfw
 from imgui_bundle import glfw_utils, imgui
 
+from tests.sweeps import cases
 from tests.viewer.driver import Driver
 from viewer.state.views import View
 from viewer.window.panels.catalogue import PANELS, PICTURE
@@ -215,7 +216,7 @@ def folding(d: Driver) -> None:
     assert set(there) == set(before)
     for label, place in there.items():
         assert max(abs(a - b) for a, b in zip(place, before[label], strict=True)) <= 2.0, f"{label} moved"
-    for width in range(1440, 1200, -7):  # as a hand drags the window's corner
+    for width in range(1440, 1200, cases(-28, -7)):  # as a hand drags the window's corner
         d.resize(width, 900)
     d.resize(1440, 900)
     assert abs(_places_of_panels()["Statistics"][2] - before["Statistics"][2]) <= 2.0, "shares must not wear off"

@@ -23,10 +23,15 @@ def figure4(d: Driver, frame: int) -> None:
     d.drop(embedded_scenes()["figure4"])
     d.wait(lambda: d.c.session.scene.path.name == "figure4.aff", "the scene of Figure 4")
     d.settle()
+
+    def traced() -> bool:
+        return not d.c.active and d.c.traced.whole and d.c.frame.time == d.c.session.time
+
     for number in range(1, frame + 1):
         d.press(KEY.right_arrow)
-        d.settle()
         assert d.c.session.frame == number
+        d.wait(traced, f"frame {number}")
+    d.settle()
 
 
 def saved_results(d: Driver, panel: str) -> dict[str, Path]:
