@@ -216,12 +216,13 @@ def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
     """What is wrong in the frame, or why nothing is."""
     found, shadow = difference_legend(frame), frame.statistics.shadow
     pixels = f"{count(found.pixels)} ({percent(found.pixel_share, 1.0)})"
-    name = "wrong pixels" if view is View.DIFFERENCE else "around wrong pixels"
-    colored = view is View.DIFFERENCE or chosen.marked
-    entries = (Entry(name if colored else "wrong pixels", WRONG if colored else None, (pixels,), _WRONG_PIXELS),)
+    colored, samples = view is View.DIFFERENCE or chosen.marked, frame.settings.samples
+    name = "around wrong pixels" if colored and view is not View.DIFFERENCE else "wrong pixels"
+    name += f", all {samples} samples" if samples > 1 else ""
+    entries = (Entry(name, WRONG if colored else None, (pixels,), _WRONG_PIXELS),)
     facts = (
         Entry(
-            "wrong answers",
+            "wrong answers, first sample" if samples > 1 else "wrong answers",
             None,
             (f"{count(found.answers)} ({percent(found.answers, found.due)} of those due)",),
             _ANSWERS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tracer.frame import Frame
-from viewer.state.picking import Pick, pick, refreshed
+from viewer.state.picking import Pick, pick, pixel_of, refreshed
 from viewer.state.session import Session
 
 Point = tuple[float, float]
@@ -25,6 +25,12 @@ class Selection:
     def frame(self) -> Frame | None:
         """The frame that the picture shows."""
         return self._newest()
+
+    @property
+    def pixel(self) -> tuple[int, int] | None:
+        """Where the picture shows what was clicked; None where it does not, or where nothing was."""
+        frame, kept = self.frame, self.picked
+        return pixel_of(kept, frame) if kept is not None and frame is not None else None
 
     def at(self, point: Point | None) -> Pick | None:
         """What lies under a point of the picture."""

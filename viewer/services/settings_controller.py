@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from tracer.method import Method
-from viewer.state.methods import NO_CULLING
+from viewer.state.methods import NO_CULLING, with_additions
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences, save_preferences
 from viewer.state.session import Session
@@ -45,8 +45,9 @@ class SettingsController:
         self._session.light = light % lights if lights else 0
 
     def toggle_culling(self) -> None:
-        culls = Method.parse(self._session.settings.method).culls
-        self.change(method=NO_CULLING if culls else self._preferences.method)
+        """Off, and on again by the method that culled last, with what was added to it while it was off."""
+        now = Method.parse(self._session.settings.method)
+        self.change(method=NO_CULLING if now.culls else with_additions(self._preferences.method, now.additions))
 
     def reset(self, kept: Collection[str]) -> None:
         """Set everything to its default, except these fields of the preferences."""

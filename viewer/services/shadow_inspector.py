@@ -19,8 +19,8 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from viewer.services.render_thread import Question, Traces
 from viewer.services.selection import Selection
-from viewer.state.picking import Pick, pixel_at
-from viewer.state.projection import Stroke, place, strokes
+from viewer.state.picking import pixel_at, pixel_of
+from viewer.state.projection import Stroke, strokes
 
 MOST_OCCLUDERS = 8  # of one light that are named and drawn
 
@@ -103,7 +103,7 @@ class ShadowInspector:
             self._subject = subject
         if self._asked is not None and self._asked.found is not None:
             self.answer = self._asked.found
-        at = _pixel_of(kept, frame) if kept is not None else self._pointed_at(frame, idle)
+        at = pixel_of(kept, frame) if kept is not None else self._pointed_at(frame, idle)
         if at is None and kept is None:
             self._forget()
         if self.answer is not None and _is_outdated(self.answer, frame):
@@ -141,15 +141,6 @@ def _is_outdated(answer: Answer, frame: Frame) -> bool:
     """Whether an answer speaks of another moment, or of what another method knew."""
     then = answer.frame
     return then.time != frame.time or then.settings.method != frame.settings.method
-
-
-def _pixel_of(kept: Pick, frame: Frame) -> tuple[int, int] | None:
-    """Where a frame shows the point that was clicked; None where it does not."""
-    at = place(frame, kept.point) if kept.point is not None else None
-    if at is None or not (0.0 <= at[0] < 1.0 and 0.0 <= at[1] < 1.0):
-        return None
-    x, y = pixel_at(frame, *at)
-    return (x, y) if frame.primitive[y, x] == kept.primitive else None
 
 
 def drawn_primitives(one: Explanation) -> list[int]:

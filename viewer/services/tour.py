@@ -141,15 +141,15 @@ def _toggle_culling(c: Controller, show_panel: Callable[[str], None]) -> Iterato
 
 def _how_to_toggle(c: Controller) -> str:
     method = Method.parse(c.session.settings.method)
-    if not method.culls or _culls(c):
+    if c.frame is None or not method.culls or _culls(c):
         return (
             "Press C twice. The picture looks the same, but without culling every shadow ray is traced: compare the "
             "row Traced in the Statistics panel."
         )
     if method.adaptive:
         return (
-            "The method auto culls nothing here, as that would not be quicker. Choose paper, the published method, in "
-            "the Culling panel first."
+            "The method auto culls nothing here: it culls only where it has measured that this is quicker. Choose "
+            "paper, the published method, in the Culling panel first."
         )
     return f"The method {method.base} has culled nothing here yet. Press T to trace the picture once more."
 

@@ -20,6 +20,12 @@ def default_for(view: View) -> str:
     return BY_MODES if view.needs_verify else DEFAULT
 
 
+def with_additions(method: str, more: Iterable[str]) -> str:
+    """The method with these additions besides its own."""
+    parsed = Method.parse(method)
+    return _named(parsed.base, {*parsed.additions, *more})
+
+
 def is_method(name: str) -> bool:
     """Whether there is a method of this name."""
     try:

@@ -12,7 +12,11 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.renderer import Frame
 from tracer.scene.model import CONE, Camera, Material, Scene
 from viewer.state.navigation import Vector, ray
+from viewer.state.projection import HIDDEN, place
 from viewer.state.views import has_modes_of_cells, units_of
+
+NEARBY = 2
+"""Pixels from a point's place on the picture at which its surface still stands for it."""
 
 
 @dataclass(frozen=True)
@@ -111,6 +115,29 @@ def point_at(frame: Frame, u: float, v: float) -> Vector | None:
     # Through the pixel's centre, as the ray was that found this depth.
     origin, direction = ray(frame.camera, (x + 0.5) / frame.width, (y + 0.5) / frame.height, frame.width / frame.height)
     return origin + depth * direction
+
+
+def pixel_of(kept: Pick, frame: Frame) -> tuple[int, int] | None:
+    """The pixel of a frame that shows the point that was picked; None where the frame does not show it.
+
+    At another size, or from elsewhere, the point lies between pixels: the nearest within `NEARBY` counts that shows its
+    primitive, or else, as that may be smaller than a pixel, a surface at the point's distance."""
+    at = place(frame, kept.point) if kept.point is not None else None
+    if kept.point is None or at is None or not (0.0 <= at[0] < 1.0 and 0.0 <= at[1] < 1.0):
+        return None
+    x, y = pixel_at(frame, *at)
+    left, top = max(x - NEARBY, 0), max(y - NEARBY, 0)
+    around = np.s_[top : y + NEARBY + 1, left : x + NEARBY + 1]
+    shown = frame.primitive[around] == kept.primitive
+    if not shown.any() and not kept.dynamic:
+        distance = math.dist(frame.camera.position, kept.point)
+        shown = (frame.depth[around] < distance * HIDDEN) & (frame.depth[around] > distance / HIDDEN)
+    rows, columns = np.nonzero(shown)
+    if not len(rows):
+        return None
+    apart = np.hypot(columns + left + 0.5 - at[0] * frame.width, rows + top + 0.5 - at[1] * frame.height)
+    nearest = int(np.argmin(apart))
+    return int(columns[nearest]) + left, int(rows[nearest]) + top
 
 
 def extent_at(frame: Frame, u: float, v: float) -> float | None:

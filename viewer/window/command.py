@@ -32,8 +32,8 @@ def _always() -> bool:
 
 @dataclass(frozen=True)
 class Command:
-    """An action.  `key` is written as it is shown, e.g. "Ctrl+O"; `checked` makes it a tick in its menu, where `tip`
-    says more about it."""
+    """An action.  `key` is written as it is shown, e.g. "Ctrl+O"; `other_keys` do the same on other keyboards, and
+    are not shown; `checked` makes it a tick in its menu, where `tip` says more about it."""
 
     name: str
     menu: str
@@ -44,6 +44,20 @@ class Command:
     separated: bool = False
     repeats: bool = False
     tip: str = ""
+    other_keys: tuple[str, ...] = ()
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """All that it has."""
+        return (self.key, *self.other_keys) if self.key else ()
+
+
+_SPELLED = {
+    "RightArrow": "right_arrow",
+    "LeftArrow": "left_arrow",
+    "KeypadAdd": "keypad_add",
+    "KeypadSubtract": "keypad_subtract",
+}
 
 
 def chord(key: str) -> int:
@@ -52,7 +66,7 @@ def chord(key: str) -> int:
     number = 0
     for modifier in modifiers:
         number |= int(getattr(imgui.Key, f"mod_{modifier.lower()}"))
-    spelled = {"RightArrow": "right_arrow", "LeftArrow": "left_arrow"}.get(name, name.lower())
+    spelled = _SPELLED.get(name, name.lower())
     found = getattr(imgui.Key, f"_{name}" if name.isdigit() else spelled, None)
     if found is None:
         raise ValueError(f"no key is called {key!r}")

@@ -104,10 +104,12 @@ def _looks(ui: Ui) -> list[Command]:
 
     return [
         Command("Light theme", "View", other_theme, checked=lambda: p.theme == "light", separated=True),
-        Command("Larger interface", "View", sized(1), "Ctrl+Equal", enabled=lambda: p.ui_scale < SCALES[-1]),
-        Command("Smaller interface", "View", sized(-1), "Ctrl+Minus", enabled=lambda: p.ui_scale > SCALES[0]),
-        Command("Interface at 100 %", "View", sized(0), "Ctrl+0"),
-    ]
+        Command("Larger interface", "View", sized(1), "Ctrl+Equal", enabled=lambda: p.ui_scale < SCALES[-1],
+                other_keys=("Ctrl+Shift+Equal", "Ctrl+KeypadAdd")),
+        Command("Smaller interface", "View", sized(-1), "Ctrl+Minus", enabled=lambda: p.ui_scale > SCALES[0],
+                other_keys=("Ctrl+KeypadSubtract",)),
+        Command("Interface at 100 %", "View", sized(0), "Ctrl+0", other_keys=("Ctrl+Keypad0",)),
+    ]  # fmt: skip
 
 
 def _camera(ui: Ui) -> list[Command]:
@@ -242,8 +244,12 @@ def focus(ui: Ui) -> None:
     """Turn to what is under the pointer, else to what is selected, and go near it; orbits turn around it then."""
     c = ui.controller
     at = c.selection.hovered
-    if at is None and c.selection.picked is not None and c.frame is not None:
-        at = ((c.selection.picked.x + 0.5) / c.frame.width, (c.selection.picked.y + 0.5) / c.frame.height)
+    pixel = c.selection.pixel
+    if at is None and pixel is not None and c.frame is not None:
+        at = (pixel[0] + 0.5) / c.frame.width, (pixel[1] + 0.5) / c.frame.height
+    if at is None and c.selection.picked is not None:
+        c.notices.say("what was clicked is not visible from here; point at something to focus on it")
+        return
     if at is None or c.frame is None:
         c.notices.say("point at something, or click it, to focus on it")
         return

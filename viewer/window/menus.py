@@ -23,7 +23,7 @@ def handle_keys(ui: Ui) -> None:
     if imgui.is_popup_open("", escape.ANY_POPUP):
         return
     for command in ui.commands:
-        if command.key and _pressed(command, held or before) and command.enabled():
+        if any(_pressed(command, key, held or before) for key in command.keys) and command.enabled():
             ui.guard.step(f"The command {command.name}", command.run)
 
 
@@ -37,8 +37,8 @@ def show(ui: Ui) -> None:
             imgui.end_menu()
 
 
-def _pressed(command: Command, modifiers: int) -> bool:
-    number = chord(command.key)
+def _pressed(command: Command, key: str, modifiers: int) -> bool:
+    number = chord(key)
     if number & int(imgui.Key.mod_mask_) != modifiers:
         return False
     return imgui.is_key_pressed(imgui.Key(number & ~int(imgui.Key.mod_mask_)), repeat=command.repeats)

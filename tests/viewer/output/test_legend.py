@@ -80,7 +80,11 @@ def test_the_difference_counts_what_is_wrong_or_says_why_nothing_is(frame: Frame
     wrong = of(frame, View.DIFFERENCE)
     assert wrong.entries[0].color == WRONG and wrong.entries[0].values == ("2 (0.013 %)",)
     assert wrong.facts[0].values[0].startswith("3 (")
+    assert (wrong.entries[0].name, wrong.facts[0].name) == ("wrong pixels", "wrong answers")
     assert of(frame, View.WIPE, marked=False).entries[0].color is None
+    many = of(replace(frame, settings=replace(SETTINGS, samples=4)), View.DIFFERENCE)
+    assert many.entries[0].name == "wrong pixels, all 4 samples"
+    assert many.facts[0].name == "wrong answers, first sample"
     right = replace(frame, wrong=np.zeros_like(frame.wrong))
     assert of(right, View.DIFFERENCE).notes[0].tone is Tone.GOOD
     off = replace(right, settings=replace(SETTINGS, method="none"))

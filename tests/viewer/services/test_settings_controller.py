@@ -48,6 +48,16 @@ def test_culling_is_turned_off_and_on_as_it_was():
     assert parts.session.settings.method == "paper+rest"
 
 
+def test_what_was_added_while_culling_was_off_stays():
+    parts = Parts()
+    parts.settings.change(method="none+rest")
+    parts.settings.toggle_culling()
+    assert parts.session.settings.method == "auto+rest"
+    parts.settings.toggle_culling()
+    parts.settings.toggle_culling()
+    assert parts.session.settings.method == "auto+rest"
+
+
 def test_lights_are_counted_around():
     parts = Parts()
     for light, chosen in ((2, 2), (3, 0), (-1, 2)):

@@ -17,7 +17,7 @@ from viewer.services.controller import Controller
 from viewer.services.shadow_inspector import MOST_OCCLUDERS, Answer, Part, drawn_lines
 from viewer.state import navigation
 from viewer.state.preferences import Preferences
-from viewer.window.panels.explanation import sentences
+from viewer.window.panels.explanation import sentences, unanswered
 from viewer.window.ui import Ui
 
 SIZE = (64, 48)
@@ -119,6 +119,10 @@ def test_another_time_is_another_answer(desk: Desk):
     desk.until(lambda: not desk.c.active)
     desk.c.motion.step(3)
     desk.until(lambda: not desk.c.active and desk.answer is None)
+    assert unanswered(Ui(desk.c)).startswith("The clicked point is not visible from here.")
+    desk.c.motion.move(navigation.look(desk.c.session.camera, -2.5, 0.0, desk.c.motion.world_up))
+    desk.until(lambda: not desk.c.active)
+    assert blocked(desk.answered())
 
 
 def test_nothing_is_proven_by_a_method_that_is_not_chosen_any_more(desk: Desk):

@@ -24,7 +24,7 @@ def ui():
 
 
 def test_keys_and_names_are_unique(ui):
-    keys = Counter(command.chord(c.key) for c in ui.commands if c.key)
+    keys = Counter(command.chord(key) for c in ui.commands for key in c.keys)
     assert [k for k, n in keys.items() if n > 1] == []
     names = Counter(c.name for c in ui.commands)
     assert [n for n, count in names.items() if count > 1] == []
@@ -32,7 +32,15 @@ def test_keys_and_names_are_unique(ui):
 
 def test_no_command_takes_a_key_that_flies(ui):
     flying = {int(getattr(imgui.Key, k)) for k in "wasdqe"}
-    assert flying.isdisjoint(command.chord(c.key) for c in ui.commands if c.key)
+    assert flying.isdisjoint(command.chord(key) for c in ui.commands for key in c.keys)
+
+
+def test_the_plus_of_every_keyboard_makes_the_interface_larger(ui):
+    by_name = {c.name: {command.chord(key) for key in c.keys} for c in ui.commands}
+    ctrl, key = int(imgui.Key.mod_ctrl), imgui.Key
+    plus = {ctrl | int(key.equal), ctrl | int(key.mod_shift) | int(key.equal), ctrl | int(key.keypad_add)}
+    assert by_name["Larger interface"] == plus
+    assert by_name["Smaller interface"] == {ctrl | int(key.minus), ctrl | int(key.keypad_subtract)}
 
 
 def test_every_command_is_in_a_menu(ui):

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.method import Method, additions, bases
+from viewer.services.controller import Controller
 from viewer.state.methods import toggled, with_base
 from viewer.state.preferences import MOST_CERTIFYING
 from viewer.window.ui import Ui
@@ -31,14 +32,16 @@ def show(ui: Ui) -> None:
     c = ui.controller
     s, p = c.session.settings, c.preferences
     _method(ui)
-    if c.frame is not None and c.frame.statistics.decision:
+    if c.frame is not None and c.frame.statistics.decision and c.runs.current is None:
         paragraph(c.frame.statistics.decision, QUIET)
     tip = "test two neighbouring pixels both ways: each one's ray against the other's primitive (Y)"
     checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.settings.change(symmetric=on), tip)
     same_line_for("Verify")
     tip = "trace every culled shadow ray as well, and count wrong answers (V)"
     checkbox("Verify", s.verify, lambda on: c.settings.change(verify=on), tip)
-    _wrong(ui)
+    said = wrong_answers(c)
+    if said is not None:
+        paragraph(*said)
     with properties("culling", 6.5) as shown:
         if shown:
             row(
@@ -87,7 +90,7 @@ def _method(ui: Ui) -> None:
     with properties("method", 4.0) as shown:
         if shown:
             row("Method", f"{method.kind.summary} C turns culling off and on.")
-            if imgui.begin_combo("##method", method.base):
+            if imgui.begin_combo("##method", method.base, int(imgui.ComboFlags_.height_largest)):
                 for kind in bases():
                     if imgui.selectable(kind.name, kind is method.kind)[0]:
                         c.settings.change(method=with_base(name, kind.name))
@@ -102,14 +105,18 @@ def _method(ui: Ui) -> None:
             c.settings.change(method=toggled(name, kind.name))
 
 
-def _wrong(ui: Ui) -> None:
-    c = ui.controller
+def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
+    """How many answers of the newest frame are wrong, and a colour; None where that is not known, or where the frame
+    was traced with another method than the panel shows.  A run has figures of its own, in its panel."""
     if c.frame is None or not c.frame.settings.verify:
-        return
+        return None
+    if c.runs.current is not None:
+        return f"wrong answers of the {c.runs.current.name} are in its own panel", QUIET
+    if c.frame.settings.method != c.tracing.settings.method:
+        return None
     shadow = c.frame.statistics.shadow
     if shadow.wrong:
-        paragraph(f"{count(shadow.wrong)} wrong ({percent(shadow.wrong, shadow.due)})", ERROR)
-    elif not shadow.culled + shadow.candidates_only + shadow.dynamic_only + shadow.cache_hits:
-        paragraph("nothing culled", QUIET)
-    else:
-        paragraph("none wrong", GOOD)
+        return f"{count(shadow.wrong)} wrong ({percent(shadow.wrong, shadow.due)})", ERROR
+    if not shadow.culled + shadow.candidates_only + shadow.dynamic_only + shadow.cache_hits:
+        return "nothing culled", QUIET
+    return "none wrong", GOOD

@@ -41,7 +41,7 @@ def rows(ui: Ui) -> None:
     checkbox("Draw for a click", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), tip)
     answer = c.inspector.answer
     if answer is None:
-        paragraph("traced when nothing moves", QUIET)
+        paragraph(unanswered(ui), QUIET)
         return
     if not answer.lights:
         paragraph("The scene has no lights.", QUIET)
@@ -51,6 +51,16 @@ def rows(ui: Ui) -> None:
             imgui.push_id(one.light)
             _row(ui, one, receiver)
             imgui.pop_id()
+
+
+def unanswered(ui: Ui) -> str:
+    """Why nothing is said of the shadow rays."""
+    selection, run = ui.controller.selection, ui.controller.runs.current
+    if run is not None:
+        return f"traced when the {run.name} has ended"
+    if selection.picked is not None and selection.pixel is None:
+        return "The clicked point is not visible from here. Its shadow rays are traced when it is in view again."
+    return "traced when nothing moves"
 
 
 @contextmanager

@@ -17,7 +17,9 @@ def show(ui: Ui) -> None:
     """The panel: what was clicked, else what the pointer is on."""
     c = ui.controller
     if c.selection.picked is not None:
-        imgui.text_colored(QUIET, f"pixel {c.selection.picked.x}, {c.selection.picked.y}, clicked")
+        at = c.selection.pixel
+        where = f"pixel {at[0]}, {at[1]}, clicked" if at is not None else "clicked, not visible from here"
+        imgui.text_colored(QUIET, where)
         imgui.same_line()
         if imgui.small_button(f"{icons.ICON_FA_XMARK}##release"):
             c.selection.picked = None
