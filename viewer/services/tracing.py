@@ -1,7 +1,8 @@
 """What the render thread is asked for, so that the picture keeps up with the session, and what has come.
 
 Each picture comes fast, with a part of its pixels shaded, and becomes whole unless something newer is wanted; at idle
-it gets more samples a pixel.  Nothing is asked for twice, and nothing at all while a run has the render thread.
+lamps get more samples, and then it gets more samples a pixel.  Nothing is asked for twice, and nothing at all while a
+run has the render thread.
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ from typing import Protocol
 
 from tracer.frame import Frame, Settings
 from tracer.method import Method
-from viewer.services import refinement
+from viewer.services import lamps, refinement
 from viewer.services.governor import AT_ONCE, Governor, Plan, divided
+from viewer.services.lamps import LampSamples
 from viewer.services.refinement import Refinement
 from viewer.services.render_thread import RenderRequest, Traced
 from viewer.services.runs import Run
@@ -72,6 +74,8 @@ class Tracing:
         self._known: Frame | None = None  # the last that was whole and of the window's resolution
         self.governor = governor or Governor()
         self.refinement = Refinement()
+        self._lamps = LampSamples()
+        self._moving_samples: int | None = None  # of lamps, while anything moves
         self._serial = 0
         self._refines = False  # whether the last picture was asked for to refine what is known
         self._asked: RenderRequest | None = None
@@ -119,7 +123,8 @@ class Tracing:
         if self.traced is None or self.traced.request is not traced.request:
             self._glance = False
             if not traced.request.refinement_seconds:  # else it took its time for certificates, not for its pixels
-                self.governor.observe(traced.first, traced.frame.width * traced.frame.height)
+                pixels = traced.frame.width * traced.frame.height
+                self.governor.observe(traced.first, pixels, self._samples_of(traced.request.settings))
         self.traced = self._with_modes(traced)
         return self.traced
 
@@ -152,18 +157,22 @@ class Tracing:
             self._new = False
             self._wake()
             return
-        if not now.moving and not session.playing:
+        if not now.moving and not session.playing and not self.refines_lamps:
             self._refine()
         if self._jumped():  # the next picture is another one, and may be coarse at first
             self._glance = True
         moving = now.moving or self._glance
         self._refines = self._refines and not moving and not session.playing
-        plan = self._plan(width, height, moving)
+        lamp_samples = self._next_lamp_samples(width, height, moving)
+        plan = self._plan(width, height, moving, lamp_samples)
         width, height = divided(width, height, plan.divisor)
         settings = replace(self.settings, width=width, height=height, samples=1)
+        samples = session.settings.samples
+        if lamp_samples < self.lamp_samples_wanted:
+            settings, samples = replace(settings, lamp_samples=lamp_samples), 1
         seconds = refinement.SECONDS if self._refines else 0.0
         wanted = RenderRequest(
-            session.time, session.camera, settings, plan.divisor, self._serial, seconds, session.settings.samples,
+            session.time, session.camera, settings, plan.divisor, self._serial, seconds, samples,
             plan.parts, moving or session.playing, focus=now.focus,
         )  # fmt: skip
         if self._answered(wanted):
@@ -185,12 +194,75 @@ class Tracing:
             self._asked = replace(wanted, final=True)
             self._renderer.hurry(self._asked)
 
-    def _plan(self, width: int, height: int, coarse: bool) -> Plan:
-        """How the picture is to come about: at once where it refines what is known, and where each is to be whole."""
-        playing, preferences = self._session.playing, self._preferences
-        if self._refines or not preferences.dynamic_resolution or (playing and preferences.every_frame):
+    def _plan(self, width: int, height: int, coarse: bool, lamp_samples: int) -> Plan:
+        """How the picture is to come about: at once where it refines what is shown, and where each is to be whole."""
+        playing = self._session.playing
+        adds = not coarse and not playing and lamp_samples > lamps.first(self.lamp_samples_wanted)
+        if self._refines or adds or self._each_is_whole:
             return AT_ONCE
-        return self.governor.plan(width, height, 1.0 / preferences.target_fps, coarse, playing)
+        return self.governor.plan(width, height, self._frame_seconds, coarse, playing, lamp_samples)
+
+    @property
+    def _each_is_whole(self) -> bool:
+        """Whether no picture is shown before all of it has been traced."""
+        return not self._preferences.dynamic_resolution or (self._session.playing and self._preferences.every_frame)
+
+    @property
+    def _frame_seconds(self) -> float:
+        return 1.0 / self._preferences.target_fps
+
+    # --- samples of lamps ------------------------------------------------------------------------
+
+    def _samples_of(self, settings: Settings) -> int:
+        """Samples of the scene's lamps by some settings, of that with the most."""
+        scene = self._session.scene
+        return self._lamps.most(scene.lights, settings) if scene is not None else 1
+
+    def _next_lamp_samples(self, width: int, height: int, moving: bool) -> int:
+        """How many samples lamps have in the next picture, of this size."""
+        most, asked = self.lamp_samples_wanted, self._asked
+        if self._each_is_whole:
+            return most
+        if moving or self._session.playing:
+            if self._moving_samples is None:  # it stays until nothing moves, so that modes are of use
+                self._moving_samples = self.governor.moving_samples(width, height, self._frame_seconds)
+            return min(self._moving_samples, most)
+        self._moving_samples = None
+        begins = lamps.first(most)
+        if asked is None or asked.divisor > 1 or not self._shows_session(asked):
+            return begins
+        has = self._samples_of(asked.settings)
+        come = self.traced is not None and self.traced.whole and self.traced.request == asked
+        return min(max(begins, lamps.after(has, most) if come else has), most)
+
+    def _shows_session(self, asked: RenderRequest) -> bool:
+        """Whether a request is for what the session looks at now, however finely."""
+        session = self._session
+        settings = _as_asked(self.settings, asked.settings)
+        return (session.time, session.camera, settings) == (asked.time, asked.camera, asked.settings)
+
+    @property
+    def lamp_samples_shown(self) -> int:
+        """How many samples the lamps of the newest picture have, that with the most."""
+        return self._samples_of(self.traced.frame.settings) if self.traced is not None else 0
+
+    @property
+    def lamp_samples_wanted(self) -> int:
+        """How many they should have at idle."""
+        return self._samples_of(self._session.settings)
+
+    @property
+    def has_lamps(self) -> bool:
+        """Whether any light is no point, by the settings."""
+        scene = self._session.scene
+        return scene is not None and self._lamps.any(scene.lights, self._session.settings)
+
+    @property
+    def refines_lamps(self) -> bool:
+        """Whether a whole picture is shown, and the same with more samples of lamps is to come."""
+        traced = self.traced
+        shown = traced is not None and traced.whole and self._shows_session(traced.request)
+        return shown and self.lamp_samples_shown < self.lamp_samples_wanted
 
     @property
     def settings(self) -> Settings:
@@ -200,7 +272,7 @@ class Tracing:
         verify = s.settings.verify or s.view.needs_verify
         if not self.now.ready and Method.parse(method).has_certificates:
             method = with_base(method, NO_CULLING)
-        seconds = self._preferences.certificate_share / self._preferences.target_fps
+        seconds = self._preferences.certificate_share * self._frame_seconds
         return replace(
             s.settings,
             method=method,
@@ -231,11 +303,10 @@ class Tracing:
 
     def _jumped(self) -> bool:
         """Whether, at idle, something else is to be seen than was last asked for; to refine is to see the same."""
-        session, asked = self._session, self._asked
-        if asked is None or session.playing or self.now.moving:
+        asked = self._asked
+        if asked is None or self._session.playing or self.now.moving:
             return False
-        settings = _as_asked(self.settings, asked.settings)
-        return (session.time, session.camera, settings) != (asked.time, asked.camera, asked.settings)
+        return not self._shows_session(asked)
 
     # --- what the newest frame is ----------------------------------------------------------------
 
@@ -319,5 +390,6 @@ def _as_asked(settings: Settings, asked: Settings) -> Settings:
         modes=asked.modes,
         patient=asked.patient,
         samples=asked.samples,
+        lamp_samples=asked.lamp_samples,
         certificate_seconds=asked.certificate_seconds,
     )

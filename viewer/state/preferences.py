@@ -19,6 +19,7 @@ import platformdirs
 
 from tracer.frame import Settings
 from tracer.method import Method
+from tracer.scene.lights import MAX_SAMPLES
 from viewer.state.methods import DEFAULT, NO_CULLING, is_method
 from viewer.state.views import BENEATH, View
 from viewer.util.files import write_text
@@ -46,6 +47,7 @@ _RANGES: dict[str, tuple[float, float]] = {
     "certificate_share": (0.0, MOST_CERTIFYING),
     "depth": (0, 100),
     "samples": (1, 64),
+    "lamp_samples": (0, MAX_SAMPLES),
     "threads": (0, 1024),
     "shading": (0.0, 1.0),
     "beneath": (0.0, 0.6),
@@ -58,9 +60,10 @@ _RANGES: dict[str, tuple[float, float]] = {
 class Preferences:
     """Everything that outlives the window.  `speed` is relative to the scene's own pace, 1 by default; `method` is
     the one to cull by while `culling` is on, `certificate_share` the part of a frame's time in motion that may go into
-    certificates; `samples` is how many a pixel gets at idle; `legend_x` and `legend_y` say where in the room that the
-    picture leaves to its legend this lies, 0 to 1 from left and top; `tour` says that the tour has not been shown yet,
-    `last` is the snapshot, as JSON, to start from where that is asked for."""
+    certificates; `samples` is how many a pixel gets at idle; `lamp_samples` how many each lamp has, 0 for as many as
+    the scene says (the radius of lamps is measured in units of the scene, and not kept); `legend_x` and `legend_y` say
+    where in the room that the picture leaves to its legend this lies, 0 to 1 from left and top; `tour` says that the
+    tour has not been shown yet, `last` is the snapshot, as JSON, to start from where that is asked for."""
 
     target_fps: float = 15.0
     dynamic_resolution: bool = True
@@ -81,6 +84,7 @@ class Preferences:
     zoom_factor: float = 4.0
     depth: int = 10
     samples: int = 16
+    lamp_samples: int = 0
     threads: int = 0
     verify: bool = False
     view: str = "color"
@@ -110,7 +114,7 @@ class Preferences:
         names = ("symmetric", "zoom_factor", "depth", "samples", "threads", "verify")
         try:
             values = {name: getattr(self, name) for name in names}
-            return Settings(method=method, **values).validated()
+            return Settings(method=method, lamp_samples=self.lamp_samples or None, **values).validated()
         except ValueError:
             return Settings(method=DEFAULT)
 
@@ -121,6 +125,7 @@ class Preferences:
         self.method = s.method if self.culling else self.method
         self.symmetric, self.zoom_factor = s.symmetric, s.zoom_factor
         self.depth, self.samples, self.threads, self.verify = s.depth, s.samples, s.threads, s.verify
+        self.lamp_samples = s.lamp_samples or 0
 
     @property
     def picture_folder(self) -> Path:

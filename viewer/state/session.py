@@ -117,7 +117,10 @@ class Session:
         self.free_camera = camera
 
     def open(self, scene: Scene) -> None:
-        """Look at another scene from its own first camera; settings and view stay."""
+        """Look at another scene from its own first camera; settings and view stay, but for the radius of lamps, which
+        is measured in units of the scene that was open."""
+        if self.scene is not None and scene.path != self.scene.path:
+            self.settings = replace(self.settings, lamp_radius=None)
         self.scene = scene
         self.time = scene.time_range[0]
         self.free_camera = None

@@ -48,11 +48,11 @@ class Fold:
 
 @dataclass
 class Ui:
-    """See the module.  `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says
-    that the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector; `screening` is
-    the recorded picture that is shown in the picture's place; `legend_shown` says whether the picture shows its legend,
-    `legend_held` where the pointer holds that; `tour_height` is what the picture leaves free below it for the tour,
-    `tour_place` where that is: left, top and width."""
+    """See the module.  `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says that
+    the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector; `light_filters` is
+    what is typed above each list of lights; `screening` is the recorded picture that is shown in the picture's place;
+    `legend_shown` says whether the picture shows its legend, `legend_held` where the pointer holds that; `tour_height`
+    is what the picture leaves free below it for the tour, `tour_place` where that is: left, top and width."""
 
     controller: Controller
     display: Display | None = None
@@ -83,6 +83,7 @@ class Ui:
     log_errors_only: bool = False
     zoom_all_steps: bool = False
     pointed_light: int | None = None
+    light_filters: dict[str, str] = field(default_factory=dict)
     shots: Shots | None = None
     screening: Screening | None = None
     legend_shown: bool = False

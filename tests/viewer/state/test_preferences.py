@@ -29,6 +29,15 @@ def test_the_method_to_cull_by_is_kept_while_culling_is_off(tmp_path: Path):
     assert (read.culling, read.method, read.settings().method) == (False, "certified+cache", "none")
 
 
+def test_samples_of_lamps_are_kept(tmp_path: Path):
+    for samples in (64, None):
+        mine = Preferences()
+        mine.keep(Settings(lamp_samples=samples, lamp_radius=0.5))
+        save_preferences(mine, tmp_path)
+        read, _ = load_preferences(tmp_path)
+        assert (read.settings().lamp_samples, read.settings().lamp_radius) == (samples, None), "another scene's units"
+
+
 def test_without_a_file_there_are_defaults(tmp_path: Path):
     assert load_preferences(tmp_path / "nowhere") == (Preferences(), None)
 

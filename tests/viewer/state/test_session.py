@@ -50,6 +50,24 @@ def test_what_belongs_to_this_machine_is_not_kept():
     assert not {"certificate_seconds", "certificates", "threads", "width", "record_work"} & set(kept)
 
 
+@pytest.mark.parametrize("radius", [None, 0.0, 2, 0.25])
+@pytest.mark.parametrize("samples", [None, 64])
+def test_lamps_are_restored(radius, samples):
+    session = session_somewhere()
+    session.settings = replace(session.settings, lamp_radius=radius, lamp_samples=samples)
+    session.restore(Snapshot.from_json(json.loads(json.dumps(session.snapshot().to_json()))))
+    assert (session.settings.lamp_radius, session.settings.lamp_samples) == (radius, samples)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"lamp_radius": -1.0}, {"lamp_radius": "wide"}, {"lamp_samples": 2.5}, {"depth": None}]
+)
+def test_settings_that_are_none_are_refused(wrong):
+    data = session_somewhere().snapshot().to_json()
+    with pytest.raises(ValueError, match=next(iter(wrong))):
+        Snapshot.from_json(data | {"settings": data["settings"] | wrong})
+
+
 def test_following_is_restored_as_following():
     session = session_somewhere()
     session.free_camera = None

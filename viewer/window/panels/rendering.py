@@ -7,6 +7,7 @@ import os
 from imgui_bundle import imgui
 
 from viewer.state.preferences import LONGEST_SIDE
+from viewer.window.panels import lights
 from viewer.window.ui import Ui
 from viewer.window.widgets import checkbox, properties, row, size_field
 
@@ -25,7 +26,7 @@ def show(ui: Ui) -> None:
         )
     tip = "show pictures before all of their pixels are shaded, so that frames come fast"
     checkbox("Progressive refinement", p.dynamic_resolution, lambda on: setattr(p, "dynamic_resolution", on), tip)
-    with properties("quality", 5.0) as shown:
+    with properties("quality", 6.4) as shown:
         if shown:
             if p.dynamic_resolution:
                 row("In motion", "frames per second to aim at")
@@ -40,6 +41,8 @@ def show(ui: Ui) -> None:
             changed, index = imgui.combo("##samples", now, [str(n) for n in SAMPLES])
             if changed:
                 c.settings.change(samples=SAMPLES[index])
+            if c.session.scene is not None and c.session.scene.lights:
+                lights.lamp_rows(ui)
             now = c.session.settings.threads
             row("Threads", "0: all cores; the picture and the numbers are the same for any")
             changed, threads = imgui.slider_int("##threads", now, 0, os.cpu_count() or 1, "%d" if now else "all cores")

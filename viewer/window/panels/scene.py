@@ -9,6 +9,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from viewer.util.resources import embedded_scenes
+from viewer.window.panels import lights
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,
@@ -83,36 +84,18 @@ def _lights(ui: Ui) -> None:
     c = ui.controller
     scene = c.session.scene
     assert scene is not None
-    lights = scene.lights
-    heading(f"Lights ({len(lights)})")
-    if not lights:
+    number = len(scene.lights)
+    heading(f"Lights ({count(number)})")
+    if not number:
         paragraph("No lights: only ambient light shows, and there are no shadows to cull.", WARNING)
         return
-    if len(lights) > MAX_CULLED_LIGHTS:
+    if number > MAX_CULLED_LIGHTS:
         paragraph(
             f"{icons.ICON_FA_TRIANGLE_EXCLAMATION} Culling covers the first {MAX_CULLED_LIGHTS} lights; the other "
-            f"{len(lights) - MAX_CULLED_LIGHTS} are traced without it.",
+            f"{count(number - MAX_CULLED_LIGHTS)} are traced without it.",
             WARNING,
         )
-    rows = min(len(lights), 6)
-    height = rows * imgui.get_text_line_height_with_spacing() + 2.0
-    if imgui.begin_child("lights", (0.0, height)):
-        for index, light in enumerate(lights):
-            strongest = max(*light.color, 1e-9)
-            red, green, blue = (channel / strongest for channel in light.color)
-            side = imgui.get_text_line_height()
-            flags = int(imgui.ColorEditFlags_.no_tooltip)
-            imgui.color_button(f"##light{index}", (red, green, blue, 1.0), flags, (side, side))
-            imgui.same_line()
-            name = ui.light_name(index) + ("  (moves)" if light.track else "")
-            if index >= MAX_CULLED_LIGHTS:
-                name += "  (not culled)"
-            clicked, _ = imgui.selectable(f"{name}##{index}", c.session.light == index)
-            tooltip("at ({:.4g}, {:.4g}, {:.4g}), colour ({:.3g}, {:.3g}, {:.3g}); the shadow view shows the chosen "
-                    "light".format(*light.position, *light.color))  # fmt: skip
-            if clicked:
-                c.settings.set_light(index)
-    imgui.end_child()
+    lights.table(ui)
 
 
 def _warnings(ui: Ui) -> None:

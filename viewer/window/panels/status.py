@@ -49,6 +49,8 @@ def doing(c: Controller) -> str:
         return "no scene is open"
     if c.motion.under_way or c.session.playing:
         return "tracing"
+    if c.tracing.refines_lamps:
+        return f"lamp samples: {c.tracing.lamp_samples_shown} of {c.tracing.lamp_samples_wanted}"
     if c.renderer.busy:
         return "refining the picture" if c.tracing.becoming_finer or _learns(c) else "tracing"
     if c.renderer.running is not None and c.tracing.samples_shown < c.tracing.samples_wanted:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from viewer.state.views import View
-from viewer.window.panels import legend
+from viewer.window.panels import legend, lights
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, row
 
@@ -26,10 +26,7 @@ def show(ui: Ui) -> None:
                 c.settings.set_view(views[index])
             if c.session.view.of_light and c.session.scene is not None and c.session.scene.lights:
                 row("Light", "L and Shift+L")
-                names = [ui.light_name(i) for i in range(len(c.session.scene.lights))]
-                changed, light = imgui.combo("##light", c.session.light, names)
-                if changed:
-                    c.settings.set_light(light)
+                lights.combo(ui)
             if c.session.view is View.WIPE:
                 row("Line", "where it is; or drag it in the picture")
                 changed, at = imgui.slider_float("##wipe", 100.0 * c.session.wipe, 0.0, 100.0, "%.0f %%")

@@ -1,0 +1,62 @@
+"""How many samples lamps have: few in motion, and at idle more, step by step, until there are as many as chosen.
+
+Shadow modes are those of a lamp as it is sampled, and are dropped when the number of its samples changes.  So all
+pictures of a motion have the same number, with which the picture that follows at idle begins as well; and each step
+takes four times as many samples as the one before, so that there are few of them.
+"""
+
+from __future__ import annotations
+
+from tracer.frame import Settings
+from tracer.scene.lights import Light
+
+FEWEST = 4
+"""Samples of a lamp in the first picture at idle, and in motion where there is time for them."""
+GROWTH = 4
+OFFERED = (1, 4, 16, 64, 256)
+"""To choose from; the scene may say any other number."""
+
+
+class LampSamples:
+    """What lamps a scene has by some settings, and how many samples they have."""
+
+    def __init__(self) -> None:
+        self._lights: tuple[Light, ...] | None = None
+        self._said: dict[float | None, int] = {}
+
+    def any(self, lights: tuple[Light, ...], settings: Settings) -> bool:
+        """Whether any light is no point."""
+        return self._by_scene(lights, settings.lamp_radius) > 0
+
+    def most(self, lights: tuple[Light, ...], settings: Settings) -> int:
+        """Samples of the lamp that has the most; 1 where all lights are points, or there are none."""
+        said = self._by_scene(lights, settings.lamp_radius)
+        return max(said, 1) if settings.lamp_samples is None or said == 0 else settings.lamp_samples
+
+    def _by_scene(self, lights: tuple[Light, ...], radius: float | None) -> int:
+        """Most samples of a lamp that the scene says, 0 without lamps; lights are gone through once."""
+        if lights is not self._lights:
+            self._lights, self._said = lights, {}
+        if radius not in self._said:
+            self._said = {radius: max((light.samples for light in lights if _is_lamp(light, radius)), default=0)}
+        return self._said[radius]
+
+
+def _is_lamp(light: Light, radius: float | None) -> bool:
+    """Whether a light is no point once point lights and spheres have a radius."""
+    if radius is not None and light.kind in ("point", "sphere"):
+        return radius > 0
+    return light.kind != "point"
+
+
+def first(most: int) -> int:
+    """Samples of the first picture at idle, of so many in the end."""
+    return most if most < 2 * FEWEST else FEWEST
+
+
+def after(samples: int, most: int) -> int:
+    """Samples of the picture after one with so many: the last step is skipped where it adds little."""
+    more = FEWEST
+    while more <= samples:
+        more *= GROWTH
+    return most if 2 * more > most else more

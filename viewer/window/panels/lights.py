@@ -1,0 +1,172 @@
+"""The lights of the scene: as a list, to choose one from, and what lamps are made of them.
+
+A scene may have thousands: a list draws the rows that are seen, and finds lights by words of their names.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from imgui_bundle import imgui
+
+from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.scene.lights import Light, as_lamps
+from viewer.services.lamps import OFFERED
+from viewer.window.ui import Ui
+from viewer.window.widgets import QUIET, count, em, paragraph, row, tooltip
+
+FEW = 8
+"""Lights that are listed without a field to find them."""
+_ROWS = 6  # of the list that are seen at once
+_SMALLEST, _LARGEST = 1e-5, 0.1  # radius on the slider, of the scene's diagonal
+_SCENE_SAYS = "as the scene says"
+_RADIUS = (
+    "of the lamp that every point light and sphere becomes, in the scene's units; at the left end they are points. A "
+    "larger lamp has softer shadows, and more pixels in its penumbra, where no ray can be saved"
+)
+_SAMPLES = (
+    "points from which each lamp shines: more make shadows smoother, and take a shadow ray each. In motion there are "
+    "few; at idle more follow, up to these"
+)
+
+
+def lamp_rows(ui: Ui) -> None:
+    """Rows of settings: what lamps point lights are made, and how many samples these have."""
+    c = ui.controller
+    s = c.session.settings
+    scene = c.session.scene
+    assert scene is not None
+    row("Lamp radius", _RADIUS)
+    size = _diagonal(c.info.get("bounds"))
+    smallest, largest = _SMALLEST * size, _LARGEST * size
+    button = imgui.get_frame_height() if s.lamp_radius is not None else 0.0
+    imgui.set_next_item_width(-button - (em(0.2) if button else 0.0) - 1.0)
+    shown = "%.7g" if s.lamp_radius else ("points" if s.lamp_radius == 0.0 else _SCENE_SAYS)
+    flags = int(imgui.SliderFlags_.logarithmic)
+    changed, radius = imgui.slider_float("##lamp-radius", s.lamp_radius or 0.0, smallest, largest, shown, flags)
+    if changed:
+        c.settings.set_lamp_radius(0.0 if radius <= smallest else float(f"{radius:.3g}"))
+    if button:
+        imgui.same_line(0.0, em(0.2))
+        if imgui.button("x##lamp-radius", (button, button)):
+            c.settings.set_lamp_radius(None)
+        tooltip("lights as the scene says")
+    row("Lamp samples", _SAMPLES)
+    most = c.tracing.lamp_samples_wanted
+    imgui.begin_disabled(most == 1 and not c.tracing.has_lamps)
+    if imgui.begin_combo("##lamp-samples", str(s.lamp_samples) if s.lamp_samples else _SCENE_SAYS):
+        for number in (None, *OFFERED):
+            if imgui.selectable(str(number) if number else _SCENE_SAYS, s.lamp_samples == number)[0]:
+                c.settings.change(lamp_samples=number)
+        imgui.end_combo()
+    imgui.end_disabled()
+
+
+def _diagonal(bounds: Sequence[Sequence[float]] | None) -> float:
+    """How large a scene is; 1 where nothing is in it."""
+    return (math.dist(*bounds) if bounds is not None else 0.0) or 1.0
+
+
+def table(ui: Ui) -> None:
+    """A list of all lights; a click chooses the one that views show."""
+    shown = found(ui, "table")
+    height = min(max(len(shown), 1), _ROWS) * imgui.get_text_line_height_with_spacing() + 2.0
+    if imgui.begin_child("lights", (0.0, height)):
+        _rows(ui, shown, described=True)
+    imgui.end_child()
+
+
+def combo(ui: Ui) -> None:
+    """The light that the view shows, to choose another."""
+    if imgui.begin_combo("##light", ui.light_name(ui.controller.session.light)):
+        if imgui.is_window_appearing():
+            ui.light_filters["combo"] = ""
+        shown = found(ui, "combo")
+        if imgui.begin_child("lights", (0.0, min(max(len(shown), 1), 2 * _ROWS) * _line() + 2.0)):
+            if _rows(ui, shown, described=False):
+                imgui.close_current_popup()
+        imgui.end_child()
+        imgui.end_combo()
+
+
+def found(ui: Ui, place: str) -> Sequence[int]:
+    """The lights whose names have what is typed above them; all where they are few, and nothing is typed."""
+    scene = ui.controller.session.scene
+    assert scene is not None
+    number = len(scene.lights)
+    if number <= FEW:
+        return range(number)
+    text = ui.light_filters.get(place, "")
+    imgui.set_next_item_width(-1.0)
+    _, text = imgui.input_text_with_hint(f"##find-{place}", f"find among {count(number)} lights", text)
+    ui.light_filters[place] = text
+    numbers: Sequence[int] = ui.cached(f"lights {place}", scene, text, lambda: matching(scene.lights, text))
+    if text:
+        paragraph(f"{count(len(numbers))} of {count(number)}", QUIET)
+    return numbers
+
+
+def matching(lights: Sequence[Light], text: str) -> Sequence[int]:
+    """Numbers of the lights in whose number, name or kind every typed word occurs; a number alone is that light's."""
+    words = text.lower().split()
+    if not words:
+        return range(len(lights))
+    if len(words) == 1 and words[0].isdecimal() and int(words[0]) < len(lights):
+        return [int(words[0])]
+    said = (f"light {i} {light.name.lower()} {light.kind}" for i, light in enumerate(lights))
+    return [i for i, one in enumerate(said) if all(word in one for word in words)]
+
+
+def _rows(ui: Ui, numbers: Sequence[int], described: bool) -> bool:
+    """Those rows of a list that are seen; whether one was chosen."""
+    c = ui.controller
+    scene = c.session.scene
+    assert scene is not None
+    s, chosen = c.session.settings, False
+    clipper = imgui.ListClipper()
+    clipper.begin(len(numbers), _line())
+    while clipper.step():
+        for k in range(clipper.display_start, clipper.display_end):
+            index = numbers[k]
+            (light,) = as_lamps((scene.lights[index],), s.lamp_radius, s.lamp_samples)
+            _color(index, light)
+            imgui.same_line()
+            clicked, _ = imgui.selectable(f"{ui.light_name(index)}{_remarks(index, light)}##{index}",
+                                          c.session.light == index)  # fmt: skip
+            if described:
+                tooltip(description(light))
+            if clicked:
+                c.settings.set_light(index)
+                chosen = True
+    clipper.end()
+    return chosen
+
+
+def _line() -> float:
+    return float(imgui.get_text_line_height_with_spacing())
+
+
+def _color(index: int, light: Light) -> None:
+    strongest = max(*light.color, 1e-9)
+    red, green, blue = (channel / strongest for channel in light.color)
+    side = imgui.get_text_line_height()
+    imgui.color_button(f"##light{index}", (red, green, blue, 1.0), int(imgui.ColorEditFlags_.no_tooltip), (side, side))
+
+
+def _remarks(index: int, light: Light) -> str:
+    parts = [] if light.kind == "point" else [f"{light.kind}, {light.samples}"]
+    parts += ["moves"] if light.track else []
+    parts += ["not culled"] if index >= MAX_CULLED_LIGHTS else []
+    return f"  ({', '.join(parts)})" if parts else ""
+
+
+def description(light: Light) -> str:
+    """A light in words: its kind, size, samples, falloff, place and colour."""
+    size = f" of radius {light.radius:.4g}" if light.kind in ("sphere", "dome") else ""
+    if light.kind == "rectangle":
+        size = " of {:.4g} x {:.4g}".format(*(math.hypot(*edge) for edge in light.edges))
+    samples = "" if light.kind == "point" else f", {light.samples} {'sample' if light.samples == 1 else 'samples'}"
+    falloff = "no falloff" if light.falloff == "none" else "falls off with the square of the distance"
+    place = "at ({:.4g}, {:.4g}, {:.4g}), colour ({:.3g}, {:.3g}, {:.3g})".format(*light.position, *light.color)
+    return f"{light.kind}{size}{samples}; {falloff}; {place}. Views of one light show the one that is chosen."
