@@ -172,7 +172,8 @@ class FrameInProgress:
         tables = self._stage_tables(learns)
 
         tiles = tiles_to_shade(self.settings.width, self.settings.height, lanes, self.workers)
-        self._base.begin_shading(self, len(tiles), first_pass=learns and not self._begun)
+        records = self.settings.record_lights or self.settings.record_work  # what is shaded twice would count twice
+        self._base.begin_shading(self, len(tiles), first_pass=learns and not self._begun and not records)
         shade_one = self._tile_shader(rays, lanes, buffers, tables[True])
 
         def work(tile: Tile, worker: int) -> None:

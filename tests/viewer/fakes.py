@@ -136,6 +136,16 @@ def with_certificates(frame: Frame) -> Frame:
     return replace(frame, cells=cells, certificates=certificates, saved=saved, cost=cost, due_rays=due_rays)
 
 
+def with_lamps(frame: Frame) -> Frame:
+    """The frame with what reaches each pixel from lights of 16, 1 and 64 samples, drawn by lot."""
+    lots, shape = np.random.default_rng(2), (*frame.primitive.shape, frame.lights)
+    most = np.resize(np.array([16, 1, 64], np.uint16), frame.lights)
+    hit = (frame.primitive >= 0)[..., None]
+    asked = np.where(hit, lots.choice([0.0, 0.4, 1.0, 1.0], shape) * most, 0).astype(np.uint16)
+    reached = (lots.choice([0.0, 0.3, 0.7, 1.0], shape) * asked).astype(np.uint16)
+    return replace(frame, asked=asked, reached=reached)
+
+
 def in_cells(frame: Frame) -> Frame:
     """The frame as of a method whose units are cells: odd columns of every primitive have others than even ones."""
     x = np.indices(frame.primitive.shape)[1]

@@ -72,7 +72,7 @@ def render(path: Path, options: Namespace) -> None:
         before = _render_before(renderer, time, options, work)
         work.count(f"tracing {settings.width} × {settings.height}", before, before + options.samples)
         verify = settings.verify or view.needs_verify
-        lights = options.buffers is not None
+        lights = options.buffers is not None or view.needs_lights
         renderer.settings = replace(
             settings, samples=options.samples, verify=verify, record_lights=lights, record_work=view.needs_work
         )

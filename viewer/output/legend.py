@@ -19,11 +19,22 @@ from viewer.output.legend_counts import (
     certificate_legend,
     difference_legend,
     occlusion_legend,
+    penumbra_legend,
     shadow_legend,
     work_legend,
 )
 from viewer.state import terms
-from viewer.state.views import GREY, WRONG, Color, View, depth_range, has_modes_of_cells
+from viewer.state.views import (
+    ARRIVAL_COLORS,
+    ARRIVAL_MEANING,
+    GREY,
+    WRONG,
+    Arrival,
+    Color,
+    View,
+    depth_range,
+    has_modes_of_cells,
+)
 from viewer.util.numbers import count, percent
 
 
@@ -102,6 +113,7 @@ def legend_of(frame: Frame, view: View, chosen: Chosen = Chosen()) -> Legend | N
         View.WIPE: _difference,
         View.SAVED: _work,
         View.COST: _work,
+        View.PENUMBRA: _penumbra,
     }
     return makers[view](frame, view, chosen) if view in makers and view.can_draw(frame) else None
 
@@ -212,6 +224,18 @@ def _work(frame: Frame, view: View, chosen: Chosen) -> Legend:
     return Legend(title, (), entries, Scale("0 %", "100 %", "50 %"), tuple(facts))
 
 
+def _penumbra(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    title = f"{view.label}, {light_in_words(chosen.light, chosen.light_name)}"
+    found = penumbra_legend(frame, chosen.light)
+    entries = tuple(
+        Entry(_ARRIVALS[one], ARRIVAL_COLORS[one], (percent(pixels, found.seen),), f"{ARRIVAL_MEANING[one]}. "
+              f"{count(pixels)} pixels")
+        for one, pixels in reversed(found.pixels.items())
+    )  # fmt: skip
+    facts = (Entry("samples", None, (count(found.samples),), "of the light, that a pixel faces at most"),)
+    return Legend(title, ("pixels",), entries, facts=facts)
+
+
 def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
     """What is wrong in the frame, or why nothing is."""
     found, shadow = difference_legend(frame), frame.statistics.shadow
@@ -240,6 +264,13 @@ def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
     return Legend(view.label, (), entries, notes=(note,))
 
 
+_ARRIVALS = {
+    Arrival.AWAY: "faces away",
+    Arrival.DARK: "fully dark",
+    Arrival.FEW: "penumbra, at most half",
+    Arrival.MOST: "penumbra, more than half",
+    Arrival.LIT: "fully lit",
+}
 _BY_MODES = "of this frame, at all bounces, by the modes after the frame before: what the paper's method saves"
 _IN_ALL_SAVED = "of the first sample of each pixel; the share is of the shadow rays due"
 _IN_ALL = "of the first sample of each pixel; the share is of the rays traced without culling"

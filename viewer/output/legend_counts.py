@@ -17,9 +17,12 @@ from viewer.state.views import (
     OCCLUSION_MEANING,
     SHADOW_COLORS,
     SHADOW_MEANING,
+    Arrival,
     Certificate,
     Color,
     View,
+    arrivals,
+    samples_of,
     units_of,
     verified,
     whole_of,
@@ -131,6 +134,24 @@ def work_legend(frame: Frame, view: View) -> WorkLegend:
     total = int(work.sum(dtype=np.int64))
     whole = int(whole_of(frame, view).sum(dtype=np.int64))
     return WorkLegend(total, whole, total / work.size, int(work.max(initial=0)), top)
+
+
+@dataclass(frozen=True)
+class PenumbraLegend:
+    """Primary pixels by how much of a light reaches them, of so many that are `seen`, and the most samples of it that a
+    pixel faces."""
+
+    pixels: dict[Arrival, int]
+    seen: int
+    samples: int
+
+
+def penumbra_legend(frame: Frame, light: int) -> PenumbraLegend:
+    """Of a frame that recorded what reaches its pixels; raises ValueError for another."""
+    hit = frame.primitive >= 0
+    pixels = np.bincount(arrivals(frame, light)[hit], minlength=len(Arrival))
+    asked, _ = samples_of(frame, light)
+    return PenumbraLegend({one: int(pixels[one]) for one in Arrival}, int(hit.sum()), int(asked.max(initial=0)))
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame
 from viewer.output.legend_counts import certificates_of
 from viewer.state.views import (
+    ARRIVAL_COLORS,
     BACKGROUND,
     BENEATH,
     CELL_LINE,
@@ -25,10 +26,13 @@ from viewer.state.views import (
     SHADOW_COLORS,
     WIPE_LINE,
     WRONG,
+    Arrival,
     Mark,
     View,
+    arrivals,
     color_map,
     depth_range,
+    samples_of,
     units_of,
     whole_of,
     wipe_column,
@@ -55,10 +59,10 @@ def picture(
 ) -> NDArray[np.uint8]:
     """(height, width, 3) uint8, row 0 at the top: a frame in one of its views.
 
-    `light` is the light that the views of shadows and certificates speak of, `marked` draws rings around wrong
-    pixels, and `wipe` is the place of the wipe's line, 0 to 1 from the left.  Maps of work show counts of rays, or
-    `shares`; `beneath` is the brightness of the picture beneath the difference.  Raises ValueError where there is no
-    such light, or where the view is one of verified frames, or of work that was recorded, and the frame is not.
+    `light` is the light that views of one light speak of, `marked` draws rings around wrong pixels, and `wipe` is the
+    place of the wipe's line, 0 to 1 from the left.  Maps of work show counts of rays, or `shares`; `beneath` is the
+    brightness of the picture beneath the difference.  Raises ValueError where there is no such light, or where the
+    view is one of verified frames, or of what was recorded, and the frame is not.
     """
     if view.of_light and not 0 <= light < frame.lights:
         raise ValueError(f"no light {light}: {lights_in_words(frame.lights)}")
@@ -72,6 +76,8 @@ def picture(
         colors = _on_background(frame, _work(frame, view, shares))
     elif view is View.CERTIFICATE:
         colors = _on_background(frame, _certificate(frame, light, shading))
+    elif view is View.PENUMBRA:
+        colors = _on_background(frame, _shaded(frame, _penumbra(frame, light), shading))
     elif view is View.DEPTH:
         colors = _on_background(frame, _depth(frame))
     elif view is View.NORMAL:
@@ -139,6 +145,17 @@ def _certificate(frame: Frame, light: int, shading: float) -> NDArray:
     colors = _shaded(frame, palette[certificates_of(frame, light)], shading)
     colors[_on_line(frame.cell)] *= CELL_LINE
     return colors
+
+
+def _penumbra(frame: Frame, light: int) -> NDArray:
+    """By the samples of a light that reach each pixel, with a ramp where some do and some do not."""
+    asked, reached = samples_of(frame, light)
+    palette = np.asarray([ARRIVAL_COLORS[one] for one in Arrival], np.float32)
+    found = arrivals(frame, light)
+    share = (reached / np.maximum(asked, 1).astype(np.float32))[..., None]
+    ramp = palette[Arrival.FEW] + share * (palette[Arrival.MOST] - palette[Arrival.FEW])
+    between = (found == Arrival.FEW) | (found == Arrival.MOST)
+    return np.where(between[..., None], ramp, palette[found])
 
 
 def _on_line(cells: NDArray[np.int32]) -> NDArray[np.bool_]:

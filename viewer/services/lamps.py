@@ -8,11 +8,12 @@ takes four times as many samples as the one before, so that there are few of the
 from __future__ import annotations
 
 from tracer.frame import Settings
-from tracer.scene.lights import Light
+from tracer.scene.lights import Light, as_lamps
 
 FEWEST = 4
 """Samples of a lamp in the first picture at idle, and in motion where there is time for them."""
 GROWTH = 4
+KEPT = 4  # radii that lamps had last
 OFFERED = (1, 4, 16, 64, 256)
 """To choose from; the scene may say any other number."""
 
@@ -38,15 +39,12 @@ class LampSamples:
         if lights is not self._lights:
             self._lights, self._said = lights, {}
         if radius not in self._said:
-            self._said = {radius: max((light.samples for light in lights if _is_lamp(light, radius)), default=0)}
+            lamps = (light for light in as_lamps(lights, radius, None) if light.kind != "point")
+            self._said = {
+                **dict(list(self._said.items())[1 - KEPT :]),
+                radius: max((x.samples for x in lamps), default=0),
+            }
         return self._said[radius]
-
-
-def _is_lamp(light: Light, radius: float | None) -> bool:
-    """Whether a light is no point once point lights and spheres have a radius."""
-    if radius is not None and light.kind in ("point", "sphere"):
-        return radius > 0
-    return light.kind != "point"
 
 
 def first(most: int) -> int:

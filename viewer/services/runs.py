@@ -85,6 +85,8 @@ class Run(ABC, Generic[Results]):
         """Why frames of this run cannot be seen in a view that needs more of them, in words; else nothing."""
         if view.needs_work:
             return "does not count the rays of each pixel"
+        if view.needs_lights:
+            return "does not record which samples of lights reach each pixel"
         return "does not verify" if view.needs_verify and not self.verifies else ""
 
     def is_of(self, scene: Scene | None) -> bool:

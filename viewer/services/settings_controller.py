@@ -13,9 +13,6 @@ from viewer.state.preferences import Preferences, save_preferences
 from viewer.state.session import Session
 from viewer.state.views import View
 
-SOFT = 16
-"""Samples of a lamp that the user has just made of a point."""
-
 
 class SettingsController:
     """Settings stay as they are while `locked()`, which says so itself."""
@@ -37,14 +34,6 @@ class SettingsController:
             return
         self._session.settings = settings
         self._preferences.keep(settings)
-
-    def set_lamp_radius(self, radius: float | None) -> None:
-        """Make point lights and spheres lamps of this radius, points with 0, or with None what the scene says.  Lamps
-        that would have one sample get more, as they would look like points."""
-        scene, samples = self._session.scene, self._session.settings.lamp_samples
-        if radius and samples is None and scene is not None and all(light.samples == 1 for light in scene.lights):
-            samples = SOFT
-        self.change(lamp_radius=radius, lamp_samples=samples)
 
     def set_view(self, view: View) -> None:
         self._session.view = view

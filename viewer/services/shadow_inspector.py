@@ -7,8 +7,11 @@ the camera moves on.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 from typing import NamedTuple, Protocol, cast
 
 import numpy as np
@@ -23,6 +26,7 @@ from viewer.state.picking import pixel_at, pixel_of
 from viewer.state.projection import Stroke, strokes
 
 MOST_OCCLUDERS = 8  # of one light that are named and drawn
+MOST_LIGHTS = 40  # that are drawn, and listed at once
 
 
 @dataclass(frozen=True)
@@ -34,6 +38,11 @@ class Answer:
     y: int
     lights: tuple[Explanation, ...]
     outlines: dict[int, tuple[NDArray[np.float64], ...]]
+
+    @cached_property
+    def drawn(self) -> tuple[Explanation, ...]:
+        """Lights whose ways are drawn."""
+        return drawn_lights(self.lights)
 
 
 class Part(Enum):
@@ -67,7 +76,7 @@ class PixelQuestion:
     def answer(self, renderer: Traces) -> None:
         real = cast(Renderer, renderer)
         lights = explain(real, self.frame, self.x, self.y)
-        numbers = {number for one in lights for number in drawn_primitives(one)}
+        numbers = {number for one in drawn_lights(lights) for number in drawn_primitives(one)}
         outlines = {number: outline(real.world, number) for number in numbers}
         self.found = Answer(self.frame, self.x, self.y, lights, outlines)
 
@@ -143,6 +152,17 @@ def _is_outdated(answer: Answer, frame: Frame) -> bool:
     return then.time != frame.time or then.settings.method != frame.settings.method
 
 
+def nearest_first(lights: Sequence[Explanation]) -> list[Explanation]:
+    """The lights by their distance from the point."""
+    return sorted(lights, key=lambda one: math.dist(one.light_position, one.point))
+
+
+def drawn_lights(lights: Sequence[Explanation]) -> tuple[Explanation, ...]:
+    """Those of the lights that are due, or of many the nearest of these, in their order."""
+    due = [one for one in lights if one.due]
+    return tuple(due) if len(due) <= MOST_LIGHTS else tuple(nearest_first(due)[:MOST_LIGHTS])
+
+
 def drawn_primitives(one: Explanation) -> list[int]:
     """What blocks a light, then what its certificate rests on, each once and no more than are drawn."""
     blocker = [] if one.blocker is None else [one.blocker]
@@ -155,16 +175,15 @@ def others_named(one: Explanation) -> list[int]:
 
 
 def drawn_lines(answer: Answer, frame: Frame) -> list[DrawnLine]:
-    """Outlines of what is named, then, for each light that is due, its way to the point: as far as it gets, and on."""
+    """Outlines of what is named, then, for each light that is drawn, its way to the point as far as it gets, and on."""
     lines = []
-    for one in answer.lights:
+    for one in answer.drawn:
         for number in drawn_primitives(one):
             part = Part.BLOCKER if number == one.blocker else Part.OCCLUDER
             lines += [DrawnLine(part, one.light, strokes(frame, line)) for line in answer.outlines[number]]
-    for one in answer.lights:
-        if one.due:
-            end = one.point if one.blocked_at is None else one.blocked_at
-            lines.append(DrawnLine(Part.REACHING, one.light, strokes(frame, [one.light_position, end])))
-            if one.blocked_at is not None:
-                lines.append(DrawnLine(Part.STOPPED, one.light, strokes(frame, [one.blocked_at, one.point])))
+    for one in answer.drawn:
+        end = one.point if one.blocked_at is None else one.blocked_at
+        lines.append(DrawnLine(Part.REACHING, one.light, strokes(frame, [one.light_position, end])))
+        if one.blocked_at is not None:
+            lines.append(DrawnLine(Part.STOPPED, one.light, strokes(frame, [one.blocked_at, one.point])))
     return lines

@@ -23,7 +23,7 @@ from viewer.services.runs import Run
 from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
-from viewer.state.views import View
+from viewer.state.views import MOST_RECORDED, View
 
 
 class Pictures(Protocol):
@@ -266,7 +266,7 @@ class Tracing:
 
     @property
     def settings(self) -> Settings:
-        """What the user has set, with modes; verified and with its work recorded where the view needs that.  While what
+        """What the user has set, with modes; verified, and with more recorded, where the view needs that.  While what
         makes certificates is still being compiled it is traced without: the picture is the same."""
         s, method = self._session, self._session.settings.method
         verify = s.settings.verify or s.view.needs_verify
@@ -278,9 +278,16 @@ class Tracing:
             method=method,
             verify=verify,
             record_work=s.view.needs_work,
+            record_lights=s.view.needs_lights and self._can_record_lights,
             modes=True,
             certificate_seconds=seconds,
         )
+
+    @property
+    def _can_record_lights(self) -> bool:
+        """Whether there is memory for what each light sends to each pixel."""
+        scene, (width, height) = self._session.scene, self.full_size
+        return scene is not None and width * height * len(scene.lights) <= MOST_RECORDED
 
     def _answered(self, wanted: RenderRequest) -> bool:
         """Whether a frame has been asked for, or is there.  One that holds more than the view needs will do."""
@@ -289,8 +296,10 @@ class Tracing:
         if self._session.settings != self._chosen:
             return False
         settings = wanted.settings
-        for verify, work in product({settings.verify, True}, {settings.record_work, True}):
-            fuller = replace(wanted, settings=replace(settings, verify=verify, record_work=work))
+        records = ({setting, True} for setting in (settings.verify, settings.record_work, settings.record_lights))
+        for verify, work, arrivals in product(*records):
+            more = replace(settings, verify=verify, record_work=work, record_lights=arrivals)
+            fuller = replace(wanted, settings=more)
             if fuller == self._asked or self._same_picture(fuller):
                 return True
         return False
@@ -332,7 +341,8 @@ class Tracing:
         if self.frame is None or self.now.run is not None:
             return False
         had, wanted = self.frame.settings, self.settings
-        lacks = (wanted.verify and not had.verify) or (wanted.record_work and not had.record_work)
+        names = ("verify", "record_work", "record_lights")
+        lacks = any(getattr(wanted, name) and not getattr(had, name) for name in names)
         return lacks or _as_asked(wanted, had) != had
 
     @property
@@ -374,7 +384,7 @@ class Tracing:
             return f"showing {run.label_shown}   {title}{f' (this run {lacks})' if lacks else ''}"
         if wanted is view:
             return title
-        if not (wanted.needs_verify or wanted.needs_work):  # the picture says why
+        if not wanted.needs_more or (wanted.needs_lights and not self._can_record_lights):  # the picture says why
             return f"{wanted.label}: none here, {view.label.lower()} shown"
         return f"{wanted.label}: {'verifying' if wanted.needs_verify else 'counting'} ..."
 
@@ -387,6 +397,7 @@ def _as_asked(settings: Settings, asked: Settings) -> Settings:
         height=asked.height,
         verify=asked.verify,
         record_work=asked.record_work,
+        record_lights=asked.record_lights,
         modes=asked.modes,
         patient=asked.patient,
         samples=asked.samples,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from tracer.frame import Frame
 from tracer.method import Method
 from viewer.state.methods import BY_MODES, CERTIFIED
-from viewer.state.views import View
+from viewer.state.views import MOST_RECORDED, View
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,8 @@ def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) 
         why = "is exact" if method.kind.culls else "traces every shadow ray"
         text = f"The method {method.base} {why}: no answer can be wrong. The paper's method is sometimes wrong."
         return Missing(text, BY_MODES)
+    if view.needs_lights and frame.primitive.size * frame.lights > MOST_RECORDED:
+        return Missing(f"There are too many lights to keep their samples at each pixel: {frame.lights}.", "")
     if view.of_modes and not view.can_draw(frame):
         return Missing(f"This run keeps no modes with the method {method}.", "")
     return None

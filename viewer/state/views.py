@@ -35,6 +35,7 @@ class View(StrEnum):
     CERTIFICATE = "certificate"
     SAVED = "saved"
     COST = "cost"
+    PENUMBRA = "penumbra"
 
     @property
     def label(self) -> str:
@@ -55,9 +56,19 @@ class View(StrEnum):
         return self in (View.SAVED, View.COST)
 
     @property
+    def needs_lights(self) -> bool:
+        """Whether it can be drawn only of frames that recorded what reaches each pixel."""
+        return self is View.PENUMBRA
+
+    @property
+    def needs_more(self) -> bool:
+        """Whether it can be drawn only of frames that were asked to record something."""
+        return self.needs_verify or self.needs_work or self.needs_lights
+
+    @property
     def of_light(self) -> bool:
         """Whether it speaks of one light."""
-        return self in (View.SHADOW, View.CERTIFICATE)
+        return self in (View.SHADOW, View.CERTIFICATE, View.PENUMBRA)
 
     @property
     def of_modes(self) -> bool:
@@ -70,6 +81,8 @@ class View(StrEnum):
             return frame.wrong is not None
         if self.needs_work:
             return work_of(frame, self) is not None
+        if self.needs_lights:
+            return frame.asked is not None and frame.reached is not None
         if self is View.CERTIFICATE:
             return frame.certificates is not None
         return frame.settings.keeps_modes or not self.of_modes
@@ -92,6 +105,7 @@ _TITLES = {
     View.CERTIFICATE: "Certificates",
     View.SAVED: "Shadow rays saved",
     View.COST: "Rays traced",
+    View.PENUMBRA: "Penumbra",
 }
 
 _KEYS = {
@@ -99,6 +113,7 @@ _KEYS = {
     View.CERTIFICATE: "0",
     View.SAVED: "H",
     View.COST: "Shift+H",
+    View.PENUMBRA: "J",
 }
 
 _EXPLANATIONS = {
@@ -118,10 +133,13 @@ _EXPLANATIONS = {
     "many, or which share of those due.",
     View.COST: "Rays traced for each pixel, of all kinds, at all bounces: how many, or which share of those that are "
     "traced without culling.",
+    View.PENUMBRA: "How many samples of the chosen light reach each pixel: all are lit, none is dark, and between them "
+    "lies the penumbra. A point has one sample, and no penumbra.",
 }
 
 
 _NO_WORK = "the frame did not record the work at its pixels"
+_NO_LIGHTS = "the frame did not record which samples of its lights reach its pixels"
 
 
 def _hex(code: str) -> Color:
@@ -186,6 +204,37 @@ CERTIFICATE_MEANING = {
     Certificate.LIT: "nothing static is between it and the light: tested against dynamic objects only",
     Certificate.CANDIDATES: "only a few primitives can block the light: tested against these and dynamic objects",
 }
+
+
+class Arrival(IntEnum):
+    """How much of a light reaches a pixel."""
+
+    AWAY = 0
+    DARK = 1
+    FEW = 2
+    MOST = 3
+    LIT = 4
+
+
+ARRIVAL_COLORS: dict[Arrival, Color] = {
+    Arrival.AWAY: _hex("3F434C"),
+    Arrival.DARK: SHADOW_COLORS[ShadowMode.FULL_SHADOW],
+    Arrival.FEW: _hex("8F3F00"),
+    Arrival.MOST: _hex("F5BE82"),
+    Arrival.LIT: SHADOW_COLORS[ShadowMode.NON_SHADOW],
+}
+"""In the penumbra, colours go from that of FEW, where next to none of the samples arrive, to that of MOST."""
+
+ARRIVAL_MEANING = {
+    Arrival.AWAY: "the surface faces away from all of the light",
+    Arrival.DARK: "no sample of the light reaches it",
+    Arrival.FEW: "some samples reach it, but at most half of those that it faces",
+    Arrival.MOST: "more than half of the samples that it faces reach it, but not all",
+    Arrival.LIT: "all samples that it faces reach it",
+}
+
+MOST_RECORDED = 1 << 28
+"""Pixels times lights, at most, whose samples are recorded: a gigabyte of memory."""
 
 WRONG = _hex("FF00FF")
 """A pixel with a wrong shadow answer: a colour of no other view, as pure as no shaded one gets."""
@@ -254,6 +303,23 @@ def whole_of(frame: Frame, view: View) -> NDArray[np.int32]:
     if frame.saved is None or frame.cost is None or frame.due_rays is None:
         raise ValueError(_NO_WORK)
     return frame.due_rays if view is View.SAVED else frame.saved + frame.cost
+
+
+def samples_of(frame: Frame, light: int) -> tuple[NDArray[np.uint16], NDArray[np.uint16]]:
+    """(h, w) samples of a light that each pixel faces, and those of them that reach it.
+
+    Raises ValueError for a frame without that record."""
+    if frame.asked is None or frame.reached is None:
+        raise ValueError(_NO_LIGHTS)
+    return frame.asked[..., light], frame.reached[..., light]
+
+
+def arrivals(frame: Frame, light: int) -> NDArray[np.uint8]:
+    """(h, w) Arrival of a light at each pixel; raises ValueError for a frame without that record."""
+    asked, reached = samples_of(frame, light)
+    penumbra = np.where(2 * reached.astype(np.int32) > asked, Arrival.MOST, Arrival.FEW)
+    lit = np.where(reached == 0, Arrival.DARK, np.where(reached == asked, Arrival.LIT, penumbra))
+    return np.where(asked == 0, Arrival.AWAY, lit).astype(np.uint8)
 
 
 def work_top(frame: Frame, view: View) -> float:

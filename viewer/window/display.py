@@ -5,7 +5,7 @@ them into an RGBA target, which ImGui then shows as an image; the plain picture 
 Modes and counts travel as one entry per primitive, laid out in rows of a 2D texture, and the shader
 looks them up by the primitive's number.  So changing the view, the light or the selection never traces
 and never uploads anything; only what the views of verified frames need is brought there when the first
-of them is drawn.
+of them is drawn, and what reaches the pixels from the light that is shown.
 
 All of it runs before the widgets of a frame, and leaves the window's framebuffer bound as it was.
 """
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from tracer.culling.modes import OcclusionMode, has_shadow_mode
 from tracer.shading.screen import to_screen
 from viewer.state.views import (
+    ARRIVAL_COLORS,
     BACKGROUND,
     BENEATH,
     CELL_LINE,
@@ -35,6 +36,7 @@ from viewer.state.views import (
     View,
     color_map,
     depth_range,
+    samples_of,
     units_of,
     wipe_column,
     work_top,
@@ -50,7 +52,7 @@ _PICTURES = (View.COLOR, View.WIPE)
 _UNITS = (
     "color_buffer", "primitive_buffer", "unit_buffer", "mode_table", "count_table", "depth_buffer", "normal_buffer",
     "color_map", "reference_buffer", "mark_buffer", "certificate_buffer", "cell_buffer", "saved_buffer", "cost_buffer",
-    "due_rays_buffer",
+    "due_rays_buffer", "penumbra_buffer",
 )  # fmt: skip
 # What lies on the GPU as a frame holds it: components, their kind, and the frame's attribute.
 _PIXELS = {
@@ -105,7 +107,7 @@ class Display:
     def __init__(self) -> None:
         self.context = moderngl.create_context()
         self._depths = (0, (0.0, 1.0))
-        self._brought: dict[str, int] = {}  # which frame's buffers are on the GPU
+        self._brought: dict[str, tuple[int, int]] = {}  # which frame's buffers, and of which light, are on the GPU
         self._frame: Frame | None = None
         self._drawn: tuple[int, Look] | None = None
         self._failed: tuple[int, Look] | None = None
@@ -140,11 +142,12 @@ class Display:
             self._depths = self._serial, depth_range(self._frame)
         return self._depths[1]
 
-    def _bring(self, name: str) -> None:
-        """A buffer of the frame to the GPU, unless it is there."""
+    def _bring(self, name: str, light: int) -> None:
+        """A buffer of the frame to the GPU, unless it is there; of this light, where it is one of a light."""
         frame = self._frame
         assert frame is not None
-        if self._brought.get(name) == self._serial:
+        wanted = self._serial, light if name == "penumbra_buffer" else 0
+        if self._brought.get(name) == wanted:
             return
         if name in _PIXELS:
             components, dtype, attribute = _PIXELS[name]
@@ -152,6 +155,8 @@ class Display:
         elif name == "certificate_buffer":
             words = frame.certificates if frame.certificates is not None else np.zeros(frame.primitive.shape, np.uint32)
             self._write(name, self.size, 2, "u4", _halves(words))
+        elif name == "penumbra_buffer":
+            self._write(name, self.size, 2, "u2", np.stack(samples_of(frame, light), axis=-1))
         elif name == "unit_buffer":
             self._write(name, self.size, 1, "i4", units_of(frame))
         elif name == "mode_table":
@@ -159,13 +164,13 @@ class Display:
         elif name == "count_table":
             counts = np.stack([frame.pixel_count, frame.highest_count], axis=1).astype(np.int32, copy=False)
             self._write_table(name, "i4", counts)
-        self._brought[name] = self._serial
+        self._brought[name] = wanted
 
     def draw(self, look: Look) -> None:
         """Draw the view of the frame into the target, unless it is there already.
 
         What failed is not tried again, and the target keeps what it showed, until another frame or look is asked for.
-        Raises ValueError for a view of verified frames, or of work that was recorded, where the frame is none, and
+        Raises ValueError for a view of verified frames, or of what was recorded, where the frame is none, and
         DisplayError for what is too much for the GPU."""
         wanted = self._in_look(look)
         if self._frame is None or wanted in (self._drawn, self._failed):
@@ -210,7 +215,7 @@ class Display:
         self._set_uniforms(program, look)
         for unit, name in enumerate(_UNITS):
             if name in program:
-                self._bring(name)
+                self._bring(name, look.light)
                 self._textures[name].use(unit)
         target.use()
         self.context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
@@ -295,6 +300,7 @@ class Display:
             View.OCCLUSION: list(OCCLUSION_COLORS.values()),
             View.SHADOW: [*SHADOW_COLORS.values(), dynamic],
             View.CERTIFICATE: [*CERTIFICATE_COLORS.values(), dynamic],
+            View.PENUMBRA: list(ARRIVAL_COLORS.values()),
         }
         values: dict[str, Any] = {
             "table_width": TABLE_WIDTH,

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from tests.viewer.colors import luminance
-from tests.viewer.fakes import in_cells, make_frame, with_certificates
+from tests.viewer.fakes import in_cells, make_frame, with_certificates, with_lamps
 from tracer.frame import Frame, Settings
 from tracer.statistics import SaidByModes
 from viewer.output.legend import Chosen, Legend, Tone, legend_of, light_in_words
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, QUIET, TEXT, TONES, fitting, lay_out, wrapped
 from viewer.output.legend_picture import with_legend
 from viewer.state.views import OCCLUSION_COLORS, WRONG, View, color_map
+from viewer.util.numbers import percent
 
 SETTINGS = Settings(width=160, height=96, verify=True, record_work=True)
 LINE = 10.0
@@ -26,7 +27,7 @@ def measure(text: str) -> float:
 
 @pytest.fixture
 def frame() -> Frame:
-    return with_certificates(make_frame(SETTINGS))
+    return with_lamps(with_certificates(make_frame(SETTINGS)))
 
 
 def of(frame: Frame, view: View, **chosen) -> Legend:
@@ -51,6 +52,25 @@ def test_modes_come_with_shares_and_counts(frame: Frame):
     by_name = {entry.name: entry.values for entry in legend.entries}
     assert by_name["fully rendered"] == ("42.9 %", "3") and by_name["dynamic"] == ("28.6 %", "2")
     assert of(in_cells(make_frame(SETTINGS)), View.OCCLUSION).columns == ("pixels", "cells")
+
+
+@pytest.mark.parametrize("light", [0, 1, 2])
+def test_pixels_are_counted_by_what_reaches_them(frame: Frame, light: int):
+    legend, hit = of(frame, View.PENUMBRA, light=light, light_name="lamp"), frame.primitive >= 0
+    assert legend.title == f"Penumbra, light {light} (lamp)"
+    assert legend.facts[0].values == (str((16, 1, 64)[light]),)
+    asked, reached = frame.asked[hit][:, light].astype(int), frame.reached[hit][:, light].astype(int)
+    expected = {
+        "fully lit": (asked > 0) & (reached == asked),
+        "penumbra, more than half": (2 * reached > asked) & (reached < asked),
+        "penumbra, at most half": (2 * reached <= asked) & (reached > 0),
+        "fully dark": (asked > 0) & (reached == 0),
+        "faces away": asked == 0,
+    }
+    assert {entry.name: entry.values for entry in legend.entries} == {
+        name: (percent(there.sum(), hit.sum()),) for name, there in expected.items()
+    }
+    assert legend_of(make_frame(), View.PENUMBRA, Chosen(light)) is None
 
 
 def test_a_light_is_called_by_its_number_and_by_a_name_that_says_more(frame: Frame):

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import in_cells, with_certificates
+from tests.viewer.fakes import in_cells, with_certificates, with_lamps
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
@@ -15,6 +15,7 @@ from tracer.scene.load import load_scene
 from viewer.output.legend_counts import difference_legend
 from viewer.output.pictures import SHADING, picture
 from viewer.state.views import (
+    ARRIVAL_COLORS,
     BACKGROUND,
     BENEATH,
     CELL_LINE,
@@ -25,6 +26,7 @@ from viewer.state.views import (
     SHADOW_COLORS,
     WIPE_LINE,
     WRONG,
+    Arrival,
     Certificate,
     View,
     color_map,
@@ -70,8 +72,8 @@ def wrong_frame(frame: Frame) -> Frame:
 
 @pytest.fixture(scope="module")
 def certified_frame(wrong_frame: Frame) -> Frame:
-    """The same with cells and their certificates, and with the work at each pixel."""
-    return with_certificates(wrong_frame)
+    """The same with cells and their certificates, the work at each pixel, and lamps that reach it in part."""
+    return with_lamps(with_certificates(wrong_frame))
 
 
 @pytest.fixture(scope="module")
@@ -208,8 +210,29 @@ def test_a_frame_that_recorded_no_work_is_refused(frame: Frame, view: View, shar
         picture(frame, view, shares=shares)
 
 
+@pytest.mark.parametrize("light", [0, 1])
+def test_penumbrae_are_a_ramp_between_dark_and_lit(certified_frame: Frame, light: int) -> None:
+    f = certified_frame
+    drawn, hit = picture(f, View.PENUMBRA, light, shading=0.0), f.primitive >= 0
+    asked, reached = f.asked[..., light].astype(int), f.reached[..., light].astype(int)
+    for one, there in (
+        (Arrival.AWAY, asked == 0),
+        (Arrival.DARK, (asked > 0) & (reached == 0)),
+        (Arrival.LIT, (asked > 0) & (reached == asked)),
+    ):
+        assert there.any() and (drawn[hit & there] == to_bytes(ARRIVAL_COLORS[one])).all()
+    between = hit & (reached > 0) & (reached < asked)
+    assert between.any() == (light == 0), "a point has no penumbra"
+    few, most = (np.asarray(ARRIVAL_COLORS[one]) for one in (Arrival.FEW, Arrival.MOST))
+    share = (reached[between] / asked[between])[:, None]
+    assert np.abs(drawn[between] - 255.0 * (few + share * (most - few))).max(initial=0) <= 1
+    for bare in (replace(f, asked=None), replace(f, reached=None)):
+        with pytest.raises(ValueError, match="did not record which samples"):
+            picture(bare, View.PENUMBRA, light)
+
+
 def test_a_light_that_is_not_there(frame: Frame) -> None:
-    for view in (View.SHADOW, View.CERTIFICATE):
+    for view in (View.SHADOW, View.CERTIFICATE, View.PENUMBRA):
         with pytest.raises(ValueError, match="no light 2: the scene's lights are 0 to 1"):
             picture(frame, view, 2)
 

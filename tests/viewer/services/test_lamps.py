@@ -17,6 +17,7 @@ from viewer.services.render_thread import RenderRequest, Traced
 from viewer.services.tracing import Conditions, Tracing
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.views import MOST_RECORDED, View
 
 HERE = Conditions(size=(16, 8))
 MOVING = replace(HERE, moving=True)
@@ -171,3 +172,18 @@ def test_pixels_cost_by_the_samples_of_lamps():
     assert governor.moving_samples(800, 500, 0.02) == 1
     assert governor.moving_samples(800, 500, 0.035) == 1
     assert governor.moving_samples(800, 500, 0.1) == 4
+
+
+def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_for_it():
+    window = Window(lamp_radius=0.5, lamp_samples=16)
+    window.rest()
+    window.session.view = View.PENUMBRA
+    assert window.rest() == [(16, 2)] and window.renders.asked[-1].settings.record_lights
+    window.session.view = View.COLOR
+    assert window.rest() == [], "there is more than the picture needs"
+    many = make_scene(lights=3)
+    window = Window(replace(many, lights=many.lights * (MOST_RECORDED // 128)))
+    window.session.view = View.PENUMBRA
+    window.rest()
+    assert not window.renders.asked[-1].settings.record_lights
+    assert window.tracing.title == "Penumbra: none here, colour shown"

@@ -8,7 +8,7 @@ from pathlib import Path
 from tests.viewer.fakes import make_scene
 from tracer.scene.model import Camera
 from viewer.services.bookmarks import Bookmarks
-from viewer.services.settings_controller import SOFT, SettingsController
+from viewer.services.settings_controller import SettingsController
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -99,21 +99,13 @@ def test_bookmarks_are_found_again_without_settings_and_a_damaged_one_is_one_lin
     assert parts.bookmarks.all == []
 
 
-def test_points_that_become_lamps_get_samples_unless_these_are_chosen():
+def test_the_radius_of_lamps_is_that_of_the_scene_and_their_samples_are_kept():
     parts = Parts()
-    parts.settings.set_lamp_radius(0.25)
-    s = parts.session.settings
-    assert (s.lamp_radius, s.lamp_samples, parts.preferences.lamp_samples) == (0.25, SOFT, SOFT)
-    parts.settings.change(lamp_samples=1)
-    parts.settings.set_lamp_radius(0.5)
-    assert parts.session.settings.lamp_samples == 1
-    parts.settings.change(lamp_samples=None)
-    parts.settings.set_lamp_radius(0.0)
-    assert (parts.session.settings.lamp_radius, parts.session.settings.lamp_samples) == (0.0, None)
-    parts.settings.set_lamp_radius(-1.0)
-    assert parts.session.settings.lamp_radius == 0.0 and parts.notices.current.error
-    parts.settings.set_lamp_radius(0.5)
+    parts.settings.change(lamp_radius=0.25, lamp_samples=64)
+    assert parts.preferences.lamp_samples == 64
+    parts.settings.change(lamp_radius=-1.0)
+    assert parts.session.settings.lamp_radius == 0.25 and parts.notices.current.error
     parts.session.open(make_scene())
-    assert parts.session.settings.lamp_radius == 0.5, "the same scene, reloaded"
+    assert parts.session.settings.lamp_radius == 0.25, "the same scene, reloaded"
     parts.session.open(make_scene(path="other.aff"))
-    assert (parts.session.settings.lamp_radius, parts.session.settings.lamp_samples) == (None, SOFT)
+    assert (parts.session.settings.lamp_radius, parts.session.settings.lamp_samples) == (None, 64)

@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tracer.explanation import NO_CERTIFICATE, explain
+from tracer.explanation import NO_CERTIFICATE, Explanation, explain
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, scene_info
 from viewer.services.controller import Controller
-from viewer.services.shadow_inspector import MOST_OCCLUDERS, Answer, Part, drawn_lines
+from viewer.services.shadow_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, Part, drawn_lights, drawn_lines
 from viewer.state import navigation
 from viewer.state.preferences import Preferences
-from viewer.window.panels.explanation import sentences, unanswered
+from viewer.window.panels.explanation import said, sentences, summary, unanswered
 from viewer.window.ui import Ui
 
 SIZE = (64, 48)
@@ -183,3 +183,32 @@ def test_what_blocks_is_named_once_and_as_what_it_is(desk: Desk):
     assert "its own surface" in others
     (own,) = sentences(ui, replace(stopped, blocker=receiver), receiver)
     assert own.startswith("blocked by its own surface: this triangle shadows itself")
+
+
+def _explained(light: int, samples: int = 16, reached: int = 16, due: bool = True, far: float = 1.0) -> Explanation:
+    place = (far, 0.0, 0.0)
+    return Explanation(light, due, due and reached > 0, NO_CERTIFICATE, None, (), place, (0.0, 0.0, 0.0), None,
+                       samples=samples, reached=reached)  # fmt: skip
+
+
+def test_lights_are_told_by_the_samples_that_arrive():
+    told = [said(_explained(0, *counts)) for counts in ((16, 16), (16, 5), (16, 9), (16, 0), (1, 1), (1, 0))]
+    assert [text for text, _ in told] == [
+        "lit, all 16 samples",
+        "in the penumbra: 5 of 16 samples reach it",
+        "in the penumbra: 9 of 16 samples reach it",
+        "in shadow, all 16 samples",
+        "lit",
+        "in shadow",
+    ]
+    assert len({color for _, color in told[:4]}) == 4
+    assert said(_explained(0, due=False))[0].startswith("in its own shadow")
+    lights = [_explained(0), _explained(1, 16, 3), _explained(2, due=False), _explained(3, 16, 0), _explained(4, 4, 0)]
+    assert summary(lights) == "1 lit, 1 in part, 2 in shadow, 1 behind it"
+
+
+def test_of_many_lights_the_nearest_are_drawn():
+    lights = tuple(_explained(i, due=i % 3 > 0, far=1000.0 - i) for i in range(300))
+    drawn = drawn_lights(lights)
+    assert len(drawn) == MOST_LIGHTS and all(one.due for one in drawn) and min(one.light for one in drawn) >= 240
+    assert drawn_lights(lights[:30]) == tuple(one for one in lights[:30] if one.due)

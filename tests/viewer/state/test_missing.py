@@ -11,7 +11,7 @@ from tests.viewer.fakes import make_frame, with_certificates
 from tracer.frame import Settings
 from tracer.method import bases
 from viewer.state.missing import missing
-from viewer.state.views import View
+from viewer.state.views import MOST_RECORDED, View
 
 
 @pytest.mark.parametrize("method", [*(kind.name for kind in bases()), "certified+cache", "paper+rest", "none+cache"])
@@ -51,6 +51,13 @@ def test_a_map_of_one_colour_is_explained(view: View, shares: bool):
         assert found.base == base and method.split("+")[0] in found.text
     assert missing(View.COST, flat, shares=False) is None, "counts of traced rays differ from pixel to pixel"
     assert missing(view, replace(flat, due_rays=np.zeros_like(flat.cost)), shares) is None, "no ray could be saved"
+
+
+def test_so_many_lights_that_nothing_is_recorded_for_each():
+    frame = make_frame(Settings(16, 8, method="none"))
+    assert not View.PENUMBRA.can_draw(frame) and missing(View.PENUMBRA, frame) is None, "it is on its way"
+    many = replace(frame, lights=MOST_RECORDED // 128 + 1)
+    assert "too many lights" in missing(View.PENUMBRA, many).text and missing(View.COLOR, many) is None
 
 
 def test_certificates_that_may_still_come_are_promised():

@@ -90,7 +90,8 @@ def test_the_colour_of_wrong_answers_is_unmistakable():
     """Bright on black, and far from every colour of every other view, for the colour-blind too."""
     assert (luminance(views.WRONG) + 0.05) / 0.05 > 4.5
     assert np.linalg.norm(dichromat(views.WRONG)) > 0.8
-    others = [*views.OCCLUSION_COLORS.values(), *views.SHADOW_COLORS.values(), views.BACKGROUND, views.GREY]
+    others = [*views.OCCLUSION_COLORS.values(), *views.SHADOW_COLORS.values(), *views.ARRIVAL_COLORS.values()]
+    others += [views.BACKGROUND, views.GREY]
     for other in [*others, views.WIPE_LINE, *views.color_map()]:
         assert np.linalg.norm(np.subtract(views.WRONG, other)) > 0.5
         assert np.linalg.norm(dichromat(views.WRONG) - dichromat(other)) > 0.15

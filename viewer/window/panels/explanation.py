@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.explanation import Explanation
 from tracer.frame import Frame
-from viewer.services.shadow_inspector import MOST_OCCLUDERS, Answer, Part, others_named
+from viewer.services.shadow_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, Part, nearest_first, others_named
 from viewer.state.picking import kind_of
 from viewer.state.projection import place
-from viewer.state.views import CERTIFICATE_COLORS, CERTIFICATE_MEANING, SHADOW_COLORS, Certificate, ShadowMode
+from viewer.state.views import (
+    ARRIVAL_COLORS,
+    CERTIFICATE_COLORS,
+    CERTIFICATE_MEANING,
+    SHADOW_COLORS,
+    Arrival,
+    Certificate,
+    ShadowMode,
+)
+from viewer.window.panels import lights
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, checkbox, em, heading, paragraph, swatch, tooltip
+from viewer.window.widgets import QUIET, checkbox, count, em, heading, paragraph, swatch, tooltip
 
 _LIT, _STOPPED = SHADOW_COLORS[ShadowMode.NON_SHADOW], (0.34, 0.71, 0.91)
 _BLOCKER = SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW]
@@ -45,12 +54,27 @@ def rows(ui: Ui) -> None:
         return
     if not answer.lights:
         paragraph("The scene has no lights.", QUIET)
-    receiver = int(answer.frame.primitive[answer.y, answer.x])
+    receiver, listed = int(answer.frame.primitive[answer.y, answer.x]), answer.lights
+    if len(listed) > lights.FEW:
+        paragraph(summary(listed), QUIET)
+        known, chosen = len(listed), lights.found(ui, "inspector")
+        listed = tuple(nearest_first([listed[light] for light in chosen if light < known])[:MOST_LIGHTS])
     with light_rows("rays") as shown:
-        for one in answer.lights if shown else ():
+        for one in listed if shown else ():
             imgui.push_id(one.light)
             _row(ui, one, receiver)
             imgui.pop_id()
+    if len(listed) == MOST_LIGHTS < len(answer.lights):
+        paragraph(f"the nearest {MOST_LIGHTS} are listed and drawn", QUIET)
+
+
+def summary(lights: Sequence[Explanation]) -> str:
+    """How many lights get here, in full or in part."""
+    due = [one for one in lights if one.due]
+    lit = sum(one.reached == one.samples for one in due)
+    dark = sum(one.reached == 0 for one in due)
+    parts = {"lit": lit, "in part": len(due) - lit - dark, "in shadow": dark, "behind it": len(lights) - len(due)}
+    return ", ".join(f"{count(number)} {name}" for name, number in parts.items() if number)
 
 
 def unanswered(ui: Ui) -> str:
@@ -79,7 +103,7 @@ def light_rows(name: str) -> Iterator[bool]:
 
 def _row(ui: Ui, one: Explanation, receiver: int) -> None:
     """A light; resting on it picks it out over the picture."""
-    text, color = _answer(one)
+    text, color = said(one)
     imgui.table_next_column()
     swatch(color)
     imgui.selectable(f"{ui.light_name(one.light)}##light", False)
@@ -92,10 +116,18 @@ def _row(ui: Ui, one: Explanation, receiver: int) -> None:
         paragraph(sentence, QUIET)
 
 
-def _answer(one: Explanation) -> tuple[str, tuple[float, float, float]]:
+def said(one: Explanation) -> tuple[str, tuple[float, float, float]]:
+    """How much of a light gets here, in words, and its colour."""
     if not one.due:
-        return "in its own shadow: this side faces away", (0.25, 0.27, 0.31)
-    return ("lit", _LIT) if one.lit else ("in shadow", SHADOW_COLORS[ShadowMode.FULL_SHADOW])
+        return "in its own shadow: this side faces away", ARRIVAL_COLORS[Arrival.AWAY]
+    samples = f", all {one.samples} samples" if one.samples > 1 else ""
+    if one.reached == one.samples:
+        return f"lit{samples}", _LIT
+    if one.reached == 0:
+        return f"in shadow{samples}", ARRIVAL_COLORS[Arrival.DARK]
+    most = 2 * one.reached > one.samples
+    text = f"in the penumbra: {one.reached} of {one.samples} samples reach it"
+    return text, ARRIVAL_COLORS[Arrival.MOST if most else Arrival.FEW]
 
 
 def _certificate(name: str) -> None:
@@ -174,10 +206,8 @@ def _ends(
     on_screen: Callable[[tuple[float, float]], ImVec2],
     draw: imgui.ImDrawList,
 ) -> None:
-    """A disc at each light that is due, a cross where its way ends before the point, and a ring around the point."""
-    for one in answer.lights:
-        if not one.due:
-            continue
+    """A disc at each light that is drawn, a cross where its way ends before the point, and a ring around the point."""
+    for one in answer.drawn:
         alpha = _FADED if pointed not in (None, one.light) else 1.0
         at = place(frame, one.light_position)
         if at is not None:

@@ -46,11 +46,11 @@ def lamp_rows(ui: Ui) -> None:
     flags = int(imgui.SliderFlags_.logarithmic)
     changed, radius = imgui.slider_float("##lamp-radius", s.lamp_radius or 0.0, smallest, largest, shown, flags)
     if changed:
-        c.settings.set_lamp_radius(0.0 if radius <= smallest else float(f"{radius:.3g}"))
+        c.settings.change(lamp_radius=0.0 if radius <= smallest else float(f"{radius:.3g}"))
     if button:
         imgui.same_line(0.0, em(0.2))
         if imgui.button("x##lamp-radius", (button, button)):
-            c.settings.set_lamp_radius(None)
+            c.settings.change(lamp_radius=None)
         tooltip("lights as the scene says")
     row("Lamp samples", _SAMPLES)
     most = c.tracing.lamp_samples_wanted

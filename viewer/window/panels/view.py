@@ -9,7 +9,7 @@ from viewer.window.panels import legend, lights
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, row
 
-_FLAT = (View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT, View.CERTIFICATE)
+_FLAT = (View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT, View.CERTIFICATE, View.PENUMBRA)
 
 
 def show(ui: Ui) -> None:
@@ -19,7 +19,7 @@ def show(ui: Ui) -> None:
     views = list(View)
     with properties("view", 5.0) as shown:
         if shown:
-            row("View", "keys 1 to 9, 0, H and Shift+H")
+            row("View", "keys 1 to 9, 0, H, Shift+H and J")
             chosen = views.index(c.session.view)
             changed, index = imgui.combo("##view", chosen, [f"{v.label}" for v in views])
             if changed:

@@ -1,0 +1,91 @@
+"""Lamps: made of points by a slider, refined at idle, seen by their penumbra, inspected, and found in a list."""
+
+from __future__ import annotations
+
+import numpy as np
+from imgui_bundle import imgui
+
+from tests.viewer.driver import Driver
+from tracer.renderer import Renderer
+from viewer.output.pictures import picture
+from viewer.state.views import View, arrivals
+from viewer.window.panels.status import doing
+
+KEY = imgui.Key
+
+
+def lamps(d: Driver) -> None:
+    """Soft shadows come step by step, and are those of the renderer; many lights are listed as they are looked for."""
+    d.settle()
+    hard = d.c.frame.color
+    d.ui.show_panel("Rendering")
+    d.frames(4)
+    area = d.context.item_info("//Rendering/**/##lamp-radius").rect_full
+    middle = (area.min.x + 0.8 * (area.max.x - area.min.x), 0.5 * (area.min.y + area.max.y))
+    d.drag((area.min.x + 4.0, middle[1]), (middle[0] - area.min.x - 4.0, 0.0))
+    radius = d.c.session.settings.lamp_radius
+    assert 0.1 < radius < 2.0 and d.c.tracing.lamp_samples_wanted == 16
+    d.settle()
+    d.c.settings.change(lamp_samples=64, lamp_radius=0.5)
+    seen, said = [], set()
+
+    def refined() -> bool:
+        if d.c.tracing.traced.whole and d.c.frame.settings.lamp_radius == 0.5:
+            seen.append(d.c.frame.settings.lamp_samples)
+        said.add(doing(d.c))
+        return d.c.frame.settings.lamp_samples == 64 and not d.c.tracing.refines_lamps
+
+    d.wait(refined, "all samples of the lamps")
+    assert set(seen) <= {1, 4, 16, 64} and seen == sorted(seen), f"{seen}"
+    assert said & {"lamp samples: 4 of 64", "lamp samples: 16 of 64"}
+    d.settle()
+    frame = d.c.frame
+    alone = Renderer(d.c.session.scene, frame.settings).render(frame.time, frame.camera)
+    assert np.array_equal(frame.color, alone.color) and not np.array_equal(frame.color, hard)
+
+    d.press(KEY.j)
+    assert d.c.session.view is View.PENUMBRA
+    d.settle()
+    frame = d.c.frame
+    between = np.isin(arrivals(frame, d.c.session.light), (2, 3))
+    assert between.any() and frame.asked.max() == 64
+    shown = d.shown().astype(int)
+    assert np.abs(shown - picture(frame, View.PENUMBRA, d.c.session.light).astype(int)).max() <= 2
+    d.press(KEY.l)
+    assert np.abs(d.shown().astype(int) - shown).max() > 50, "another light"
+    d.press(int(KEY.l) | int(KEY.mod_shift))
+    y, x = np.argwhere(between)[between.sum() // 2]
+    d.c.selection.select(((x + 0.5) / frame.width, (y + 0.5) / frame.height))
+    d.wait(lambda: d.c.inspector.answer is not None, "an answer about the penumbra", 20.0)
+    one = d.c.inspector.answer.lights[d.c.session.light]
+    reached = int(frame.reached[y, x, d.c.session.light])
+    assert (one.reached, one.samples) == (reached, int(frame.asked[y, x, d.c.session.light]))
+    d.frames(3)
+    d.c.selection.picked = None
+
+    d.hold(KEY.d, 0.3)
+    assert d.c.frame.settings.lamp_samples in (1, 4), "few in motion"
+    d.settle()
+    assert d.c.frame.settings.lamp_samples == 64
+    d.press(KEY._1)
+    d.context.item_click("//Rendering/**/x##lamp-radius")
+    d.settle()
+    assert d.c.frame.settings.lamp_radius is None and d.c.tracing.lamp_samples_shown == 1
+
+    d.c.loader.open(_many_lights(d))
+    d.wait(lambda: d.c.session.scene is not None and len(d.c.session.scene.lights) == 40, "the scene of many lights")
+    d.settle()
+    d.ui.show_panel("Scene")
+    d.frames(4)
+    d.ui.light_filters["table"] = "light 3"
+    d.frames(4)
+    d.ui.light_filters["table"] = ""
+    d.frames(4)
+
+
+def _many_lights(d: Driver):
+    """The scene that is open, with 40 lights."""
+    path = d.folder / "lights.aff"
+    text = d.c.session.scene.path.read_text()
+    path.write_text(text + "".join(f"l {0.1 * i} 5 {0.05 * i} 0.02 0.02 0.02\n" for i in range(38)))
+    return path
