@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from tests.platforms import linux_only, posix_only
+from tests.sweeps import cases
 from tracer import compilation, compile_beside, compile_steps
 from tracer.kernels import cache_folder
 from tracer.scene.model import Cancelled
@@ -172,8 +173,10 @@ def test_kernels_of_old_sources_are_removed_at_last(package: Path) -> None:
 # --- compiling in processes of their own ------------------------------------------------------------
 
 
-@pytest.mark.parametrize("accelerator", ["bvh8", "kdtree"])
-@pytest.mark.parametrize("lights", [1, 16])
+@pytest.mark.parametrize(
+    ("lights", "accelerator"),
+    [(1, "bvh8"), (16, "kdtree"), *cases((), ((1, "kdtree"), (16, "bvh8")))],
+)
 def test_what_is_compiled_beside_is_what_a_frame_needs(lights: int, accelerator: str) -> None:
     """All steps are done, and with all kernels there nothing is compiled: so each is compiled as it is called."""
     compilation.warm_up(lights=lights, accelerator=accelerator)
