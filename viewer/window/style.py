@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui, implot
 
 from viewer.window import palette
@@ -43,9 +45,9 @@ def fill_windows(filled: bool) -> None:
 
 def _style_widgets(em: float) -> None:
     style = imgui.get_style()
-    style.window_padding = ImVec2(0.55 * em, 0.45 * em)
+    style.window_padding = _whole(0.55 * em, 0.45 * em)
     style.frame_padding = ImVec2(0.45 * em, 0.22 * em)
-    style.item_spacing = ImVec2(0.45 * em, 0.32 * em)
+    style.item_spacing = _whole(0.45 * em, 0.32 * em)
     style.item_inner_spacing = ImVec2(0.35 * em, 0.3 * em)
     style.cell_padding = ImVec2(0.25 * em, 0.12 * em)
     style.scrollbar_size = 0.75 * em
@@ -58,6 +60,11 @@ def _style_widgets(em: float) -> None:
     style.separator_text_border_size = 1.0
     style.separator_text_padding = ImVec2(0.6 * em, 0.15 * em)
     style.window_menu_button_position = imgui.Dir.none
+
+
+def _whole(x: float, y: float) -> ImVec2:
+    """Whole pixels: lists would come out by parts of one shorter than their rows, and get a scrollbar."""
+    return ImVec2(math.floor(x), math.floor(y))
 
 
 def _style_plots(em: float) -> None:

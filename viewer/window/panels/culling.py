@@ -90,7 +90,7 @@ def _method(ui: Ui) -> None:
     with properties("method", 4.0) as shown:
         if shown:
             row("Method", f"{method.kind.summary} C turns culling off and on.")
-            if imgui.begin_combo("##method", method.base, int(imgui.ComboFlags_.height_largest)):
+            if imgui.begin_combo("##method", method.base):
                 for kind in bases():
                     if imgui.selectable(kind.name, kind is method.kind)[0]:
                         c.settings.change(method=with_base(name, kind.name))
