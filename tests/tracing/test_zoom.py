@@ -215,7 +215,8 @@ def test_a_world_may_be_shared_with_lights_beyond_those_culled():
 
 def test_results_are_plain_json(figure4: zoom.Results):
     again = json.loads(json.dumps(figure4.to_dict()))
-    assert set(again) == {"scene", "size", "primitive", "time", "target", "ratio", "still_frames", "approaches"}
+    lamps = {"lamp_radius", "lamp_samples"}
+    assert set(again) == {"scene", "size", "primitive", "time", "target", "ratio", "still_frames", "approaches"} | lamps
     step = again["approaches"][0]["steps"][0]
     assert step["changes"][0] == {"light": None, "before": "INIT", "after": "FULLY_RENDERED"}
     assert Camera.from_json(step["camera"]).position == pytest.approx((0, 0, 20))
