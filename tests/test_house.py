@@ -47,6 +47,7 @@ def test_no_test_imports_another() -> None:
         assert not found, f"{path.relative_to(ROOT)}: {found[0]}"
 
 
+@pytest.mark.slow
 def test_commands_without_a_window_load_neither_gl_nor_matplotlib() -> None:
     """Not even on the way: a machine without libGL can render, and `--help` is quick.  Only a plot loads matplotlib, so
     that the window and the other commands start no slower."""

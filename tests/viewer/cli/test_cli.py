@@ -127,6 +127,7 @@ def test_info_of_bart(
 # --- render ----------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_buffers_that_no_memory_holds_are_refused(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     out = tmp_path / "courtyard.npz"
     said = complaint(run(capfd, "render", "courtyard", "--buffers", out, "--size", "512x512"))
@@ -419,6 +420,7 @@ def test_the_window_without_a_display(room: Path, stale: bool) -> None:
     assert "no display" in done.stderr and f"shadowcull render {room}" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_picture_instead_of_the_window(room: Path, tmp_path: Path) -> None:
     """What `make run` does where there is no display."""
     environment = without_display() | {"PYTHONPATH": str(ROOT)}
@@ -431,6 +433,7 @@ def test_a_picture_instead_of_the_window(room: Path, tmp_path: Path) -> None:
         assert image.size == (640, 480)
 
 
+@pytest.mark.slow
 def test_ctrl_c_ends_a_rendering(room: Path, tmp_path: Path) -> None:
     output = tmp_path / "never.png"
     terminal = Terminal("render", str(room), "-o", str(output), "--size", "4000x4000", "--frame", "9", "--warmup", "9")
@@ -439,6 +442,7 @@ def test_ctrl_c_ends_a_rendering(room: Path, tmp_path: Path) -> None:
     assert not output.exists()
 
 
+@pytest.mark.slow
 def test_output_that_nobody_reads(room: Path) -> None:
     """`shadowcull info ... | true` is no fault to complain of."""
     command = f"{sys.executable} -m viewer info {room} | true"

@@ -17,6 +17,7 @@ class FakeRun:
     results = None
 
 
+@pytest.mark.slow
 def test_results_are_written_beside_the_pictures(figure4: Desk, tmp_path: Path) -> None:
     desk, folder = figure4, tmp_path / "pictures"
     desk.runs.export(FakeRun(), ".json")
