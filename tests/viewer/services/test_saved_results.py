@@ -7,6 +7,7 @@ import json
 from datetime import datetime
 from pathlib import Path
 
+import pytest
 from PIL import Image
 
 from tests.viewer.desk import Desk
