@@ -73,6 +73,7 @@ class FrameInProgress:
         self._counts = np.zeros((self.workers, COUNTERS), np.int64)
         self._occlusion_tests = np.zeros(self.workers, np.int64)
         self._begun = False  # shading
+        self._records = settings.record_lights or settings.record_work
         self._parts: Parts | None = None
         for method in self.methods:
             method.begin(self)
@@ -172,8 +173,8 @@ class FrameInProgress:
         tables = self._stage_tables(learns)
 
         tiles = tiles_to_shade(self.settings.width, self.settings.height, lanes, self.workers)
-        records = self.settings.record_lights or self.settings.record_work  # what is shaded twice would count twice
-        self._base.begin_shading(self, len(tiles), first_pass=learns and not self._begun and not records)
+        first_pass = learns and not self._begun and not self._records  # what is shaded twice would count twice
+        self._base.begin_shading(self, len(tiles), first_pass)
         shade_one = self._tile_shader(rays, lanes, buffers, tables[True])
 
         def work(tile: Tile, worker: int) -> None:
@@ -209,8 +210,8 @@ class FrameInProgress:
         for worker in range(self.workers):
             others = [stage for method in self._others for stage in method.stages(self, worker, learns)]
             base = self._base.stages(self, worker, learns)
-            tables[True].append(StageTable([*base, *others], self.settings.verify))
-            tables[False].append(StageTable(others, self.settings.verify))
+            tables[True].append(StageTable([*base, *others], self.settings.verify, self._records))
+            tables[False].append(StageTable(others, self.settings.verify, self._records))
         return tables
 
     def set_modes(self, samples_follow: bool = False) -> None:

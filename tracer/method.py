@@ -183,7 +183,7 @@ register(
     Kind(
         "certified",
         "Culls by what is proven of the cells of triangles; never wrong.",
-        "tracer.methods.certified:CertifiedCells",
+        "tracer.methods.certified:certified",
         has_certificates=True,
     )
 )

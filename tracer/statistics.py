@@ -50,6 +50,9 @@ class ShadowCounts(RayCounts):
         Those that a cached occluder blocked.
     wrong : int
         Wrong answers, counted with `Settings.verify`.
+    passed_over : int
+        Pairs of a point and a light's sample that nobody looked at, as it is proven that the light does not reach any
+        point nearby. They are not among those that are due, unless the light of each is recorded.
     """
 
     due: int = 0
@@ -58,6 +61,7 @@ class ShadowCounts(RayCounts):
     candidates_only: int = 0
     cache_hits: int = 0
     wrong: int = 0
+    passed_over: int = 0
 
 
 @dataclass

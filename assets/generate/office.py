@@ -24,6 +24,7 @@ COLUMNS, ROWS = 8, 8  # of rooms
 ACROSS, DEEP, WALK = 7, 9, 4  # tiles: of a room, and across a corridor
 WIDTH, DEPTH, AISLE, HEIGHT = ACROSS * TILE, DEEP * TILE, WALK * TILE, 2.7
 WALL, RECESS, MARGIN = 0.06, 0.06, 0.06
+WALL_PIECE = 6.0  # about: a side of the rectangles that walls are cut into
 DOOR = (2.9, 3.85, 2.1)  # left, right, height in the wall of the corridor
 SAMPLES = 16
 OPEN_DOORS = 36
@@ -75,7 +76,7 @@ def ceiling(model: Model, columns: int, rows: int, panels: list[tuple[int, int, 
 
 def facing(wall: str, left: float, low: float, right: float, high: float, at: float) -> Mesh:
     """A piece of wall at x or z = `at` that faces +x, -x, +z or -z; left and right are as its beholder sees them."""
-    columns, rows = max(1, round(abs(right - left) / 0.7)), max(1, round((high - low) / 0.7))
+    columns, rows = max(1, round(abs(right - left) / WALL_PIECE)), max(1, round((high - low) / WALL_PIECE))
     origin, along = (
         ((left, low, at), (right - left, 0, 0)) if wall[1] == "z" else ((at, low, left), (0, 0, right - left))
     )

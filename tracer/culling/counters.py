@@ -22,10 +22,13 @@ class ShadowCounter(IntEnum):
     CANDIDATES_ONLY = 6
     CACHE_HITS = 7
     WRONG = 8
+    PASSED_OVER = 9
 
 
 # numba takes plain numbers as constants
-STEPS, TESTS, RAYS, DUE, CULLED, DYNAMIC_ONLY, CANDIDATES_ONLY, CACHE_HITS, WRONG = (int(c) for c in ShadowCounter)
+STEPS, TESTS, RAYS, DUE, CULLED, DYNAMIC_ONLY, CANDIDATES_ONLY, CACHE_HITS, WRONG, PASSED_OVER = (
+    int(c) for c in ShadowCounter
+)
 # After these, three by light: rays that are due, and of those the ones that the paper's modes cull, and that they ask
 # dynamic objects alone about.
 BY_LIGHT = len(ShadowCounter)

@@ -17,8 +17,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.culling.counters import DUE, RAYS, WRONG
-from tracer.culling.stages import CHOOSE, LEARN, run_stages, vectors
+from tracer.culling.counters import CULLED, DUE, PASSED_OVER, RAYS, WRONG
+from tracer.culling.stages import CHOOSE, LEARN, looked_at, looks_at, run_stages, vectors
 from tracer.geometry.boxes import segments_miss_box
 from tracer.geometry.queries import DYNAMIC_OBJECTS, EVERYTHING, STATIC_GEOMETRY, any_hits, any_hits_by
 from tracer.geometry.rays import Rays
@@ -45,7 +45,7 @@ ZERO, ONE = np.float32(0), np.float32(1)
 @subkernel
 def shadow_testing(world, points, count, light, number, stages, call, batch, counts):
     """Which of `count` points are due to light `number` at light (3,), and which does it reach?  Into the batch."""
-    _find_due(points, light, count, batch, counts)
+    _find_due(points, light, count, looked_at(stages.looks, number, count), stages.everything, batch, counts)
     run_stages(stages, CHOOSE, call, number, count, counts)
     _ask_dynamic(world, points, light, count, batch, counts)
     _trace_live(world, points, light, count, stages.occluders, batch, counts)
@@ -63,13 +63,22 @@ def faces(points, light, v):
 
 
 @subkernel
-def _find_due(points, light, count, batch, counts):
-    """Find the rays that are due, about which nothing is known yet."""
+def _find_due(points, light, count, looked, everything, batch, counts):
+    """Find the rays that are due, about which nothing is known yet.
+
+    Vectors that need not look at the light (`looks_at`) are passed over, or culled where one asks for everything."""
     for v in range(vectors(count)):
-        due = faces(points, light, v) & lanes_below(count, v)
-        batch.due[v] = batch.live[v] = due
         batch.lit[v] = batch.settled[v] = 0
+        looks, there = looks_at(looked, v), lanes_below(count, v)
+        if not looks and not everything:
+            batch.due[v] = batch.live[v] = 0
+            counts[PASSED_OVER] += ones(there)
+            continue
+        due = faces(points, light, v) & there
+        batch.due[v] = due
+        batch.live[v] = due if looks else 0
         counts[DUE] += ones(due)
+        counts[CULLED] += 0 if looks else ones(due)
 
 
 @subkernel

@@ -1,8 +1,9 @@
 """Stages: how a method takes part in shadow testing, as kernels that are called by address.
 
-Shading knows no method.  It is given a table of stages, and calls up to four kernels of each:
+Shading knows no method.  It is given a table of stages, and calls up to five kernels of each:
 
     find(data, call, 0, count, counts)          once for a wave: what is known of these points?
+    select(data, call, 0, count, counts)        once for a wave, after that: which lights must they look at?
     choose(data, call, light, count, counts)    for each sample of a light: answers rays, which are not traced then
     learn(data, call, light, count, counts)     for each sample of a light: learns from all answers
     finish(data, call, 0, count, counts)        once for a wave, after all lights
@@ -24,22 +25,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.kernels import inlined
-from tracer.simd import address_of, call_entry, store
+from tracer.simd import address_of, call_entry, load_i64, store
 from tracer.simd.records import I32, F32x2D, block_size, reading, writing
 
-# Columns of the table: addresses of the four kernels, 0 for none, and of the stage's data, and the first of its rows
+# Columns of the table: addresses of the five kernels, 0 for none, and of the stage's data, and the first of its rows
 # in the memory that stages work in.
-FIND, CHOOSE, LEARN, FINISH, DATA, FIRST_ROW = range(6)
+FIND, SELECT, CHOOSE, LEARN, FINISH, DATA, FIRST_ROW = range(7)
+COLUMNS = 7
 
 
 class Stages(NamedTuple):
-    """table (k, 6) int64; how many rows of memory all stages need; whether one wants to know what blocks the rays that
-    are traced; and whether answers are verified."""
+    """table (k, COLUMNS) int64; how many rows of memory all stages need; whether one wants to know what blocks the rays
+    that are traced; and whether answers are verified.
+
+    Where a stage selects, looks (lights, words) int64 has a bit for each vector of a wave that must look at a light; it
+    has no rows where all do, and larger waves look at all lights.  `everything`: somebody wants to know of the rays to
+    all lights; those that need not be looked at then count as due and culled."""
 
     table: NDArray[np.int64]
     rows: int
     occluders: bool
     verify: bool
+    everything: bool
+    looks: NDArray[np.int64]
 
 
 class Call(NamedTuple):
@@ -71,7 +79,7 @@ CALL = block_size(Call)
 
 @inlined
 def run_stages(stages, which, call, light, count, counts):
-    """Call one of the four kernels of every stage that has it."""
+    """Call one of the five kernels of every stage that has it."""
     for k in range(len(stages.table)):
         entry = stages.table[k, which]
         if entry != 0:
@@ -84,6 +92,24 @@ def write_sample(call, sample, again):
     """Say which sample the stages are asked about next."""
     store(call + 8, np.int64(sample))
     store(call + 16, np.int64(again))
+
+
+@inlined
+def selects(looks, count):
+    """Whether there is a bit for every vector of a wave of `count` points."""
+    return len(looks) > 0 and vectors(count) <= 64 * looks.shape[1]
+
+
+@inlined
+def looked_at(looks, light, count):
+    """The address of the bits of the vectors, of `count` points, that must look at a light; 0 where all must."""
+    return address_of(looks[light]) if selects(looks, count) else np.int64(0)
+
+
+@inlined
+def looks_at(looked, v):
+    """Whether a vector must look at the light whose bits are at an address."""
+    return looked == 0 or (load_i64(looked + 8 * (v >> 6)) >> (v & 63)) & 1 != 0
 
 
 @inlined

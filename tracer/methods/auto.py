@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.counters import SHADOW
-from tracer.methods.certified import CertifiedCells
+from tracer.methods.certified import CertifiedCells, CertifiedLights
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.methods.payoff import Payoff, Plan, Trial
 from tracer.statistics import FrameStatistics, shadow_counts
@@ -30,7 +30,7 @@ class Auto(ShadowMethod):
     def __init__(self, services: Services) -> None:
         super().__init__(services)
         certified = services.method("certified")
-        assert isinstance(certified, CertifiedCells)
+        assert isinstance(certified, CertifiedCells | CertifiedLights)
         self._certified, self.parts = certified, (certified,)
         self.forget()
 

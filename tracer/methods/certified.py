@@ -29,10 +29,12 @@ from tracer.culling.certified.requests import (
 from tracer.culling.certified.scheduler import Budget, CertificateScheduler, Counts
 from tracer.culling.certified.store import CertificateStore
 from tracer.culling.certified.view import view_at
+from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
 from tracer.geometry.memory import borrowed
 from tracer.kernels import entry, kernel
+from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of
@@ -198,3 +200,9 @@ class CertifiedCells(ShadowMethod):
     @property
     def memory_bytes(self) -> int:
         return 0 if self.store is None else self.store.bytes
+
+
+def certified(services: Services) -> CertifiedCells | CertifiedLights:
+    """The method: of cells where their words have room for all lights, else of lights."""
+    few = len(services.shading.lamps.places) <= MAX_CULLED_LIGHTS
+    return CertifiedCells(services) if few else CertifiedLights(services)

@@ -25,7 +25,7 @@ from tracer.culling.cells import primitives_are_units
 from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.mode_history import ModeHistory
 from tracer.culling.rest import Resting
-from tracer.culling.stages import Stages
+from tracer.culling.stages import COLUMNS, Stages
 from tracer.geometry.camera import Pinhole
 from tracer.geometry.world import World
 from tracer.kernels import Entry
@@ -83,15 +83,18 @@ class FrameView(Protocol):
 class Stage:
     """Kernels that take part in shadow testing, with the record that they are given: `tracer.culling.stages` says when
     each is called.  `rows` of memory, each with a number for every point, are the stage's own for as long as a wave
-    lasts.  `occluders`: it wants to know what blocks the rays that are traced."""
+    lasts.  `occluders`: it wants to know what blocks the rays that are traced.  `looks`: the bits that `select` writes
+    (`tracer.culling.stages.Stages`), of which there can be only one among all stages."""
 
     data: NamedTuple | None = None
     find: Entry | None = None
+    select: Entry | None = None
     choose: Entry | None = None
     learn: Entry | None = None
     finish: Entry | None = None
     rows: int = 0
     occluders: bool = False
+    looks: NDArray[np.int64] | None = None
 
 
 class ShadowMethod:
@@ -168,15 +171,28 @@ class ShadowMethod:
         return sum(part.memory_bytes for part in self.parts)
 
 
+ALL_LOOK = np.empty((0, 1), np.int64)
+
+
 class StageTable:
     """The stages of one worker as kernels get them; keeps what they point to."""
 
-    def __init__(self, stages: list[Stage], verify: bool) -> None:
+    def __init__(self, stages: list[Stage], verify: bool, everything: bool = False) -> None:
         self._stages = stages
         self._blocks = [np.zeros(1, np.int64) if stage.data is None else pack(stage.data) for stage in stages]
-        table, rows = np.zeros((len(stages), 6), np.int64), 0
+        table, rows = np.zeros((len(stages), COLUMNS), np.int64), 0
         for row, stage, block in zip(table, stages, self._blocks, strict=True):
-            kernels: list[Any] = [stage.find, stage.choose, stage.learn, stage.finish]
+            kernels: list[Any] = [stage.find, stage.select, stage.choose, stage.learn, stage.finish]
             row[:] = *(0 if kernel is None else kernel.address for kernel in kernels), block.ctypes.data, rows
             rows += stage.rows
-        self.given = Stages(table, rows, any(stage.occluders for stage in stages), verify)
+        looks = [stage.looks for stage in stages if stage.looks is not None]
+        assert len(looks) < 2, "one stage selects"
+        learns = any(stage.learn is not None for stage in stages)  # from what all rays are answered
+        self.given = Stages(
+            table,
+            rows,
+            any(stage.occluders for stage in stages),
+            verify,
+            everything or verify or learns,
+            looks[0] if looks else ALL_LOOK,
+        )

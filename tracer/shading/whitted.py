@@ -12,12 +12,24 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.culling.counters import PRIMARY, RAYS, SECONDARY, SHADOW, SHADOW_COUNTERS
+from tracer.culling.counters import PASSED_OVER, PRIMARY, RAYS, SECONDARY, SHADOW, SHADOW_COUNTERS
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.shadow_testing import shadow_testing
-from tracer.culling.stages import CALL, FIND, FINISH, Call, run_stages, write_call, write_sample
+from tracer.culling.stages import (
+    CALL,
+    FIND,
+    FINISH,
+    SELECT,
+    Call,
+    looked_at,
+    run_stages,
+    selects,
+    vectors,
+    write_call,
+    write_sample,
+)
 from tracer.geometry.memory import borrowed
-from tracer.kernels import kernel, subkernel
+from tracer.kernels import inlined, kernel, subkernel
 from tracer.shading.blocks import BLOCK, LOCAL, PLANE, SENT, block_of, planes_at
 from tracer.shading.bounce import next_wave
 from tracer.shading.buffers import pixels_in, write
@@ -27,7 +39,7 @@ from tracer.shading.primary import primary_wave, read_hits, write_hits
 from tracer.shading.recording import count_rays, count_shadow_rays, count_wrong, record_lights, record_normals
 from tracer.shading.spatial_sort import sorted_by_position
 from tracer.shading.wave import accumulate, drop_misses, room, trace
-from tracer.simd import f32_at, local_memory
+from tracer.simd import f32_at, load_i64, local_memory
 
 NUMBERS = PLANE // 4  # of a plane
 
@@ -105,7 +117,12 @@ def _add_lights(world, shading, wave, points, stages, counts, pixels, tile, boun
         Call(0, 0, False, tile, bounce, points.memory, wave.memory, batch.memory, scratch, lamps.samples, pixels.place),
     )
     run_stages(stages, FIND, call, 0, wave.size, counts)
+    if selects(stages.looks, wave.size):
+        run_stages(stages, SELECT, call, 0, wave.size, counts)
     for light in range(len(lamps.places)):
+        if not stages.everything and not _is_looked_at(stages.looks, light, wave.size):
+            counts[PASSED_OVER] += wave.size * (lamps.first[light + 1] - lamps.first[light])
+            continue
         for sample in range(lamps.first[light], lamps.first[light + 1]):
             write_sample(call, sample, sample > lamps.first[light])
             shadow_testing(world, points, wave.size, lamps.samples[sample], light, stages, call, batch, counts)
@@ -122,6 +139,15 @@ def _add_lights(world, shading, wave, points, stages, counts, pixels, tile, boun
     if stages.verify:
         accumulate(wave, points.reference, pixels.reference)
     return scratch, batch.memory
+
+
+@inlined
+def _is_looked_at(looks, light, count):
+    """Whether any of `count` points must look at a light."""
+    looked, some = looked_at(looks, light, count), False
+    for v in range(0, vectors(count), 64):
+        some |= looked == 0 or load_i64(looked + v // 8) != 0
+    return some
 
 
 @subkernel

@@ -100,6 +100,7 @@ F32x2D = Annotated[NDArray[np.float32], _Array(2, "float32")]
 F32x3D = Annotated[NDArray[np.float32], _Array(3, "float32")]
 I32 = Annotated[NDArray[np.int32], _Array(1, "int32")]
 I32x2D = Annotated[NDArray[np.int32], _Array(2, "int32")]
+I64 = Annotated[NDArray[np.int64], _Array(1, "int64")]
 I64x2D = Annotated[NDArray[np.int64], _Array(2, "int64")]
 Bytes = Annotated[NDArray[Any], _Array(1, "uint8")]  # uint8 or bool
 

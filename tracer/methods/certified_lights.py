@@ -1,0 +1,138 @@
+"""Certified lights: lights that are proven to shine on nothing in a region are not even looked at.
+
+This is what the method `certified` does where a scene has more lights than a cell's word has room for.  Before shading,
+the regions are certified that primary hits lie in, and those in which rays of the last frame have ended
+(`tracer.culling.regions`).  In shadow testing `select` says which lights each vector of points must look at.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.certified.scheduler import Budget, Counts
+from tracer.culling.regions.lookup import look, want_around
+from tracer.culling.regions.store import RegionStore, RegionView
+from tracer.culling.stages import call_at
+from tracer.geometry.camera import primary_direction
+from tracer.geometry.memory import borrowed
+from tracer.geometry.offsets import RAY_OFFSET
+from tracer.kernels import entry, kernel
+from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.parallel import for_each_chunk
+from tracer.shading.points import points_in
+from tracer.shading.primary import block_at, blocks_of
+from tracer.simd import address_of, any_lane, gather_f32x16, gather_i32x16, i32x16, maximum, to_f32
+from tracer.simd import select as choose_lanes
+from tracer.simd.records import I64x2D, pack, reading
+from tracer.statistics import FrameStatistics
+
+WORDS = 16  # of 64 vectors: as many as the waves of four tiles have
+
+
+class Selection(NamedTuple):
+    """What a worker is given: all regions, and looks (lights, WORDS) int64, into which `select` puts its answer."""
+
+    regions: RegionView
+    looks: I64x2D
+
+
+selection_at = reading(Selection)
+
+
+@entry
+def select(data, call, light, count, counts):
+    """Which lights must each vector of points look at?"""
+    given, selection = call_at(call), selection_at(data)
+    look(selection.regions, points_in(given.points), count, selection.looks)
+
+
+@kernel
+def want_in_tiles(selection, camera, tiles, numbers, buffers):
+    """Want the regions in which primary hits of some tiles lie.
+
+    Tiles have `numbers` (k,) among all (n, 5); their hits are in the buffers; `selection` is the address of a
+    `Selection`."""
+    regions, buffers = selection_at(selection).regions, borrowed(buffers)
+    width, primitives, depths = np.int32(buffers.primitive.shape[1]), buffers.primitive, buffers.depth
+    eye = camera.origin
+    largest = max(abs(eye[0]), max(abs(eye[1]), abs(eye[2])))
+    for number in numbers:
+        tile = tiles[number]
+        for block in range(blocks_of(tile)):
+            x, y, inside = block_at(tile, block)
+            if not any_lane(inside):
+                continue
+            place = choose_lanes(inside, y * width + x, i32x16(0))
+            hit = inside & (gather_i32x16(address_of(primitives), place) >= np.int32(0))
+            depth = gather_f32x16(address_of(depths), place)
+            dx, dy, dz = primary_direction(camera, to_f32(x), to_f32(y))
+            room = np.float32(2 * RAY_OFFSET) * (maximum(depth, -depth) + largest)
+            want_around(regions.grid, eye[0] + depth * dx, eye[1] + depth * dy, eye[2] + depth * dz, room, hit)
+
+
+class CertifiedLights(ShadowMethod):
+    """Finds out which lights matter to regions, within a budget, and looks at no others."""
+
+    def __init__(self, services: Services) -> None:
+        super().__init__(services)
+        self.store: RegionStore | None = None
+        self.made_now = False  # whether the store has been set up in this frame
+        self._counts = Counts()
+
+    def begin(self, frame: FrameView) -> None:
+        self._counts = Counts()
+
+    def follow(self, frame: FrameView) -> None:
+        self.made_now = self.store is None
+        if self.store is None:
+            self.store = RegionStore(self.services.world, frame.corners, self.services.clock)
+        self.store.follow(frame.corners)
+
+    def prepare(self, frame: FrameView) -> None:
+        self.certify(frame, frame.settings.certificate_seconds)
+
+    def take_requests(self, frame: FrameView, seconds: float) -> None:
+        """Regions are wanted in any case."""
+
+    def certify(self, frame: FrameView, seconds: float) -> None:
+        """Certify regions for so many seconds, at most."""
+        store = self.store
+        assert store is not None, "followed before"
+        selection = Selection(store.view(), np.zeros((0, WORDS), np.int64))
+        block, shares = pack(selection), np.array_split(np.arange(len(frame.tiles)), 8 * frame.workers)
+
+        def work(chunk: int, worker: int) -> None:
+            want_in_tiles(block.ctypes.data, frame.rays, frame.tiles, shares[chunk], frame.buffers)
+
+        for_each_chunk(work, len(shares), frame.workers, frame.cancel)
+        self._counts = store.certify(Budget(frame.settings.certificates, seconds), frame.workers, frame.cancel)
+
+    def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
+        assert self.store is not None, "followed before"
+        looks = np.zeros((len(frame.lights), WORDS), np.int64)
+        return [Stage(Selection(self.store.view(), looks), select=select, looks=looks)]
+
+    def keep(self, frame: FrameView) -> None:
+        assert self.store is not None, "followed before"
+        self.store.keep_within(1e6 * frame.settings.certificate_memory)
+
+    def report(self, statistics: FrameStatistics) -> None:
+        statistics.certificates = self._counts.certificates
+        statistics.certificate_steps = self._counts.steps
+        statistics.certificate_tests = self._counts.tests
+
+    def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
+        if self.store is None:
+            return None
+        hider = self.store.hidden_by(point, light)
+        return ("full", (hider,)) if hider >= 0 else ("none", ())
+
+    def forget(self) -> None:
+        self.store = None
+
+    @property
+    def memory_bytes(self) -> int:
+        return 0 if self.store is None else self.store.bytes
