@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 
 from tracer.culling.certified.certify import COUNTERS as CERTIFYING
 from tracer.culling.certified.cost_model import CostModel
+from tracer.culling.certified.scheduler import Budget
+from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.frame_in_progress import FrameInProgress
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
@@ -23,6 +25,7 @@ from tracer.geometry.rays import INFINITY, MISS
 from tracer.geometry.world import STRUCTURES
 from tracer.kernels import entry
 from tracer.methods.certified import CertifiedCells
+from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import StageTable
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation
@@ -131,6 +134,23 @@ def certificate_steps(lights: int, accelerator: str) -> Iterator[str]:
     todo, points = store.gather(np.full(1, -1, np.int32), at, at, model.root_requests)
     store.certify(todo, points, model, store.count, np.zeros((store.threads, CERTIFYING), np.int64))
     store.keep_within(0.0, np.zeros(1, np.int32))
+    _certify_regions(accelerator)
+
+
+def _certify_regions(accelerator: str) -> None:
+    """What is certified of more lights than words have room for."""
+    settings = Settings(width=4, height=4, method="certified", threads=1, accelerator=accelerator)
+    frame = Renderer(_tiny_scene(MAX_CULLED_LIGHTS + 1), settings).begin(0.0)
+    frame.place_objects_and_lights()
+    frame.buffers.primitive.fill(MISS)
+    frame.prepare_culling()
+    certified = frame.methods[0]
+    assert isinstance(certified, CertifiedLights) and certified.store is not None
+    StageTable(certified.stages(frame, 0, learns=True), verify=False)
+    store = certified.store
+    store.grid.wanted[:1] = True
+    store.certify(Budget(), 1)
+    store.hidden_by(np.zeros(3, np.float32), 0)
 
 
 def _renderer(lights: int, accelerator: str, method: str = "cells+cache+rest") -> Renderer:

@@ -155,7 +155,8 @@ class CertifiedCells(ShadowMethod):
         assert self.store is not None, "followed before"
         requests = self._requests if learns and self._requests is not None else make_requests(0)
         view = self.store.view(len(frame.tiles), requests, self._cell if learns else np.empty(0, np.int32))
-        return [Stage(view, find, choose, finish=finish if len(requests.key) else None, rows=CELL_POINT_ROWS)]
+        asks = finish if len(requests.key) else None
+        return [Stage(view, find=find, choose=choose, finish=asks, rows=CELL_POINT_ROWS)]
 
     def keep(self, frame: FrameView) -> None:
         self._words = self._words_seen()  # cells may get other numbers now

@@ -15,7 +15,7 @@ file like `tracer/methods/paper.py` and register a `tracer.method.Kind`.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
@@ -87,6 +87,7 @@ class Stage:
     (`tracer.culling.stages.Stages`), of which there can be only one among all stages."""
 
     data: NamedTuple | None = None
+    _: KW_ONLY
     find: Entry | None = None
     select: Entry | None = None
     choose: Entry | None = None

@@ -79,7 +79,8 @@ class Paper(ShadowMethod):
 
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
         modes = Modes(words_at(frame.words), words_at(frame.history.gained[worker]), frame.first)
-        return [Stage(modes, find, choose if self.culls else None, learn if learns else None, rows=POINT_WORD_ROWS)]
+        chooses, learns_from = choose if self.culls else None, learn if learns else None
+        return [Stage(modes, find=find, choose=chooses, learn=learns_from, rows=POINT_WORD_ROWS)]
 
 
 class ModesBeside(Paper):

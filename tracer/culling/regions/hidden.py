@@ -23,7 +23,7 @@ from tracer.culling.certified.error_bounds import EPSILON, INSIDE, LAMP, SURPLUS
 from tracer.geometry.triangle_test import EDGE
 from tracer.kernels import inlined, subkernel
 
-SEAM = 0.9 * float(EDGE)  # what is left of EDGE for errors: corners of neighbours are rounded apart
+SEAM = 0.9 * float(EDGE)  # of a triangle: errors must be less for rays not to slip past its edges
 ROUNDED = 1e-6  # of lengths: room around what is computed here
 
 
@@ -117,8 +117,7 @@ def hides(patches, i, region, lights, longest_sure):
     sign = 1.0 if height >= 0.0 else -1.0
     tall, deep = _reach(frame[2], lights[1]), _reach(frame[2], region[1])
     height, depth = sign * height, -sign * depth
-    off = shape[3]
-    if not height > tall + off or not depth > deep + off:
+    if not height > tall or not depth > deep:
         return False
 
     # Most patches are not between the centres.
@@ -128,12 +127,13 @@ def hides(patches, i, region, lights, longest_sure):
     if u < box[0] or v < box[1] or u > box[2] or v > box[3]:
         return False
 
-    most = height + depth + tall + deep
-    height, depth = height - tall - off, depth - deep - off
-
     # Bound lengths: of rays, and from both of their ends to any corner of the triangle that they meet.
     dx, dy, dz = lights[0][0] - region[0][0], lights[0][1] - region[0][1], lights[0][2] - region[0][2]
     longest = (dx * dx + dy * dy + dz * dz) ** 0.5 + _diagonal(lights[1]) + _diagonal(region[1])
+    most, off = height + depth + tall + deep, shape[3] + shape[4] * (longest + shape[2])
+    height, depth = height - tall - off, depth - deep - off
+    if not height > 0.0 or not depth > 0.0:
+        return False
     before = (height + 2.0 * tall) / (height + 2.0 * tall + depth)
     away, near = before * longest + shape[2], longest + shape[2]
     steep = longest / (height + depth)  # 1 over the least cosine with the normal
@@ -143,7 +143,7 @@ def hides(patches, i, region, lights, longest_sure):
     # What float32 may be wrong by.
     behind = EPSILON * (4.0 * near * shape[1] + 4.0 * (longest + away) + 3.0 * away)
     firm = height > 2.0 * away * EPSILON * (44.0 * shape[1] + 8.0) and height > LAMP * most
-    rho = EPSILON * steep * (9.0 * away * shape[0] + 13.0 * shape[1] + 5.0)
+    rho = EPSILON * steep * (9.0 * away * shape[0] + 21.0 * shape[1] + 5.0)
     if not firm or not depth > 2.0 * SURPLUS * behind:
         return False
 

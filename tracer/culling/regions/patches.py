@@ -29,8 +29,9 @@ class Patches(NamedTuple):
     Attributes:
         frames: (n, 3, 4) float64: rows that take (x, y, z, 1) to the two coordinates and to the height above the plane.
         boxes: (n, 4) float64, the lower and the upper corner around the patch in its plane.
-        shapes: (n, 4) float64, what errors grow with: the greatest |e1| + |e2| and |e1||e2| of its triangles over the
-            length of their normal, the longest edge, and how far corners lie off the plane.
+        shapes: (n, 5) float64, what errors grow with: the greatest |e1| + |e2| and |e1||e2| of its triangles over the
+            length of their normal, the longest edge, how far corners lie off the plane, and the greatest sine of the
+            angle between a triangle's normal and the plane's.
         ranges: (n, 3) int32, where each patch's edges begin, where those follow that two of its triangles share, and
             where it ends.
         edges: (m, 4) float64, both ends of an edge in the plane.
@@ -60,6 +61,8 @@ def find_patches(triangles: NDArray[np.float32], merges: bool) -> Patches:
     area = np.linalg.norm(normals, axis=1)
     chosen = np.argsort(-area, kind="stable")[: CONSIDERED if merges else MOST]
     chosen = chosen[area[chosen] > 0.0]
+    if not len(chosen):
+        return _patches(c[chosen], normals[chosen], chosen, chosen.astype(np.int32), corners[chosen])
     c, area, unit = c[chosen], area[chosen], normals[chosen] / area[chosen, None]
     group = _groups(corners[chosen], unit) if merges else np.arange(len(chosen))
     group = _flat_groups(group, c, unit, area)
@@ -179,7 +182,8 @@ def _patches(
     )  # fmt: skip
     shapes = np.stack(
         [greatest(_slenderness(c)), greatest(first * second / across),
-         greatest(np.maximum(np.maximum(first, second), third)), greatest(np.abs(local[:, :, 2]).max(1))], 1,
+         greatest(np.maximum(np.maximum(first, second), third)), greatest(np.abs(local[:, :, 2]).max(1)),
+         greatest(np.linalg.norm(np.cross(unit, w[group]), axis=1))], 1,
     )  # fmt: skip
 
     # Edges that belong to one triangle of the patch only, and then those that two share.

@@ -25,7 +25,7 @@ from tracer.parallel import for_each_chunk
 from tracer.simd.records import I32, I64, Bytes, F32x2D
 
 COARSE = 8  # regions on a side of the blocks for which lights are left out first
-CHUNK, BATCH, MOST = 16, 32, 4096  # regions that a thread takes at a time; of a frame's first batch, for each; of any
+CHUNK, BATCH, MOST = 16, 64, 4096  # regions that a thread takes at a time; of a frame's first batch, and of any
 HARDLY = 0.8  # of a block's leaves: a region that keeps more is not worth a list of its own
 MOVED = 8  # the part, one in so many, of lights that may have moved before all is proved anew
 
@@ -61,7 +61,7 @@ class RegionStore:
         self._bounds = _bounds(triangles)
         # Only the fast structure lets no ray slip between triangles (`tracer.culling.regions.hidden`).
         self.patches: Patches = find_patches(triangles, merges=world.accelerator == BVH8)
-        self._longest_sure = world.hit_padding / LONGEST * float(np.abs(self._bounds).max())
+        self.longest_sure = world.hit_padding / LONGEST * float(np.abs(self._bounds).max())
         self._begin(_boxes(corners))
 
     def _begin(self, boxes: NDArray[np.float32]) -> None:
@@ -98,7 +98,7 @@ class RegionStore:
 
         Raises Cancelled if `cancel` turns true meanwhile; what has been found by then is kept."""
         until, counts = self._clock() + budget.seconds, np.zeros((threads, COUNTERS), np.int64)
-        wanted, made, batch = np.flatnonzero(self.grid.wanted), 0, BATCH * threads
+        wanted, made, batch = np.flatnonzero(self.grid.wanted), 0, BATCH
         while made < min(len(wanted), budget.certificates) and self._clock() < until:
             regions = wanted[made : made + int(min(batch, budget.certificates - made))]
             blocks = blocks_around(self.grid, regions, COARSE)
@@ -155,7 +155,7 @@ class RegionStore:
             those = slice(chunk * CHUNK, (chunk + 1) * CHUNK)
             ends = np.cumsum([0, *(len(nodes) for nodes in above[those])])
             starts = np.stack([ends[:-1], ends[1:]], 1)
-            known = self.tree, self.patches, self._longest_sure, regions[those]
+            known = self.tree, self.patches, self.longest_sure, regions[those]
             ends, found = leaves_left(*known, starts, np.concatenate(above[those]), counts[worker])
             results[chunk] = np.split(found, ends[:-1])
 
@@ -190,7 +190,7 @@ class RegionStore:
         if number < 0 or self._moved[light]:
             return -1
         region, lights = boxes_of(self.grid, np.array([number])), self._boxes[light : light + 1].astype(np.float64)
-        patch = hidden_from(self.patches, self._longest_sure, region, lights)
+        patch = hidden_from(self.patches, self.longest_sure, region, lights)
         return int(self.patches.first[patch]) if patch >= 0 else -1
 
 

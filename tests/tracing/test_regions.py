@@ -1,0 +1,295 @@
+"""Regions: lights that a patch hides from a whole region are not looked at."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.sweeps import cases
+from tests.tracing.nasty_worlds import nasty_walk, with_lamps
+from tests.tracing.same import assert_same
+from tests.tracing.worlds import quad, scene
+from tracer.culling.certified.scheduler import Budget
+from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.culling.regions.certify import hidden_from
+from tracer.culling.regions.grid import boxes_of, make_grid, region_at
+from tracer.culling.regions.light_tree import LEAVES, build_light_tree
+from tracer.culling.regions.patches import find_patches
+from tracer.culling.regions.store import RegionStore
+from tracer.culling.shadow_testing import LIGHT_MARGIN
+from tracer.explanation import explain
+from tracer.geometry.primitives import triangle_rows
+from tracer.geometry.rays import ray_batch
+from tracer.geometry.world import ACCELERATORS, World
+from tracer.methods.certified_lights import CertifiedLights
+from tracer.renderer import Renderer
+from tracer.scene.animation import Animation, Keys, TrackSet
+from tracer.scene.lights import Light
+from tracer.scene.model import Camera, Scene
+from tracer.settings import Settings
+
+SETTINGS = Settings(width=64, height=48, depth=2, method="certified", threads=2)
+
+
+def wall(columns: int, rows: int, hole: tuple[int, int] | None = None, z: float = 0.0) -> list:
+    """A wall of 4 by 3 at z, cut into rectangles of two triangles each, perhaps without one of them."""
+    x, y = np.linspace(0.0, 4.0, columns + 1), np.linspace(0.0, 3.0, rows + 1)
+    return [
+        triangle
+        for i in range(columns)
+        for j in range(rows)
+        if (i, j) != hole
+        for triangle in quad((x[i], y[j], z), (x[i + 1], y[j], z), (x[i + 1], y[j + 1], z), (x[i], y[j + 1], z))
+    ]
+
+
+def rows_of(corners: list) -> np.ndarray:
+    return triangle_rows(np.array(corners, np.float32))
+
+
+# --- the tree of lights ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("count", [1, 2, 37, LEAVES, 3 * LEAVES + 5])
+def test_every_light_is_in_one_leaf_and_below_boxes_that_hold_it(count: int):
+    rng = np.random.default_rng(count)
+    low = rng.normal(size=(count, 3))
+    boxes = np.concatenate([low, low + rng.random((count, 3))], 1).astype(np.float32)
+    tree = build_light_tree(boxes)
+    leaves = np.flatnonzero(tree.children == 0)
+    assert len(leaves) <= LEAVES
+    assert (np.sort(np.concatenate([tree.order[a:b] for a, b in tree.lights[leaves]])) == np.arange(count)).all()
+    for (first, last), box in zip(tree.lights, tree.boxes, strict=True):
+        inside = boxes[tree.order[first:last]]
+        assert (box[:3] == inside[:, :3].min(0)).all() and (box[3:] == inside[:, 3:].max(0)).all()
+
+
+# --- patches --------------------------------------------------------------------------------------
+
+
+def test_triangles_of_a_wall_are_one_patch_with_an_outline_around_it_and_around_its_hole():
+    patches = find_patches(rows_of(wall(4, 3, hole=(1, 1))), merges=True)
+    assert len(patches.first) == 1
+    first, seams, last = patches.ranges[0]
+    length = np.linalg.norm(patches.edges[first:seams, 2:] - patches.edges[first:seams, :2], axis=1).sum()
+    assert length == pytest.approx(14.0 + 4.0, rel=1e-6)
+    assert last - seams == 11 + 9 + 8 - 4, "a diagonal in each rectangle, and what neighbours share but for the hole's"
+
+
+def test_triangles_alone_are_patches_of_their_own():
+    patches = find_patches(rows_of(wall(4, 3)), merges=False)
+    assert len(patches.first) == 24 and (patches.ranges[:, 1] == patches.ranges[:, 2]).all()
+
+
+def test_what_bends_folds_or_touches_at_a_corner_only_is_not_one_patch():
+    square = quad((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))
+    bent = quad((1, 0, 0), (2, 0, 0.1), (2, 1, 0.1), (1, 1, 0))
+    folded = [[(1, 0, 0), (1, 1, 0), (0.2, 0.5, 0)]]  # on the same side of the edge that they share
+    corner = quad((1, 1, 0), (2, 1, 0), (2, 2, 0), (1, 2, 0))
+    for other in (bent, folded, corner):
+        assert len(find_patches(rows_of(square + other), merges=True).first) == 2
+
+
+def test_nothing_has_no_patches():
+    assert len(find_patches(np.empty((0, 9), np.float32), merges=True).first) == 0
+    assert len(find_patches(rows_of([[(0, 0, 0), (1, 0, 0), (2, 0, 0)]]), merges=True).first) == 0
+
+
+# --- the proof ------------------------------------------------------------------------------------
+
+
+def _rays(
+    rng: np.random.Generator, lights: np.ndarray, region: np.ndarray, place: np.ndarray, move: np.ndarray, cuts: tuple
+) -> tuple[np.ndarray, np.ndarray, int]:
+    """Origins and ends (n, 3) of rays from one box (6,) to another, many through edges of the wall that is cut so.
+
+    place (3, 3) and move (3,) take the wall to where it is."""
+    n = 4000
+    origins, ends = rng.uniform(lights[:3], lights[3:], (n, 3)), rng.uniform(region[:3], region[3:], (n, 3))
+    origins[: n // 8] = np.where(rng.random((n // 8, 3)) < 0.5, lights[:3], lights[3:])
+    start, end = ((points - move) @ np.linalg.inv(place).T for points in (origins, ends))
+    at = start + (end - start) * (start[:, 2:] / (start[:, 2:] - end[:, 2:]))
+
+    # Move each to an upright, a level or a slanting edge nearby.
+    size = np.array([4.0 / cuts[0], 3.0 / cuts[1]])
+    low = np.floor(at[:, :2] / size) * size
+    on = np.where(rng.random((n, 2)) < 0.5, low, low + size)
+    which = rng.integers(3, size=n)
+    at[which == 0, 0], at[which == 1, 1] = on[which == 0, 0], on[which == 1, 1]
+    slant = low[:, 1] + (at[:, 0] - low[:, 0]) * size[1] / size[0]
+    at[which == 2, 1] = slant[which == 2]
+    through = start + (at - start) * ((end[:, 2:] - start[:, 2:]) / (at[:, 2:] - start[:, 2:]))
+    through = through @ place.T + move
+    aimed = ((through > region[:3]) & (through < region[3:])).all(1)
+    ends[aimed] = through[aimed]
+    ends = np.clip(ends.astype(np.float32), *region.astype(np.float32).reshape(2, 3))
+    return np.clip(origins.astype(np.float32), *lights.astype(np.float32).reshape(2, 3)), ends, int(aimed.sum())
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_no_ray_gets_past_a_patch_that_hides_a_light(accelerator: str):
+    """Walls of many sizes, turned and moved away from the origin; rays through seams above all."""
+    proved = aimed = 0
+    for seed in range(cases(16, 600)):
+        rng = np.random.default_rng(seed)
+        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0] if rng.random() < 0.5 else np.eye(3)
+        scale = 10.0 ** rng.uniform(-2, 3)
+        place, move = turn * scale, rng.normal(size=3) * scale * rng.choice([0.0, 1.0, 30.0])
+        columns, rows = (int(n) for n in rng.integers(1, 6, 2))
+        hole = (columns // 2, rows // 2) if columns > 1 and rng.random() < 0.3 else None
+        corners = np.array(wall(columns, rows, hole)) @ place.T + move
+        world = World(scene(corners), accelerator=accelerator)
+        store = RegionStore(world, np.zeros((1, 8, 3), np.float32))
+        for _ in range(12):
+            middle = np.array([rng.uniform(0, 4), rng.uniform(0, 3), 0.0])
+            away = np.array([*rng.normal(size=2) * rng.choice([0.2, 1.0]), 1.0])
+            centers = middle + away * 10.0 ** rng.uniform(-1, 1), middle - away * 10.0 ** rng.uniform(-1, 0.5)
+            half = 10.0 ** rng.uniform(-3, -0.5, (2, 1)) * rng.random((2, 3)) * scale
+            light, region = (
+                np.concatenate([place @ c + move - h, place @ c + move + h]).astype(np.float32).astype(np.float64)
+                for c, h in zip(centers, half, strict=True)
+            )
+            if hidden_from(store.patches, store.longest_sure, region[None], light[None]) < 0:
+                continue
+            origins, ends, through = _rays(rng, light, region, place, move, (columns, rows))
+            blocked = world.any_hits(ray_batch(origins, ends - origins, LIGHT_MARGIN, 1.0), threads=1)
+            assert blocked.all(), (seed, int((~blocked).sum()))
+            proved, aimed = proved + 1, aimed + through
+    assert proved > cases(16, 600) and (aimed > 20 * cases(16, 600) or accelerator == "kdtree"), (proved, aimed)
+
+
+# --- regions --------------------------------------------------------------------------------------
+
+
+def test_a_point_lies_in_the_box_of_its_region():
+    rng = np.random.default_rng(3)
+    for scale, move in ((1.0, 0.0), (1e-3, 5.0), (1e4, -1e6)):
+        points = (rng.random((500, 3)) * (4.0, 1.0, 0.01) * scale + move).astype(np.float32)
+        grid = make_grid(np.stack([points.min(0), points.max(0)]).astype(np.float64))
+        numbers = np.array([region_at(grid, point) for point in points])
+        assert (numbers >= 0).all()
+        for times in (1, 8):
+            boxes = boxes_of(grid, numbers, times)
+            assert (points >= boxes[:, :3]).all() and (points <= boxes[:, 3:]).all()
+    assert region_at(grid, np.full(3, 1e9, np.float32)) == -1
+
+
+# --- frames ---------------------------------------------------------------------------------------
+
+
+def rooms(lights: int = 48, samples: int = 4, moves: bool = False) -> Scene:
+    """Two rooms on either side of a wall with a window, under lamps in both; one may fly from the one to the other."""
+    floor = [(0.0, 0.0, -8.0), (4.0, 0.0, -8.0), (4.0, 0.0, 8.0), (0.0, 0.0, 8.0)]
+    rng = np.random.default_rng(5)
+    places = rng.uniform((0.3, 2.0, 0.3), (3.7, 2.8, 4.0), (lights, 3)) * np.where(
+        rng.random((lights, 1)) < 0.5, 1, (1, 1, -1)
+    )
+    lamps = tuple(
+        Light(f"lamp {i}", tuple(p), (0.05, 0.05, 0.04), kind="sphere", radius=0.05, samples=samples)
+        for i, p in enumerate(places.tolist())
+    )
+    animation = Animation.empty()
+    if moves:
+        way = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, -4.0], [0.0, 0.0, -4.0]])
+        animation = Animation(
+            {"flies": TrackSet(translation=Keys(np.array([0.0, 1.0, 2.0, 4.0]), way, np.zeros((4, 3))))}
+        )
+        lamps = (*lamps[:-1], replace(lamps[-1], position=(2.0, 2.0, 2.0), track="flies"))
+    return replace(
+        scene(quad(*floor) + wall(5, 4, hole=(2, 2)), animation=animation, time_range=(0.0, 4.0)),
+        lights=lamps,
+        camera=Camera((2.0, 1.6, 7.0), (0.0, -0.2, -1.0), angle=60.0),
+    )
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_lights_that_a_wall_hides_are_passed_over_and_nothing_changes(accelerator: str):
+    settings = replace(SETTINGS, accelerator=accelerator)
+    renderer, truth = Renderer(rooms(), settings), Renderer(rooms(), replace(settings, method="none"))
+    none = truth.render(0.0)
+    for _ in range(2):
+        frame = renderer.render(0.0)
+        assert frame.color.tobytes() == none.color.tobytes()
+    shadow, all_due = frame.statistics.shadow, none.statistics.shadow.due
+    assert shadow.passed_over > (0.2 if accelerator == "bvh8" else 0.1) * all_due
+    assert shadow.due < (0.9 if accelerator == "bvh8" else 0.98) * all_due and frame.statistics.certificates == 0
+
+
+def test_what_is_recorded_of_lights_that_are_passed_over_is_what_none_records():
+    settings = replace(SETTINGS, record_lights=True, record_work=True, verify=True)
+    frame = Renderer(rooms(), settings).render(0.0)
+    none = Renderer(rooms(), replace(settings, method="none")).render(0.0)
+    assert frame.statistics.shadow.culled > 1000 and frame.statistics.shadow.wrong == 0
+    assert frame.statistics.shadow.due == none.statistics.shadow.due
+    for name in ("color", "asked", "reached", "reference", "due_rays"):
+        assert getattr(frame, name).tobytes() == getattr(none, name).tobytes(), name
+
+
+def test_a_light_that_flies_through_the_wall_is_looked_at_wherever_it_is():
+    settings = replace(SETTINGS, depth=0)
+    renderer, truth = (Renderer(rooms(moves=True), replace(settings, method=m)) for m in ("certified", "none"))
+    for time in (0.0, 0.5, 1.2, 1.6, 2.5, 3.0, 0.0):
+        assert renderer.render(time).color.tobytes() == truth.render(time).color.tobytes(), time
+
+
+def test_other_lamps_are_certified_anew():
+    renderer = Renderer(rooms(), SETTINGS)
+    for change in ({}, {"lamp_radius": 1.0}, {"lamp_samples": 2}, {"lamp_radius": 0.0}):
+        renderer.settings = replace(renderer.settings, **change)
+        none = Renderer(renderer.scene, replace(renderer.settings, method="none")).render(0.0)
+        for _ in range(2):
+            frame = renderer.render(0.0)
+            assert frame.color.tobytes() == none.color.tobytes(), change
+        assert frame.statistics.shadow.passed_over > 0, change
+
+
+def test_pictures_and_counters_repeat_for_any_number_of_threads():
+    for method in ("certified", "certified+cache"):
+        one, three = (Renderer(rooms(), replace(SETTINGS, method=method, threads=n)) for n in (1, 3))
+        for time in (0.0, 0.0):
+            assert_same(one.render(time), three.render(time), f"{method} at {time}")
+
+
+def test_a_budget_of_certificates_is_kept():
+    renderer = Renderer(rooms(), replace(SETTINGS, certificates=100))
+    made = [renderer.render(0.0).statistics.certificates for _ in range(3)]
+    assert made == [100, 100, 100]
+
+
+def test_memory_is_bounded():
+    corners = np.repeat(np.array([light.position for light in rooms().lights], np.float32)[:, None], 8, 1)
+    store = RegionStore(World(rooms()), corners)
+    store.grid.wanted[:: len(store.grid.wanted) // 50] = True
+    made = store.certify(Budget(), threads=2).certificates
+    assert made > 50 and store.bytes > 0 and not store.grid.wanted.any() and store.grid.certified.any()
+    store.keep_within(store.bytes)
+    assert store.grid.certified.any()
+    store.keep_within(store.bytes - 1)
+    assert not store.grid.certified.any()
+
+
+def test_an_explanation_names_what_hides_a_light():
+    renderer = Renderer(rooms(samples=1), SETTINGS)
+    frame = renderer.render(0.0)
+    told = [e for x in (8, 30, 50) for e in explain(renderer, frame, x, 40)]
+    hidden = [e for e in told if e.certificate == "full"]
+    assert len(hidden) > 20
+    assert not any(e.lit for e in hidden) and all(2 <= e.named[0] < 42 for e in hidden), "a triangle of the wall"
+
+
+def test_nasty_worlds_under_many_lamps_look_as_by_none():
+    passed_over = 0
+    for seed in range(cases(6, 60)):
+        walk = nasty_walk(seed, lights=MAX_CULLED_LIGHTS + 5, frames=3)
+        walk = with_lamps(walk) if seed % 2 else walk
+        for accelerator in ACCELERATORS:
+            settings = Settings(width=48, height=36, depth=2, accelerator=accelerator, threads=1)
+            certified, none = (Renderer(walk.scene, replace(settings, method=m)) for m in ("certified", "none"))
+            assert isinstance(certified.state.method("certified"), CertifiedLights)
+            for time, camera in walk.frames:
+                frame, truth = certified.render(time, camera), none.render(time, camera)
+                assert frame.color.tobytes() == truth.color.tobytes(), (seed, accelerator, time)
+                passed_over += frame.statistics.shadow.passed_over
+    assert passed_over > 0
