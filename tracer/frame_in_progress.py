@@ -68,7 +68,6 @@ class FrameInProgress:
         self.units = np.empty_like(self.buffers.primitive) if len(self.first) else self.buffers.primitive
         self._lamps = state.lamps(settings)
         self.shading = state.shading
-        self.lights, self.corners = self.shading.lamps.places, self.shading.lamps.corners
         self.resting = state.rest.now
         self._counts = np.zeros((self.workers, COUNTERS), np.int64)
         self._occlusion_tests = np.zeros(self.workers, np.int64)
@@ -81,6 +80,16 @@ class FrameInProgress:
     def seconds(self) -> float:
         """Seconds since the frame began, without those in which it was shown to somebody."""
         return self._state.clock() - self._started - self._paused
+
+    @property
+    def lights(self) -> NDArray[np.float32]:
+        """(l, 3) the centres of the lamps."""
+        return self.shading.lamps.places
+
+    @property
+    def corners(self) -> NDArray[np.float32]:
+        """(l, 8, 3) the corners of boxes around their samples."""
+        return self.shading.lamps.corners
 
     @contextmanager
     def shown(self) -> Iterator[None]:
@@ -117,7 +126,6 @@ class FrameInProgress:
             state.rest.forget()
             state.world.place(poses)
         self.shading = self.shading._replace(lamps=self._lamps.at(state.scene.light_positions(self._time)))
-        self.lights, self.corners = self.shading.lamps.places, self.shading.lamps.corners
         self.resting = state.rest.now
         self.history.follow_lights(self.lights, self._lamps)
         self.history.follow_rest(self.resting, state.world.outlines, self.workers)

@@ -11,7 +11,6 @@ Every picture by an exact method must be that of `none`, bit for bit; a run in w
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -21,16 +20,13 @@ import numpy as np
 from rich.table import Table
 
 from tests.bench.frame_times import machine
-from tests.bench.quickest import SCENES
-from tracer.compilation import warm_up
-from tracer.geometry.world import ACCELERATORS
+from tests.bench.of_scenes import add_options, finish, prepared
 from tracer.method import Method
 from tracer.parallel import thread_count
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.settings import Settings
-from viewer.cli.console import print_table, say
-from viewer.util.resources import scene_path
+from viewer.cli.console import say
 
 TRUTH, CEILING = "none", "free"
 
@@ -98,21 +94,12 @@ def table(results: list[dict[str, Any]]) -> Table:
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="make lamps", description=__doc__.splitlines()[0])
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="default: the default scene, and BART's if there")
+    add_options(parser, 100, "out/lamps.json")
     parser.add_argument("--methods", nargs="+", default=["certified"], help="to hold against none (default: certified)")
     parser.add_argument("--radius", nargs="+", type=float, default=[0.03, 0.1], help="of lamps (default: 0.03 0.1)")
     parser.add_argument("--samples", nargs="+", type=int, default=[64], help="of each lamp (default: 64)")
-    parser.add_argument("--frames", type=int, default=100, help="of each run (default: 100)")
-    parser.add_argument("--step", type=int, default=1, help="of the path, from one frame to the next (default: 1)")
-    parser.add_argument("--size", type=int, default=512, help="width and height in pixels (default: 512)")
-    parser.add_argument("--threads", type=int, default=0, help="0, the default: one per core")
-    parser.add_argument("--accelerator", choices=ACCELERATORS, default="bvh8", help="(default: bvh8)")
-    parser.add_argument("--json", type=Path, default=Path("out/lamps.json"), help="(default: out/lamps.json)")
     options = parser.parse_args(arguments)
-    paths = [scene_path(name) for name in options.scenes]
-    paths = paths or [scene_path(None), *(path for path in SCENES if path.exists())]
-    settings = Settings(options.size, options.size, threads=options.threads, accelerator=options.accelerator)
-    warm_up(accelerator=options.accelerator)
+    paths, settings = prepared(options)
     report: dict[str, Any] = {"machine": machine(), "runs": []}
     for path in paths:
         for radius in options.radius:
@@ -120,16 +107,10 @@ def main(arguments: list[str] | None = None) -> int:
                 lamps = replace(settings, lamp_radius=radius, lamp_samples=samples).validated()
                 say(f"{path.name}: radius {radius}, {samples} samples, {options.frames} frames")
                 report["runs"].append(measure(path, lamps, options.methods, options.frames, options.step))
-    print_table(table(report["runs"]))
-    options.json.parent.mkdir(parents=True, exist_ok=True)
-    options.json.write_text(json.dumps(report, indent=1) + "\n")
-    print(f"all figures in {options.json}")
     faults = [
         f"{Path(r['scene']).name}: {name} differs in frame {at}" for r in report["runs"] for name, at in r["differ"]
     ]
-    for fault in faults:
-        say(f"wrong: {fault}")
-    return 1 if faults else 0
+    return finish(report, table(report["runs"]), options.json, faults)
 
 
 if __name__ == "__main__":

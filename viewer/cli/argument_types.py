@@ -98,6 +98,13 @@ def view(text: str) -> ChosenView:
     return ChosenView(view, int(detail) if view.of_light and detail else 0, wipe, view.needs_work and bool(detail))
 
 
+def lamp_samples(text: str) -> int:
+    """The number of points from which a lamp shines."""
+    from tracer.scene.lights import MAX_SAMPLES
+
+    return count(1, MAX_SAMPLES)(text)
+
+
 def method(text: str) -> str:
     """The name of a method."""
     from tracer.method import Method, choice

@@ -8,14 +8,13 @@ from pathlib import Path
 from typing import NoReturn
 
 from viewer.cli import examples
-from viewer.cli.argument_types import count, factors, method, number, pixel, size, view
+from viewer.cli.argument_types import count, factors, lamp_samples, method, number, pixel, size, view
 from viewer.util import resources
 from viewer.util.messages import ERROR, say
 from viewer.util.version import program_version
 
 MISUSED = 2
 """Exit code where a command line is wrong."""
-MAX_LAMP_SAMPLES = 1024
 _CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
 
 
@@ -187,7 +186,7 @@ def _add_lamps(parser: Parser) -> None:
     help_ = "make every point light and sphere a sphere of this radius, in the scene's units; 0 makes them points"
     add("--lamp-radius", type=number(0.0, 1e9), metavar="R", help=help_)
     help_ = "points from which each lamp shines (default: as the scene says, and 16 for what --lamp-radius makes)"
-    add("--lamp-samples", type=count(1, MAX_LAMP_SAMPLES), metavar="N", help=help_)
+    add("--lamp-samples", type=lamp_samples, metavar="N", help=help_)
 
 
 def _add_zoom_factor(parser: Parser) -> None:

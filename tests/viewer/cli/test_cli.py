@@ -15,9 +15,7 @@ from PIL import Image
 
 from tests.commands import CAMERA, ROOM, complaint, render, run
 from tests.terminal import Terminal
-from tracer.scene.lights import MAX_SAMPLES
 from viewer.cli import main as command_line
-from viewer.cli.parsers import MAX_LAMP_SAMPLES
 from viewer.output import capture
 from viewer.state.views import BENEATH
 
@@ -100,10 +98,6 @@ def test_the_window_is_given_the_lamps(room: Path, monkeypatch: pytest.MonkeyPat
     for arguments in ([str(room), "--lamp-radius", "0.1", "--lamp-samples", "9"], ["--lamp-radius", "0"], []):
         assert command_line.main(arguments, open_window) == 0
     assert opened == [(room, {"lamp_radius": 0.1, "lamp_samples": 9}), (None, {"lamp_radius": 0.0}), (None, {})]
-
-
-def test_as_many_samples_are_allowed_as_the_tracer_has() -> None:
-    assert MAX_LAMP_SAMPLES == MAX_SAMPLES
 
 
 @pytest.mark.parametrize(
