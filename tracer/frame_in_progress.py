@@ -17,6 +17,7 @@ from tracer.geometry.camera import Pinhole, pinhole
 from tracer.methods.interface import Stage, StageTable
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.progressive import Parts
+from tracer.scene.lamps import Lamps
 from tracer.scene.model import Camera
 from tracer.settings import Settings
 from tracer.shading.blocks import NO_PLANES, TURNS, all_blocks
@@ -67,7 +68,7 @@ class FrameInProgress:
         self.words = self.history.words
         self.units = np.empty_like(self.buffers.primitive) if len(self.first) else self.buffers.primitive
         self._lamps = state.lamps(settings)
-        self.shading = state.shading
+        self._use_lamps(state.shading.lamps)
         self.resting = state.rest.now
         self._counts = np.zeros((self.workers, COUNTERS), np.int64)
         self._occlusion_tests = np.zeros(self.workers, np.int64)
@@ -80,16 +81,6 @@ class FrameInProgress:
     def seconds(self) -> float:
         """Seconds since the frame began, without those in which it was shown to somebody."""
         return self._state.clock() - self._started - self._paused
-
-    @property
-    def lights(self) -> NDArray[np.float32]:
-        """(l, 3) the centres of the lamps."""
-        return self.shading.lamps.places
-
-    @property
-    def corners(self) -> NDArray[np.float32]:
-        """(l, 8, 3) the corners of boxes around their samples."""
-        return self.shading.lamps.corners
 
     @contextmanager
     def shown(self) -> Iterator[None]:
@@ -113,6 +104,10 @@ class FrameInProgress:
         asked = {"record_lights": s.record_lights, "verify": s.verify, "record_work": s.record_work}
         return empty_buffers(s.width, s.height, len(self._state.scene.lights), planes=planes, **asked)
 
+    def _use_lamps(self, lamps: Lamps) -> None:
+        self.shading = self._state.shading._replace(lamps=lamps)
+        self.lights, self.corners = lamps.places, lamps.corners
+
     # --- phases, in the order of Figure 1 ------------------------------------------------------------
 
     def place_objects_and_lights(self) -> None:
@@ -125,7 +120,7 @@ class FrameInProgress:
         else:
             state.rest.forget()
             state.world.place(poses)
-        self.shading = self.shading._replace(lamps=self._lamps.at(state.scene.light_positions(self._time)))
+        self._use_lamps(self._lamps.at(state.scene.light_positions(self._time)))
         self.resting = state.rest.now
         self.history.follow_lights(self.lights, self._lamps)
         self.history.follow_rest(self.resting, state.world.outlines, self.workers)
