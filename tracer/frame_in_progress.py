@@ -25,7 +25,7 @@ from tracer.shading.buffers import Buffers, empty_buffers
 from tracer.shading.surfaces import see_surfaces
 from tracer.shading.whitted import find_in_tile, shade_tile, trace_primary
 from tracer.state import State
-from tracer.statistics import gather
+from tracer.statistics import gather, sample_counts
 from tracer.tiles import Tile, nearest_first, tiles_of, tiles_to_shade
 
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
@@ -340,6 +340,8 @@ class FrameInProgress:
         shape, lights = buffers.primitive.shape, len(self._state.scene.lights)
         statistics = gather(self._counts, int(self._occlusion_tests.sum()), lights if settings.keeps_modes else 0)
         statistics.part = 1.0 if self._parts is None else self._parts.share
+        if settings.record_lights:
+            statistics.samples = sample_counts(buffers.asked, buffers.reached)
         statistics.phases, statistics.seconds = dict(self.phases), self.seconds
         layers: dict[str, NDArray] = {}
         for method in self.methods:

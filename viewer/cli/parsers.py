@@ -76,8 +76,8 @@ def render() -> Parser:
         default="color",
         metavar="V",
         help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference, "
-        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, saved or cost, as counts of rays or as shares like saved:share "
-        "(default: color)",
+        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, lights, saved or cost, as counts of rays or as shares like "
+        "saved:share (default: color)",
     )
     add("--legend", action="store_true", help="draw the view's legend into the picture")
     add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")

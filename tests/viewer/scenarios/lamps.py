@@ -8,7 +8,8 @@ from imgui_bundle import imgui
 from tests.viewer.driver import Driver
 from tracer.renderer import Renderer
 from viewer.output.pictures import picture
-from viewer.state.views import View, arrivals
+from viewer.state.readings import arrivals
+from viewer.state.views import View
 from viewer.window.panels.status import doing
 
 KEY = imgui.Key
@@ -24,7 +25,7 @@ def lamps(d: Driver) -> None:
     middle = (area.min.x + 0.8 * (area.max.x - area.min.x), 0.5 * (area.min.y + area.max.y))
     d.drag((area.min.x + 4.0, middle[1]), (middle[0] - area.min.x - 4.0, 0.0))
     radius = d.c.session.settings.lamp_radius
-    assert 0.1 < radius < 2.0 and d.c.tracing.lamp_samples_wanted == 16
+    assert 0.1 < radius < 2.0 and d.c.tracing.lamps.wanted == 16
     d.settle()
     d.c.settings.change(lamp_samples=64, lamp_radius=0.5)
     seen, said = [], set()

@@ -50,7 +50,7 @@ def doing(c: Controller) -> str:
     if c.motion.under_way or c.session.playing:
         return "tracing"
     if c.tracing.refines_lamps:
-        return f"lamp samples: {c.tracing.lamp_samples_shown} of {c.tracing.lamp_samples_wanted}"
+        return f"lamp samples: {c.tracing.lamp_samples_shown} of {c.tracing.lamps.wanted}"
     if c.renderer.busy:
         return "refining the picture" if c.tracing.becoming_finer or _learns(c) else "tracing"
     if c.renderer.running is not None and c.tracing.samples_shown < c.tracing.samples_wanted:
