@@ -228,7 +228,7 @@ def _penumbra(frame: Frame, view: View, chosen: Chosen) -> Legend:
     )  # fmt: skip
     facts = [Entry("samples", None, (count(found.samples),), "of the light, that a pixel faces at most")]
     if found.share is not None:
-        facts.append(Entry("light in the penumbra", None, (f"{found.share:.0%}",), _SHARE))
+        facts.append(Entry("light in the penumbra", None, (percent(found.share, 1.0),), _SHARE))
     return Legend(title, ("pixels",), entries, facts=tuple(facts))
 
 

@@ -112,6 +112,7 @@ class Controller:
         if failed is not None:
             self.notices.report(failed)
             self.session.playing = False
+            self.tracing.give_up()
         run = self.runs.follow()
         if run.ended:
             self.tracing.again()  # else the world might stay where the run has put it

@@ -82,6 +82,7 @@ class Tracing:
         self._chosen: Settings | None = None
         self._glance = False
         self._new = False
+        self._failed: RenderRequest | None = None
 
     @property
     def frame(self) -> Frame | None:
@@ -293,6 +294,32 @@ class Tracing:
         return not self._shows_session(asked)
 
     # --- what the newest frame is ----------------------------------------------------------------
+
+    def give_up(self) -> None:
+        """What was asked for has failed: it will not come."""
+        self._failed = self._asked
+
+    @property
+    def awaits(self) -> bool:
+        """Whether a picture that was asked for has not come yet, or not all of it; its further samples do not count."""
+        asked, traced = self._asked, self.traced
+        if asked is None or asked is self._failed:
+            return False
+        return traced is None or not traced.whole or traced.request != asked
+
+    @property
+    def adds_samples(self) -> bool:
+        """Whether the picture that was asked for is there, and more samples a pixel are to come."""
+        asked = self._asked
+        if asked is None or asked is self._failed or self.awaits:
+            return False
+        return self.samples_shown < asked.samples
+
+    @property
+    def certifies(self) -> bool:
+        """Whether the picture is there, and another is to come because certificates can be made for it."""
+        asked, made = self._asked, Method.parse(self._session.settings.method).has_certificates
+        return made and asked is not None and asked.refinement_seconds > 0.0 and self.awaits and not self.outdated
 
     @property
     def becoming_finer(self) -> bool:

@@ -71,7 +71,7 @@ def test_pixels_are_counted_by_what_reaches_them(frame: Frame, light: int):
         name: (percent(there.sum(), hit.sum()),) for name, there in expected.items()
     }
     between = (reached > 0) & (reached < asked)
-    share = [f"{reached[between].sum() / asked[between].sum():.0%}"] if between.any() else []
+    share = [percent(reached[between].sum(), asked[between].sum())] if between.any() else []
     assert [fact.values[0] for fact in legend.facts[1:]] == share and bool(share) == (light != 1)
     assert legend_of(make_frame(), View.PENUMBRA, Chosen(light)) is None
 

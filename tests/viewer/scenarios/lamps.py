@@ -50,11 +50,18 @@ def lamps(d: Driver) -> None:
     frame = d.c.frame
     between = np.isin(arrivals(frame, d.c.session.light), (2, 3))
     assert between.any() and frame.asked.max() == 64
+    assert d.c.history.values("penumbra")[-1] > between.sum() / 2, "it is plotted"
+    assert d.c.history.values("samples_due")[-1] > d.c.history.values("samples_reached")[-1] > 0
     shown = d.shown().astype(int)
     assert np.abs(shown - picture(frame, View.PENUMBRA, d.c.session.light).astype(int)).max() <= 2
+    shift = int(KEY.mod_shift)
+    d.press(int(KEY.j) | shift)
+    assert d.c.tracing.drawn_view is View.LIGHTS and d.c.frame is frame, "nothing is traced for it"
+    assert np.abs(d.shown().astype(int) - picture(frame, View.LIGHTS).astype(int)).max() <= 2
+    d.press(KEY.j)
     d.press(KEY.l)
     assert np.abs(d.shown().astype(int) - shown).max() > 50, "another light"
-    d.press(int(KEY.l) | int(KEY.mod_shift))
+    d.press(int(KEY.l) | shift)
     y, x = np.argwhere(between)[between.sum() // 2]
     d.c.selection.select(((x + 0.5) / frame.width, (y + 0.5) / frame.height))
     d.wait(lambda: d.c.inspector.answer is not None, "an answer about the penumbra", 20.0)

@@ -13,6 +13,7 @@ from tests.viewer.colors import luminance
 from tests.viewer.fakes import in_cells, make_frame, make_scene, with_certificates
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
+from tracer.statistics import SampleCounts
 from viewer.output import legend_counts
 from viewer.state import marks, readings, views
 from viewer.state.history import SERIES, History
@@ -227,6 +228,15 @@ def test_history_keeps_the_newest_in_order_and_contiguous():
     assert history.first == 8 and all(len(history.values(name)) == 5 for name in SERIES)
     history.clear()
     assert len(history) == 0 and len(history.values("due")) == 0
+
+
+def test_history_keeps_what_lights_send_to_pixels():
+    history, frame = History(), make_frame()
+    frame.statistics.samples = SampleCounts(due=90, reached=70, penumbra=8)
+    history.add(frame, 0.0)
+    history.add(make_frame(), 0.0)
+    for name, number in (("samples_due", 90), ("samples_reached", 70), ("penumbra", 8)):
+        assert list(history.values(name)) == [number, 0], "0 where nothing was recorded"
 
 
 def test_fates_of_shadow_rays_add_up_to_those_due():
