@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
 from tracer.renderer import Renderer
 from viewer.output.pictures import picture
+from viewer.state import readings
 from viewer.state.readings import arrivals
 from viewer.state.views import View
 from viewer.window.panels.status import doing
@@ -83,12 +86,39 @@ def lamps(d: Driver) -> None:
     d.c.loader.open(_many_lights(d))
     d.wait(lambda: d.c.session.scene is not None and len(d.c.session.scene.lights) == 40, "the scene of many lights")
     d.settle()
+    _one_of_too_many(d)
     d.ui.show_panel("Scene")
     d.frames(4)
     d.ui.light_filters["table"] = "light 3"
     d.frames(4)
     d.ui.light_filters["table"] = ""
     d.frames(4)
+
+
+def _one_of_too_many(d: Driver) -> None:
+    """Where there is no memory for all lights, the chosen one is looked at alone, and nothing is traced again."""
+    frame = d.c.frame
+    settings = replace(frame.settings, record_lights=True)
+    expected = Renderer(d.c.session.scene, settings).render(frame.time, frame.camera)
+    most, readings.MOST_RECORDED = readings.MOST_RECORDED, 1000
+    try:
+        traced = d.c.history.frames
+        d.press(KEY.j)
+        for _ in range(2):
+            d.press(KEY.l)
+            light = d.c.session.light
+            d.wait(lambda: d.c.tracing.drawn_view is View.PENUMBRA, "one light", 20.0)
+            assert d.c.frame.only_light == light and d.c.history.frames == traced
+            assert np.array_equal(arrivals(d.c.frame, light), arrivals(expected, light))
+            drawn = picture(d.c.frame, View.PENUMBRA, light).astype(int)
+            assert np.abs(d.shown().astype(int) - drawn).max() <= 2
+        d.press(int(KEY.j) | int(KEY.mod_shift))
+        d.settle()
+        assert d.c.tracing.drawn_view is View.COLOR, "there are too many for it"
+    finally:
+        readings.MOST_RECORDED = most
+    d.press(KEY._1)
+    d.settle()
 
 
 def _many_lights(d: Driver):

@@ -27,7 +27,7 @@ def legends(d: Driver) -> None:
             if d.ui.legend_shown:
                 _legend(d)
         _dragged(d)
-    d.resize(900, 600)
+    d.resize(1024, 700)
     right, bottom = d.picture_edges()[2:]
     area = _legend(d)
     assert right - area[2] < 20.0 and bottom - area[3] < 20.0, "it has left its corner"

@@ -28,9 +28,10 @@ _OF_LIGHTS = (
     "Samples of lights", ((terms.SAMPLES_DUE, "samples_due", BLUE), (terms.SAMPLES_REACHED, "samples_reached", YELLOW),
                           (terms.PENUMBRA, "penumbra", ORANGE)),
 )  # fmt: skip
-_SHARES = {3: (0.44, 0.31, 0.25), 4: (0.28, 0.24, 0.18, 0.30)}
-_ROOM = {3: 42.0, 4: 44.0}
-"""For so many plots beside each other: parts of the panel's width, by their legends, and how wide it must be, in ems."""
+_SHARES = {4: (0.30, 0.26, 0.26, 0.18), 3: (0.44, 0.31, 0.25), 2: (0.5, 0.5), 1: (1.0,)}
+"""Of the panel's width, for so many plots beside each other: by the length of their legends."""
+_ROOM = {4: 64.0, 3: 45.0, 2: 30.0}
+"""How wide the panel is, in ems, that has so many; what finds no room beside is below, and the panel scrolls."""
 FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
 AXIS = int(implot.AxisFlags_.no_highlight)
 LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
@@ -79,13 +80,14 @@ def show(ui: Ui) -> None:
     imgui.text_colored(QUIET, f"the last {len(history)} frames" if len(history) > 1 else "one frame so far")
     room = imgui.get_content_region_avail()
     spacing = imgui.get_style().item_spacing.x
-    plots = (*_PLOTS, _OF_LIGHTS) if history.values("samples_due").any() else _PLOTS
-    columns = len(plots) if room.x > em(_ROOM[len(plots)]) else 1  # else one below the other; the panel scrolls
-    shares = _SHARES[columns] if columns > 1 else (1.0,) * len(plots)
-    for number, ((title, series), share) in enumerate(zip(plots, shares, strict=True)):
+    plots = (_PLOTS[0], _OF_LIGHTS, *_PLOTS[1:]) if history.values("samples_due").any() else _PLOTS
+    even = [n for n in _ROOM if len(plots) % n == 0]  # so that no row has an empty place
+    columns = next((n for n in even if room.x > em(_ROOM[n])), 1)
+    width = room.x - (columns - 1) * spacing
+    for number, (title, series) in enumerate(plots):
         if number % columns:
             imgui.same_line()
-        _plot(ui, title, series, ImVec2(share * (room.x - (columns - 1) * spacing), max(room.y, em(8.0))))
+        _plot(ui, title, series, ImVec2(_SHARES[columns][number % columns] * width, max(room.y, em(8.0))))
 
 
 def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size: ImVec2) -> None:
