@@ -91,6 +91,11 @@ class Traced:
         """Whether all of its pixels have been shaded."""
         return self.frame.statistics.part >= 1.0
 
+    @property
+    def full_size(self) -> tuple[int, int]:
+        """The size whose aspect it has: its own, or what it is a coarser version of."""
+        return self.frame.width * self.request.divisor, self.frame.height * self.request.divisor
+
 
 class Task(Protocol):
     """Long work with the renderer's world.  It ends soon after `cancelled()` turns true, and raises nothing."""
@@ -105,6 +110,21 @@ class Question(Protocol):
     def time(self) -> float: ...
 
     def answer(self, renderer: Traces) -> None: ...
+
+
+class Pictures(Protocol):
+    """The part of `RenderThread` that decides what is seen."""
+
+    @property
+    def busy(self) -> bool: ...
+
+    def submit(self, request: RenderRequest) -> None: ...
+
+    def hurry(self, request: RenderRequest) -> None: ...
+
+    def take(self) -> Traced | None: ...
+
+    def reset_modes(self) -> None: ...
 
 
 class RenderThread:

@@ -1,14 +1,36 @@
-"""Which requests show the same: the same view however finely, and with more recorded than is needed."""
+"""What a request asks for, and which requests show the same: the same view however finely, and with more recorded than
+is needed."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 from tracer.frame import Settings
+from tracer.method import Method
 from viewer.services.render_thread import RenderRequest
+from viewer.state.methods import NO_CULLING, with_base
+from viewer.state.session import Session
 
 RECORDS = ("verify", "record_work", "record_lights")
 """Settings that only add to what a frame holds."""
+
+
+def settings_for(session: Session, certificate_seconds: float, ready: bool, fits: bool) -> Settings:
+    """What the user has set, with modes; verified, and with more recorded, where the view needs that and it `fits` into
+    memory.  Until what makes certificates is `ready`, still being compiled, it is traced without: the picture is the
+    same."""
+    view, method = session.view, session.settings.method
+    if not ready and Method.parse(method).has_certificates:
+        method = with_base(method, NO_CULLING)
+    return replace(
+        session.settings,
+        method=method,
+        verify=session.settings.verify or view.needs_verify,
+        record_work=view.needs_work,
+        record_lights=view.needs_lights and fits,
+        modes=True,
+        certificate_seconds=certificate_seconds,
+    )
 
 
 def as_asked(settings: Settings, asked: Settings) -> Settings:

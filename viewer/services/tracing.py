@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 from tracer.frame import Frame, Settings
 from tracer.method import Method
@@ -17,29 +16,13 @@ from viewer.services import lamps, refinement
 from viewer.services.governor import AT_ONCE, Governor, Plan, divided
 from viewer.services.lamps import LampSteps
 from viewer.services.refinement import Refinement
-from viewer.services.render_thread import RenderRequest, Traced
-from viewer.services.requests import as_asked, fulfils, lacks
+from viewer.services.render_thread import Pictures, RenderRequest, Traced
+from viewer.services.requests import as_asked, fulfils, lacks, settings_for
 from viewer.services.runs import Run
-from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.preferences import Preferences
 from viewer.state.readings import can_draw, can_record_lights
 from viewer.state.session import Session
 from viewer.state.views import View
-
-
-class Pictures(Protocol):
-    """The part of `RenderThread` that is used here."""
-
-    @property
-    def busy(self) -> bool: ...
-
-    def submit(self, request: RenderRequest) -> None: ...
-
-    def hurry(self, request: RenderRequest) -> None: ...
-
-    def take(self) -> Traced | None: ...
-
-    def reset_modes(self) -> None: ...
 
 
 @dataclass(frozen=True)
@@ -250,22 +233,9 @@ class Tracing:
 
     @property
     def settings(self) -> Settings:
-        """What the user has set, with modes; verified, and with more recorded, where the view needs that.  While what
-        makes certificates is still being compiled it is traced without: the picture is the same."""
-        s, method = self._session, self._session.settings.method
-        verify = s.settings.verify or s.view.needs_verify
-        if not self.now.ready and Method.parse(method).has_certificates:
-            method = with_base(method, NO_CULLING)
+        """What the user has set, and what else the next picture needs."""
         seconds = self._preferences.certificate_share * self._frame_seconds
-        return replace(
-            s.settings,
-            method=method,
-            verify=verify,
-            record_work=s.view.needs_work,
-            record_lights=s.view.needs_lights and self._can_record_lights,
-            modes=True,
-            certificate_seconds=seconds,
-        )
+        return settings_for(self._session, seconds, self.now.ready, self._can_record_lights)
 
     @property
     def _can_record_lights(self) -> bool:
@@ -350,14 +320,6 @@ class Tracing:
         """The resolution at idle: the window's, or the fixed one (0, 0 while there is nowhere to show it)."""
         p, size = self._preferences, self.now.size
         return (p.fixed_width, p.fixed_height) if p.fixed_resolution and min(size) > 0 else size
-
-    @property
-    def traced_full_size(self) -> tuple[int, int]:
-        """The size whose aspect the newest frame has: its own, or what it is a coarser version of."""
-        if self.traced is None:
-            return 1, 1
-        frame, divisor = self.traced.frame, self.traced.request.divisor
-        return frame.width * divisor, frame.height * divisor
 
     @property
     def magnified(self) -> int:

@@ -236,3 +236,41 @@ def test_the_chosen_light_alone_is_asked_for_where_there_are_too_many():
     questions.asked[-1].found = first
     recorder.follow()
     assert window.tracing.frame is newest and questions.asked[-1].frame is newest, "it is about an older frame"
+
+
+def test_between_steps_it_is_known_that_more_is_to_come():
+    """Whatever the thread is at: it may be between two pictures."""
+    window = Window(lamp_radius=0.5, lamp_samples=64)
+    tracing, seen = window.tracing, []
+    assert not tracing.awaits and not tracing.adds_samples
+    for _ in range(12):
+        tracing.ask(HERE)
+        seen.append((tracing.lamp_samples_shown, tracing.awaits, tracing.refines_lamps))
+        tracing.take()
+    assert seen[:4] == [(0, True, False), (4, True, True), (16, True, True), (64, True, False)], "the last knows more"
+    assert seen[-1] == (64, False, False)
+    window.move()
+    tracing.ask(HERE)
+    assert tracing.awaits
+    tracing.give_up()
+    assert not tracing.awaits and not tracing.adds_samples, "it has failed"
+
+
+def test_samples_of_pixels_come_after_certificates():
+    window = Window()
+    window.session.settings = replace(window.session.settings, method="certified", samples=4)
+    tracing = window.tracing
+    tracing.ask(HERE)
+    assert tracing.awaits and not tracing.certifies, "there is no picture yet"
+    tracing.take()
+    tracing.ask(HERE)
+    assert tracing.certifies and not tracing.adds_samples
+    for _ in range(3):
+        tracing.take()
+        tracing.ask(HERE)
+    assert not tracing.certifies and not tracing.awaits and not tracing.adds_samples, "all samples are there"
+    part = replace(tracing.traced.frame, settings=replace(tracing.traced.frame.settings, samples=2))
+    tracing.traced = replace(tracing.traced, frame=part)
+    assert tracing.adds_samples and not tracing.awaits
+    tracing.traced = None
+    assert tracing.awaits
