@@ -98,10 +98,15 @@ class FrameInProgress:
         yield
         self.phases[name] = self.phases.get(name, 0.0) + self._state.clock() - start
 
-    def _empty_buffers(self, progressive: bool = False) -> Buffers:
+    def _empty_buffers(self, progressive: bool = False, records: bool = True) -> Buffers:
+        """Those of the first sample of each pixel, or of others, of which there are no `records` of lights and work."""
         s = self.settings
         planes = self._state.planes(s.width, s.height) if progressive else NO_PLANES
-        asked = {"record_lights": s.record_lights, "verify": s.verify, "record_work": s.record_work}
+        asked = {
+            "record_lights": s.record_lights and records,
+            "verify": s.verify,
+            "record_work": s.record_work and records,
+        }
         return empty_buffers(s.width, s.height, len(self._state.scene.lights), planes=planes, **asked)
 
     def _use_lamps(self, lamps: Lamps) -> None:
@@ -202,7 +207,7 @@ class FrameInProgress:
     def rehearse(self, stages: list[Stage]) -> None:
         """Shade the whole picture with these stages alone; nothing is shown or counted."""
         seen = {name: getattr(self.buffers, name) for name in ("depth", "primitive", "u", "v")}
-        table, buffers = StageTable(stages, verify=False), self._empty_buffers()._replace(**seen)
+        table, buffers = StageTable(stages, verify=False), self._empty_buffers(records=False)._replace(**seen)
         shade, uncounted = self._tile_shader(self.rays, self._everywhere, buffers, [table]), np.zeros_like(self._counts)
         self._for_each_tile(lambda tile, worker: shade(tile, worker, table, uncounted[worker]))
 
@@ -303,7 +308,7 @@ class FrameInProgress:
         """Mix in a further sample of each pixel, placed by the R2 sequence; it uses modes but counts nothing."""
         shift = ((0.5 + number / GOLDEN) % 1.0, (0.5 + number / GOLDEN**2) % 1.0)
         rays = pinhole(self._camera, self.settings.width, self.settings.height, shift)
-        buffers, counts = self._empty_buffers(), np.zeros_like(self._counts)
+        buffers, counts = self._empty_buffers(records=False), np.zeros_like(self._counts)
         self._trace_primary(rays, buffers, counts)
         self._shade(rays, buffers, counts, self._everywhere, learns=False)
         if number == 1:

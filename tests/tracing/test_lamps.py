@@ -104,6 +104,14 @@ def test_of_a_part_of_a_picture_it_is_known_which_pixels_were_shaded():
     assert np.array_equal(with_light(renderer, first, 0).asked[..., 0], whole.asked[..., 0]), "between two parts"
 
 
+def test_what_is_recorded_is_of_the_first_sample_of_each_pixel():
+    once = Renderer(room(LAMP, POINT), replace(SETTINGS, record_work=True)).render(0.0)
+    thrice = Renderer(room(LAMP, POINT), replace(SETTINGS, record_work=True, samples=3)).render(0.0)
+    for name in ("asked", "reached", "saved", "cost", "due_rays"):
+        assert np.array_equal(getattr(once, name), getattr(thrice, name)), name
+    assert not np.array_equal(once.color, thrice.color)
+
+
 def test_light_falls_off_with_the_square_of_the_distance():
     """At the foot of the lamp on a floor of reflectance 0.8: 0.8 / 20 squared, beside the ambient light."""
     lamp = Light("lamp", (0.0, 0.0, 20.0), (400.0, 200.0, 100.0), falloff="inverse square")
