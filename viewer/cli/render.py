@@ -29,7 +29,7 @@ from viewer.output.legend import Chosen, legend_of
 from viewer.output.legend_picture import with_legend
 from viewer.output.pictures import lights_in_words, picture
 from viewer.state.methods import CERTIFIED, default_for
-from viewer.state.readings import MOST_RECORDED, can_record_lights
+from viewer.state.readings import MOST_RECORDED, can_record_lights, records_lights
 from viewer.state.session import Session
 from viewer.state.views import View
 from viewer.util.files import check_writable, write_whole
@@ -65,23 +65,21 @@ def render(path: Path, options: Namespace) -> None:
             work.note(f"warning: {warning}")
         if view.of_light and light >= len(scene.lights):
             raise ValueError(f"--view {view.value}:{light}: {lights_in_words(len(scene.lights))}")
-        pixels, fits = settings.width * settings.height, True
-        if options.buffers is not None or view.needs_lights:
-            fits = can_record_lights(pixels, len(scene.lights))
-        if not fits and (options.buffers is not None or not view.of_light):
-            raise ValueError(_too_many_lights(options, pixels, len(scene.lights)))
+        pixels, count, all_of_them = settings.width * settings.height, len(scene.lights), options.buffers is not None
+        if (all_of_them or view is View.LIGHTS) and not can_record_lights(pixels, count):
+            raise ValueError(_too_many_lights(options, pixels, count))
+        lights = all_of_them or records_lights(view, pixels, count)
         time = moment(scene, options.frame, options.time)
         prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)
         before = _render_before(renderer, time, options, work)
         work.count(f"tracing {settings.width} × {settings.height}", before, before + options.samples)
         verify = settings.verify or view.needs_verify
-        lights = (options.buffers is not None or view.needs_lights) and fits
         renderer.settings = replace(
             settings, samples=options.samples, verify=verify, record_lights=lights, record_work=view.needs_work
         )
         frame = renderer.render(time, options.camera, work.cancelled)
-        if not fits:
+        if view.needs_lights and not lights:
             frame = with_light(renderer, frame, light)
         work.progress("writing", 1.0)
         if options.output is not None:

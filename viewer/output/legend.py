@@ -234,9 +234,10 @@ def _penumbra(frame: Frame, view: View, chosen: Chosen) -> Legend:
 
 def _lights(frame: Frame, view: View, chosen: Chosen) -> Legend:
     found = lights_legend(frame)
-    facts = (Entry("per pixel", values=(f"{found.per_pixel:.2f} of {count(frame.lights)} lights",)),)
+    facts = (Entry("per pixel", values=(f"{found.per_pixel:.4g} of {count(frame.lights)} lights",)),)
     entries = (Entry(_ARRIVALS[Arrival.UNKNOWN], GREY),) if frame.shaded is not None else ()
-    scale = Scale("0", count(found.most), f"{found.most / 2.0:.3g}")
+    middle = count(found.most // 2) if found.most % 2 == 0 else ""
+    scale = Scale("0", count(found.most), middle)
     return Legend("Lights that each pixel has to look at", (), entries, scale, facts)
 
 

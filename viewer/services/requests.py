@@ -15,10 +15,10 @@ RECORDS = ("verify", "record_work", "record_lights")
 """Settings that only add to what a frame holds."""
 
 
-def settings_for(session: Session, certificate_seconds: float, ready: bool, fits: bool) -> Settings:
-    """What the user has set, with modes; verified, and with more recorded, where the view needs that and it `fits` into
-    memory.  Until what makes certificates is `ready`, still being compiled, it is traced without: the picture is the
-    same."""
+def settings_for(session: Session, certificate_seconds: float, ready: bool, lights: bool) -> Settings:
+    """What the user has set, with modes; verified, and with more recorded, where the view needs that: what lights send,
+    if `lights`.  Until what makes certificates is `ready`, still being compiled, it is traced without: the
+    picture is the same."""
     view, method = session.view, session.settings.method
     if not ready and Method.parse(method).has_certificates:
         method = with_base(method, NO_CULLING)
@@ -27,7 +27,7 @@ def settings_for(session: Session, certificate_seconds: float, ready: bool, fits
         method=method,
         verify=session.settings.verify or view.needs_verify,
         record_work=view.needs_work,
-        record_lights=view.needs_lights and fits,
+        record_lights=lights,
         modes=True,
         certificate_seconds=certificate_seconds,
     )

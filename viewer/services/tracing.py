@@ -20,7 +20,7 @@ from viewer.services.render_thread import Pictures, RenderRequest, Traced
 from viewer.services.requests import as_asked, fulfils, lacks, settings_for
 from viewer.services.runs import Run
 from viewer.state.preferences import Preferences
-from viewer.state.readings import can_draw, can_record_lights
+from viewer.state.readings import can_draw, records_lights
 from viewer.state.session import Session
 from viewer.state.views import View
 
@@ -235,13 +235,13 @@ class Tracing:
     def settings(self) -> Settings:
         """What the user has set, and what else the next picture needs."""
         seconds = self._preferences.certificate_share * self._frame_seconds
-        return settings_for(self._session, seconds, self.now.ready, self._can_record_lights)
+        return settings_for(self._session, seconds, self.now.ready, self._records_lights)
 
     @property
-    def _can_record_lights(self) -> bool:
-        """Whether there is memory for what each light sends to each pixel."""
+    def _records_lights(self) -> bool:
+        """Whether frames are to record what all lights send to each pixel."""
         scene, (width, height) = self._session.scene, self.full_size
-        return scene is not None and can_record_lights(width * height, len(scene.lights))
+        return scene is not None and records_lights(self._session.view, width * height, len(scene.lights))
 
     def _answered(self, wanted: RenderRequest) -> bool:
         """Whether a frame has been asked for, or is there.  One that holds more than the view needs will do."""
@@ -346,6 +346,6 @@ class Tracing:
             return f"showing {run.label_shown}   {title}{f' (this run {lacks})' if lacks else ''}"
         if wanted is view:
             return title
-        if not wanted.needs_more or (wanted is View.LIGHTS and not self._can_record_lights):  # the picture says why
+        if not wanted.needs_more or (wanted is View.LIGHTS and not self._records_lights):  # the picture says why
             return f"{wanted.label}: none here, {view.label.lower()} shown"
         return f"{wanted.label}: {'verifying' if wanted.needs_verify else 'counting'} ..."

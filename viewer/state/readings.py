@@ -11,6 +11,10 @@ from viewer.state.views import Arrival, View
 MOST_RECORDED = 1 << 28
 """Pixels times lights, at most, of which all samples are recorded: a gigabyte of memory."""
 
+MOST_TOGETHER = 32
+"""Lights, at most, that are recorded together for a view of one: of more, the one is looked at alone, which is done
+soon and asks for no other frame."""
+
 _NO_WORK = "the frame did not record the work at its pixels"
 _NO_LIGHTS = "the frame did not record which samples of its lights reach its pixels"
 
@@ -31,6 +35,12 @@ def can_draw(frame: Frame, view: View, light: int = 0) -> bool:
 def can_record_lights(pixels: int, lights: int) -> bool:
     """Whether there is memory for what each light sends to each pixel."""
     return pixels * lights <= MOST_RECORDED
+
+
+def records_lights(view: View, pixels: int, lights: int) -> bool:
+    """Whether frames of so many pixels are to record all lights for this view."""
+    few = lights <= MOST_TOGETHER or not view.of_light
+    return view.needs_lights and few and can_record_lights(pixels, lights)
 
 
 def depth_range(frame: Frame) -> tuple[float, float]:

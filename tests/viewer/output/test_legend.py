@@ -80,11 +80,11 @@ def test_lights_per_pixel_and_what_is_not_known_yet(frame: Frame):
     hit = frame.primitive >= 0
     due = (frame.asked[hit] > 0).sum(axis=-1)
     legend = of(frame, View.LIGHTS)
-    assert legend.facts[0].values == (f"{due.mean():.2f} of 3 lights",) and not legend.entries
+    assert legend.facts[0].values == (f"{due.mean():.4g} of 3 lights",) and not legend.entries
     assert (legend.scale.low, legend.scale.high) == ("0", "3")
     part = in_part(frame)
     known = (part.asked[hit & part.shaded] > 0).sum(axis=-1)
-    assert of(part, View.LIGHTS).facts[0].values == (f"{known.mean():.2f} of 3 lights",)
+    assert of(part, View.LIGHTS).facts[0].values == (f"{known.mean():.4g} of 3 lights",)
     assert [entry.name for entry in of(part, View.LIGHTS).entries] == ["not known yet"]
     unknown = {entry.name: entry.values for entry in of(part, View.PENUMBRA).entries}["not known yet"]
     assert unknown == (percent((hit & ~part.shaded).sum(), hit.sum()),)

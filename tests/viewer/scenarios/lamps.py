@@ -114,7 +114,7 @@ def _one_of_too_many(d: Driver) -> None:
             assert np.abs(d.shown().astype(int) - drawn).max() <= 2
         d.press(int(KEY.j) | int(KEY.mod_shift))
         d.settle()
-        assert d.c.tracing.drawn_view is View.COLOR, "there are too many for it"
+        assert d.c.tracing.drawn_view is View.COLOR, "there is no memory for all"
     finally:
         readings.MOST_RECORDED = most
     d.press(KEY._1)

@@ -17,7 +17,7 @@ from viewer.services.light_recorder import LightQuestion, LightRecorder
 from viewer.services.render_thread import RenderRequest, Traced
 from viewer.services.tracing import Conditions, Tracing
 from viewer.state.preferences import Preferences
-from viewer.state.readings import MOST_RECORDED
+from viewer.state.readings import MOST_RECORDED, MOST_TOGETHER
 from viewer.state.session import Session
 from viewer.state.views import View
 
@@ -206,8 +206,7 @@ class Questions:
 
 
 def test_the_chosen_light_alone_is_asked_for_where_there_are_too_many():
-    many = make_scene(lights=3)
-    window = Window(replace(many, lights=many.lights * (MOST_RECORDED // 128)))
+    window = Window(make_scene(lights=MOST_TOGETHER + 1))
     questions = Questions()
     recorder = LightRecorder(window.session, questions, window.tracing)
     window.rest()
