@@ -28,16 +28,16 @@ def test_it_tells_speed_ups_and_what_was_known(tmp_path: Path, capsys: pytest.Ca
     assert found["speed_up"]["paper"]["total"] == pytest.approx(
         sum(found["seconds"]["none"]) / sum(found["seconds"]["paper"])
     )
-    assert found["known"]["paper"][0] == 0 < found["known"]["paper"][1], "modes say something from the second frame on"
+    assert 0 < found["known"]["paper"] < 1 and found["speed_up"]["paper"]["low"] > 0
     shown = capsys.readouterr().out
-    assert "default.aff" in shown and "free" in shown and "100 %" in shown
+    assert "default.aff" in shown and "free" in shown and "100%" in shown
 
 
 def test_a_picture_that_differs_is_a_fault(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     render = Renderer.render
 
-    def wrong(self: Renderer, time: float):
-        frame = render(self, time)
+    def wrong(self: Renderer, time: float, *more, **options):
+        frame = render(self, time, *more, **options)
         frame.color[0, 0] += self.settings.method == "certified"
         return frame
 

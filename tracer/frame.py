@@ -45,6 +45,10 @@ class Frame:
     asked, reached : (h, w, lights) uint16
         How many samples of a light the primary hit faces, and how many of their shadow rays reach it; with
         `record_lights`. A point has one sample.
+    only_light : int
+        The light that they are of, which alone has a column, or None for all (`tracer.one_light`).
+    shaded : (h, w) bool
+        The pixels that `asked` and `reached` are known of; None if these are all of them.
     reference : (h, w, 3) float32
         The picture with every shadow answer right, that of "none" bit for bit; with `verify`.
     wrong : (h, w) int32
@@ -79,6 +83,8 @@ class Frame:
     lights: int
     asked: NDArray[np.uint16] | None = None
     reached: NDArray[np.uint16] | None = None
+    only_light: int | None = None
+    shaded: NDArray[np.bool_] | None = None
     reference: NDArray[np.float32] | None = None
     wrong: NDArray[np.int32] | None = None
     cells: NDArray[np.int32] | None = None

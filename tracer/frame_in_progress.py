@@ -17,6 +17,7 @@ from tracer.geometry.camera import Pinhole, pinhole
 from tracer.methods.interface import Stage, StageTable
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.progressive import Parts
+from tracer.scene.lamps import Lamps
 from tracer.scene.model import Camera
 from tracer.settings import Settings
 from tracer.shading.blocks import NO_PLANES, TURNS, all_blocks
@@ -24,7 +25,7 @@ from tracer.shading.buffers import Buffers, empty_buffers
 from tracer.shading.surfaces import see_surfaces
 from tracer.shading.whitted import find_in_tile, shade_tile, trace_primary
 from tracer.state import State
-from tracer.statistics import gather
+from tracer.statistics import gather, sample_counts
 from tracer.tiles import Tile, nearest_first, tiles_of, tiles_to_shade
 
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
@@ -67,8 +68,7 @@ class FrameInProgress:
         self.words = self.history.words
         self.units = np.empty_like(self.buffers.primitive) if len(self.first) else self.buffers.primitive
         self._lamps = state.lamps(settings)
-        self.shading = state.shading
-        self.lights, self.corners = self.shading.lamps.places, self.shading.lamps.corners
+        self._use_lamps(state.shading.lamps)
         self.resting = state.rest.now
         self._counts = np.zeros((self.workers, COUNTERS), np.int64)
         self._occlusion_tests = np.zeros(self.workers, np.int64)
@@ -99,11 +99,20 @@ class FrameInProgress:
         yield
         self.phases[name] = self.phases.get(name, 0.0) + self._state.clock() - start
 
-    def _empty_buffers(self, progressive: bool = False) -> Buffers:
+    def _empty_buffers(self, progressive: bool = False, records: bool = True) -> Buffers:
+        """Those of the first sample of each pixel, or of others, of which there are no `records` of lights and work."""
         s = self.settings
         planes = self._state.planes(s.width, s.height) if progressive else NO_PLANES
-        asked = {"record_lights": s.record_lights, "verify": s.verify, "record_work": s.record_work}
+        asked = {
+            "record_lights": s.record_lights and records,
+            "verify": s.verify,
+            "record_work": s.record_work and records,
+        }
         return empty_buffers(s.width, s.height, len(self._state.scene.lights), planes=planes, **asked)
+
+    def _use_lamps(self, lamps: Lamps) -> None:
+        self.shading = self._state.shading._replace(lamps=lamps)
+        self.lights, self.corners = lamps.places, lamps.corners
 
     # --- phases, in the order of Figure 1 ------------------------------------------------------------
 
@@ -117,8 +126,7 @@ class FrameInProgress:
         else:
             state.rest.forget()
             state.world.place(poses)
-        self.shading = self.shading._replace(lamps=self._lamps.at(state.scene.light_positions(self._time)))
-        self.lights, self.corners = self.shading.lamps.places, self.shading.lamps.corners
+        self._use_lamps(self._lamps.at(state.scene.light_positions(self._time)))
         self.resting = state.rest.now
         self.history.follow_lights(self.lights, self._lamps)
         self.history.follow_rest(self.resting, state.world.outlines, self.workers)
@@ -200,7 +208,7 @@ class FrameInProgress:
     def rehearse(self, stages: list[Stage]) -> None:
         """Shade the whole picture with these stages alone; nothing is shown or counted."""
         seen = {name: getattr(self.buffers, name) for name in ("depth", "primitive", "u", "v")}
-        table, buffers = StageTable(stages, verify=False), self._empty_buffers()._replace(**seen)
+        table, buffers = StageTable(stages, verify=False), self._empty_buffers(records=False)._replace(**seen)
         shade, uncounted = self._tile_shader(self.rays, self._everywhere, buffers, [table]), np.zeros_like(self._counts)
         self._for_each_tile(lambda tile, worker: shade(tile, worker, table, uncounted[worker]))
 
@@ -301,7 +309,7 @@ class FrameInProgress:
         """Mix in a further sample of each pixel, placed by the R2 sequence; it uses modes but counts nothing."""
         shift = ((0.5 + number / GOLDEN) % 1.0, (0.5 + number / GOLDEN**2) % 1.0)
         rays = pinhole(self._camera, self.settings.width, self.settings.height, shift)
-        buffers, counts = self._empty_buffers(), np.zeros_like(self._counts)
+        buffers, counts = self._empty_buffers(records=False), np.zeros_like(self._counts)
         self._trace_primary(rays, buffers, counts)
         self._shade(rays, buffers, counts, self._everywhere, learns=False)
         if number == 1:
@@ -338,6 +346,8 @@ class FrameInProgress:
         shape, lights = buffers.primitive.shape, len(self._state.scene.lights)
         statistics = gather(self._counts, int(self._occlusion_tests.sum()), lights if settings.keeps_modes else 0)
         statistics.part = 1.0 if self._parts is None else self._parts.share
+        if settings.record_lights:
+            statistics.samples = sample_counts(buffers.asked, buffers.reached)
         statistics.phases, statistics.seconds = dict(self.phases), self.seconds
         layers: dict[str, NDArray] = {}
         for method in self.methods:

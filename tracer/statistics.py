@@ -84,6 +84,33 @@ class SaidByModes:
 
 
 @dataclass
+class SampleCounts:
+    """What the lights send to the primary hits of a frame.
+
+    Attributes
+    ----------
+    due : int
+        Samples of lights that primary hits face.
+    reached : int
+        Those of them that reach the hit.
+    penumbra : int
+        Pixels that some samples of a light reach, but not all that they face.
+    """
+
+    due: int = 0
+    reached: int = 0
+    penumbra: int = 0
+
+
+def sample_counts(asked: NDArray[np.uint16], reached: NDArray[np.uint16]) -> SampleCounts:
+    """Count what was recorded of (pixels, lights)."""
+    partly = reached < asked
+    partly &= reached > 0
+    due, arrived = (int(samples.sum(dtype=np.int64)) for samples in (asked, reached))
+    return SampleCounts(due, arrived, int(np.count_nonzero(partly.any(axis=1))))
+
+
+@dataclass
 class FrameStatistics:
     """Counters and times of one frame.
 
@@ -101,6 +128,8 @@ class FrameStatistics:
         The part of the pixels that were shaded. Below 1, shadow and secondary rays are those of this part.
     decision : str
         What the method "auto" does now and why, in a sentence.
+    samples : SampleCounts or None
+        What the lights send to the primary hits; with `Settings.record_lights`.
     seconds : float
         Time of the whole frame.
     by_modes : list of SaidByModes
@@ -118,6 +147,7 @@ class FrameStatistics:
     certificate_tests: int = 0
     part: float = 1.0
     decision: str = ""
+    samples: SampleCounts | None = None
     seconds: float = 0.0
     by_modes: list[SaidByModes] = field(default_factory=list)
     phases: dict[str, float] = field(default_factory=dict)

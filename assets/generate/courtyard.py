@@ -14,9 +14,10 @@ from dataclasses import replace
 import numpy as np
 
 from generate import materials as m
-from generate.aff import Colour, Lamp, Material, Model, Point, number, numbers
+from generate.aff import Colour, Lamp, Material, Model, Point
 from generate.images import generator
 from generate.mesh import Array, Mesh, lattice
+from generate.root import root_file
 from generate.shapes import box, flat_quad, grid, lathe, rounded_box
 from generate.tracks import Flight
 
@@ -314,7 +315,7 @@ def courtyard() -> Model:
     return court
 
 
-DURATION, FRAMES = 60.0, 300
+FRAMES = 300
 
 
 def waypoints() -> list[tuple[float, tuple[float, float, float], tuple[float, float, float]]]:
@@ -340,25 +341,8 @@ def waypoints() -> list[tuple[float, tuple[float, float, float], tuple[float, fl
 
 def text(folder: str) -> str:
     """The root file; everything else is included from `folder`."""
-    flight = Flight(waypoints())
-    position, target = flight.at(0.0)
-    return "\n".join([
-        "# A courtyard at night under 10,000 coloured bulbs.  Written by assets/make_scenes.py.",
-        "# Every bulb is a point light that falls off with the square of the distance; a walk of 300 frames.",
-        "",
-        "b 0.012 0.016 0.035",
-        f"am {numbers((m.GLOBAL_AMBIENT,) * 3)}",
-        "v",
-        f"from {numbers(position)}",
-        f"at {numbers(target)}",
-        "up 0 1 0",
-        "angle 60",
-        "hither 0.01",
-        "resolution 800 600",
-        "",
-        f"a 0 {number(DURATION)} {FRAMES}",
-        "",
-        f"i 0 {folder}/courtyard.aff",
-        "",
-        flight.text(0.0, DURATION, round(DURATION * 2) + 1),
-    ]) + "\n"  # fmt: skip
+    comments = (
+        "A courtyard at night under 10,000 coloured bulbs.  Written by assets/make_scenes.py.",
+        "Every bulb is a point light that falls off with the square of the distance; a walk of 300 frames.",
+    )
+    return root_file(comments, (0.012, 0.016, 0.035), 60.0, f"{folder}/courtyard.aff", Flight(waypoints()), FRAMES)

@@ -12,10 +12,11 @@ import numpy as np
 
 from generate import materials as m
 from generate import office_things as things
-from generate.aff import Colour, Lamp, Model, number, numbers
+from generate.aff import Colour, Lamp, Model
 from generate.images import generator
 from generate.mesh import Mesh
 from generate.office_things import GREY, STEEL, matte
+from generate.root import root_file
 from generate.shapes import box, grid
 from generate.tracks import Flight
 
@@ -316,7 +317,7 @@ def office() -> Model:
     return house
 
 
-DURATION, FRAMES = 84.0, 420
+FRAMES = 420
 EYE = 1.6
 FIRST, SECOND = DEPTH + AISLE / 2, 3 * DEPTH + 1.5 * AISLE  # the middles of two corridors
 EAST, WEST = COLUMNS * WIDTH + AISLE / 2, -AISLE / 2  # and of the two that join them
@@ -341,25 +342,8 @@ WAYPOINTS = [  # time, position, what is looked at
 
 def text(folder: str) -> str:
     """The root file; everything else is included from `folder`."""
-    flight = Flight(WAYPOINTS)
-    position, target = flight.at(0.0)
-    return "\n".join([
-        "# An office of 64 rooms under 256 ceiling panels.  Written by assets/make_scenes.py.",
-        "# Each panel shines from 16 points, 4,096 in all; a walk of 400 frames past open and shut doors.",
-        "",
-        "b 0 0 0",
-        f"am {numbers((m.GLOBAL_AMBIENT,) * 3)}",
-        "v",
-        f"from {numbers(position)}",
-        f"at {numbers(target)}",
-        "up 0 1 0",
-        "angle 58",
-        "hither 0.01",
-        "resolution 800 600",
-        "",
-        f"a 0 {number(DURATION)} {FRAMES}",
-        "",
-        f"i 0 {folder}/office.aff",
-        "",
-        flight.text(0.0, DURATION, round(DURATION * 2) + 1),
-    ]) + "\n"  # fmt: skip
+    comments = (
+        "An office of 64 rooms under 256 ceiling panels.  Written by assets/make_scenes.py.",
+        "Each panel shines from 16 points, 4,096 in all; a walk of 400 frames past open and shut doors.",
+    )
+    return root_file(comments, (0.0, 0.0, 0.0), 58.0, f"{folder}/office.aff", Flight(WAYPOINTS), FRAMES)

@@ -3,15 +3,15 @@
     make lamps                                          the default scene, and BART's scenes where they are there
     make lamps ARGS="--radius 0.03 0.1 --samples 64 --frames 100 kitchen.aff"
 
-The methods take turns frame by frame, each with a renderer of its own in one world.  A speed-up is the time of `none`
-over that of the method, certificates included; `free` gives the ceiling, what it would be if shadow rays cost nothing.
+The methods take turns frame by frame, each with a renderer of its own in one world (`tracer.lamp_experiment`).  A
+speed-up is the time of `none` over that of the method, certificates included; `free` gives the ceiling, what it would
+be if shadow rays cost nothing.
 Every picture by an exact method must be that of `none`, bit for bit; a run in which one is not ends with exit code 1.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -21,42 +21,39 @@ import numpy as np
 from rich.table import Table
 
 from tests.bench.frame_times import machine
-from tests.bench.quickest import SCENES
-from tracer.compilation import warm_up
-from tracer.geometry.world import ACCELERATORS
+from tests.bench.of_scenes import add_options, finish, prepared
+from tracer import lamp_experiment
+from tracer.experiment import REFERENCE
+from tracer.frame import Frame, Settings
+from tracer.lamp_experiment import CEILING, run_lamps
 from tracer.method import Method
 from tracer.parallel import thread_count
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
-from tracer.settings import Settings
-from viewer.cli.console import print_table, say
-from viewer.util.resources import scene_path
-
-TRUTH, CEILING = "none", "free"
+from tracer.state import open_world
+from viewer.cli.console import say
 
 
 def measure(path: Path, settings: Settings, methods: list[str], frames: int, step: int) -> dict[str, Any]:
     """Seconds of every frame by `none`, by the methods and by `free`; what was known; and the frames that differ."""
     scene = load_scene(path)
-    names = [TRUTH, *methods, CEILING]
-    first = Renderer(scene, replace(settings, method=TRUTH))
-    first.render(scene.frame_time(0))  # untimed: loads kernels
-    renderers = {name: Renderer(scene, replace(settings, method=name), world=first.world) for name in names}
-    seconds: dict[str, list[float]] = {name: [] for name in names}
-    known: dict[str, list[float]] = {name: [] for name in methods}
-    numbers, differ, due = [k * step % max(1, scene.frames) for k in range(frames)], [], 0
-    for k, number in enumerate(numbers):
-        rendered = {}
-        for name in names if k % 2 else names[::-1]:
-            rendered[name] = renderers[name].render(scene.frame_time(number))
-            seconds[name].append(rendered[name].statistics.seconds)
-        truth = rendered[TRUTH].color.tobytes()
-        due += rendered[TRUTH].statistics.shadow.due
-        for name in methods:
-            shadow = rendered[name].statistics.shadow
-            known[name].append((shadow.culled + shadow.dynamic_only) / max(1, shadow.due))
-            if Method.parse(name).exact and rendered[name].color.tobytes() != truth:
-                differ.append((name, number))
+    world = open_world(scene, settings)
+    Renderer(scene, settings, world=world).render(scene.frame_time(0))  # untimed: loads kernels
+    times = [scene.frame_time(k * step % max(1, scene.frames)) for k in range(frames)]
+    truth, differ = b"", []
+
+    def compare(number: int, method: str, frame: Frame) -> None:
+        nonlocal truth
+        if method == REFERENCE:
+            truth = frame.color.tobytes()
+        elif Method.parse(method).exact and frame.color.tobytes() != truth:
+            differ.append((method, number * step % max(1, scene.frames)))
+
+    kinds = [(settings.lamp_radius, settings.lamp_samples)]
+    *_, results = run_lamps(scene, settings, methods, kinds, times, world=world, on_frame=compare)
+    (measured,) = results.runs
+    seconds = {name: figures["frame_seconds"] for name, figures in measured.methods.items()}
+    rows = {row.method: row for row in lamp_experiment.table(results)}
     return {
         "scene": str(path),
         "size": [settings.width, settings.height],
@@ -65,54 +62,48 @@ def measure(path: Path, settings: Settings, methods: list[str], frames: int, ste
         "lamp_radius": settings.lamp_radius,
         "lamp_samples": settings.lamp_samples,
         "lights": len(scene.lights),
-        "shadow_rays": due,
-        "frames": numbers,
+        "shadow_rays": int(sum(measured.methods[REFERENCE]["shadow_rays_due"])),
+        "frames": [k * step % max(1, scene.frames) for k in range(frames)],
         "seconds": seconds,
-        "known": known,
-        "speed_up": {name: speed_up(seconds[TRUTH], seconds[name]) for name in [*methods, CEILING]},
+        "known": {name: rows[name].known for name in methods},
+        "speed_up": {
+            name: {"total": rows[name].speed_up, "share": rows[name].share_of_free}
+            | quartiles(seconds[REFERENCE], seconds[name])
+            for name in [*methods, CEILING]
+        },
         "differ": differ,
     }
 
 
-def speed_up(none: list[float], other: list[float]) -> dict[str, float]:
-    """The time of none over another method's: of all frames, and the quartiles of the frames."""
+def quartiles(none: list[float], other: list[float]) -> dict[str, float]:
+    """The quartiles, over the frames, of the time of none over another method's."""
     low, median, high = np.percentile(np.array(none) / np.array(other), [25, 50, 75])
-    return {"total": sum(none) / sum(other), "low": float(low), "median": float(median), "high": float(high)}
+    return {"low": float(low), "median": float(median), "high": float(high)}
 
 
 def table(results: list[dict[str, Any]]) -> Table:
     made = Table(title="speed-up over none: of all frames, and quartiles of the frames", title_justify="left")
-    for name in ("lamps", "none, ms", "method", "speed-up", "quartiles", "known", "of ceiling"):
+    for name in ("lamps", "none, ms", "method", "speed-up", "quartiles", "known", "of free"):
         made.add_column(name, justify="left" if name in ("lamps", "method") else "right")
     for r in results:
         lamps = f"{Path(r['scene']).name}, {r['lamp_samples']} at {r['lamp_radius']}"
-        start = [lamps, f"{1e3 * float(np.median(r['seconds'][TRUTH])):.0f}"]
+        start = [lamps, f"{1e3 * float(np.median(r['seconds'][REFERENCE])):.0f}"]
         for name, found in r["speed_up"].items():
-            known = f"{100 * float(np.mean(r['known'][name])):.0f} %" if name in r["known"] else ""
-            quartiles = " ".join(f"{found[part]:.2f}" for part in ("low", "median", "high"))
-            share = f"{100 * found['total'] / r['speed_up'][CEILING]['total']:.0f} %"
-            made.add_row(*start, name, f"{found['total']:.2f}", quartiles, known, share)
+            known = f"{r['known'][name]:.0%}" if name in r["known"] else ""
+            spread = " ".join(f"{found[part]:.2f}" for part in ("low", "median", "high"))
+            made.add_row(*start, name, f"{found['total']:.2f}", spread, known, f"{found['share']:.0%}")
             start = ["", ""]
     return made
 
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="make lamps", description=__doc__.splitlines()[0])
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="default: the default scene, and BART's if there")
+    add_options(parser, 100, "out/lamps.json")
     parser.add_argument("--methods", nargs="+", default=["certified"], help="to hold against none (default: certified)")
     parser.add_argument("--radius", nargs="+", type=float, default=[0.03, 0.1], help="of lamps (default: 0.03 0.1)")
     parser.add_argument("--samples", nargs="+", type=int, default=[64], help="of each lamp (default: 64)")
-    parser.add_argument("--frames", type=int, default=100, help="of each run (default: 100)")
-    parser.add_argument("--step", type=int, default=1, help="of the path, from one frame to the next (default: 1)")
-    parser.add_argument("--size", type=int, default=512, help="width and height in pixels (default: 512)")
-    parser.add_argument("--threads", type=int, default=0, help="0, the default: one per core")
-    parser.add_argument("--accelerator", choices=ACCELERATORS, default="bvh8", help="(default: bvh8)")
-    parser.add_argument("--json", type=Path, default=Path("out/lamps.json"), help="(default: out/lamps.json)")
     options = parser.parse_args(arguments)
-    paths = [scene_path(name) for name in options.scenes]
-    paths = paths or [scene_path(None), *(path for path in SCENES if path.exists())]
-    settings = Settings(options.size, options.size, threads=options.threads, accelerator=options.accelerator)
-    warm_up(accelerator=options.accelerator)
+    paths, settings = prepared(options)
     report: dict[str, Any] = {"machine": machine(), "runs": []}
     for path in paths:
         for radius in options.radius:
@@ -120,16 +111,10 @@ def main(arguments: list[str] | None = None) -> int:
                 lamps = replace(settings, lamp_radius=radius, lamp_samples=samples).validated()
                 say(f"{path.name}: radius {radius}, {samples} samples, {options.frames} frames")
                 report["runs"].append(measure(path, lamps, options.methods, options.frames, options.step))
-    print_table(table(report["runs"]))
-    options.json.parent.mkdir(parents=True, exist_ok=True)
-    options.json.write_text(json.dumps(report, indent=1) + "\n")
-    print(f"all figures in {options.json}")
     faults = [
         f"{Path(r['scene']).name}: {name} differs in frame {at}" for r in report["runs"] for name, at in r["differ"]
     ]
-    for fault in faults:
-        say(f"wrong: {fault}")
-    return 1 if faults else 0
+    return finish(report, table(report["runs"]), options.json, faults)
 
 
 if __name__ == "__main__":

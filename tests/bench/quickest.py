@@ -11,7 +11,6 @@ bit for bit; a run in which one is not ends with exit code 1.
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import time
 from dataclasses import replace
@@ -22,20 +21,16 @@ import numpy as np
 from rich.table import Table
 
 from tests.bench.frame_times import machine
-from tracer.compilation import warm_up
+from tests.bench.of_scenes import add_options, finish, prepared
 from tracer.frame import Settings
-from tracer.geometry.world import ACCELERATORS
 from tracer.parallel import thread_count
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
-from viewer.cli.console import print_table, say
-from viewer.util.resources import scene_path
+from viewer.cli.console import say
 
 METHODS = ("none", "auto")
 WINDOW = 50  # frames
 ALLOWED = 1.03  # of none's time, over any window
-BART = Path(__file__).resolve().parents[3] / "shared" / "bart"
-SCENES = tuple(BART / name for name in ("kitchen/kitchen.aff", "robot/Robot.aff", "museum/museum5.aff"))
 
 
 def measure(path: Path, settings: Settings, frames: int, step: int, method: str = METHODS[1]) -> dict[str, Any]:
@@ -112,36 +107,20 @@ def table(results: list[dict[str, Any]]) -> Table:
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="make quickest", description=__doc__.splitlines()[0])
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="default: the default scene, and BART's if there")
+    add_options(parser, 150, "out/quickest.json")
     parser.add_argument("--method", default=METHODS[1], help="to hold against none (default: auto)")
-    parser.add_argument("--frames", type=int, default=150, help="per scene and method (default: 150)")
-    parser.add_argument("--step", type=int, default=1, help="of the path, from one frame to the next (default: 1)")
-    parser.add_argument("--size", type=int, default=512, help="width and height in pixels (default: 512)")
-    parser.add_argument("--threads", type=int, default=0, help="0, the default: one per core")
-    parser.add_argument("--accelerator", choices=ACCELERATORS, default="bvh8", help="(default: bvh8)")
-    parser.add_argument("--json", type=Path, default=Path("out/quickest.json"), help="(default: out/quickest.json)")
     options = parser.parse_args()
-    paths = [scene_path(name) for name in options.scenes]
-    paths = paths or [scene_path(None), *(path for path in SCENES if path.exists())]
-    settings = Settings(options.size, options.size, threads=options.threads, accelerator=options.accelerator)
-    settings = replace(settings, method=METHODS[0]).validated()
-    warm_up(accelerator=options.accelerator)
+    paths, settings = prepared(options)
     report: dict[str, Any] = {"machine": machine(), "scenes": []}
     for path in paths:
         result = measure(path, settings, options.frames, options.step, options.method)
         report["scenes"].append(result)
         say(f"{path.name}: {result['total']:.3f} in all, {result['worst']:.3f} at worst; {result['decisions'][-1][1]}")
-    print_table(table(report["scenes"]))
-    options.json.parent.mkdir(parents=True, exist_ok=True)
-    options.json.write_text(json.dumps(report, indent=1) + "\n")
-    print(f"all figures in {options.json}")
-    faults = [f"{Path(r['scene']).name}: frames {r['differ']} differ" for r in report["scenes"] if r["differ"]]
-    for fault in faults:
-        say(f"wrong: {fault}")
     for r in report["scenes"]:
         if r["worst"] > ALLOWED:
             say(f"{Path(r['scene']).name}: {r['worst']:.3f} of none's time over some {WINDOW} frames")
-    return 1 if faults else 0
+    faults = [f"{Path(r['scene']).name}: frames {r['differ']} differ" for r in report["scenes"] if r["differ"]]
+    return finish(report, table(report["scenes"]), options.json, faults)
 
 
 if __name__ == "__main__":

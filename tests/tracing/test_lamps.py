@@ -14,6 +14,7 @@ from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.modes import FULLY_RENDERED, ShadowMode
 from tracer.explanation import explain
 from tracer.geometry.world import ACCELERATORS
+from tracer.one_light import with_light
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation
 from tracer.scene.lights import Light
@@ -53,6 +54,62 @@ def test_a_lamp_is_the_lights_that_its_samples_are(accelerator: str, falloff: st
     penumbra = (frame.reached[..., 0] > 0) & (frame.reached[..., 0] < frame.asked[..., 0])
     assert penumbra.sum() > 50, "no penumbra: this shows nothing"
     assert frame.statistics.shadow.due == points.statistics.shadow.due
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+@pytest.mark.parametrize("method", ["none", "certified"])
+def test_one_light_alone_is_recorded_as_among_all(accelerator: str, method: str):
+    """Beside moving objects, too, and whatever is known of the light; the frames that follow stay the same."""
+    scene_, settings = room(LAMP, POINT, kites=True), replace(SETTINGS, accelerator=accelerator, method=method)
+    all_lights = Renderer(scene_, settings)
+    alone = Renderer(scene_, replace(settings, record_lights=False))
+    for time in (0.0, 0.5, 1.5, 1.5):
+        expected, frame = all_lights.render(time), alone.render(time)
+        assert expected.asked is not None and expected.reached is not None and frame.asked is None
+        for light in (1, 0):
+            found = with_light(alone, frame, light)
+            assert found.only_light == light and found.color is frame.color
+            for name in ("asked", "reached"):
+                samples = getattr(found, name)
+                assert samples.shape == (96, 96, 1) and samples.dtype == np.uint16
+                assert np.array_equal(samples[..., 0], getattr(expected, name)[..., light]), (name, light, time)
+        assert frame.color.tobytes() == expected.color.tobytes()
+    with pytest.raises(IndexError):
+        with_light(alone, frame, 2)
+
+
+def test_samples_and_pixels_in_the_penumbra_are_counted():
+    frame = Renderer(room(LAMP, POINT), SETTINGS).render(0.0)
+    assert frame.asked is not None and frame.reached is not None
+    counted, partly = frame.statistics.samples, (frame.reached > 0) & (frame.reached < frame.asked)
+    assert counted is not None and counted.penumbra == partly.any(axis=-1).sum() > 50
+    assert (counted.due, counted.reached) == (frame.asked.sum(), frame.reached.sum())
+    assert Renderer(room(LAMP), replace(SETTINGS, record_lights=False)).render(0.0).statistics.samples is None
+
+
+def test_of_a_part_of_a_picture_it_is_known_which_pixels_were_shaded():
+    renderer = Renderer(room(LAMP, POINT), SETTINGS)
+    *parts, whole = renderer.refine(0.0, parts=(1, 4, 16))
+    assert whole.shaded is None and whole.asked is not None
+    for frame in parts:
+        assert frame.shaded is not None and frame.asked is not None
+        assert frame.shaded.mean() == pytest.approx(frame.statistics.part, abs=0.01)
+        assert (
+            np.array_equal(frame.asked[frame.shaded], whole.asked[frame.shaded])
+            and not frame.asked[~frame.shaded].any()
+        )
+    renderer.settings = replace(SETTINGS, record_lights=False)
+    first = next(iter(renderer.refine(0.0, parts=(1, 16))))
+    assert first.shaded is None
+    assert np.array_equal(with_light(renderer, first, 0).asked[..., 0], whole.asked[..., 0]), "between two parts"
+
+
+def test_what_is_recorded_is_of_the_first_sample_of_each_pixel():
+    once = Renderer(room(LAMP, POINT), replace(SETTINGS, record_work=True)).render(0.0)
+    thrice = Renderer(room(LAMP, POINT), replace(SETTINGS, record_work=True, samples=3)).render(0.0)
+    for name in ("asked", "reached", "saved", "cost", "due_rays"):
+        assert np.array_equal(getattr(once, name), getattr(thrice, name)), name
+    assert not np.array_equal(once.color, thrice.color)
 
 
 def test_light_falls_off_with_the_square_of_the_distance():

@@ -146,6 +146,13 @@ def with_lamps(frame: Frame) -> Frame:
     return replace(frame, asked=asked, reached=reached)
 
 
+def in_part(frame: Frame) -> Frame:
+    """The frame while every second column has been shaded: nothing is known of what lights send to the others."""
+    shaded = np.indices(frame.primitive.shape)[1] % 2 == 0
+    asked, reached = (samples * shaded[..., None].astype(np.uint16) for samples in (frame.asked, frame.reached))
+    return replace(frame, asked=asked, reached=reached, shaded=shaded)
+
+
 def in_cells(frame: Frame) -> Frame:
     """The frame as of a method whose units are cells: odd columns of every primitive have others than even ones."""
     x = np.indices(frame.primitive.shape)[1]

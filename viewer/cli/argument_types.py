@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from viewer.state.plans import parse_factors
 
 if TYPE_CHECKING:
     from viewer.state.views import View
+
+T = TypeVar("T")
 
 _VIEW_NAMES = {
     "colour": "color",
@@ -52,6 +54,11 @@ def number(least: float, most: float) -> Callable[[str], float]:
         return value
 
     return parse
+
+
+def several(parse: Callable[[str], T]) -> Callable[[str], list[T]]:
+    """Values with commas between them."""
+    return lambda text: [parse(part.strip()) for part in text.split(",")]
 
 
 def pixel(text: str) -> tuple[int, int]:
@@ -96,6 +103,13 @@ def view(text: str) -> ChosenView:
     if wipe > 1.0:
         raise argparse.ArgumentTypeError(f"{text!r}: the line of a wipe lies at 0 to 1 of the width")
     return ChosenView(view, int(detail) if view.of_light and detail else 0, wipe, view.needs_work and bool(detail))
+
+
+def lamp_samples(text: str) -> int:
+    """The number of points from which a lamp shines."""
+    from tracer.scene.lights import MAX_SAMPLES
+
+    return count(1, MAX_SAMPLES)(text)
 
 
 def method(text: str) -> str:

@@ -6,6 +6,7 @@ Ctrl-C ends it after the last whole frame: what is done is shown, and written wh
 from __future__ import annotations
 
 from argparse import Namespace
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.table import Table
@@ -14,8 +15,10 @@ from tracer import experiment
 from tracer.experiment import REFERENCE, Results
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
+from tracer.lamp_experiment import kinds_of_lamps
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
+from viewer.cli import lamp_bench
 from viewer.cli.console import Work, print_table, working
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import exports
@@ -28,11 +31,16 @@ def bench(path: Path, options: Namespace) -> bool:
     Raises SceneError, ValueError and OSError, each in one line, or Cancelled where no frame was finished.
     """
     check_scene_file(path)
+    radii, samples = options.lamp_radius or [None], options.lamp_samples or [None]
+    options.lamp_radius, options.lamp_samples = radii[0], samples[0]
     settings = tracing_settings(options)
     methods = experiment.with_reference(options.methods)
     wanted = exports.wanted_files(options)
     if "plot" in wanted and methods == [REFERENCE]:
         raise ValueError(f"--plot: nothing to compare with {REFERENCE}; give another of --methods")
+    by_lamps = len(radii) * len(samples) > 1
+    if by_lamps and "plot" in wanted:
+        raise ValueError("--plot: it draws one kind of lamps; give one --lamp-radius and one --lamp-samples")
     with working() as work:
         scene = load_visible_scene(path, work.progress)
         for warning in scene.warnings:
@@ -40,12 +48,37 @@ def bench(path: Path, options: Namespace) -> bool:
         times = experiment.path_times(scene, options.path_frames)
         numbers = frame_range(options.frames, len(times))
         prepare_kernels(work, len(scene.lights), options.accelerator, *methods)
+        if by_lamps:
+            return _bench_lamps(scene, settings, methods, (radii, samples), times, numbers, work, wanted)
         results = _run(scene, settings, methods, times, numbers, work)
         finished = len(results.frames) == len(numbers)
         if not finished:
             work.note(f"cancelled after {len(results.frames)} of {len(numbers)} frames; the table is of these")
         failures = exports.write_files(exports.experiment_writers(options.verify), results, wanted)
     print_table(_table(results, options.verify))
+    if failures:
+        raise OSError("; ".join(failures))
+    return finished
+
+
+def _bench_lamps(
+    scene: Scene,
+    settings: Settings,
+    methods: list[str],
+    lamps: tuple[Sequence[float | None], Sequence[int | None]],
+    times: list[float],
+    numbers: range,
+    work: Work,
+    wanted: dict[str, Path],
+) -> bool:
+    """Measure every kind of lamps; print the table, write the files, and return whether it went on to its end."""
+    kinds = kinds_of_lamps(scene, *lamps)
+    results = lamp_bench.run(scene, settings, methods, kinds, times, numbers, work)
+    finished = len(results.runs) == len(kinds) and len(results.runs[-1].frames) == len(numbers)
+    if not finished:
+        work.note(f"cancelled in lamps {len(results.runs)} of {len(kinds)}; the table is of the frames that are done")
+    failures = exports.write_files(exports.LAMP_WRITERS, results, wanted)
+    print_table(lamp_bench.lamp_table(results))
     if failures:
         raise OSError("; ".join(failures))
     return finished

@@ -56,7 +56,7 @@ examples:
   shadowcull bench kitchen.aff --path-frames 100
   shadowcull bench Robot.aff --frames 100:200 --size 256x256 --verify
   shadowcull bench kitchen.aff --path-frames 100 --methods paper,cells,certified,certified+cache
-  shadowcull bench kitchen.aff --path-frames 100 --lamp-radius 0.1
+  shadowcull bench kitchen.aff --path-frames 100 --lamp-radius 0.03,0.1 --lamp-samples 16,64 --accelerator bvh8
   shadowcull bench default --methods none,paper --symmetric --json default.json --csv default.csv
   shadowcull bench kitchen.aff --path-frames 100 --verify --plot kitchen.svg
 
@@ -67,6 +67,11 @@ and the exit code is 130; a second Ctrl-C ends it at once.
 The JSON holds scene, size, frames, and for each method and figure a list with one entry per frame; the
 CSV is the table. The plot shows the savings of each frame, their average and maximum, and with --verify
 the wrong answers.
+
+Several values of --lamp-radius or --lamp-samples make another table: for each radius, number of samples and method
+the time of a frame, its shadow rays, the speed-up over none, and how much that is of the speed-up of free, for which
+shadow rays cost nothing. The JSON then has the figures of all lamps under "lamps", and those of the first where a
+single one has its own.
 """
 
 ZOOM = """\

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
 
 from viewer.cli import examples
-from viewer.cli.argument_types import count, factors, method, number, pixel, size, view
+from viewer.cli.argument_types import count, factors, lamp_samples, method, number, pixel, several, size, view
 from viewer.util import resources
 from viewer.util.messages import ERROR, say
 from viewer.util.version import program_version
 
 MISUSED = 2
 """Exit code where a command line is wrong."""
-MAX_LAMP_SAMPLES = 1024
 _CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
 
 
@@ -76,8 +76,8 @@ def render() -> Parser:
         default="color",
         metavar="V",
         help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference, "
-        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, saved or cost, as counts of rays or as shares like saved:share "
-        "(default: color)",
+        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, lights, saved or cost, as counts of rays or as shares like "
+        "saved:share (default: color)",
     )
     add("--legend", action="store_true", help="draw the view's legend into the picture")
     add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
@@ -113,7 +113,7 @@ def bench() -> Parser:
     add("--json", type=Path, metavar="FILE", help="every figure of every frame")
     add("--csv", type=Path, metavar="FILE", help="the table")
     add("--plot", type=Path, metavar="FILE", help="savings per frame, drawn for a slide: a .png, .svg or .pdf")
-    _add_tracing_options(parser, "kdtree")  # whose steps are the paper's
+    _add_tracing_options(parser, "kdtree", many_lamps=True)  # whose steps are the paper's
     _add_zoom_factor(parser)
     return parser
 
@@ -170,24 +170,30 @@ def _add_moment(parser: Parser) -> None:
     moment.add_argument("--time", type=float, metavar="T", help="time in seconds, instead of a frame")
 
 
-def _add_tracing_options(parser: Parser, accelerator: str) -> None:
-    """What all commands that trace have in common, with the structure that is theirs by default."""
+def _add_tracing_options(parser: Parser, accelerator: str, many_lamps: bool = False) -> None:
+    """What all commands that trace have in common, with the structure that is theirs by default; `many_lamps`: they
+    take several kinds of lamps."""
     add = parser.add_argument
     help_ = f"the tree that rays are traced through (default: {accelerator})"
     add("--accelerator", choices=("kdtree", "bvh8"), default=accelerator, help=help_)
     add("--threads", type=count(0, 1024), default=0, metavar="N", help="0, the default: one per core")
     add("--depth", type=count(0, 100), default=10, metavar="D", help="the most bounces (default: 10)")
     add("--symmetric", action="store_true", help="occlusion tests in both directions between neighbouring pixels")
-    _add_lamps(parser)
+    _add_lamps(parser, many_lamps)
 
 
-def _add_lamps(parser: Parser) -> None:
+def _add_lamps(parser: Parser, many: bool = False) -> None:
     """What makes lamps of a scene's lights; without an option, they are as the scene, or a saved picture, says."""
     add = parser.add_argument
+    radius: Callable[[str], object] = number(0.0, 1e9)
+    samples: Callable[[str], object] = lamp_samples
+    more = "; several, with commas, are measured one after another" if many else ""
+    if many:
+        radius, samples = several(radius), several(samples)
     help_ = "make every point light and sphere a sphere of this radius, in the scene's units; 0 makes them points"
-    add("--lamp-radius", type=number(0.0, 1e9), metavar="R", help=help_)
+    add("--lamp-radius", type=radius, metavar="R,..." if many else "R", help=help_ + more)
     help_ = "points from which each lamp shines (default: as the scene says, and 16 for what --lamp-radius makes)"
-    add("--lamp-samples", type=count(1, MAX_LAMP_SAMPLES), metavar="N", help=help_)
+    add("--lamp-samples", type=samples, metavar="N,..." if many else "N", help=help_ + more)
 
 
 def _add_zoom_factor(parser: Parser) -> None:

@@ -18,6 +18,7 @@ from PIL import Image, PngImagePlugin
 from tracer.culling import modes
 from tracer.frame import Frame
 from tracer.method import Method
+from tracer.one_light import with_light
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
@@ -28,6 +29,7 @@ from viewer.output.legend import Chosen, legend_of
 from viewer.output.legend_picture import with_legend
 from viewer.output.pictures import lights_in_words, picture
 from viewer.state.methods import CERTIFIED, default_for
+from viewer.state.readings import MOST_RECORDED, can_record_lights, records_lights
 from viewer.state.session import Session
 from viewer.state.views import View
 from viewer.util.files import check_writable, write_whole
@@ -42,7 +44,6 @@ PICTURES = {
     ".bmp": "BMP",
     ".ppm": "PPM",
 }
-MOST_BUFFERS = 4e9  # bytes for what --buffers has of each pixel and light
 BYTES_OF_A_LIGHT = 7  # of a pixel: samples asked and reached in 2 each, lit, due and shadow_mode in 1 each
 LEGEND_PLACE = 0.0, 1.0  # the lower left corner
 
@@ -64,19 +65,22 @@ def render(path: Path, options: Namespace) -> None:
             work.note(f"warning: {warning}")
         if view.of_light and light >= len(scene.lights):
             raise ValueError(f"--view {view.value}:{light}: {lights_in_words(len(scene.lights))}")
-        if options.buffers is not None:
-            _check_memory(settings.width * settings.height, len(scene.lights))
+        pixels, count, all_of_them = settings.width * settings.height, len(scene.lights), options.buffers is not None
+        if (all_of_them or view is View.LIGHTS) and not can_record_lights(pixels, count):
+            raise ValueError(_too_many_lights(options, pixels, count))
+        lights = all_of_them or records_lights(view, pixels, count)
         time = moment(scene, options.frame, options.time)
         prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)
         before = _render_before(renderer, time, options, work)
         work.count(f"tracing {settings.width} × {settings.height}", before, before + options.samples)
         verify = settings.verify or view.needs_verify
-        lights = options.buffers is not None or view.needs_lights
         renderer.settings = replace(
             settings, samples=options.samples, verify=verify, record_lights=lights, record_work=view.needs_work
         )
         frame = renderer.render(time, options.camera, work.cancelled)
+        if view.needs_lights and not lights:
+            frame = with_light(renderer, frame, light)
         work.progress("writing", 1.0)
         if options.output is not None:
             _write_picture(options.output, scene, frame, options)
@@ -116,14 +120,13 @@ def buffers(frame: Frame) -> dict[str, np.ndarray]:
     return arrays
 
 
-def _check_memory(pixels: int, lights: int) -> None:
-    needed = BYTES_OF_A_LIGHT * pixels * lights
-    if needed > MOST_BUFFERS:
-        most = int(MOST_BUFFERS / BYTES_OF_A_LIGHT / lights)
-        raise ValueError(
-            f"--buffers: {lights:,} lights at {pixels:,} pixels take {needed / 1e9:.1f} GB, "
-            f"{MOST_BUFFERS / 1e9:.0f} GB at most; give a smaller --size, of up to {most:,} pixels"
-        )
+def _too_many_lights(options: Namespace, pixels: int, lights: int) -> str:
+    option = "--buffers" if options.buffers is not None else f"--view {options.view.view.value}"
+    needed, most = (BYTES_OF_A_LIGHT * n / 1e9 for n in (pixels * lights, MOST_RECORDED))
+    return (
+        f"{option}: {lights:,} lights at {pixels:,} pixels take {needed:.1f} GB, {most:.1f} GB at most; "
+        f"give a smaller --size, of up to {MOST_RECORDED // lights:,} pixels"
+    )
 
 
 def _check_outputs(output: Path | None, npz: Path | None) -> None:

@@ -15,7 +15,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from tracer import experiment, zoom
+from tracer import experiment, lamp_experiment, zoom
 from viewer.output import reports
 from viewer.util.files import check_outputs, reserve, write_each, write_text
 from viewer.util.version import program_version
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from viewer.output.film import Film
 
-Results = TypeVar("Results", experiment.Results, zoom.Results)
+Results = TypeVar("Results", experiment.Results, lamp_experiment.LampResults, zoom.Results)
 Writers = Mapping[str, Callable[[Results, Path], None]]
 """What writes each kind of file; raises OSError in one line, and ValueError where there is nothing to plot."""
 
@@ -43,7 +43,7 @@ def _writers(csv_text: Callable[[Results], str], figure: Callable[[Results], Fig
     }
 
 
-def json_text(results: experiment.Results | zoom.Results) -> str:
+def json_text(results: experiment.Results | lamp_experiment.LampResults | zoom.Results) -> str:
     """Every figure, and which version of the program found them."""
     return json.dumps(results.to_dict() | {"version": program_version()})
 
@@ -70,6 +70,11 @@ def _zoom_figure(results: zoom.Results) -> Figure:
 def experiment_writers(verified: bool) -> Writers[experiment.Results]:
     return _writers(reports.experiment_csv, partial(_savings_figure, verified))
 
+
+LAMP_WRITERS: Writers[lamp_experiment.LampResults] = {
+    "json": lambda results, path: write_text(path, json_text(results)),
+    "csv": lambda results, path: write_text(path, reports.lamp_csv(results)),
+}
 
 ZOOM_WRITERS: Writers[zoom.Results] = _writers(reports.zoom_csv, _zoom_figure)
 

@@ -18,23 +18,15 @@ from viewer.output.legend_counts import (
     LegendRow,
     certificate_legend,
     difference_legend,
+    lights_legend,
     occlusion_legend,
     penumbra_legend,
     shadow_legend,
     work_legend,
 )
 from viewer.state import terms
-from viewer.state.views import (
-    ARRIVAL_COLORS,
-    ARRIVAL_MEANING,
-    GREY,
-    WRONG,
-    Arrival,
-    Color,
-    View,
-    depth_range,
-    has_modes_of_cells,
-)
+from viewer.state.readings import can_draw, depth_range, has_modes_of_cells
+from viewer.state.views import ARRIVAL_COLORS, ARRIVAL_MEANING, GREY, WRONG, Arrival, Color, View
 from viewer.util.numbers import count, percent
 
 
@@ -114,8 +106,9 @@ def legend_of(frame: Frame, view: View, chosen: Chosen = Chosen()) -> Legend | N
         View.SAVED: _work,
         View.COST: _work,
         View.PENUMBRA: _penumbra,
+        View.LIGHTS: _lights,
     }
-    return makers[view](frame, view, chosen) if view in makers and view.can_draw(frame) else None
+    return makers[view](frame, view, chosen) if view in makers and can_draw(frame, view, chosen.light) else None
 
 
 def light_in_words(number: int, name: str) -> str:
@@ -231,9 +224,21 @@ def _penumbra(frame: Frame, view: View, chosen: Chosen) -> Legend:
         Entry(_ARRIVALS[one], ARRIVAL_COLORS[one], (percent(pixels, found.seen),), f"{ARRIVAL_MEANING[one]}. "
               f"{count(pixels)} pixels")
         for one, pixels in reversed(found.pixels.items())
+        if pixels or one is not Arrival.UNKNOWN
     )  # fmt: skip
-    facts = (Entry("samples", None, (count(found.samples),), "of the light, that a pixel faces at most"),)
-    return Legend(title, ("pixels",), entries, facts=facts)
+    facts = [Entry("samples", None, (count(found.samples),), "of the light, that a pixel faces at most")]
+    if found.share is not None:
+        facts.append(Entry("light in the penumbra", None, (percent(found.share, 1.0),), _SHARE))
+    return Legend(title, ("pixels",), entries, facts=tuple(facts))
+
+
+def _lights(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    found = lights_legend(frame)
+    facts = (Entry("per pixel", values=(f"{found.per_pixel:.4g} of {count(frame.lights)} lights",)),)
+    entries = (Entry(_ARRIVALS[Arrival.UNKNOWN], GREY),) if frame.shaded is not None else ()
+    middle = count(found.most // 2) if found.most % 2 == 0 else ""
+    scale = Scale("0", count(found.most), middle)
+    return Legend("Lights that each pixel has to look at", (), entries, scale, facts)
 
 
 def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
@@ -270,7 +275,9 @@ _ARRIVALS = {
     Arrival.FEW: "penumbra, at most half",
     Arrival.MOST: "penumbra, more than half",
     Arrival.LIT: "fully lit",
+    Arrival.UNKNOWN: "not known yet",
 }
+_SHARE = "of the samples that pixels in the penumbra face, those that reach them"
 _BY_MODES = "of this frame, at all bounces, by the modes after the frame before: what the paper's method saves"
 _IN_ALL_SAVED = "of the first sample of each pixel; the share is of the shadow rays due"
 _IN_ALL = "of the first sample of each pixel; the share is of the rays traced without culling"

@@ -10,6 +10,17 @@ from numpy.typing import NDArray
 from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
+from viewer.state.readings import (
+    arrivals,
+    lights_due,
+    lights_top,
+    samples_of,
+    units_of,
+    verified,
+    whole_of,
+    work_of,
+    work_top,
+)
 from viewer.state.views import (
     CERTIFICATE_COLORS,
     CERTIFICATE_MEANING,
@@ -21,13 +32,6 @@ from viewer.state.views import (
     Certificate,
     Color,
     View,
-    arrivals,
-    samples_of,
-    units_of,
-    verified,
-    whole_of,
-    work_of,
-    work_top,
 )
 
 
@@ -139,19 +143,39 @@ def work_legend(frame: Frame, view: View) -> WorkLegend:
 @dataclass(frozen=True)
 class PenumbraLegend:
     """Primary pixels by how much of a light reaches them, of so many that are `seen`, and the most samples of it that a
-    pixel faces."""
+    pixel faces.  `share` of the samples that pixels in the penumbra face reach them; None without a penumbra."""
 
     pixels: dict[Arrival, int]
     seen: int
     samples: int
+    share: float | None
 
 
 def penumbra_legend(frame: Frame, light: int) -> PenumbraLegend:
     """Of a frame that recorded what reaches its pixels; raises ValueError for another."""
-    hit = frame.primitive >= 0
-    pixels = np.bincount(arrivals(frame, light)[hit], minlength=len(Arrival))
-    asked, _ = samples_of(frame, light)
-    return PenumbraLegend({one: int(pixels[one]) for one in Arrival}, int(hit.sum()), int(asked.max(initial=0)))
+    hit, found = frame.primitive >= 0, arrivals(frame, light)
+    pixels = np.bincount(found[hit], minlength=len(Arrival))
+    asked, reached = samples_of(frame, light)
+    between = (found == Arrival.FEW) | (found == Arrival.MOST)
+    faced = int(asked[between].sum())
+    share = int(reached[between].sum()) / faced if faced else None
+    counts = {one: int(pixels[one]) for one in Arrival}
+    return PenumbraLegend(counts, int(hit.sum()), int(asked.max(initial=0)), share)
+
+
+@dataclass(frozen=True)
+class LightsLegend:
+    """How many lights primary pixels face, on average and at most."""
+
+    per_pixel: float
+    most: int
+
+
+def lights_legend(frame: Frame) -> LightsLegend:
+    """Of a frame that recorded all lights, of the pixels that are known; raises ValueError for another."""
+    due = lights_due(frame)
+    seen = due[(frame.primitive >= 0) & (due >= 0)]
+    return LightsLegend(float(seen.mean()) if len(seen) else 0.0, lights_top(due))
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,18 @@ from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame
 from viewer.output.legend_counts import certificates_of
+from viewer.state.marks import Mark, wipe_column, wrong_marks
+from viewer.state.readings import (
+    arrivals,
+    depth_range,
+    lights_due,
+    lights_top,
+    samples_of,
+    units_of,
+    whole_of,
+    work_of,
+    work_top,
+)
 from viewer.state.views import (
     ARRIVAL_COLORS,
     BACKGROUND,
@@ -27,18 +39,8 @@ from viewer.state.views import (
     WIPE_LINE,
     WRONG,
     Arrival,
-    Mark,
     View,
-    arrivals,
     color_map,
-    depth_range,
-    samples_of,
-    units_of,
-    whole_of,
-    wipe_column,
-    work_of,
-    work_top,
-    wrong_marks,
 )
 
 SHADING = 0.35
@@ -78,6 +80,8 @@ def picture(
         colors = _on_background(frame, _certificate(frame, light, shading))
     elif view is View.PENUMBRA:
         colors = _on_background(frame, _shaded(frame, _penumbra(frame, light), shading))
+    elif view is View.LIGHTS:
+        colors = _on_background(frame, _lights(frame))
     elif view is View.DEPTH:
         colors = _on_background(frame, _depth(frame))
     elif view is View.NORMAL:
@@ -156,6 +160,12 @@ def _penumbra(frame: Frame, light: int) -> NDArray:
     ramp = palette[Arrival.FEW] + share * (palette[Arrival.MOST] - palette[Arrival.FEW])
     between = (found == Arrival.FEW) | (found == Arrival.MOST)
     return np.where(between[..., None], ramp, palette[found])
+
+
+def _lights(frame: Frame) -> NDArray:
+    """By how many lights each pixel faces, from none to the most; grey where that is not known yet."""
+    due = lights_due(frame)
+    return np.where((due >= 0)[..., None], _mapped(due / lights_top(due)), np.asarray(GREY, np.float32))
 
 
 def _on_line(cells: NDArray[np.int32]) -> NDArray[np.bool_]:

@@ -8,8 +8,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import astuple, fields
 from pathlib import Path
 
-from tracer import experiment, zoom
+from tracer import experiment, lamp_experiment, zoom
 from tracer.experiment import REFERENCE, Row
+from tracer.lamp_experiment import LampResults, LampRow
 from tracer.zoom import Approach, Change, Step
 from viewer.state import terms
 
@@ -49,10 +50,19 @@ def frames_in_words(results: experiment.Results) -> str:
 
 def experiment_csv(results: experiment.Results) -> str:
     """The table as CSV, parts of 1 and seconds as they are."""
+    return _csv(Row, experiment.table(results))
+
+
+def lamp_csv(results: LampResults) -> str:
+    """The table of several kinds of lamps as CSV, parts of 1 and seconds as they are."""
+    return _csv(LampRow, lamp_experiment.table(results))
+
+
+def _csv(kind: type[Row] | type[LampRow], rows: Sequence[Row] | Sequence[LampRow]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([f.name for f in fields(Row)])
-    writer.writerows(astuple(row) for row in experiment.table(results))
+    writer.writerow([f.name for f in fields(kind)])
+    writer.writerows(astuple(row) for row in rows)
     return text.getvalue()
 
 

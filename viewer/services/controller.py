@@ -17,6 +17,7 @@ from tracer.scene.model import Scene
 from tracer.zoom import Step
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
+from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
 from viewer.services.questions import Questions
 from viewer.services.render_thread import RenderThread, Traced
@@ -55,6 +56,7 @@ class Controller:
         self.motion = Motion(session, preferences, notices, self.runs.refuses)
         self.bookmarks = Bookmarks(session, preferences, self.settings, notices)
         self.inspector = ShadowInspector(self.selection, renderer)
+        self.recorder = LightRecorder(session, renderer, self.tracing)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
         self.info: dict[str, Any] = {}
@@ -89,6 +91,8 @@ class Controller:
         traced, motion, run = self.traced, self.motion, self.runs.current
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
         self.tracing.ask(Conditions(size, motion.under_way, run, self.loader.ready, self.selection.hovered))
+        if run is None:
+            self.recorder.follow()
         self.inspector.follow(self.frame if run is None else None, not motion.lively)
         return frame
 
@@ -108,6 +112,7 @@ class Controller:
         if failed is not None:
             self.notices.report(failed)
             self.session.playing = False
+            self.tracing.give_up()
         run = self.runs.follow()
         if run.ended:
             self.tracing.again()  # else the world might stay where the run has put it

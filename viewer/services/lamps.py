@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from tracer.frame import Settings
 from tracer.scene.lights import Light, as_lamps
+from viewer.services.governor import Governor
+from viewer.state.session import Session
 
 FEWEST = 4
 """Samples of a lamp in the first picture at idle, and in motion where there is time for them."""
@@ -58,3 +60,45 @@ def after(samples: int, most: int) -> int:
     while more <= samples:
         more *= GROWTH
     return most if 2 * more > most else more
+
+
+class LampSteps:
+    """How many samples the lamps of the session's scene have in the next picture, and in the last at idle."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._table = LampSamples()
+        self._moving: int | None = None  # samples while anything moves
+
+    def most(self, settings: Settings) -> int:
+        """Samples by some settings, of the lamp that has the most."""
+        scene = self._session.scene
+        return self._table.most(scene.lights, settings) if scene is not None else 1
+
+    @property
+    def wanted(self) -> int:
+        """How many there should be at idle."""
+        return self.most(self._session.settings)
+
+    @property
+    def any(self) -> bool:
+        """Whether any light is no point, by the settings."""
+        scene = self._session.scene
+        return scene is not None and self._table.any(scene.lights, self._session.settings)
+
+    def in_motion(self, governor: Governor, size: tuple[int, int], seconds: float) -> int:
+        """Samples of the next picture of this size, which there are so many seconds for; the same until `at_rest`, so
+        that modes are of use."""
+        if self._moving is None:
+            self._moving = governor.moving_samples(*size, seconds)
+        return min(self._moving, self.wanted)
+
+    def at_rest(self, last: Settings | None, come: bool) -> int:
+        """Samples of the next picture; `last` are the settings of the picture of the same view that was asked for last,
+        and `come` says whether it is there, whole."""
+        self._moving = None
+        most = self.wanted
+        if last is None:
+            return first(most)
+        has = self.most(last)
+        return min(max(first(most), after(has, most) if come else has), most)

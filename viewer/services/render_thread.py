@@ -91,6 +91,11 @@ class Traced:
         """Whether all of its pixels have been shaded."""
         return self.frame.statistics.part >= 1.0
 
+    @property
+    def full_size(self) -> tuple[int, int]:
+        """The size whose aspect it has: its own, or what it is a coarser version of."""
+        return self.frame.width * self.request.divisor, self.frame.height * self.request.divisor
+
 
 class Task(Protocol):
     """Long work with the renderer's world.  It ends soon after `cancelled()` turns true, and raises nothing."""
@@ -107,6 +112,21 @@ class Question(Protocol):
     def answer(self, renderer: Traces) -> None: ...
 
 
+class Pictures(Protocol):
+    """The part of `RenderThread` that decides what is seen."""
+
+    @property
+    def busy(self) -> bool: ...
+
+    def submit(self, request: RenderRequest) -> None: ...
+
+    def hurry(self, request: RenderRequest) -> None: ...
+
+    def take(self) -> Traced | None: ...
+
+    def reset_modes(self) -> None: ...
+
+
 class RenderThread:
     """Owns the renderer: nobody else calls it while this lives."""
 
@@ -118,7 +138,7 @@ class RenderThread:
         self._running: RenderRequest | None = None
         self._shown = self._whole = False  # whether a part of what is running, or all of it, has been
         self._task: tuple[Traces, Task] | None = None
-        self._question: Question | None = None
+        self._questions: dict[type[Question], Question] = {}  # the newest of each kind
         self._placed_at: float | None = None  # the time of what was traced last
         self._performing = False
         self._cancel = False
@@ -133,7 +153,8 @@ class RenderThread:
         """Trace this renderer's scene from now on; whatever was asked of the old one is dropped, and a task ended."""
         with self._changed:
             self._renderer = renderer
-            self._waiting = self._finished = self._failure = self._question = self._placed_at = None
+            self._waiting = self._finished = self._failure = self._placed_at = None
+            self._questions.clear()
             self._cancel = True
             self._changed.notify_all()
 
@@ -170,9 +191,9 @@ class RenderThread:
             self._changed.notify_all()
 
     def ask(self, question: Question) -> None:
-        """Answer this before the next frame; the newest question only, and none about a time that was left."""
+        """Answer this before the next frame; of each kind the newest only, and none about a time that was left."""
         with self._changed:
-            self._question = question
+            self._questions[type(question)] = question
             self._changed.notify_all()
 
     def reset_modes(self) -> None:
@@ -234,8 +255,8 @@ class RenderThread:
                     self._performing, self._cancel = True, renderer is not self._renderer
                     self._placed_at = None
                     return partial(self._perform, renderer, task)
-                if self._renderer is not None and self._question is not None:
-                    question, self._question = self._question, None
+                if self._renderer is not None and self._questions:
+                    _, question = self._questions.popitem()
                     if question.time == self._placed_at:
                         return partial(self._answer, self._renderer, question)
                 elif self._renderer is not None and self._waiting is not None:
@@ -268,12 +289,13 @@ class RenderThread:
     def _answer_meanwhile(self, renderer: Traces, time: float) -> None:
         """Answer what was asked about the picture that is being refined."""
         with self._changed:
-            question = self._question
-            if question is None or renderer is not self._renderer:
+            if renderer is not self._renderer:
                 return
-            self._question = None
-        if question.time == time:
-            self._answer(renderer, question)
+            questions = list(self._questions.values())
+            self._questions.clear()
+        for question in questions:
+            if question.time == time:
+                self._answer(renderer, question)
 
     def _trace(self, renderer: Traces, request: RenderRequest, reset: bool) -> None:
         failed = None

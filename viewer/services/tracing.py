@@ -9,36 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import product
-from typing import Protocol
 
 from tracer.frame import Frame, Settings
 from tracer.method import Method
 from viewer.services import lamps, refinement
 from viewer.services.governor import AT_ONCE, Governor, Plan, divided
-from viewer.services.lamps import LampSamples
+from viewer.services.lamps import LampSteps
 from viewer.services.refinement import Refinement
-from viewer.services.render_thread import RenderRequest, Traced
+from viewer.services.render_thread import Pictures, RenderRequest, Traced
+from viewer.services.requests import as_asked, fulfils, lacks, settings_for
 from viewer.services.runs import Run
-from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.preferences import Preferences
+from viewer.state.readings import can_draw, records_lights
 from viewer.state.session import Session
-from viewer.state.views import MOST_RECORDED, View
-
-
-class Pictures(Protocol):
-    """The part of `RenderThread` that is used here."""
-
-    @property
-    def busy(self) -> bool: ...
-
-    def submit(self, request: RenderRequest) -> None: ...
-
-    def hurry(self, request: RenderRequest) -> None: ...
-
-    def take(self) -> Traced | None: ...
-
-    def reset_modes(self) -> None: ...
+from viewer.state.views import View
 
 
 @dataclass(frozen=True)
@@ -74,14 +58,14 @@ class Tracing:
         self._known: Frame | None = None  # the last that was whole and of the window's resolution
         self.governor = governor or Governor()
         self.refinement = Refinement()
-        self._lamps = LampSamples()
-        self._moving_samples: int | None = None  # of lamps, while anything moves
+        self.lamps = LampSteps(session)
         self._serial = 0
         self._refines = False  # whether the last picture was asked for to refine what is known
         self._asked: RenderRequest | None = None
         self._chosen: Settings | None = None
         self._glance = False
         self._new = False
+        self._failed: RenderRequest | None = None
 
     @property
     def frame(self) -> Frame | None:
@@ -111,6 +95,11 @@ class Tracing:
             self.refinement.forget()
             self.again()
 
+    def complete(self, frame: Frame, more: Frame) -> None:
+        """Show the frame with what has been found out about it since, unless another has come."""
+        if self.traced is not None and self.traced.frame is frame:
+            self.traced = replace(self.traced, frame=more)
+
     def show(self, traced: Traced) -> None:
         """Take a frame that was not asked for here; what should be seen is asked for again after it."""
         self.traced, self._asked = traced, None
@@ -124,7 +113,7 @@ class Tracing:
             self._glance = False
             if not traced.request.refinement_seconds:  # else it took its time for certificates, not for its pixels
                 pixels = traced.frame.width * traced.frame.height
-                self.governor.observe(traced.first, pixels, self._samples_of(traced.request.settings))
+                self.governor.observe(traced.first, pixels, self.lamps.most(traced.request.settings))
         self.traced = self._with_modes(traced)
         return self.traced
 
@@ -168,7 +157,7 @@ class Tracing:
         width, height = divided(width, height, plan.divisor)
         settings = replace(self.settings, width=width, height=height, samples=1)
         samples = session.settings.samples
-        if lamp_samples < self.lamp_samples_wanted:
+        if lamp_samples < self.lamps.wanted:
             settings, samples = replace(settings, lamp_samples=lamp_samples), 1
         seconds = refinement.SECONDS if self._refines else 0.0
         wanted = RenderRequest(
@@ -197,7 +186,7 @@ class Tracing:
     def _plan(self, width: int, height: int, coarse: bool, lamp_samples: int) -> Plan:
         """How the picture is to come about: at once where it refines what is shown, and where each is to be whole."""
         playing = self._session.playing
-        adds = not coarse and not playing and lamp_samples > lamps.first(self.lamp_samples_wanted)
+        adds = not coarse and not playing and lamp_samples > lamps.first(self.lamps.wanted)
         if self._refines or adds or self._each_is_whole:
             return AT_ONCE
         return self.governor.plan(width, height, self._frame_seconds, coarse, playing, lamp_samples)
@@ -213,102 +202,59 @@ class Tracing:
 
     # --- samples of lamps ------------------------------------------------------------------------
 
-    def _samples_of(self, settings: Settings) -> int:
-        """Samples of the scene's lamps by some settings, of that with the most."""
-        scene = self._session.scene
-        return self._lamps.most(scene.lights, settings) if scene is not None else 1
-
     def _next_lamp_samples(self, width: int, height: int, moving: bool) -> int:
         """How many samples lamps have in the next picture, of this size."""
-        most, asked = self.lamp_samples_wanted, self._asked
         if self._each_is_whole:
-            return most
+            return self.lamps.wanted
         if moving or self._session.playing:
-            if self._moving_samples is None:  # it stays until nothing moves, so that modes are of use
-                self._moving_samples = self.governor.moving_samples(width, height, self._frame_seconds)
-            return min(self._moving_samples, most)
-        self._moving_samples = None
-        begins = lamps.first(most)
+            return self.lamps.in_motion(self.governor, (width, height), self._frame_seconds)
+        asked, traced = self._asked, self.traced
         if asked is None or asked.divisor > 1 or not self._shows_session(asked):
-            return begins
-        has = self._samples_of(asked.settings)
-        come = self.traced is not None and self.traced.whole and self.traced.request == asked
-        return min(max(begins, lamps.after(has, most) if come else has), most)
+            return self.lamps.at_rest(None, False)
+        return self.lamps.at_rest(asked.settings, traced is not None and traced.whole and traced.request == asked)
 
     def _shows_session(self, asked: RenderRequest) -> bool:
         """Whether a request is for what the session looks at now, however finely."""
         session = self._session
-        settings = _as_asked(self.settings, asked.settings)
+        settings = as_asked(self.settings, asked.settings)
         return (session.time, session.camera, settings) == (asked.time, asked.camera, asked.settings)
 
     @property
     def lamp_samples_shown(self) -> int:
         """How many samples the lamps of the newest picture have, that with the most."""
-        return self._samples_of(self.traced.frame.settings) if self.traced is not None else 0
-
-    @property
-    def lamp_samples_wanted(self) -> int:
-        """How many they should have at idle."""
-        return self._samples_of(self._session.settings)
-
-    @property
-    def has_lamps(self) -> bool:
-        """Whether any light is no point, by the settings."""
-        scene = self._session.scene
-        return scene is not None and self._lamps.any(scene.lights, self._session.settings)
+        return self.lamps.most(self.traced.frame.settings) if self.traced is not None else 0
 
     @property
     def refines_lamps(self) -> bool:
         """Whether a whole picture is shown, and the same with more samples of lamps is to come."""
         traced = self.traced
         shown = traced is not None and traced.whole and self._shows_session(traced.request)
-        return shown and self.lamp_samples_shown < self.lamp_samples_wanted
+        return shown and self.lamp_samples_shown < self.lamps.wanted
 
     @property
     def settings(self) -> Settings:
-        """What the user has set, with modes; verified, and with more recorded, where the view needs that.  While what
-        makes certificates is still being compiled it is traced without: the picture is the same."""
-        s, method = self._session, self._session.settings.method
-        verify = s.settings.verify or s.view.needs_verify
-        if not self.now.ready and Method.parse(method).has_certificates:
-            method = with_base(method, NO_CULLING)
+        """What the user has set, and what else the next picture needs."""
         seconds = self._preferences.certificate_share * self._frame_seconds
-        return replace(
-            s.settings,
-            method=method,
-            verify=verify,
-            record_work=s.view.needs_work,
-            record_lights=s.view.needs_lights and self._can_record_lights,
-            modes=True,
-            certificate_seconds=seconds,
-        )
+        return settings_for(self._session, seconds, self.now.ready, self._records_lights)
 
     @property
-    def _can_record_lights(self) -> bool:
-        """Whether there is memory for what each light sends to each pixel."""
+    def _records_lights(self) -> bool:
+        """Whether frames are to record what all lights send to each pixel."""
         scene, (width, height) = self._session.scene, self.full_size
-        return scene is not None and width * height * len(scene.lights) <= MOST_RECORDED
+        return scene is not None and records_lights(self._session.view, width * height, len(scene.lights))
 
     def _answered(self, wanted: RenderRequest) -> bool:
         """Whether a frame has been asked for, or is there.  One that holds more than the view needs will do."""
-        if wanted == self._asked or self._same_picture(wanted):
-            return True
-        if self._session.settings != self._chosen:
+        made = self._asked or self._whole_of(wanted.samples)
+        if made is None:
             return False
-        settings = wanted.settings
-        records = ({setting, True} for setting in (settings.verify, settings.record_work, settings.record_lights))
-        for verify, work, arrivals in product(*records):
-            more = replace(settings, verify=verify, record_work=work, record_lights=arrivals)
-            fuller = replace(wanted, settings=more)
-            if fuller == self._asked or self._same_picture(fuller):
-                return True
-        return False
+        return made == wanted or (self._session.settings == self._chosen and fulfils(made, wanted))
 
-    def _same_picture(self, wanted: RenderRequest) -> bool:
+    def _whole_of(self, samples: int) -> RenderRequest | None:
+        """What the newest frame answers, if it is whole and has so many samples a pixel."""
         traced = self.traced
-        if traced is None or self._asked is not None:  # what was asked for last comes, if it is not this
-            return False
-        return traced.whole and traced.request == wanted and traced.frame.settings.samples >= wanted.samples
+        whole = traced is not None and traced.whole and traced.frame.settings.samples >= samples
+        return traced.request if traced is not None and whole else None
 
     def _jumped(self) -> bool:
         """Whether, at idle, something else is to be seen than was last asked for; to refine is to see the same."""
@@ -318,6 +264,32 @@ class Tracing:
         return not self._shows_session(asked)
 
     # --- what the newest frame is ----------------------------------------------------------------
+
+    def give_up(self) -> None:
+        """What was asked for has failed: it will not come."""
+        self._failed = self._asked
+
+    @property
+    def awaits(self) -> bool:
+        """Whether a picture that was asked for has not come yet, or not all of it; its further samples do not count."""
+        asked, traced = self._asked, self.traced
+        if asked is None or asked is self._failed:
+            return False
+        return traced is None or not traced.whole or traced.request != asked
+
+    @property
+    def adds_samples(self) -> bool:
+        """Whether the picture that was asked for is there, and more samples a pixel are to come."""
+        asked = self._asked
+        if asked is None or asked is self._failed or self.awaits:
+            return False
+        return self.samples_shown < asked.samples
+
+    @property
+    def certifies(self) -> bool:
+        """Whether the picture is there, and another is to come because certificates can be made for it."""
+        asked, made = self._asked, Method.parse(self._session.settings.method).has_certificates
+        return made and asked is not None and asked.refinement_seconds > 0.0 and self.awaits and not self.outdated
 
     @property
     def becoming_finer(self) -> bool:
@@ -341,23 +313,13 @@ class Tracing:
         if self.frame is None or self.now.run is not None:
             return False
         had, wanted = self.frame.settings, self.settings
-        names = ("verify", "record_work", "record_lights")
-        lacks = any(getattr(wanted, name) and not getattr(had, name) for name in names)
-        return lacks or _as_asked(wanted, had) != had
+        return lacks(had, wanted) or as_asked(wanted, had) != had
 
     @property
     def full_size(self) -> tuple[int, int]:
         """The resolution at idle: the window's, or the fixed one (0, 0 while there is nowhere to show it)."""
         p, size = self._preferences, self.now.size
         return (p.fixed_width, p.fixed_height) if p.fixed_resolution and min(size) > 0 else size
-
-    @property
-    def traced_full_size(self) -> tuple[int, int]:
-        """The size whose aspect the newest frame has: its own, or what it is a coarser version of."""
-        if self.traced is None:
-            return 1, 1
-        frame, divisor = self.traced.frame, self.traced.request.divisor
-        return frame.width * divisor, frame.height * divisor
 
     @property
     def magnified(self) -> int:
@@ -371,7 +333,7 @@ class Tracing:
     def drawn_view(self) -> View:
         """The view to draw the newest frame in: the picture while one that needs more of a frame waits for it."""
         view = self._session.view
-        return view if self.frame is None or view.can_draw(self.frame) else View.COLOR
+        return view if self.frame is None or can_draw(self.frame, view, self._session.light) else View.COLOR
 
     @property
     def title(self) -> str:
@@ -384,23 +346,6 @@ class Tracing:
             return f"showing {run.label_shown}   {title}{f' (this run {lacks})' if lacks else ''}"
         if wanted is view:
             return title
-        if not wanted.needs_more or (wanted.needs_lights and not self._can_record_lights):  # the picture says why
+        if not wanted.needs_more or (wanted is View.LIGHTS and not self._records_lights):  # the picture says why
             return f"{wanted.label}: none here, {view.label.lower()} shown"
         return f"{wanted.label}: {'verifying' if wanted.needs_verify else 'counting'} ..."
-
-
-def _as_asked(settings: Settings, asked: Settings) -> Settings:
-    """Settings at the size, with as much recorded and as much time for certificates, as others."""
-    return replace(
-        settings,
-        width=asked.width,
-        height=asked.height,
-        verify=asked.verify,
-        record_work=asked.record_work,
-        record_lights=asked.record_lights,
-        modes=asked.modes,
-        patient=asked.patient,
-        samples=asked.samples,
-        lamp_samples=asked.lamp_samples,
-        certificate_seconds=asked.certificate_seconds,
-    )

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from tracer.statistics import ShadowCounts
+from tracer.statistics import SampleCounts, ShadowCounts
 
 CAPACITY = 600
 
@@ -25,6 +25,9 @@ SERIES = (
     "tests",
     "shadow_steps",
     "shadow_tests",
+    "samples_due",
+    "samples_reached",
+    "penumbra",
     "pixels",
     "traced_ms",
     "drawn_ms",
@@ -48,11 +51,12 @@ class History:
         """Append one traced frame's numbers, or put them in the place of the last where it is that frame `again`, with
         more of its pixels shaded; `drawn_seconds` is what the window needed for its last own frame.
 
-        Steps and tests are all that were made for the frame, those of its certificates too."""
+        Steps and tests are all that were made for the frame, those of its certificates too.  Samples of lights are
+        those of primary hits, 0 where they were not recorded."""
         if again and self.frames > 0:
             self.frames -= 1
         s = frame.statistics
-        parts = (s.primary, s.secondary, s.shadow)
+        parts, samples = (s.primary, s.secondary, s.shadow), s.samples or SampleCounts()
         self._put(
             due=s.shadow.due,
             culled=s.shadow.culled,
@@ -64,6 +68,9 @@ class History:
             tests=sum(p.intersection_tests for p in parts) + s.certificate_tests,
             shadow_steps=s.shadow.traversal_steps + s.certificate_steps,
             shadow_tests=s.shadow.intersection_tests + s.certificate_tests,
+            samples_due=samples.due,
+            samples_reached=samples.reached,
+            penumbra=samples.penumbra,
             pixels=frame.width * frame.height * s.part,
             traced_ms=1e3 * s.seconds,
             drawn_ms=1e3 * drawn_seconds,

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from tracer.frame import Frame
 from tracer.method import Method
 from viewer.state.methods import BY_MODES, CERTIFIED
-from viewer.state.views import MOST_RECORDED, View
+from viewer.state.readings import MOST_RECORDED, can_draw, can_record_lights
+from viewer.state.views import View
+from viewer.util.numbers import count
 
 
 @dataclass(frozen=True)
@@ -23,7 +25,7 @@ def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) 
     """What to say over a frame in this view, maps of work as `shares` or as counts; None where there is something to
     see, or soon will be.  `more` says that frames follow."""
     method, decision = Method.parse(frame.settings.method), frame.statistics.decision
-    if view is View.CERTIFICATE and not view.can_draw(frame):
+    if view is View.CERTIFICATE and not can_draw(frame, view):
         if decision and frame.statistics.certificates and more:
             decision += " More are made and tried while nothing moves."
         return Missing(decision or f"The method {method.base} makes no certificates; {CERTIFIED} does.", CERTIFIED)
@@ -33,9 +35,11 @@ def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) 
         why = "is exact" if method.kind.culls else "traces every shadow ray"
         text = f"The method {method.base} {why}: no answer can be wrong. The paper's method is sometimes wrong."
         return Missing(text, BY_MODES)
-    if view.needs_lights and frame.primitive.size * frame.lights > MOST_RECORDED:
-        return Missing(f"There are too many lights to keep their samples at each pixel: {frame.lights}.", "")
-    if view.of_modes and not view.can_draw(frame):
+    if view is View.LIGHTS and not can_record_lights(frame.primitive.size, frame.lights):
+        most = count(MOST_RECORDED // frame.lights)
+        text = f"There is no memory to look at {count(frame.lights)} lights at each pixel of a picture of this size"
+        return Missing(f"{text}, but at up to {most} pixels: give it a smaller size in the panel Rendering.", "")
+    if view.of_modes and not can_draw(frame, view):
         return Missing(f"This run keeps no modes with the method {method}.", "")
     return None
 

@@ -13,7 +13,7 @@ from tracer.renderer import Frame
 from tracer.scene.model import CONE, Camera, Material, Scene
 from viewer.state.navigation import Vector, ray
 from viewer.state.projection import HIDDEN, place
-from viewer.state.views import has_modes_of_cells, units_of
+from viewer.state.readings import has_modes_of_cells, units_of
 
 NEARBY = 2
 """Pixels from a point's place on the picture at which its surface still stands for it."""

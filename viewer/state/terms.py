@@ -13,6 +13,10 @@ CACHE_HITS = "cache hits"
 TRACED = "traced"
 WRONG = "wrong answers"
 
+SAMPLES_DUE = "due"
+SAMPLES_REACHED = "reaching"
+PENUMBRA = "penumbra"
+
 MEANINGS = {
     DUE: "one towards each light on the visible side of a surface, at all bounces",
     CULLED: "known to be in shadow: not traced at all",

@@ -1,21 +1,19 @@
 """What can be seen of a frame: the views, their colours, and what each colour stands for.
 
-A view turns the buffers of a frame into a picture; the shader of that name under `shaders/` does
-the turning, this module knows the names and the colours, `viewer.output.legend_counts` counts what has which.  Nothing
-here needs GL.  The colours of modes are those of Okabe and Ito, distinguished by every kind of
-colour-blindness, and in greys.
+A view turns the buffers of a frame into a picture; the shader of that name under `shaders/` does the turning, this
+module knows the names and the colours, `viewer.state.readings` what is read off a frame, and
+`viewer.output.legend_counts` how much of it has which colour.  Nothing here needs GL.  The colours of modes are those
+of Okabe and Ito, distinguished by every kind of colour-blindness, and in greys.
 """
 
 from __future__ import annotations
 
-import math
 from enum import IntEnum, StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.modes import OcclusionMode, ShadowMode
-from tracer.renderer import Frame
 
 Color = tuple[float, float, float]
 
@@ -36,6 +34,7 @@ class View(StrEnum):
     SAVED = "saved"
     COST = "cost"
     PENUMBRA = "penumbra"
+    LIGHTS = "lights"
 
     @property
     def label(self) -> str:
@@ -58,7 +57,7 @@ class View(StrEnum):
     @property
     def needs_lights(self) -> bool:
         """Whether it can be drawn only of frames that recorded what reaches each pixel."""
-        return self is View.PENUMBRA
+        return self in (View.PENUMBRA, View.LIGHTS)
 
     @property
     def needs_more(self) -> bool:
@@ -74,18 +73,6 @@ class View(StrEnum):
     def of_modes(self) -> bool:
         """Whether it shows modes, of frames that keep them alone."""
         return self in (View.OCCLUSION, View.SHADOW, View.PIXEL_COUNT)
-
-    def can_draw(self, frame: Frame) -> bool:
-        """Whether the frame holds what the view shows."""
-        if self.needs_verify:
-            return frame.wrong is not None
-        if self.needs_work:
-            return work_of(frame, self) is not None
-        if self.needs_lights:
-            return frame.asked is not None and frame.reached is not None
-        if self is View.CERTIFICATE:
-            return frame.certificates is not None
-        return frame.settings.keeps_modes or not self.of_modes
 
     @property
     def explanation(self) -> str:
@@ -106,6 +93,7 @@ _TITLES = {
     View.SAVED: "Shadow rays saved",
     View.COST: "Rays traced",
     View.PENUMBRA: "Penumbra",
+    View.LIGHTS: "Lights due",
 }
 
 _KEYS = {
@@ -114,6 +102,7 @@ _KEYS = {
     View.SAVED: "H",
     View.COST: "Shift+H",
     View.PENUMBRA: "J",
+    View.LIGHTS: "Shift+J",
 }
 
 _EXPLANATIONS = {
@@ -135,11 +124,8 @@ _EXPLANATIONS = {
     "traced without culling.",
     View.PENUMBRA: "How many samples of the chosen light reach each pixel: all are lit, none is dark, and between them "
     "lies the penumbra. A point has one sample, and no penumbra.",
+    View.LIGHTS: "How many lights each pixel has to look at: those that its surface faces, and to which rays are due.",
 }
-
-
-_NO_WORK = "the frame did not record the work at its pixels"
-_NO_LIGHTS = "the frame did not record which samples of its lights reach its pixels"
 
 
 def _hex(code: str) -> Color:
@@ -214,6 +200,7 @@ class Arrival(IntEnum):
     FEW = 2
     MOST = 3
     LIT = 4
+    UNKNOWN = 5
 
 
 ARRIVAL_COLORS: dict[Arrival, Color] = {
@@ -222,6 +209,7 @@ ARRIVAL_COLORS: dict[Arrival, Color] = {
     Arrival.FEW: _hex("8F3F00"),
     Arrival.MOST: _hex("F5BE82"),
     Arrival.LIT: SHADOW_COLORS[ShadowMode.NON_SHADOW],
+    Arrival.UNKNOWN: _hex("868C97"),
 }
 """In the penumbra, colours go from that of FEW, where next to none of the samples arrive, to that of MOST."""
 
@@ -231,10 +219,8 @@ ARRIVAL_MEANING = {
     Arrival.FEW: "some samples reach it, but at most half of those that it faces",
     Arrival.MOST: "more than half of the samples that it faces reach it, but not all",
     Arrival.LIT: "all samples that it faces reach it",
+    Arrival.UNKNOWN: "this pixel has not been shaded yet",
 }
-
-MOST_RECORDED = 1 << 28
-"""Pixels times lights, at most, whose samples are recorded: a gigabyte of memory."""
 
 WRONG = _hex("FF00FF")
 """A pixel with a wrong shadow answer: a colour of no other view, as pure as no shaded one gets."""
@@ -265,122 +251,3 @@ def color_map(steps: int = 256) -> NDArray[np.float32]:
     """(steps, 3) float32 colours from the lowest value to the highest."""
     t = np.linspace(0.0, 1.0, steps)[:, None]
     return np.clip((t ** np.arange(len(_VIRIDIS))) @ _VIRIDIS, 0.0, 1.0).astype(np.float32)
-
-
-def depth_range(frame: Frame) -> tuple[float, float]:
-    """Nearest and farthest distance worth a colour: the 1st and 99th percentile of what is hit (0, 1 for nothing)."""
-    step = max(1, frame.height * frame.width // 20000)
-    sample = frame.depth.reshape(-1)[::step]
-    sample = sample[np.isfinite(sample)]
-    if len(sample) == 0:
-        return 0.0, 1.0
-    low, high = np.percentile(sample, (1.0, 99.0))
-    return float(low), float(max(high, low * (1.0 + 1e-6) + 1e-12))
-
-
-def units_of(frame: Frame) -> NDArray[np.int32]:
-    """(h, w) what carries modes at each pixel, a virtual cell or the primitive itself; -1 for a miss.
-
-    Cells that have certificates have no modes."""
-    return frame.cell if frame.certificates is None else frame.primitive
-
-
-def has_modes_of_cells(frame: Frame) -> bool:
-    """Whether what carries modes are virtual cells."""
-    return frame.cells is not None and frame.certificates is None
-
-
-def work_of(frame: Frame, view: View) -> NDArray[np.int32] | None:
-    """(h, w) what a heat map shows at each pixel; None where the frame did not record it."""
-    return frame.saved if view is View.SAVED else frame.cost
-
-
-def whole_of(frame: Frame, view: View) -> NDArray[np.int32]:
-    """(h, w) what the work at each pixel is a share of: the shadow rays that were due, or all rays that tracing without
-    culling takes.
-
-    Raises ValueError for a frame without that record."""
-    if frame.saved is None or frame.cost is None or frame.due_rays is None:
-        raise ValueError(_NO_WORK)
-    return frame.due_rays if view is View.SAVED else frame.saved + frame.cost
-
-
-def samples_of(frame: Frame, light: int) -> tuple[NDArray[np.uint16], NDArray[np.uint16]]:
-    """(h, w) samples of a light that each pixel faces, and those of them that reach it.
-
-    Raises ValueError for a frame without that record."""
-    if frame.asked is None or frame.reached is None:
-        raise ValueError(_NO_LIGHTS)
-    return frame.asked[..., light], frame.reached[..., light]
-
-
-def arrivals(frame: Frame, light: int) -> NDArray[np.uint8]:
-    """(h, w) Arrival of a light at each pixel; raises ValueError for a frame without that record."""
-    asked, reached = samples_of(frame, light)
-    penumbra = np.where(2 * reached.astype(np.int32) > asked, Arrival.MOST, Arrival.FEW)
-    lit = np.where(reached == 0, Arrival.DARK, np.where(reached == asked, Arrival.LIT, penumbra))
-    return np.where(asked == 0, Arrival.AWAY, lit).astype(np.uint8)
-
-
-def work_top(frame: Frame, view: View) -> float:
-    """What has a heat map's last colour: the 99th percentile of pixels that hit something, 1 at least.
-
-    Raises ValueError for a frame without that record."""
-    work = work_of(frame, view)
-    if work is None:
-        raise ValueError(_NO_WORK)
-    step = max(1, work.size // 20000)
-    sample = work.reshape(-1)[::step][frame.primitive.reshape(-1)[::step] >= 0]
-    return max(1.0, float(np.percentile(sample, 99.0))) if len(sample) else 1.0
-
-
-class Mark(IntEnum):
-    """What the difference view draws at a pixel."""
-
-    NONE = 0
-    RING = 1
-    WRONG = 2
-
-
-def wrong_marks(frame: Frame, magnified: int = 1) -> NDArray[np.uint8]:
-    """(h, w) Mark: the pixels with wrong answers of a verified frame, and a ring around each, or around each crowd.
-
-    The rings grow with the picture, so that a lone pixel is found in any; they are so much smaller where each pixel
-    is shown as `magnified` of the screen's."""
-    wrong = verified(frame.wrong) > 0
-    if not wrong.any():
-        return np.zeros(wrong.shape, np.uint8)
-    side = max(frame.width, frame.height)
-    radius, thickness = (
-        max(1, round(size / magnified)) for size in (max(3, round(side / 200)), max(1, round(side / 1500)))
-    )
-    ring = _within(wrong, radius + thickness) & ~_within(wrong, radius)
-    return np.where(wrong, np.uint8(Mark.WRONG), ring.astype(np.uint8))
-
-
-def _within(pixels: NDArray[np.bool_], radius: int) -> NDArray[np.bool_]:
-    """Where one of some pixels is at most `radius` pixels away."""
-    wide = [pixels]  # by how far to the left and right
-    for k in range(1, radius + 1):
-        wider = wide[-1].copy()
-        wider[:, k:] |= pixels[:, :-k]
-        wider[:, :-k] |= pixels[:, k:]
-        wide.append(wider)
-    near = wide[radius].copy()
-    for k in range(1, radius + 1):
-        row = wide[math.isqrt(radius * (radius + 1) - k * k)]
-        near[k:] |= row[:-k]
-        near[:-k] |= row[k:]
-    return near
-
-
-def wipe_column(width: int, wipe: float) -> int:
-    """The column of pixels that the line of the wipe covers; `width`, that is none, for a wipe of 1."""
-    return min(max(int(wipe * width), 0), width)
-
-
-def verified(buffer: NDArray | None) -> NDArray:
-    """A buffer of verified frames; raises ValueError where the frame is none."""
-    if buffer is None:
-        raise ValueError("the frame was not verified")
-    return buffer

@@ -20,7 +20,10 @@ from viewer.window.panels.catalogue import PANELS, PICTURE, Panel
 from viewer.window.ui import Ui
 from viewer.window.widgets import em
 
-SMALLEST = (56.0, 34.0)  # width and height in ems that leave room for docked panels beside the picture
+SMALLEST = (
+    66.0,
+    38.0,
+)  # width and height in ems that leave room for docked panels, and their words, beside the picture
 _NOTICED = 1.5  # pixels by which a panel's size must differ from its share to have been changed by the user
 _TABS_AFTER = 3  # frames that ImGui needs to make the tabs of panels that come back
 _KEY_OWNER = 0x5C011  # any number that no widget has
@@ -204,10 +207,10 @@ def _splits() -> list[hello_imgui.DockingSplit]:
     return [
         split("MainDockSpace", "Left", imgui.Dir.left, 0.225),
         split("MainDockSpace", "Right", imgui.Dir.right, 0.295),
-        split("MainDockSpace", "Bottom", down, 0.25),
+        split("MainDockSpace", "Bottom", down, 0.30),
         split("Left", "LeftBottom", down, 0.52),
-        split("Right", "RightBottom", down, 0.33),
-        split("Right", "RightMiddle", down, 0.56),
+        split("Right", "RightBottom", down, 0.40),
+        split("Right", "RightMiddle", down, 0.60),
     ]
 
 

@@ -100,6 +100,31 @@ def test_lamps_are_in_the_settings(tmp_path: Path):
     assert (settings["lamp_radius"], settings["lamp_samples"]) == (0.25, 4)
 
 
+def test_several_lamps_make_a_table_of_what_culling_is_worth(tmp_path: Path, capsys):
+    lines = tmp_path / "lamps.csv"
+    few = ["--frames", "1:4", "--lamp-radius", "0, 0.25", "--lamp-samples", "2,4", "--accelerator", "bvh8"]
+    results = bench(tmp_path, *few, "--methods", "certified", "--csv", str(lines))
+    kinds = [(one["lamp_radius"], one["lamp_samples"]) for one in results["lamps"]]
+    assert kinds == [(0.0, 2), (0.25, 2), (0.25, 4)], "points have one sample, whatever is asked for"
+    assert results["methods"] == results["lamps"][0]["methods"] and results["frames"] == [1, 2, 3]
+    points, two, four = results["lamps"]
+    for one in results["lamps"]:
+        assert list(one["methods"]) == ["none", "certified", "free"] and one["frames"] == [1, 2, 3]
+    due = [sum(one["methods"]["none"]["shadow_rays_due"]) for one in (points, two, four)]
+    assert due[0] < 1.9 * due[0] < due[1] < 1.9 * due[1] < due[2]
+    rows = list(csv.DictReader(lines.open()))
+    assert [row["method"] for row in rows] == ["none", "certified", "free"] * 3
+    assert [float(row["lamp_radius"]) for row in rows[::3]] == [0.0, 0.25, 0.25]
+    seconds = {name: sum(figures["frame_seconds"]) for name, figures in four["methods"].items()}
+    last = {row["method"]: row for row in rows[6:]}
+    assert float(last["certified"]["speed_up"]) == pytest.approx(seconds["none"] / seconds["certified"])
+    assert float(last["certified"]["share_of_free"]) == pytest.approx(seconds["free"] / seconds["certified"])
+    assert float(last["none"]["speed_up"]) == float(last["free"]["share_of_free"]) == 1.0
+    assert float(last["none"]["shadow_rays"]) == due[2] / 3 and results["table"][6]["method"] == "none"
+    out = capsys.readouterr().out
+    assert "What culling is worth under lamps" in out and f"{due[2] / 3:,.0f}" in out and "100.0%" in out
+
+
 @pytest.mark.parametrize(
     "text, numbers", [(None, range(10)), ("2:5", range(2, 5)), (":3", range(3)), ("7:", range(7, 10))]
 )
@@ -115,6 +140,7 @@ def test_frames_are_a_range_of_the_path(text, numbers):
         (["--frames", "three"], "give A:B"),
         (["--methods", "telepathy"], ", not 'telepathy'"),
         (["--methods", ""], ", not ''"),
+        (["--lamp-samples", "4,16", "--plot", "lamps.svg"], "it draws one kind of lamps"),
     ],
 )
 def test_mistakes_are_one_line(wrong, said, capsys):

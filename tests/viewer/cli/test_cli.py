@@ -15,9 +15,7 @@ from PIL import Image
 
 from tests.commands import CAMERA, ROOM, complaint, render, run
 from tests.terminal import Terminal
-from tracer.scene.lights import MAX_SAMPLES
 from viewer.cli import main as command_line
-from viewer.cli.parsers import MAX_LAMP_SAMPLES
 from viewer.output import capture
 from viewer.state.views import BENEATH
 
@@ -102,10 +100,6 @@ def test_the_window_is_given_the_lamps(room: Path, monkeypatch: pytest.MonkeyPat
     assert opened == [(room, {"lamp_radius": 0.1, "lamp_samples": 9}), (None, {"lamp_radius": 0.0}), (None, {})]
 
 
-def test_as_many_samples_are_allowed_as_the_tracer_has() -> None:
-    assert MAX_LAMP_SAMPLES == MAX_SAMPLES
-
-
 @pytest.mark.parametrize(
     ("scene", "triangles", "dynamic", "lights", "frames"),
     [
@@ -131,8 +125,21 @@ def test_info_of_bart(
 def test_buffers_that_no_memory_holds_are_refused(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     out = tmp_path / "courtyard.npz"
     said = complaint(run(capfd, "render", "courtyard", "--buffers", out, "--size", "512x512"))
-    assert "--buffers: 10,000 lights at 262,144 pixels take 18.4 GB, 4 GB at most" in said and "57,142 pixels" in said
-    assert not out.exists()
+    assert "--buffers: 10,000 lights at 262,144 pixels take 18.4 GB, 1.9 GB at most" in said and "26,843 pixels" in said
+    said = complaint(run(capfd, "render", "courtyard", "-o", tmp_path / "lights.png", "--view", "lights"))
+    assert "--view lights: 10,000 lights" in said
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_light_among_too_many_is_looked_at_alone(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pictures = [tmp_path / name for name in ("all.png", "alone.png")]
+    for output in pictures:
+        assert render(capfd, room, "-o", output, "--view", "penumbra:1", "--lamp-radius", "0.5")[0] == 0
+        monkeypatch.setattr("viewer.state.readings.MOST_TOGETHER", 1)
+    shown = [np.asarray(Image.open(output)) for output in pictures]
+    assert np.array_equal(*shown) and len(np.unique(shown[0].reshape(-1, 3), axis=0)) > 50
 
 
 def test_render_writes_a_picture_that_remembers(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:

@@ -14,7 +14,8 @@ from tracer.zoom import Approach, Change, Results, Step
 from viewer.output.film import Film
 from viewer.output.film_figure import COLUMNS, chosen_steps, film_figure
 from viewer.output.pictures import picture, ringed
-from viewer.state.views import WRONG, Mark, wrong_marks
+from viewer.state.marks import Mark, wrong_marks
+from viewer.state.views import WRONG
 
 
 @pytest.fixture

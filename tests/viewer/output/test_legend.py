@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.viewer.colors import luminance
-from tests.viewer.fakes import in_cells, make_frame, with_certificates, with_lamps
+from tests.viewer.fakes import in_cells, in_part, make_frame, with_certificates, with_lamps
 from tracer.frame import Frame, Settings
 from tracer.statistics import SaidByModes
 from viewer.output.legend import Chosen, Legend, Tone, legend_of, light_in_words
@@ -70,7 +70,25 @@ def test_pixels_are_counted_by_what_reaches_them(frame: Frame, light: int):
     assert {entry.name: entry.values for entry in legend.entries} == {
         name: (percent(there.sum(), hit.sum()),) for name, there in expected.items()
     }
+    between = (reached > 0) & (reached < asked)
+    share = [percent(reached[between].sum(), asked[between].sum())] if between.any() else []
+    assert [fact.values[0] for fact in legend.facts[1:]] == share and bool(share) == (light != 1)
     assert legend_of(make_frame(), View.PENUMBRA, Chosen(light)) is None
+
+
+def test_lights_per_pixel_and_what_is_not_known_yet(frame: Frame):
+    hit = frame.primitive >= 0
+    due = (frame.asked[hit] > 0).sum(axis=-1)
+    legend = of(frame, View.LIGHTS)
+    assert legend.facts[0].values == (f"{due.mean():.4g} of 3 lights",) and not legend.entries
+    assert (legend.scale.low, legend.scale.high) == ("0", "3")
+    part = in_part(frame)
+    known = (part.asked[hit & part.shaded] > 0).sum(axis=-1)
+    assert of(part, View.LIGHTS).facts[0].values == (f"{known.mean():.4g} of 3 lights",)
+    assert [entry.name for entry in of(part, View.LIGHTS).entries] == ["not known yet"]
+    unknown = {entry.name: entry.values for entry in of(part, View.PENUMBRA).entries}["not known yet"]
+    assert unknown == (percent((hit & ~part.shaded).sum(), hit.sum()),)
+    assert legend_of(make_frame(), View.LIGHTS) is None
 
 
 def test_a_light_is_called_by_its_number_and_by_a_name_that_says_more(frame: Frame):

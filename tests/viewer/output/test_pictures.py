@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import in_cells, with_certificates, with_lamps
+from tests.viewer.fakes import in_cells, in_part, with_certificates, with_lamps
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from viewer.output.legend_counts import difference_legend
 from viewer.output.pictures import SHADING, picture
+from viewer.state.readings import work_top
 from viewer.state.views import (
     ARRIVAL_COLORS,
     BACKGROUND,
@@ -30,7 +31,6 @@ from viewer.state.views import (
     Certificate,
     View,
     color_map,
-    work_top,
 )
 from viewer.util.resources import embedded_scenes
 
@@ -231,6 +231,27 @@ def test_penumbrae_are_a_ramp_between_dark_and_lit(certified_frame: Frame, light
             picture(bare, View.PENUMBRA, light)
 
 
+def test_what_is_not_known_yet_looks_like_nothing_that_is(certified_frame: Frame) -> None:
+    f = certified_frame
+    part, hit = in_part(f), f.primitive >= 0
+    for view, unknown in ((View.PENUMBRA, ARRIVAL_COLORS[Arrival.UNKNOWN]), (View.LIGHTS, GREY)):
+        drawn, whole = (picture(one, view, 0, shading=0.0) for one in (part, f))
+        assert (drawn[hit & ~part.shaded] == to_bytes(unknown)).all()
+        assert not (whole[hit] == to_bytes(unknown)).all(axis=-1).any()
+        assert np.array_equal(drawn[part.shaded], whole[part.shaded])
+
+
+def test_lights_are_counted_at_each_pixel(certified_frame: Frame) -> None:
+    f = certified_frame
+    drawn, hit = picture(f, View.LIGHTS), f.primitive >= 0
+    due = (f.asked > 0).sum(axis=-1)
+    colors = np.round(color_map() * 255).astype(int)
+    assert due[hit].max() == f.lights == 2, "the top of the map"
+    for number, entry in ((0, 0), (2, -1)):
+        there = hit & (due == number)
+        assert there.any() and np.abs(drawn[there].astype(int) - colors[entry]).max() <= 1
+
+
 def test_a_light_that_is_not_there(frame: Frame) -> None:
     for view in (View.SHADOW, View.CERTIFICATE, View.PENUMBRA):
         with pytest.raises(ValueError, match="no light 2: the scene's lights are 0 to 1"):
@@ -300,10 +321,11 @@ def test_a_shadow_that_culling_misses_is_drawn(figure4: list[Frame]) -> None:
 @pytest.mark.parametrize("view", list(View))
 @pytest.mark.parametrize(("marked", "cells"), [(True, False), (False, False), (True, True)])
 def test_shaders_draw_the_same(certified_frame: Frame, view: View, marked: bool, cells: bool) -> None:
+    """The frame in cells is one of which a part has been shaded."""
     moderngl = pytest.importorskip("moderngl")
     from viewer.window.display import Display, Look
 
-    shown = in_cells(replace(certified_frame, certificates=None)) if cells else certified_frame
+    shown = in_cells(in_part(replace(certified_frame, certificates=None))) if cells else certified_frame
     context = moderngl.create_context(standalone=True, require=330)
     with context:
         display = Display()

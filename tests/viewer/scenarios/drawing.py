@@ -10,7 +10,8 @@ from imgui_bundle import imgui
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.steps import figure4
 from viewer.output.pictures import picture
-from viewer.state.views import WRONG, View, wipe_column
+from viewer.state.marks import wipe_column
+from viewer.state.views import WRONG, View
 from viewer.window.command import chord
 
 KEY = imgui.Key

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
 from tracer.renderer import Renderer
 from viewer.output.pictures import picture
-from viewer.state.views import View, arrivals
+from viewer.state import readings
+from viewer.state.readings import arrivals
+from viewer.state.views import View
 from viewer.window.panels.status import doing
 
 KEY = imgui.Key
@@ -24,7 +28,7 @@ def lamps(d: Driver) -> None:
     middle = (area.min.x + 0.8 * (area.max.x - area.min.x), 0.5 * (area.min.y + area.max.y))
     d.drag((area.min.x + 4.0, middle[1]), (middle[0] - area.min.x - 4.0, 0.0))
     radius = d.c.session.settings.lamp_radius
-    assert 0.1 < radius < 2.0 and d.c.tracing.lamp_samples_wanted == 16
+    assert 0.1 < radius < 2.0 and d.c.tracing.lamps.wanted == 16
     d.settle()
     d.c.settings.change(lamp_samples=64, lamp_radius=0.5)
     seen, said = [], set()
@@ -49,11 +53,18 @@ def lamps(d: Driver) -> None:
     frame = d.c.frame
     between = np.isin(arrivals(frame, d.c.session.light), (2, 3))
     assert between.any() and frame.asked.max() == 64
+    assert d.c.history.values("penumbra")[-1] > between.sum() / 2, "it is plotted"
+    assert d.c.history.values("samples_due")[-1] > d.c.history.values("samples_reached")[-1] > 0
     shown = d.shown().astype(int)
     assert np.abs(shown - picture(frame, View.PENUMBRA, d.c.session.light).astype(int)).max() <= 2
+    shift = int(KEY.mod_shift)
+    d.press(int(KEY.j) | shift)
+    assert d.c.tracing.drawn_view is View.LIGHTS and d.c.frame is frame, "nothing is traced for it"
+    assert np.abs(d.shown().astype(int) - picture(frame, View.LIGHTS).astype(int)).max() <= 2
+    d.press(KEY.j)
     d.press(KEY.l)
     assert np.abs(d.shown().astype(int) - shown).max() > 50, "another light"
-    d.press(int(KEY.l) | int(KEY.mod_shift))
+    d.press(int(KEY.l) | shift)
     y, x = np.argwhere(between)[between.sum() // 2]
     d.c.selection.select(((x + 0.5) / frame.width, (y + 0.5) / frame.height))
     d.wait(lambda: d.c.inspector.answer is not None, "an answer about the penumbra", 20.0)
@@ -75,12 +86,39 @@ def lamps(d: Driver) -> None:
     d.c.loader.open(_many_lights(d))
     d.wait(lambda: d.c.session.scene is not None and len(d.c.session.scene.lights) == 40, "the scene of many lights")
     d.settle()
+    _one_of_too_many(d)
     d.ui.show_panel("Scene")
     d.frames(4)
     d.ui.light_filters["table"] = "light 3"
     d.frames(4)
     d.ui.light_filters["table"] = ""
     d.frames(4)
+
+
+def _one_of_too_many(d: Driver) -> None:
+    """Where there is no memory for all lights, the chosen one is looked at alone, and nothing is traced again."""
+    frame = d.c.frame
+    settings = replace(frame.settings, record_lights=True)
+    expected = Renderer(d.c.session.scene, settings).render(frame.time, frame.camera)
+    most, readings.MOST_RECORDED = readings.MOST_RECORDED, 1000
+    try:
+        traced = d.c.history.frames
+        d.press(KEY.j)
+        for _ in range(2):
+            d.press(KEY.l)
+            light = d.c.session.light
+            d.wait(lambda: d.c.tracing.drawn_view is View.PENUMBRA, "one light", 20.0)
+            assert d.c.frame.only_light == light and d.c.history.frames == traced
+            assert np.array_equal(arrivals(d.c.frame, light), arrivals(expected, light))
+            drawn = picture(d.c.frame, View.PENUMBRA, light).astype(int)
+            assert np.abs(d.shown().astype(int) - drawn).max() <= 2
+        d.press(int(KEY.j) | int(KEY.mod_shift))
+        d.settle()
+        assert d.c.tracing.drawn_view is View.COLOR, "there is no memory for all"
+    finally:
+        readings.MOST_RECORDED = most
+    d.press(KEY._1)
+    d.settle()
 
 
 def _many_lights(d: Driver):

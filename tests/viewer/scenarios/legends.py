@@ -9,6 +9,7 @@ from PIL import Image
 from tests.viewer.driver import Driver
 from viewer.output import capture
 from viewer.state.preferences import load_preferences
+from viewer.state.readings import can_draw
 from viewer.state.views import View
 
 KEY = imgui.Key
@@ -22,11 +23,11 @@ def legends(d: Driver) -> None:
         for view in View:
             d.c.settings.set_view(view)
             d.settle()
-            assert d.ui.legend_shown == (view is not View.COLOR and view.can_draw(d.c.frame)), view
+            assert d.ui.legend_shown == (view is not View.COLOR and can_draw(d.c.frame, view, d.c.session.light)), view
             if d.ui.legend_shown:
                 _legend(d)
         _dragged(d)
-    d.resize(900, 600)
+    d.resize(1024, 700)
     right, bottom = d.picture_edges()[2:]
     area = _legend(d)
     assert right - area[2] < 20.0 and bottom - area[3] < 20.0, "it has left its corner"

@@ -180,7 +180,7 @@ def folding(d: Driver) -> None:
     d.resize(1440, 900)
     d.settle()
     before = _places_of_panels()
-    for size in ((1280, 800), (900, 600)):
+    for size in ((1280, 800), (1024, 700)):
         d.resize(*size)
         there = _places_of_panels()
         assert set(there) == set(before), "panels are docked at this size"
@@ -189,7 +189,7 @@ def folding(d: Driver) -> None:
             assert 0.13 < width / size[0] < most and height > 0.12 * size[1], f"{label} at {size}: {width} x {height}"
             assert x >= 0 and y >= 0 and x + width <= size[0] and y + height <= size[1]
         assert there[PICTURE][2] > 0.45 * size[0]
-    for size in ((700, 500), (480, 360)):
+    for size in ((900, 600), (480, 360)):
         d.resize(*size)
         assert d.ui.fold.folded and set(_places_of_panels()) == {PICTURE} and _picture_share() > 0.7
         for label in SIDES:

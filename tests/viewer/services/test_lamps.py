@@ -6,18 +6,20 @@ from dataclasses import replace
 
 import pytest
 
-from tests.viewer.fakes import make_frame, make_scene
+from tests.viewer.fakes import make_frame, make_scene, with_lamps
 from tracer.frame import Settings
 from tracer.scene.lights import Light, as_lamps
 from tracer.scene.model import Scene
 from tracer.statistics import FrameStatistics
 from viewer.services.governor import Governor
 from viewer.services.lamps import LampSamples, after, first
+from viewer.services.light_recorder import LightQuestion, LightRecorder
 from viewer.services.render_thread import RenderRequest, Traced
 from viewer.services.tracing import Conditions, Tracing
 from viewer.state.preferences import Preferences
+from viewer.state.readings import MOST_RECORDED, MOST_TOGETHER
 from viewer.state.session import Session
-from viewer.state.views import MOST_RECORDED, View
+from viewer.state.views import View
 
 HERE = Conditions(size=(16, 8))
 MOVING = replace(HERE, moving=True)
@@ -144,7 +146,7 @@ def test_a_motion_that_has_no_time_takes_one_sample_to_its_end():
 
 def test_points_have_one_sample_and_whole_pictures_all_of_them():
     window = Window(lamp_samples=64)
-    assert window.tracing.lamp_samples_wanted == 1 and not window.tracing.has_lamps
+    assert window.tracing.lamps.wanted == 1 and not window.tracing.lamps.any
     assert set(window.rest()) == {(64, 2)}, "which changes nothing"
     sphere = Light("lamp", (0.0, 5.0, 0.0), kind="sphere", radius=1.0, samples=16)
     window = Window(replace(make_scene(), lights=(sphere,)))
@@ -183,7 +185,91 @@ def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_f
     assert window.rest() == [], "there is more than the picture needs"
     many = make_scene(lights=3)
     window = Window(replace(many, lights=many.lights * (MOST_RECORDED // 128)))
-    window.session.view = View.PENUMBRA
+    for view, title in (
+        (View.PENUMBRA, "Penumbra: counting ..."),
+        (View.LIGHTS, "Lights due: none here, colour shown"),
+    ):
+        window.session.view = view
+        window.rest()
+        assert not window.renders.asked[-1].settings.record_lights
+        assert window.tracing.title == title
+
+
+class Questions:
+    """Takes down what the recorder asks the render thread."""
+
+    def __init__(self) -> None:
+        self.asked: list[LightQuestion] = []
+
+    def ask(self, question: LightQuestion) -> None:
+        self.asked.append(question)
+
+
+def test_the_chosen_light_alone_is_asked_for_where_there_are_too_many():
+    window = Window(make_scene(lights=MOST_TOGETHER + 1))
+    questions = Questions()
+    recorder = LightRecorder(window.session, questions, window.tracing)
     window.rest()
-    assert not window.renders.asked[-1].settings.record_lights
-    assert window.tracing.title == "Penumbra: none here, colour shown"
+    recorder.follow()
+    assert not questions.asked, "the picture needs none"
+    window.session.view = View.PENUMBRA
+    for _ in range(3):
+        recorder.follow()
+    (question,) = questions.asked
+    assert (question.frame, question.light) == (window.tracing.frame, 0)
+    window.session.light = 1
+    recorder.follow()
+    (_, question) = questions.asked
+    first = with_lamps(question.frame)
+    question.found = replace(first, asked=first.asked[..., 1:2], reached=first.reached[..., 1:2], only_light=1)
+    recorder.follow()
+    assert window.tracing.frame is question.found and window.tracing.drawn_view is View.PENUMBRA
+    recorder.follow()
+    assert len(questions.asked) == 2
+    window.session.light = 2
+    recorder.follow()
+    assert window.tracing.drawn_view is View.COLOR and len(questions.asked) == 3, "another light"
+    window.move()
+    window.rest()
+    newest = window.tracing.frame
+    questions.asked[-1].found = first
+    recorder.follow()
+    assert window.tracing.frame is newest and questions.asked[-1].frame is newest, "it is about an older frame"
+
+
+def test_between_steps_it_is_known_that_more_is_to_come():
+    """Whatever the thread is at: it may be between two pictures."""
+    window = Window(lamp_radius=0.5, lamp_samples=64)
+    tracing, seen = window.tracing, []
+    assert not tracing.awaits and not tracing.adds_samples
+    for _ in range(12):
+        tracing.ask(HERE)
+        seen.append((tracing.lamp_samples_shown, tracing.awaits, tracing.refines_lamps))
+        tracing.take()
+    assert seen[:4] == [(0, True, False), (4, True, True), (16, True, True), (64, True, False)], "the last knows more"
+    assert seen[-1] == (64, False, False)
+    window.move()
+    tracing.ask(HERE)
+    assert tracing.awaits
+    tracing.give_up()
+    assert not tracing.awaits and not tracing.adds_samples, "it has failed"
+
+
+def test_samples_of_pixels_come_after_certificates():
+    window = Window()
+    window.session.settings = replace(window.session.settings, method="certified", samples=4)
+    tracing = window.tracing
+    tracing.ask(HERE)
+    assert tracing.awaits and not tracing.certifies, "there is no picture yet"
+    tracing.take()
+    tracing.ask(HERE)
+    assert tracing.certifies and not tracing.adds_samples
+    for _ in range(3):
+        tracing.take()
+        tracing.ask(HERE)
+    assert not tracing.certifies and not tracing.awaits and not tracing.adds_samples, "all samples are there"
+    part = replace(tracing.traced.frame, settings=replace(tracing.traced.frame.settings, samples=2))
+    tracing.traced = replace(tracing.traced, frame=part)
+    assert tracing.adds_samples and not tracing.awaits
+    tracing.traced = None
+    assert tracing.awaits

@@ -303,6 +303,25 @@ def test_of_questions_only_the_newest_is_answered_and_none_about_a_time_that_was
     assert not left.by and not older.by and len(newer.by) == 1
 
 
+class AskedOtherwise(Asked):
+    """A question of another kind."""
+
+
+def test_of_each_kind_of_question_the_newest_is_answered(thread):
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    renderer.go.clear()
+    thread.submit(request(2.0))
+    assert renderer.started.wait(5.0)
+    older, newer, other = Asked(2.0), Asked(2.0), AskedOtherwise(2.0)
+    for question in (older, other, newer):
+        thread.ask(question)
+    renderer.go.set()
+    assert newer.answered.wait(5.0) and other.answered.wait(5.0)
+    idle(thread)
+    assert not older.by and len(newer.by) == len(other.by) == 1
+
+
 def test_a_question_about_another_scene_is_dropped_and_one_that_fails_is_told_of(thread):
     first, second = FakeRenderer(), FakeRenderer()
     thread.use(first)

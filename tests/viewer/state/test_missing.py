@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import make_frame, with_certificates
+from tests.viewer.fakes import make_frame, with_certificates, with_lamps
 from tracer.frame import Settings
 from tracer.method import bases
 from viewer.state.missing import missing
-from viewer.state.views import MOST_RECORDED, View
+from viewer.state.readings import MOST_RECORDED, arrivals, can_draw, lights_due
+from viewer.state.views import View
 
 
 @pytest.mark.parametrize("method", [*(kind.name for kind in bases()), "certified+cache", "paper+rest", "none+cache"])
@@ -31,9 +32,9 @@ def test_a_view_that_a_method_has_nothing_for_names_a_method_that_has(view: View
 def test_modes_that_were_not_kept_are_missing():
     frame = make_frame(Settings(16, 8, method="none"))
     for view in (View.OCCLUSION, View.SHADOW, View.PIXEL_COUNT):
-        assert not view.can_draw(frame) and "no modes" in missing(view, frame).text
+        assert not can_draw(frame, view) and "no modes" in missing(view, frame).text
         kept = replace(frame, settings=replace(frame.settings, modes=True))
-        assert view.can_draw(kept) and missing(view, kept) is None
+        assert can_draw(kept, view) and missing(view, kept) is None
 
 
 @pytest.mark.parametrize("view, shares", [(View.SAVED, False), (View.SAVED, True), (View.COST, True)])
@@ -55,9 +56,23 @@ def test_a_map_of_one_colour_is_explained(view: View, shares: bool):
 
 def test_so_many_lights_that_nothing_is_recorded_for_each():
     frame = make_frame(Settings(16, 8, method="none"))
-    assert not View.PENUMBRA.can_draw(frame) and missing(View.PENUMBRA, frame) is None, "it is on its way"
     many = replace(frame, lights=MOST_RECORDED // 128 + 1)
-    assert "too many lights" in missing(View.PENUMBRA, many).text and missing(View.COLOR, many) is None
+    for view in (View.PENUMBRA, View.LIGHTS):
+        assert not can_draw(frame, view) and missing(view, frame) is None, "it is on its way"
+    assert missing(View.PENUMBRA, many) is None, "the chosen light is recorded alone"
+    assert "2 097 153 lights" in missing(View.LIGHTS, many).text and missing(View.COLOR, many) is None
+
+
+def test_what_is_recorded_of_one_light_shows_that_light():
+    all_of_them = with_lamps(make_frame(Settings(16, 8, method="none")))
+    alone = replace(all_of_them, asked=all_of_them.asked[..., 1:2], reached=all_of_them.reached[..., 1:2], only_light=1)
+    for light in range(3):
+        assert can_draw(all_of_them, View.PENUMBRA, light) and can_draw(alone, View.PENUMBRA, light) == (light == 1)
+    assert can_draw(all_of_them, View.LIGHTS) and not can_draw(alone, View.LIGHTS, 1)
+    assert np.array_equal(arrivals(alone, 1), arrivals(all_of_them, 1))
+    for lacks in (lambda: arrivals(alone, 0), lambda: lights_due(alone)):
+        with pytest.raises(ValueError, match="did not record which samples"):
+            lacks()
 
 
 def test_certificates_that_may_still_come_are_promised():

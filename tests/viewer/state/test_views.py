@@ -13,8 +13,9 @@ from tests.viewer.colors import luminance
 from tests.viewer.fakes import in_cells, make_frame, make_scene, with_certificates
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
+from tracer.statistics import SampleCounts
 from viewer.output import legend_counts
-from viewer.state import views
+from viewer.state import marks, readings, views
 from viewer.state.history import SERIES, History
 from viewer.state.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
 from viewer.window.widgets import in_window_style, percent
@@ -111,12 +112,12 @@ def test_the_difference_legend_counts_what_is_wrong():
 )
 def test_rings_lie_at_one_distance_grow_with_the_picture_and_stay_small_on_screen(size, magnified, radius, thickness):
     frame = make_frame(Settings(width=size[0], height=size[1], verify=True))
-    marks = views.wrong_marks(frame, magnified)
+    found = marks.wrong_marks(frame, magnified)
     points = np.argwhere(frame.wrong > 0)
-    rows, columns = np.indices(marks.shape)
+    rows, columns = np.indices(found.shape)
     distance = np.min([np.hypot(rows - y, columns - x) for y, x in points], axis=0)
-    np.testing.assert_array_equal(marks == views.Mark.WRONG, distance == 0)
-    ring = marks == views.Mark.RING
+    np.testing.assert_array_equal(found == marks.Mark.WRONG, distance == 0)
+    ring = found == marks.Mark.RING
     assert ring.any() and (distance[ring] > radius).all()
     np.testing.assert_array_equal(ring, (distance > radius + 0.5) & (distance < radius + thickness + 0.5))
 
@@ -135,11 +136,11 @@ def test_numbers_of_other_places_are_written_as_in_the_window():
 
 def test_no_rings_where_nothing_is_wrong():
     frame = make_frame(Settings(width=16, height=8, verify=True))
-    assert not views.wrong_marks(replace(frame, wrong=np.zeros_like(frame.wrong))).any()
+    assert not marks.wrong_marks(replace(frame, wrong=np.zeros_like(frame.wrong))).any()
 
 
 def test_the_line_of_a_wipe_reaches_both_edges():
-    assert [views.wipe_column(10, wipe) for wipe in (-1.0, 0.0, 0.05, 0.5, 0.99, 1.0, 2.0)] == [0, 0, 0, 5, 9, 10, 10]
+    assert [marks.wipe_column(10, wipe) for wipe in (-1.0, 0.0, 0.05, 0.5, 0.99, 1.0, 2.0)] == [0, 0, 0, 5, 9, 10, 10]
 
 
 @pytest.mark.parametrize("palette", [views.OCCLUSION_COLORS, views.SHADOW_COLORS, views.CERTIFICATE_COLORS])
@@ -154,9 +155,9 @@ def test_the_colour_map_grows_lighter_all_the_way():
 
 
 def test_the_depth_range_ignores_misses():
-    assert views.depth_range(make_frame())[0] == pytest.approx(2.0)
+    assert readings.depth_range(make_frame())[0] == pytest.approx(2.0)
     empty = replace(make_frame(), depth=np.full((8, 16), np.inf, np.float32))
-    assert views.depth_range(empty) == (0.0, 1.0)
+    assert readings.depth_range(empty) == (0.0, 1.0)
 
 
 def test_a_pick_tells_what_the_pixel_shows():
@@ -227,6 +228,15 @@ def test_history_keeps_the_newest_in_order_and_contiguous():
     assert history.first == 8 and all(len(history.values(name)) == 5 for name in SERIES)
     history.clear()
     assert len(history) == 0 and len(history.values("due")) == 0
+
+
+def test_history_keeps_what_lights_send_to_pixels():
+    history, frame = History(), make_frame()
+    frame.statistics.samples = SampleCounts(due=90, reached=70, penumbra=8)
+    history.add(frame, 0.0)
+    history.add(make_frame(), 0.0)
+    for name, number in (("samples_due", 90), ("samples_reached", 70), ("penumbra", 8)):
+        assert list(history.values(name)) == [number, 0], "0 where nothing was recorded"
 
 
 def test_fates_of_shadow_rays_add_up_to_those_due():

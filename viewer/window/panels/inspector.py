@@ -40,11 +40,11 @@ def show(ui: Ui) -> None:
 def _details(ui: Ui, pick: Pick) -> None:
     frame = ui.controller.frame
     by_modes = frame is None or frame.settings.keeps_modes
+    explanation.rows(ui)  # first, as it is what a click asks
     if by_modes:
         heading("Modes of its cell" if pick.in_cells else "Modes")
         _modes(ui, pick)
         paragraph(_verdict(pick), QUIET)
-    explanation.rows(ui)
     heading("Surface")
     with properties("primitive", 5.8) as shown:
         if shown:

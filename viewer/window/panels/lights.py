@@ -53,8 +53,8 @@ def lamp_rows(ui: Ui) -> None:
             c.settings.change(lamp_radius=None)
         tooltip("lights as the scene says")
     row("Lamp samples", _SAMPLES)
-    most = c.tracing.lamp_samples_wanted
-    imgui.begin_disabled(most == 1 and not c.tracing.has_lamps)
+    most = c.tracing.lamps.wanted
+    imgui.begin_disabled(most == 1 and not c.tracing.lamps.any)
     if imgui.begin_combo("##lamp-samples", str(s.lamp_samples) if s.lamp_samples else _SCENE_SAYS):
         for number in (None, *OFFERED):
             if imgui.selectable(str(number) if number else _SCENE_SAYS, s.lamp_samples == number)[0]:

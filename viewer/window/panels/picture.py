@@ -54,7 +54,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     if frame is None or texture is None:
         _placeholder(ui, room)
         return
-    width, height = c.tracing.traced_full_size
+    width, height = c.traced.full_size if c.traced is not None else (1, 1)
     factor = min(room.x / width, room.y / height)
     size = ImVec2(max(1.0, width * factor), max(1.0, height * factor))
     at = imgui.get_cursor_pos()

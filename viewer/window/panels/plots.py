@@ -1,4 +1,5 @@
-"""The last frames' numbers: what became of shadow rays as stacked areas, work and milliseconds as curves."""
+"""The last frames' numbers: what became of shadow rays as stacked areas, work and milliseconds as curves, and, once it
+was recorded, what lights send to what the camera sees."""
 
 from __future__ import annotations
 
@@ -23,7 +24,14 @@ _PLOTS = (
                          ("tests", "tests", ORANGE))),
     (_LOGARITHMIC, (("tracing", "traced_ms", BLUE), ("drawing", "drawn_ms", ORANGE))),
 )  # fmt: skip
-_SHARES = (0.44, 0.31, 0.25)  # of the panel's width: the first legend is the longest
+_OF_LIGHTS = (
+    "Samples of lights", ((terms.SAMPLES_DUE, "samples_due", BLUE), (terms.SAMPLES_REACHED, "samples_reached", YELLOW),
+                          (terms.PENUMBRA, "penumbra", ORANGE)),
+)  # fmt: skip
+_SHARES = {4: (0.30, 0.26, 0.26, 0.18), 3: (0.44, 0.31, 0.25), 2: (0.5, 0.5), 1: (1.0,)}
+"""Of the panel's width, for so many plots beside each other: by the length of their legends."""
+_ROOM = {4: 64.0, 3: 45.0, 2: 30.0}
+"""How wide the panel is, in ems, that has so many; what finds no room beside is below, and the panel scrolls."""
 FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
 AXIS = int(implot.AxisFlags_.no_highlight)
 LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
@@ -53,7 +61,7 @@ def wrong_axis(most: int, condition: int) -> None:
 
 
 def show(ui: Ui) -> None:
-    """The panel: three plots side by side, over the number of the frame."""
+    """The panel: plots side by side, over the number of the frame."""
     history = ui.controller.history
     if len(history) == 0:
         paragraph("Curves appear with the first frames.", QUIET)
@@ -72,12 +80,14 @@ def show(ui: Ui) -> None:
     imgui.text_colored(QUIET, f"the last {len(history)} frames" if len(history) > 1 else "one frame so far")
     room = imgui.get_content_region_avail()
     spacing = imgui.get_style().item_spacing.x
-    columns = 3 if room.x > em(42.0) else 1  # else one below the other, and the panel scrolls
-    shares = _SHARES if columns > 1 else (1.0,) * len(_PLOTS)
-    for number, ((title, series), share) in enumerate(zip(_PLOTS, shares, strict=True)):
+    plots = (_PLOTS[0], _OF_LIGHTS, *_PLOTS[1:]) if history.values("samples_due").any() else _PLOTS
+    even = [n for n in _ROOM if len(plots) % n == 0]  # so that no row has an empty place
+    columns = next((n for n in even if room.x > em(_ROOM[n])), 1)
+    width = room.x - (columns - 1) * spacing
+    for number, (title, series) in enumerate(plots):
         if number % columns:
             imgui.same_line()
-        _plot(ui, title, series, ImVec2(share * (room.x - (columns - 1) * spacing), max(room.y, em(8.0))))
+        _plot(ui, title, series, ImVec2(_SHARES[columns][number % columns] * width, max(room.y, em(8.0))))
 
 
 def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size: ImVec2) -> None:
@@ -99,7 +109,6 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
     else:
         lowest, highest = 0.0, 1.12 * top if top > 0.0 else 1.0
     implot.setup_axes_limits(history.first, last, lowest, highest, int(imgui.Cond_.always))
-    _label_frames(history.first, last, size.x)
     if title == _LOGARITHMIC:
         _label_decades(highest, size.y)
     implot.setup_legend(implot.Location_.south, LEGEND)
@@ -109,16 +118,6 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
         for label, values, color in curves:
             implot.plot_line(label, values, 1.0, float(history.first), implot.Spec(line_color=color, line_weight=1.6))
     implot.end_plot()
-
-
-def _label_frames(first: int, last: int, width: float) -> None:
-    """Numbers of frames at round places, far enough apart to be read in a plot so wide, none past its right edge."""
-    across, digit = max(width - em(4.0), em(1.0)), imgui.calc_text_size("0").x
-    most = max(across / (digit * (len(str(last)) + 1.5)) - 1.0, 1.0)
-    step = next(s for k in range(12) for s in (10**k, 2 * 10**k, 5 * 10**k) if (last - first) / s <= most)
-    over = max(0.5 * digit * len(str(last)) - em(0.4), 0.0) / across * (last - first)  # that a number at the end is
-    ticks = [float(n) for n in range(-(-first // step) * step, math.floor(last - over) + 1, step)]
-    implot.setup_axis_ticks(implot.ImAxis_.x1, ticks, [f"{tick:.0f}" for tick in ticks])
 
 
 def _label_decades(highest: float, height: float) -> None:

@@ -27,6 +27,7 @@ from viewer.window.widgets import (
 )
 
 _WIDE = 15.0  # ems of a panel that has room for counts and shares beside each other
+_NAMES, _PART = 6.6, 3.6  # ems of the names there, and of the shares
 _WORK = ("rays", "steps", "tests")
 
 
@@ -65,23 +66,25 @@ def show(ui: Ui) -> None:
 def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
     """What became of them, and what deciding that took."""
     s, shadow = frame.statistics, frame.statistics.shadow
-    wide = imgui.get_content_region_avail().x > em(_WIDE)
+    room = imgui.get_content_region_avail().x
+    wide = room > em(_WIDE)
+    fits = imgui.calc_text_size(count(shadow.due)).x < room - em(_NAMES + _PART + 0.6)
+    number = count if wide and fits else short
 
     def fate(term: str, part: int) -> None:
         name, tip, share = term.capitalize(), terms.MEANINGS[term], percent(part, shadow.due)
         if wide:
-            amount(name, count(part), tip)
+            amount(name, number(part), f"{tip} ({count(part)})")
             imgui.table_next_column()
             right(share)
         else:
             amount(name, share, f"{tip} ({count(part)})")
 
     heading("Shadow rays")
-    with _amounts("shadow" if wide else "shadow, narrow", em(3.6) if wide else 0.0) as shown:
+    with _amounts("shadow" if wide else "shadow, narrow", em(_PART) if wide else 0.0) as shown:
         if not shown:
             return
-        due = count(shadow.due) if wide else short(shadow.due)
-        amount(terms.DUE.capitalize(), due, f"{terms.MEANINGS[terms.DUE]} ({count(shadow.due)})")
+        amount(terms.DUE.capitalize(), number(shadow.due), f"{terms.MEANINGS[terms.DUE]} ({count(shadow.due)})")
         fate(terms.CULLED, shadow.culled)
         fate(terms.DYNAMIC_ONLY, shadow.dynamic_only)
         if certifies or shadow.candidates_only:
@@ -107,7 +110,10 @@ def _amounts(name: str, shares: float = 0.0) -> Iterator[bool]:
     """A table of names and numbers, and a column of shares where that has a width."""
     shown = imgui.begin_table(name, 3 if shares else 2, int(imgui.TableFlags_.sizing_stretch_prop))
     if shown:
-        imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_stretch), 1.8)
+        if shares:
+            imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_fixed), em(_NAMES))
+        else:
+            imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_stretch), 1.8)
         imgui.table_setup_column("number", int(imgui.TableColumnFlags_.width_stretch), 1.0)
         if shares:
             imgui.table_setup_column("share", int(imgui.TableColumnFlags_.width_fixed), shares)

@@ -50,10 +50,14 @@ def doing(c: Controller) -> str:
     if c.motion.under_way or c.session.playing:
         return "tracing"
     if c.tracing.refines_lamps:
-        return f"lamp samples: {c.tracing.lamp_samples_shown} of {c.tracing.lamp_samples_wanted}"
-    if c.renderer.busy:
+        return f"lamp samples: {c.tracing.lamp_samples_shown} of {c.tracing.lamps.wanted}"
+    if c.tracing.certifies:
+        made = c.frame.statistics.certificates if c.frame is not None else 0
+        before = ", before more samples" if c.session.settings.samples > 1 else ""
+        return f"making certificates{before}{f': {count(made)} in the last picture' if made else ''}"
+    if c.renderer.busy or c.tracing.awaits:
         return "refining the picture" if c.tracing.becoming_finer or _learns(c) else "tracing"
-    if c.renderer.running is not None and c.tracing.samples_shown < c.tracing.samples_wanted:
+    if c.tracing.adds_samples:
         return f"adding samples: {c.tracing.samples_shown} of {c.tracing.samples_wanted}"
     return "idle   (F1: keyboard and mouse)"
 

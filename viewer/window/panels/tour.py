@@ -8,7 +8,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.tour import STEPS
 from viewer.window.ui import Ui
-from viewer.window.widgets import GOOD, QUIET, clipped, em, paragraph, tooltip
+from viewer.window.widgets import GOOD, QUIET, clipped, em, paragraph, tooltip_above
 
 _WIDTH = 27.0  # ems of the window
 _HIGH = 48.0  # ems of a window that has room for the text of all steps
@@ -68,16 +68,16 @@ def _strip(ui: Ui, left: float, top: float, width: float) -> None:
     if imgui.button(labels[0]):
         tour.show()
     imgui.end_disabled()
-    tooltip("do this step for you")
+    tooltip_above("do this step for you")
     imgui.same_line()
     text = tour.step.text(ui.controller)
     if imgui.button(labels[1]):
         tour.skip()
-    tooltip("end the tour; the menu Help has it again" if last else "go on to the next step")
+    tooltip_above("end the tour; the menu Help has it again" if last else "go on to the next step")
     imgui.same_line()
     if imgui.button(f"{labels[2]}##end"):
         tour.end()
-    tooltip("end the tour; the menu Help has it again")
+    tooltip_above("end the tour; the menu Help has it again")
     paragraph(text, QUIET)
     imgui.end()
 

@@ -19,7 +19,7 @@ def show(ui: Ui) -> None:
     views = list(View)
     with properties("view", 5.0) as shown:
         if shown:
-            row("View", "keys 1 to 9, 0, H, Shift+H and J")
+            row("View", "keys 1 to 9, 0, H and J, the last two also with Shift")
             chosen = views.index(c.session.view)
             changed, index = imgui.combo("##view", chosen, [f"{v.label}" for v in views])
             if changed:

@@ -1,0 +1,136 @@
+"""What views read off a frame, and whether the frame has it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.frame import Frame
+from viewer.state.views import Arrival, View
+
+MOST_RECORDED = 1 << 28
+"""Pixels times lights, at most, of which all samples are recorded: a gigabyte of memory."""
+
+MOST_TOGETHER = 32
+"""Lights, at most, that are recorded together for a view of one: of more, the one is looked at alone, which is done
+soon and asks for no other frame."""
+
+_NO_WORK = "the frame did not record the work at its pixels"
+_NO_LIGHTS = "the frame did not record which samples of its lights reach its pixels"
+
+
+def can_draw(frame: Frame, view: View, light: int = 0) -> bool:
+    """Whether the frame holds what the view shows, of this light where it is a view of one."""
+    if view.needs_verify:
+        return frame.wrong is not None
+    if view.needs_work:
+        return work_of(frame, view) is not None
+    if view.needs_lights:
+        return frame.asked is not None and frame.only_light in ((None, light) if view.of_light else (None,))
+    if view is View.CERTIFICATE:
+        return frame.certificates is not None
+    return frame.settings.keeps_modes or not view.of_modes
+
+
+def can_record_lights(pixels: int, lights: int) -> bool:
+    """Whether there is memory for what each light sends to each pixel."""
+    return pixels * lights <= MOST_RECORDED
+
+
+def records_lights(view: View, pixels: int, lights: int) -> bool:
+    """Whether frames of so many pixels are to record all lights for this view."""
+    few = lights <= MOST_TOGETHER or not view.of_light
+    return view.needs_lights and few and can_record_lights(pixels, lights)
+
+
+def depth_range(frame: Frame) -> tuple[float, float]:
+    """Nearest and farthest distance worth a colour: the 1st and 99th percentile of what is hit (0, 1 for nothing)."""
+    step = max(1, frame.height * frame.width // 20000)
+    sample = frame.depth.reshape(-1)[::step]
+    sample = sample[np.isfinite(sample)]
+    if len(sample) == 0:
+        return 0.0, 1.0
+    low, high = np.percentile(sample, (1.0, 99.0))
+    return float(low), float(max(high, low * (1.0 + 1e-6) + 1e-12))
+
+
+def units_of(frame: Frame) -> NDArray[np.int32]:
+    """(h, w) what carries modes at each pixel, a virtual cell or the primitive itself; -1 for a miss.
+
+    Cells that have certificates have no modes."""
+    return frame.cell if frame.certificates is None else frame.primitive
+
+
+def has_modes_of_cells(frame: Frame) -> bool:
+    """Whether what carries modes are virtual cells."""
+    return frame.cells is not None and frame.certificates is None
+
+
+def work_of(frame: Frame, view: View) -> NDArray[np.int32] | None:
+    """(h, w) what a heat map shows at each pixel; None where the frame did not record it."""
+    return frame.saved if view is View.SAVED else frame.cost
+
+
+def whole_of(frame: Frame, view: View) -> NDArray[np.int32]:
+    """(h, w) what the work at each pixel is a share of: the shadow rays that were due, or all rays that tracing without
+    culling takes.
+
+    Raises ValueError for a frame without that record."""
+    if frame.saved is None or frame.cost is None or frame.due_rays is None:
+        raise ValueError(_NO_WORK)
+    return frame.due_rays if view is View.SAVED else frame.saved + frame.cost
+
+
+def samples_of(frame: Frame, light: int) -> tuple[NDArray[np.uint16], NDArray[np.uint16]]:
+    """(h, w) samples of a light that each pixel faces, and those of them that reach it: 0 where it is not known yet.
+
+    Raises ValueError for a frame without that record."""
+    if frame.asked is None or frame.reached is None or frame.only_light not in (None, light):
+        raise ValueError(_NO_LIGHTS)
+    column = light if frame.only_light is None else 0
+    return frame.asked[..., column], frame.reached[..., column]
+
+
+def arrivals(frame: Frame, light: int) -> NDArray[np.uint8]:
+    """(h, w) Arrival of a light at each pixel; raises ValueError for a frame without that record."""
+    asked, reached = samples_of(frame, light)
+    penumbra = np.where(2 * reached.astype(np.int32) > asked, Arrival.MOST, Arrival.FEW)
+    lit = np.where(reached == 0, Arrival.DARK, np.where(reached == asked, Arrival.LIT, penumbra))
+    found = np.where(asked == 0, Arrival.AWAY, lit).astype(np.uint8)
+    if frame.shaded is not None:
+        found[~frame.shaded] = Arrival.UNKNOWN
+    return found
+
+
+def lights_due(frame: Frame) -> NDArray[np.int32]:
+    """(h, w) how many lights each pixel faces with any of their samples; -1 where it is not known yet.
+
+    Raises ValueError for a frame without that record."""
+    if frame.asked is None or frame.only_light is not None:
+        raise ValueError(_NO_LIGHTS)
+    found = np.count_nonzero(frame.asked, axis=-1).astype(np.int32)
+    return found if frame.shaded is None else np.where(frame.shaded, found, np.int32(-1))
+
+
+def lights_top(due: NDArray[np.int32]) -> int:
+    """What has the last colour of the map of `lights_due`: the most, 1 at least."""
+    return max(1, int(due.max(initial=0)))
+
+
+def work_top(frame: Frame, view: View) -> float:
+    """What has a heat map's last colour: the 99th percentile of pixels that hit something, 1 at least.
+
+    Raises ValueError for a frame without that record."""
+    work = work_of(frame, view)
+    if work is None:
+        raise ValueError(_NO_WORK)
+    step = max(1, work.size // 20000)
+    sample = work.reshape(-1)[::step][frame.primitive.reshape(-1)[::step] >= 0]
+    return max(1.0, float(np.percentile(sample, 99.0))) if len(sample) else 1.0
+
+
+def verified(buffer: NDArray | None) -> NDArray:
+    """A buffer of verified frames; raises ValueError where the frame is none."""
+    if buffer is None:
+        raise ValueError("the frame was not verified")
+    return buffer
