@@ -62,7 +62,7 @@ def choose(data, call, light, count, counts):
     if given.again:
         cull_again(certified, light, count, found, batch, i64_at(counts))
         return
-    asks, position = given.bounce > 0 or certified.costly_rays, given.samples[given.sample]
+    asks, position = given.bounce >= certified.first_asking, given.samples[given.sample]
     cull_by_certificates(certified, points, found, position, light, count, asks, batch, i64_at(counts))
 
 

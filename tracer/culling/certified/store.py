@@ -308,6 +308,7 @@ class CertificateStore:
             points=self.points,
             highest=self.scale.max_height,
             max_asked=model.max_asked,
+            first_asking=model.first_asking,
             costly_rays=model.costly_rays,
             stride=stride,
             first_vector=self._frame % stride,

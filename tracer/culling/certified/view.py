@@ -26,7 +26,7 @@ class CertificateView(NamedTuple):
         light_space: (lights, n, LIGHT_ROW) float32, rows of the primitives that certificates name.
         stationary, points: (lights,) bool, which lights are certified, and which of these are points.
         highest: how high above a cell a ray may end, in units of the scene.
-        max_asked: candidates that a ray tests at most (`CostModel`).
+        max_asked, first_asking: candidates that a ray tests at most, and from which bounce on (`CostModel`).
         costly_rays: whether rays cost so much that every look-up pays (`CostModel`).
         stride, first_vector: one in `stride` vectors of points makes requests, from that one on.
         requests: of all tiles.
@@ -44,6 +44,7 @@ class CertificateView(NamedTuple):
     points: Bytes
     highest: float
     max_asked: int
+    first_asking: int
     costly_rays: bool
     stride: int
     first_vector: int
