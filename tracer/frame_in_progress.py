@@ -68,7 +68,7 @@ class FrameInProgress:
         self.units = np.empty_like(self.buffers.primitive) if len(self.first) else self.buffers.primitive
         self._lamps = state.lamps(settings)
         self.shading = state.shading
-        self.lights, self.corners = self.shading.lamps.places, self.shading.lamps.corners
+        self.lights = self.shading.lamps.places
         self.resting = state.rest.now
         self._counts = np.zeros((self.workers, COUNTERS), np.int64)
         self._occlusion_tests = np.zeros(self.workers, np.int64)
@@ -117,7 +117,7 @@ class FrameInProgress:
             state.rest.forget()
             state.world.place(poses)
         self.shading = self.shading._replace(lamps=self._lamps.at(state.scene.light_positions(self._time)))
-        self.lights, self.corners = self.shading.lamps.places, self.shading.lamps.corners
+        self.lights = self.shading.lamps.places
         self.resting = state.rest.now
         self.history.follow_lights(self.lights, self._lamps)
         self.history.follow_rest(self.resting, state.world.outlines, self.workers)
