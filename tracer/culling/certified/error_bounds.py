@@ -93,6 +93,7 @@ class SeenTriangles(NamedTuple):
         height, highest: |T|, the light's height above the plane times the normal's length: at least, and at most.
         away, first, second, across: lengths of s, e1, e2 and the normal.
         turned: the sign of T, by which u, v and d are turned.
+        unsure: by how much T must differ from 0 for its sign to be certain.
         blur: how far the corners may be elsewhere.
         firm: whether the sign of T is certain.
         sane: whether float32 can tell anything at all.
@@ -112,6 +113,7 @@ class SeenTriangles(NamedTuple):
     second: Any
     across: Any
     turned: Any
+    unsure: Any
     blur: Any
     firm: Any
     sane: Any
@@ -210,12 +212,12 @@ def seen_from(light, radius, row):
     highest, height = height + reach, height - reach
 
     # Is T's sign certain?
-    unsure = away * (_FIRM * first * second + _FIRM_BLUR * blur * (first + second)) + blur * first * second
+    unsure = away * (_FIRM * first * second + _FIRM_BLUR * blur * (first + second)) + blur * first * second + SMALL
     sane = maximum(away, maximum(first, second)) < LARGE
-    firm = sane & (height > unsure + SMALL)
+    firm = sane & (height > unsure)
     u, v, d = _scaled(cross(e2, s), turned), _scaled(cross(s, e1), turned), _scaled(n, -turned)
     return SeenTriangles(
-        row[0:3], s, e1, e2, u, v, d, height, highest, away, first, second, across, turned, blur, firm, sane
+        row[0:3], s, e1, e2, u, v, d, height, highest, away, first, second, across, turned, unsure, blur, firm, sane
     )
 
 

@@ -49,10 +49,12 @@ from tracer.simd import (
 from tracer.simd.records import IntRow, Memory, Rows, row_count, rows_of
 
 GROUP = 8  # vectors of points with one way through the tree
-MOST = 96  # primitives that may come between, at most: with more, a group's vectors go through the tree by themselves
+# Primitives that may come between, at most: a group's, or else each of its vectors goes through the tree by itself; and
+# a vector's, or else its rays are traced.
+OF_GROUP, OF_VECTOR = 96, 256
 WORDS = MOST_SAMPLES // 32  # with a bit for each sample
 GROUPS = MOST_SAMPLES // LANES
-NUMBERS, ALL_PREPARED = 4 * (MOST + LANES + WIDTH), PREPARED * (MOST // LANES)  # bytes
+NUMBERS, ALL_PREPARED = 4 * (OF_VECTOR + LANES + WIDTH), PREPARED * (OF_GROUP // LANES)  # bytes
 MARKS = 4 * LANES * GROUPS  # bytes: a bit for each sample of each point of a vector
 
 
@@ -128,18 +130,24 @@ def find_answers(certified, points, answers, samples, first, number, count, coun
             continue
         found = np.int64(-1)
         if some > 1 and put_beam(beam, points, answers.open, start, end, light, radius, lamps.within):
-            found = _find_primitives(o, number, light, radius, beam, room, counts)
+            found = _find_primitives(o, number, beam, OF_GROUP, room, counts)
+            for batch in range(batches_of(found)):
+                prepare(o, number, light, radius, room.numbers + 64 * batch, room.prepared + PREPARED * batch)
         for v in range(start, end):
             if answers.open[v] == 0:
                 continue
-            known = found
-            if found != 0 and put_beam(beam, points, answers.open, v, v + 1, light, radius, lamps.within):
-                if found < 0:
-                    known = _find_primitives(o, number, light, radius, beam, room, counts)
-                if known >= 0:
-                    _ask_vector(points, answers, v, light, radius, beam, known, groups, room, counts)
-            elif found == 0:
+            if found == 0:
                 answers.lit[v] = answers.open[v]
+            elif put_beam(beam, points, answers.open, v, v + 1, light, radius, lamps.within):
+                known = found if found > 0 else _find_primitives(o, number, beam, OF_VECTOR, room, counts)
+                if known >= 0:
+                    _ask_vector(o, points, answers, v, number, light, radius, beam, known, found > 0, groups, room, counts)
+
+
+@inlined
+def batches_of(count):
+    """How many vectors of sixteen so many primitives make, none where they are too many."""
+    return (count + LANES - 1) // LANES
 
 
 @inlined
@@ -158,24 +166,26 @@ def _open_points(points, answers, light, radius, start, end, count):
 
 
 @subkernel
-def _find_primitives(o, number, light, radius, beam, room, counts):
-    """Find and prepare the primitives that may come into a beam; how many, or -1 for more than MOST."""
-    found = primitives_met(o, number, beam, MOST, room.numbers, counts)
-    if found > 0:
-        for k in range(found, (found + LANES - 1) // LANES * LANES):
-            store(room.numbers + 4 * k, i32_at(room.numbers)[0])
-        for batch in range((found + LANES - 1) // LANES):
-            prepare(o, number, light, radius, room.numbers + 64 * batch, room.prepared + PREPARED * batch)
+def _find_primitives(o, number, beam, most, room, counts):
+    """Find the primitives that may come into a beam, whole vectors of them; how many, or -1 for more than `most`."""
+    found = primitives_met(o, number, beam, most, room.numbers, counts)
+    for k in range(found, LANES * batches_of(found)):
+        store(room.numbers + 4 * k, i32_at(room.numbers)[0])
     return found
 
 
 @subkernel
-def _ask_vector(points, answers, v, light, radius, beam, found, groups, room, counts):
-    """Ask the prepared primitives, so many as were found, that come into a beam about the points of a vector."""
+def _ask_vector(o, points, answers, v, number, light, radius, beam, found, prepared, groups, room, counts):
+    """Ask the primitives that come into a beam about the points of a vector: so many as were found, and perhaps
+    `prepared`."""
     end, every = load_three(points.lifted, v), np.int64(answers.open[v])
     live, begun = every, np.int64(0)  # points that may see some sample, and those that have bits of samples
-    for batch in range((found + LANES - 1) // LANES):
-        made = room.prepared + PREPARED * batch
+    for batch in range(batches_of(found)):
+        made = room.prepared + PREPARED * batch * prepared
+        if not prepared:
+            if live == 0:
+                break
+            prepare(o, number, light, radius, room.numbers + 64 * batch, made)
         met = np.int64(prepared_met(made, beam)) & lanes_below(found, batch)
         while met != 0 and live != 0:
             triangle = made + 4 * lowest_bit(met)

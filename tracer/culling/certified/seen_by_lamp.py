@@ -53,15 +53,16 @@ from tracer.simd import (
 
 # Columns of sixteen prepared triangles, vectors one after the other: corner and edges; the edges, and the vectors that
 # give U, V and D from the centre, times the sign of T; factors of the error bounds (`_bounds`); |D|'s change within the
-# lamp; T at least; how long rays may be to be sure of a hit; 1 where T's sign is certain, 0 where it is not, -1 where
-# float32 can tell nothing; how far from the triangle a hit may be reported; and a box outside of which none is.
+# lamp; |T| at least, and by how much it must differ from 0 for its sign to be certain; how long rays may be to be sure of
+# a hit; 1 where T's sign is the same for all of the lamp, 0 where it is not, -1 where float32 can tell nothing; how far from the triangle a hit may be reported; and a box outside of which none is.
 (CORNER, FIRST, SECOND, TURNED_FIRST, TURNED_SECOND, U, V, D) = range(0, 24, 3)
-(OF_U, OF_V, OF_W, NEAR, FAR, BEHIND, REACH, HEIGHT, SURE, FIRM, RADIUS, LOW) = range(24, 36)
+(OF_U, OF_V, OF_W, NEAR, FAR, BEHIND, REACH, HEIGHT, UNSURE, SURE, FIRM, RADIUS, LOW) = range(24, 37)
 HIGH = LOW + 3
 PREPARED = 64 * (HIGH + 3)  # bytes
-# Vectors that are kept of sixteen points and one triangle: U, V and D at the centre, the gradients of U and V, error
-# bounds of U, V, W and D, and the points.
-AT_U, AT_V, AT_D, GRADIENT_U, GRADIENT_V, BOUND_U, BOUND_V, BOUND_W, BOUND_D, POINT = 0, 1, 2, 3, 6, 9, 10, 11, 12, 13
+# Vectors that are kept of sixteen points and one triangle: U, V and D at the centre, the gradients of U and V, D - T,
+# error bounds of U, V, W, D and D - T, and the points.
+AT_U, AT_V, AT_D, GRADIENT_U, GRADIENT_V, AT_BEHIND = 0, 1, 2, 3, 6, 9
+BOUND_U, BOUND_V, BOUND_W, BOUND_D, BOUND_BEHIND, POINT = range(10, 16)
 KEPT = 64 * (POINT + 3)  # bytes
 MOST_SAMPLES = 1024
 PLACES = 4 * MOST_SAMPLES  # bytes between rows of samples: three of offsets from the centre, then three of places
@@ -114,6 +115,7 @@ def prepare(o, number, light, radius, numbers, made):
     store(made + 64 * BEHIND, _SURPLUS * behind + SMALL)
     store(made + 64 * REACH, radius * t.across)
     store(made + 64 * HEIGHT, t.height)
+    store(made + 64 * UNSURE, t.unsure)
     store(made + 64 * SURE, sure_hit_length(o.farthest, numbers))
     store(made + 64 * FIRM, select(t.firm, ONE, select(t.sane, ZERO, -ONE)))
     store(made + 64 * RADIUS, gather_f32x16(address_of(o.error_radii[number]), load_i32x16(numbers)))
@@ -204,18 +206,21 @@ def ask_points(triangle, end, light, radius, kept):
     store(kept + 64 * BOUND_V, of_v)
     store(kept + 64 * BOUND_W, of_w)
     store(kept + 64 * BOUND_D, bound_d)
+    store(kept + 64 * AT_BEHIND, behind)
+    store(kept + 64 * BOUND_BEHIND, bound)
     store_three(kept + 64 * POINT, 64, end)
 
     # Compare them.
     beyond = (u + by_u < -of_u) | (v + by_v < -of_v) | (w + by_w < -of_w)
+    short = _number(t, SURE) > longest
     if firm > ZERO:
-        can = (behind > bound) & (_number(t, HEIGHT) > _LAMP * along) & (_number(t, SURE) > longest)
+        can = (behind > bound) & (_number(t, HEIGHT) > _LAMP * along) & short
         inside = (u - by_u > _INSIDE * of_u) & (v - by_v > _INSIDE * of_v) & (w - by_w > _INSIDE * of_w)
         return bits_of(can & inside), bits_of(beyond | (behind < -bound)), bits_of(can)
     if firm < ZERO:
         return 0, 0, 0
     backwards = (u - by_u > of_u) | (v - by_v > of_v) | (w - by_w > of_w) | (d - by_d > bound_d)
-    return 0, bits_of((beyond | (d + by_d < -bound_d)) & backwards), 0
+    return 0, bits_of((beyond | (d + by_d < -bound_d)) & backwards), bits_of(short)
 
 
 @subkernel
@@ -235,14 +240,12 @@ def ask_samples(triangle, kept, lane, can, samples, groups, blocked, unsure):
         offset = load_f32x16(at), load_f32x16(at + PLACES), load_f32x16(at + 2 * PLACES)
         u, v, d = dot(to_u, offset) + u0, dot(to_v, offset) + v0, d0 - dot(of_d, offset)
         w = d - u - v
-        beyond = (u < -of_u) | (v < -of_v) | (w < -of_w)
-        hit = np.int64(0)
         if firm > ZERO:
-            missed = bits_of(beyond)
+            hit, missed = np.int64(0), bits_of((u < -of_u) | (v < -of_v) | (w < -of_w))
             if can:
                 hit = bits_of((u > _INSIDE * of_u) & (v > _INSIDE * of_v) & (w > _INSIDE * of_w))
         else:
-            missed = _missed_any_way(t, k, at, u, v, w, d, beyond)
+            hit, missed = _from_both_sides(t, k, at, (u, v, w, d), dot(of_d, offset), can)
         hit |= np.int64(load_i32(blocked + 4 * group))
         every &= hit
         store(blocked + 4 * group, np.int32(hit))
@@ -252,15 +255,33 @@ def ask_samples(triangle, kept, lane, can, samples, groups, blocked, unsure):
 
 
 @inlined
-def _missed_any_way(t, k, at, u, v, w, d, beyond):
-    """Bits of the samples that a triangle in whose plane these may lie, or a quadric, certainly does not hide."""
-    of_u, of_v = _number(k, BOUND_U), _number(k, BOUND_V)
-    of_w, of_d = _number(k, BOUND_W), _number(k, BOUND_D)
-    backwards = (u > of_u) | (v > of_v) | (w > of_w) | (d > of_d)
+def _from_both_sides(t, k, at, functions, less, can):
+    """What sixteen samples are certain of where they may lie on either side of the triangle's plane, or where it is a
+    quadric: bits of hits, and of misses.
+
+    functions are U, V, W and D there, and T is `less` than at the lamp's centre."""
+    u, v, w, d = functions
+    of_u, of_v, of_w = _number(k, BOUND_U), _number(k, BOUND_V), _number(k, BOUND_W)
+    behind, of_behind, of_d = _number(k, AT_BEHIND), _number(k, BOUND_BEHIND), _number(k, BOUND_D)
+
+    # Turn all functions where T is negative.
+    height = _number(t, HEIGHT) + _number(t, REACH) - less
+    turned = select(height >= ZERO, ONE, -ONE)
+    height, behind = height * turned, turned * behind
+    firm, tu, tv, tw = height > _number(t, UNSURE), u * turned, v * turned, w * turned
+    hit = firm & (tu > _INSIDE * of_u) & (tv > _INSIDE * of_v) & (tw > _INSIDE * of_w) & (behind > of_behind)
+    hit = hit & (height > _LAMP * maximum(d, -d))
+    missed = firm & ((tu < -of_u) | (tv < -of_v) | (tw < -of_w) | (behind < -of_behind))
+
+    # Where it may be either, so may the sign of D.
+    beyond = (u < -of_u) | (v < -of_v) | (w < -of_w) | (d < -of_d)
+    missed = missed | (beyond & ((u > of_u) | (v > of_v) | (w > of_w) | (d > of_d)))
+
+    # Or the ray passes the box by.
     start = load_f32x16(at + 3 * PLACES), load_f32x16(at + 4 * PLACES), load_f32x16(at + 5 * PLACES)
     x, y, z = _three_numbers(k, POINT)
-    apart = segments_miss_box(
-        start, (x - start[0], y - start[1], z - start[2]), _three_numbers(t, LOW), _three_numbers(t, HIGH)
-    )
-    missed = bits_of(((beyond | (d < -of_d)) & backwards) | apart)
-    return missed if _number(t, FIRM) == ZERO else np.int64(0)
+    direction = x - start[0], y - start[1], z - start[2]
+    missed = missed | segments_miss_box(start, direction, _three_numbers(t, LOW), _three_numbers(t, HIGH))
+    if _number(t, FIRM) < ZERO:
+        return np.int64(0), np.int64(0)
+    return (bits_of(hit) if can else np.int64(0)), bits_of(missed)
