@@ -168,7 +168,7 @@ def length16(a):
 
 
 @inlined
-def _scaled(a, x):
+def scaled(a, x):
     """A vector times a number."""
     return a[0] * x, a[1] * x, a[2] * x
 
@@ -215,7 +215,7 @@ def seen_from(light, radius, row):
     unsure = away * (_FIRM * first * second + _FIRM_BLUR * blur * (first + second)) + blur * first * second + SMALL
     sane = maximum(away, maximum(first, second)) < LARGE
     firm = sane & (height > unsure)
-    u, v, d = _scaled(cross(e2, s), turned), _scaled(cross(s, e1), turned), _scaled(n, -turned)
+    u, v, d = scaled(cross(e2, s), turned), scaled(cross(s, e1), turned), scaled(n, -turned)
     return SeenTriangles(
         row[0:3], s, e1, e2, u, v, d, height, highest, away, first, second, across, turned, unsure, blur, firm, sane
     )

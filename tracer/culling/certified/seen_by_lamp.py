@@ -30,6 +30,7 @@ from tracer.culling.certified.error_bounds import (
     dot,
     length16,
     rows_at,
+    scaled,
     seen_from,
     sure_hit_length,
 )
@@ -60,9 +61,9 @@ from tracer.simd import (
 HIGH = LOW + 3
 PREPARED = 64 * (HIGH + 3)  # bytes
 # Vectors that are kept of sixteen points and one triangle: U, V and D at the centre, the gradients of U and V, D - T,
-# error bounds of U, V, W, D and D - T, and the points.
+# error bounds of U, V, W and D - T, and the points.
 AT_U, AT_V, AT_D, GRADIENT_U, GRADIENT_V, AT_BEHIND = 0, 1, 2, 3, 6, 9
-BOUND_U, BOUND_V, BOUND_W, BOUND_D, BOUND_BEHIND, POINT = range(10, 16)
+BOUND_U, BOUND_V, BOUND_W, BOUND_BEHIND, POINT = range(10, 15)
 KEPT = 64 * (POINT + 3)  # bytes
 MOST_SAMPLES = 1024
 PLACES = 4 * MOST_SAMPLES  # bytes between rows of samples: three of offsets from the centre, then three of places
@@ -96,8 +97,8 @@ def prepare(o, number, light, radius, numbers, made):
     store_three(made + 64 * CORNER, 64, t.corner)
     store_three(made + 64 * FIRST, 64, t.e1)
     store_three(made + 64 * SECOND, 64, t.e2)
-    store_three(made + 64 * TURNED_FIRST, 64, (t.e1[0] * t.turned, t.e1[1] * t.turned, t.e1[2] * t.turned))
-    store_three(made + 64 * TURNED_SECOND, 64, (t.e2[0] * t.turned, t.e2[1] * t.turned, t.e2[2] * t.turned))
+    store_three(made + 64 * TURNED_FIRST, 64, scaled(t.e1, t.turned))
+    store_three(made + 64 * TURNED_SECOND, 64, scaled(t.e2, t.turned))
     store_three(made + 64 * U, 64, t.u)
     store_three(made + 64 * V, 64, t.v)
     store_three(made + 64 * D, 64, t.d)
@@ -196,7 +197,6 @@ def ask_points(triangle, end, light, radius, kept):
     larger = _LARGER * along + SMALL
     of_u, of_v = _number(t, OF_U) * longest + larger, _number(t, OF_V) * longest + larger
     of_w = _number(t, OF_W) * longest + larger
-    bound_d = bound + of_w
     store(kept + 64 * AT_U, u)
     store(kept + 64 * AT_V, v)
     store(kept + 64 * AT_D, d)
@@ -205,22 +205,24 @@ def ask_points(triangle, end, light, radius, kept):
     store(kept + 64 * BOUND_U, of_u)
     store(kept + 64 * BOUND_V, of_v)
     store(kept + 64 * BOUND_W, of_w)
-    store(kept + 64 * BOUND_D, bound_d)
     store(kept + 64 * AT_BEHIND, behind)
     store(kept + 64 * BOUND_BEHIND, bound)
     store_three(kept + 64 * POINT, 64, end)
 
     # Compare them.
-    beyond = (u + by_u < -of_u) | (v + by_v < -of_v) | (w + by_w < -of_w)
     short = _number(t, SURE) > longest
     if firm > ZERO:
-        can = (behind > bound) & (_number(t, HEIGHT) > _LAMP * along) & short
+        can = (behind > bound) & short
         inside = (u - by_u > _INSIDE * of_u) & (v - by_v > _INSIDE * of_v) & (w - by_w > _INSIDE * of_w)
-        return bits_of(can & inside), bits_of(beyond | (behind < -bound)), bits_of(can)
+        hidden = can & inside & (_number(t, HEIGHT) > _LAMP * along)
+        missed = (u + by_u < -of_u) | (v + by_v < -of_v) | (w + by_w < -of_w) | (behind < -bound)
+        return bits_of(hidden), bits_of(missed), bits_of(can)
     if firm < ZERO:
         return 0, 0, 0
-    backwards = (u - by_u > of_u) | (v - by_v > of_v) | (w - by_w > of_w) | (d - by_d > bound_d)
-    return 0, bits_of((beyond | (d + by_d < -bound_d)) & backwards), bits_of(short)
+    side, certain = select(behind >= ZERO, ONE, -ONE), maximum(behind, -behind) > bound
+    missed = (side * u + by_u < -of_u) | (side * v + by_v < -of_v) | (side * w + by_w < -of_w)
+    missed = certain & (missed | (side * (_number(t, HEIGHT) + by_d) + by_d < -_number(t, UNSURE)))
+    return 0, bits_of(missed), bits_of(certain & short)
 
 
 @subkernel
@@ -231,57 +233,42 @@ def ask_samples(triangle, kept, lane, can, samples, groups, blocked, unsure):
     address `blocked`, int32 for sixteen samples each, if the triangle `can` hide any for certain; those of which nothing
     is certain join `unsure`.  Whether all are blocked."""
     t, k = triangle, kept + 4 * lane
-    u0, v0, d0, firm = _number(k, AT_U), _number(k, AT_V), _number(k, AT_D), _number(t, FIRM)
-    to_u, to_v, of_d = _three_numbers(k, GRADIENT_U), _three_numbers(k, GRADIENT_V), _three_numbers(t, D)
-    of_u, of_v, of_w = _number(k, BOUND_U), _number(k, BOUND_V), _number(k, BOUND_W)
-    every = np.int64(0xFFFF)
-    for group in range(groups):
-        at = samples + 64 * group
-        offset = load_f32x16(at), load_f32x16(at + PLACES), load_f32x16(at + 2 * PLACES)
-        u, v, d = dot(to_u, offset) + u0, dot(to_v, offset) + v0, d0 - dot(of_d, offset)
-        w = d - u - v
-        if firm > ZERO:
-            hit, missed = np.int64(0), bits_of((u < -of_u) | (v < -of_v) | (w < -of_w))
+    behind, firm, every = _number(k, AT_BEHIND), _number(t, FIRM), np.int64(0xFFFF)
+    side = ONE if firm > ZERO or behind >= ZERO else -ONE
+    if firm > ZERO or (firm == ZERO and abs(behind) > _number(k, BOUND_BEHIND)):
+        u0, v0, d0 = side * _number(k, AT_U), side * _number(k, AT_V), side * _number(k, AT_D)
+        to_u, to_v = scaled(_three_numbers(k, GRADIENT_U), side), scaled(_three_numbers(k, GRADIENT_V), side)
+        of_d, height0 = scaled(_three_numbers(t, D), side), side * (_number(t, HEIGHT) + _number(t, REACH))
+        of_u, of_v, of_w = _number(k, BOUND_U), _number(k, BOUND_V), _number(k, BOUND_W)
+        of_height = _number(t, UNSURE)
+        for group in range(groups):
+            at = samples + 64 * group
+            offset = load_f32x16(at), load_f32x16(at + PLACES), load_f32x16(at + 2 * PLACES)
+            u, v, less = dot(to_u, offset) + u0, dot(to_v, offset) + v0, dot(of_d, offset)
+            d, height = d0 - less, height0 - less
+            w = d - u - v
+            missed = (u < -of_u) | (v < -of_v) | (w < -of_w) | (height < -of_height)
+            hit = np.int64(0)
             if can:
-                hit = bits_of((u > _INSIDE * of_u) & (v > _INSIDE * of_v) & (w > _INSIDE * of_w))
-        else:
-            hit, missed = _from_both_sides(t, k, at, (u, v, w, d), dot(of_d, offset), can)
-        hit |= np.int64(load_i32(blocked + 4 * group))
-        every &= hit
-        store(blocked + 4 * group, np.int32(hit))
-        doubt = np.int64(load_i32(unsure + 4 * group)) | (0xFFFF & ~(hit | missed))
-        store(unsure + 4 * group, np.int32(doubt))
+                inside = (u > _INSIDE * of_u) & (v > _INSIDE * of_v) & (w > _INSIDE * of_w)
+                hit = bits_of(inside & (height > of_height) & (height > _LAMP * d))
+            every &= _note(blocked + 4 * group, unsure + 4 * group, hit, bits_of(missed))
+        return every == 0xFFFF
+    x, y, z = _three_numbers(k, POINT)
+    low, high = _three_numbers(t, LOW), _three_numbers(t, HIGH)
+    for group in range(groups):
+        at = samples + 64 * group + 3 * PLACES
+        start = load_f32x16(at), load_f32x16(at + PLACES), load_f32x16(at + 2 * PLACES)
+        missed = segments_miss_box(start, (x - start[0], y - start[1], z - start[2]), low, high)
+        every &= _note(blocked + 4 * group, unsure + 4 * group, np.int64(0), bits_of(missed) if firm == ZERO else 0)
     return every == 0xFFFF
 
 
 @inlined
-def _from_both_sides(t, k, at, functions, less, can):
-    """What sixteen samples are certain of where they may lie on either side of the triangle's plane, or where it is a
-    quadric: bits of hits, and of misses.
-
-    functions are U, V, W and D there, and T is `less` than at the lamp's centre."""
-    u, v, w, d = functions
-    of_u, of_v, of_w = _number(k, BOUND_U), _number(k, BOUND_V), _number(k, BOUND_W)
-    behind, of_behind, of_d = _number(k, AT_BEHIND), _number(k, BOUND_BEHIND), _number(k, BOUND_D)
-
-    # Turn all functions where T is negative.
-    height = _number(t, HEIGHT) + _number(t, REACH) - less
-    turned = select(height >= ZERO, ONE, -ONE)
-    height, behind = height * turned, turned * behind
-    firm, tu, tv, tw = height > _number(t, UNSURE), u * turned, v * turned, w * turned
-    hit = firm & (tu > _INSIDE * of_u) & (tv > _INSIDE * of_v) & (tw > _INSIDE * of_w) & (behind > of_behind)
-    hit = hit & (height > _LAMP * maximum(d, -d))
-    missed = firm & ((tu < -of_u) | (tv < -of_v) | (tw < -of_w) | (behind < -of_behind))
-
-    # Where it may be either, so may the sign of D.
-    beyond = (u < -of_u) | (v < -of_v) | (w < -of_w) | (d < -of_d)
-    missed = missed | (beyond & ((u > of_u) | (v > of_v) | (w > of_w) | (d > of_d)))
-
-    # Or the ray passes the box by.
-    start = load_f32x16(at + 3 * PLACES), load_f32x16(at + 4 * PLACES), load_f32x16(at + 5 * PLACES)
-    x, y, z = _three_numbers(k, POINT)
-    direction = x - start[0], y - start[1], z - start[2]
-    missed = missed | segments_miss_box(start, direction, _three_numbers(t, LOW), _three_numbers(t, HIGH))
-    if _number(t, FIRM) < ZERO:
-        return np.int64(0), np.int64(0)
-    return (bits_of(hit) if can else np.int64(0)), bits_of(missed)
+def _note(blocked, unsure, hit, missed):
+    """Join bits of sixteen samples at two addresses: those that are hit, which are returned with those that were
+    before, and those that are neither that nor missed."""
+    hit |= np.int64(load_i32(blocked))
+    store(blocked, np.int32(hit))
+    store(unsure, np.int32(np.int64(load_i32(unsure)) | (0xFFFF & ~(hit | missed))))
+    return hit
