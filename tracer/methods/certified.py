@@ -2,8 +2,9 @@
 
 Before shading, certificates are made for what the primary hits are about to need and what other rays requested in the
 last frame (`tracer.culling.certified`).  In shadow testing `find` leads each point to its cell, `choose` answers the
-rays that the cell's certificates say all about, and tests the candidates of those that they say much about, and
-`finish` notes what reflected and refracted rays have missed.
+rays that the cell's certificates say all about, and tests the candidates of those that they say much about; rays of
+lamps, which have no certificates, it answers for all samples at once.  `finish` notes what reflected and refracted rays
+have missed.
 """
 
 from __future__ import annotations
@@ -59,7 +60,8 @@ def find(data, call, light, count, counts):
 
 @entry
 def choose(data, call, light, count, counts):
-    """Answer rays by certificates; candidates are asked where packets of primary hits' rays are not quicker."""
+    """Answer rays by certificates, and those of lamps by beams; candidates are asked where packets of primary hits'
+    rays are not quicker."""
     given, certified = call_at(call), view_at(data)
     points, batch, found = points_in(given.points), shadow_batch_in(given.shadows), cell_points_in(scratch_of(given))
     if light < len(certified.lamps.known) and certified.lamps.known[light] != 0:
@@ -145,6 +147,8 @@ class CertifiedCells(ShadowMethod):
         """Certify for so many seconds, at most, what is requested."""
         store, tiles = self.store, frame.tiles
         assert store is not None and self.scheduler is not None, "followed before"
+        if not store.certified.any():
+            return
 
         def request(numbers: NDArray[np.int64], requests: Requests) -> None:
             view = pack(store.view(len(tiles), requests))
@@ -161,7 +165,7 @@ class CertifiedCells(ShadowMethod):
         assert self.store is not None, "followed before"
         requests = self._requests if learns and self._requests is not None else make_requests(0)
         view = self.store.view(len(frame.tiles), requests, self._cell if learns else np.empty(0, np.int32))
-        rows = CELL_POINT_ROWS + LAMP_ANSWER_ROWS * view.lamps.known.any()
+        rows = CELL_POINT_ROWS + (LAMP_ANSWER_ROWS if view.lamps.known.any() else 0)
         return [Stage(view, find, choose, finish=finish if len(requests.key) else None, rows=rows)]
 
     def keep(self, frame: FrameView) -> None:

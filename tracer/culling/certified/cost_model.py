@@ -21,6 +21,7 @@ class CostModel(NamedTuple):
         max_asked: candidates that a ray tests, at most, instead of traversing the tree; 0 for never.
         costly_rays: whether a ray costs so much that every look-up pays, even of a triangle without cells.
         stride: one in so many vectors of sixteen points makes requests, others in each frame.
+        least_samples: of a lamp whose rays are answered by beams; those of lamps with fewer are traced.
     """
 
     root_requests: int
@@ -29,10 +30,11 @@ class CostModel(NamedTuple):
     max_asked: int
     costly_rays: bool
     stride: int
+    least_samples: int = 2
 
 
 # Measured on BART's scenes at 960x540, by accelerator.
-COST_MODELS = {"kdtree": CostModel(4, 12, 6, 48, True, 4), "bvh8": CostModel(8, 32, 0, 48, False, 16)}
+COST_MODELS = {"kdtree": CostModel(4, 12, 6, 48, True, 4), "bvh8": CostModel(8, 32, 0, 48, False, 16, 8)}
 
 
 def cost_model_for(accelerator: str, bounces: bool) -> CostModel:

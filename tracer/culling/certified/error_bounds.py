@@ -198,7 +198,7 @@ def rows_at(rows, numbers):
 
 @inlined
 def seen_from(light, radius, row):
-    """Sixteen triangles, columns of their rows, as a lamp sees them whose samples lie in a ball around light (3,) float32.
+    """Sixteen triangles, columns of their rows, as a lamp sees them, whose samples lie in a ball around light (3,).
 
     The height is the least of any point of the ball, distances are the greatest; firm and sane hold for all of them."""
     e1, e2, blur = row[3:6], row[6:9], row[BLUR]

@@ -19,8 +19,8 @@ from tracer.culling.certified.error_bounds import LANES
 from tracer.culling.certified.seen_by_lamp import (
     KEPT,
     MOST_SAMPLES,
-    SAMPLES,
     PREPARED,
+    SAMPLES,
     ask_points,
     ask_samples,
     prepare,
@@ -123,6 +123,7 @@ def find_answers(certified, points, answers, samples, first, number, count, coun
         local_memory(MARKS),
     )
     groups = put_samples(samples, first, np.int64(lamps.samples[number]), light, room.samples)
+    lamp = number, light, radius, groups
     for start in range(0, vectors(count), GROUP):
         end = min(start + GROUP, vectors(count))
         some = _open_points(points, answers, light, radius, start, end, count)
@@ -141,7 +142,7 @@ def find_answers(certified, points, answers, samples, first, number, count, coun
             elif put_beam(beam, points, answers.open, v, v + 1, light, radius, lamps.within):
                 known = found if found > 0 else _find_primitives(o, number, beam, OF_VECTOR, room, counts)
                 if known >= 0:
-                    _ask_vector(o, points, answers, v, number, light, radius, beam, known, found > 0, groups, room, counts)
+                    _ask_vector(o, points, answers, v, lamp, beam, known, found > 0, room, counts)
 
 
 @inlined
@@ -175,9 +176,10 @@ def _find_primitives(o, number, beam, most, room, counts):
 
 
 @subkernel
-def _ask_vector(o, points, answers, v, number, light, radius, beam, found, prepared, groups, room, counts):
+def _ask_vector(o, points, answers, v, lamp, beam, found, prepared, room, counts):
     """Ask the primitives that come into a beam about the points of a vector: so many as were found, and perhaps
-    `prepared`."""
+    `prepared`.  lamp is its number, light (3,), radius and how many vectors its samples make."""
+    number, light, radius, groups = lamp
     end, every = load_three(points.lifted, v), np.int64(answers.open[v])
     live, begun = every, np.int64(0)  # points that may see some sample, and those that have bits of samples
     for batch in range(batches_of(found)):

@@ -53,9 +53,10 @@ from tracer.simd import (
 )
 
 # Columns of sixteen prepared triangles, vectors one after the other: corner and edges; the edges, and the vectors that
-# give U, V and D from the centre, times the sign of T; factors of the error bounds (`_bounds`); |D|'s change within the
-# lamp; |T| at least, and by how much it must differ from 0 for its sign to be certain; how long rays may be to be sure of
-# a hit; 1 where T's sign is the same for all of the lamp, 0 where it is not, -1 where float32 can tell nothing; how far from the triangle a hit may be reported; and a box outside of which none is.
+# give U, V and D from the centre, times the sign of T; factors of the error bounds; by how much |D| changes within the
+# lamp; |T| at least, and by how much it must differ from 0 for its sign to be certain; how long rays may be to be sure
+# of a hit; 1 where T's sign is the same for all of the lamp, 0 where it is not, -1 where float32 can tell nothing; how
+# far from the triangle a hit may be reported; and a box outside of which none is.
 (CORNER, FIRST, SECOND, TURNED_FIRST, TURNED_SECOND, U, V, D) = range(0, 24, 3)
 (OF_U, OF_V, OF_W, NEAR, FAR, BEHIND, REACH, HEIGHT, UNSURE, SURE, FIRM, RADIUS, LOW) = range(24, 37)
 HIGH = LOW + 3
@@ -144,8 +145,14 @@ def prepared_met(made, beam):
     low, high, radius = _three(made, LOW), _three(made, HIGH), load_f32x16(made + 64 * RADIUS)
     met = radius > ZERO
     for axis in range(3):
-        least, most = minimum(ZERO, minimum(first[axis], second[axis])), maximum(ZERO, maximum(first[axis], second[axis]))
-        least, most = maximum(corner[axis] + least - radius, low[axis]), minimum(corner[axis] + most + radius, high[axis])
+        least, most = (
+            minimum(ZERO, minimum(first[axis], second[axis])),
+            maximum(ZERO, maximum(first[axis], second[axis])),
+        )
+        least, most = (
+            maximum(corner[axis] + least - radius, low[axis]),
+            minimum(corner[axis] + most + radius, high[axis]),
+        )
         met = met & (least <= beam.box[3 + axis]) & (most >= beam.box[axis])
     for k in range(len(beam.planes)):
         n, offset = (beam.planes[k, 0], beam.planes[k, 1], beam.planes[k, 2]), beam.planes[k, 3]
@@ -171,9 +178,9 @@ def _three_numbers(at, column):
 def ask_points(triangle, end, light, radius, kept):
     """What the rays from a lamp, a ball of a radius around light (3,) float32, to sixteen points `end` are certain of.
 
-    The prepared triangle's numbers are at an address.  (bits of the points from which it hides all of the lamp, of those
-    from which none, and of those from which a sample whose U, V and W say so is hidden for certain).  For `ask_samples`
-    what is known of the points goes to the address `kept`, KEPT bytes, unless the triangle hides no sample from any."""
+    The prepared triangle's numbers are at an address.  (bits of the points from which it hides all of the lamp, of
+    those from which none, and of those from which it may hide a sample for certain).  For `ask_samples` what is known
+    of the points goes to the address `kept`, KEPT bytes, unless the triangle hides no sample from any."""
     t = triangle
     corner, of_d, firm = _three_numbers(t, CORNER), _three_numbers(t, D), _number(t, FIRM)
     near = end[0] - corner[0], end[1] - corner[1], end[2] - corner[2]
@@ -230,8 +237,8 @@ def ask_samples(triangle, kept, lane, can, samples, groups, blocked, unsure):
     """Which of a lamp's samples does a triangle hide from one point, that in a lane of what `ask_points` kept?
 
     Samples, as `put_samples` put them, are `groups` of sixteen.  Those that are hidden for certain join the bits at the
-    address `blocked`, int32 for sixteen samples each, if the triangle `can` hide any for certain; those of which nothing
-    is certain join `unsure`.  Whether all are blocked."""
+    address `blocked`, int32 for sixteen samples each, if the triangle `can` hide any for certain; those of which
+    nothing is certain join `unsure`.  Whether all are blocked."""
     t, k = triangle, kept + 4 * lane
     behind, firm, every = _number(k, AT_BEHIND), _number(t, FIRM), np.int64(0xFFFF)
     side = ONE if firm > ZERO or behind >= ZERO else -ONE

@@ -315,7 +315,7 @@ class CertificateStore:
     def _lamps(self) -> LampsView:
         room = self.scale.max_height * OUTWARDS
         within = (self._static.bounds.reshape(-1) + room).astype(np.float32)
-        known = self.stationary & (self.radii > 0.0)
+        known = self.stationary & (self.radii > 0.0) & (self._samples >= self.cost_model.least_samples)
         return LampsView(known, self.lights, self.radii, self._samples, within)
 
     def at_pixels(self, cell: NDArray[np.int32]) -> NDArray[np.unsignedinteger]:
