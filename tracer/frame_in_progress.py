@@ -112,7 +112,7 @@ class FrameInProgress:
 
     def _use_lamps(self, lamps: Lamps) -> None:
         self.shading = self._state.shading._replace(lamps=lamps)
-        self.lights, self.corners = lamps.places, lamps.corners
+        self.lights = lamps.places
 
     # --- phases, in the order of Figure 1 ------------------------------------------------------------
 

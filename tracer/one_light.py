@@ -79,5 +79,5 @@ def _alone(lamps: Lamps, light: int) -> Lamps:
     one = slice(light, light + 1)
     return Lamps(
         lamps.places[one], lamps.samples[first:end], np.array([0, end - first], np.int32), lamps.rows[one],
-        lamps.corners[one],
+        lamps.radii[one],
     )  # fmt: skip

@@ -23,7 +23,7 @@ from tracer.shading.blocks import Planes, make_planes
 from tracer.shading.buffers import Workspace, workspace
 from tracer.shading.shading_data import SHINE, TRANSMISSION, make_shading_data
 
-HISTORIES = 16  # resolutions whose modes are kept, of primitives or of cells, those used last
+HISTORIES = 16  # resolutions and lamps whose modes are kept, of primitives or of cells, those used last
 
 MODES_BESIDE = Kind("modes", "Keeps the paper's modes.", ModesBeside, addition=True)
 
@@ -50,7 +50,7 @@ class State:
         by_name = lambda name: itself.method(name)  # noqa: E731
         self._services = Services(world, self.shading, model, clock, thread_clock, by_name)
         self._methods: dict[Kind, ShadowMethod] = {}
-        self.histories: dict[tuple[int, int, bool], ModeHistory] = {}
+        self.histories: dict[tuple[int, int, bool, float | None, int | None], ModeHistory] = {}
         self._workspaces: list[Workspace] = []
         self._lamps: LampTable | None = None
         self._lamps_made_of: tuple[tuple[Light, ...], float | None, int | None] | None = None
@@ -87,9 +87,9 @@ class State:
         return chosen
 
     def history(self, settings: Settings, first: NDArray[np.int32], workers: int) -> ModeHistory:
-        """The modes at this resolution, of primitives or of cells; made, or given room for more workers, where need
-        be.  first (primitives + 1,) are the first units of primitives, or empty."""
-        key = settings.width, settings.height, len(first) > 0
+        """The modes at this resolution and by these lamps, of primitives or of cells; made, or given room for more
+        workers, where need be.  first (primitives + 1,) are the first units of primitives, or empty."""
+        key = settings.width, settings.height, len(first) > 0, settings.lamp_radius, settings.lamp_samples
         history = self.histories.pop(key, None)
         if history is None:
             history = ModeHistory(self.world.object_of, len(self.scene.lights), workers, first)

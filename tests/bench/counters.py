@@ -86,6 +86,12 @@ EDITS = (
             ("certified/certify", 16, "STEPS", "1"),
             ("certified/certify", 12, "STEPS", "1"),
             ("certified/certify", 4, "TESTS", "n"),
+            ("certified/beams", 16, "STEPS", "1"),
+            ("certified/beams", 12, "STEPS", "1"),
+            ("certified/lamp_answers", 12, "TESTS", "ones(live)"),
+            ("regions/certify", 16, "STEPS", "1"),
+            ("regions/certify", 16, "TESTS", "1"),
+            ("regions/certify", 8, "TESTS", "1"),
         )
     ),
 )

@@ -16,6 +16,7 @@ from tracer.culling.certified.requests import Requests
 from tracer.culling.certified.scheduler import LEAST, MANY, Budget, CertificateScheduler
 from tracer.culling.certified.store import CertificateStore
 from tracer.culling.rest import nothing_rests
+from tracer.scene.lamps import LampTable
 
 LIGHTS = np.array([(0.0, 0.0, 11.0), (1.0, -1.0, 10.0)], np.float32)
 SQUARES = scene(floor() + roof(6.0, 1.0), lights=LIGHTS)
@@ -45,7 +46,7 @@ def world() -> tracer.World:
 
 def _store(world: tracer.World, model: CostModel = WHOLE) -> CertificateStore:
     store = CertificateStore(world, len(LIGHTS), 1, model)
-    store.follow(LIGHTS, nothing_rests(1), 1)
+    store.follow(LampTable(SQUARES.lights).at(LIGHTS), nothing_rests(1), 1)
     return store
 
 

@@ -113,14 +113,15 @@ def _everything(walk: NastyWalk, threads: int, accelerator: str) -> list[dict]:
     certified, result = tracer.Renderer(walk.scene, settings, cost_model=EAGER), []
     for time, camera in walk.frames:
         held = contents(certified.render(time, camera))
+        result.append(held)
         store = certificates_of(certified)
-        assert store is not None
+        if store is None:
+            continue
         cells = store.cells
         used, named = int(cells.used[0]), int(cells.named[0])
         for name in ("words", "child", "parent", "owner", "place", "lists"):
             held[f"cells: {name}"] = getattr(cells, name)[1:used].copy()
         held["cells: names"] = cells.names[:named].copy()
-        result.append(held)
     return result
 
 

@@ -26,6 +26,7 @@ from tracer.geometry.world import ACCELERATORS, World
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation, Keys, TrackSet
+from tracer.scene.lamps import LampTable
 from tracer.scene.lights import Light
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
@@ -141,7 +142,7 @@ def test_no_ray_gets_past_a_patch_that_hides_a_light(accelerator: str):
         hole = (columns // 2, rows // 2) if columns > 1 and rng.random() < 0.3 else None
         corners = np.array(wall(columns, rows, hole)) @ place.T + move
         world = World(scene(corners), accelerator=accelerator)
-        store = RegionStore(world, np.zeros((1, 8, 3), np.float32))
+        store = RegionStore(world, LampTable((Light("light", (0.0, 0.0, 0.0)),)).at(np.zeros((1, 3))))
         for _ in range(12):
             middle = np.array([rng.uniform(0, 4), rng.uniform(0, 3), 0.0])
             away = np.array([*rng.normal(size=2) * rng.choice([0.2, 1.0]), 1.0])
@@ -259,8 +260,8 @@ def test_a_budget_of_certificates_is_kept():
 
 
 def test_memory_is_bounded():
-    corners = np.repeat(np.array([light.position for light in rooms().lights], np.float32)[:, None], 8, 1)
-    store = RegionStore(World(rooms()), corners)
+    lit = rooms()
+    store = RegionStore(World(lit), LampTable(lit.lights).at(lit.light_positions(0.0)))
     store.grid.wanted[:: len(store.grid.wanted) // 50] = True
     made = store.certify(Budget(), threads=2).certificates
     assert made > 50 and store.bytes > 0 and not store.grid.wanted.any() and store.grid.certified.any()

@@ -94,11 +94,14 @@ def trusted(found, light, v):
 
 
 @inlined
-def answer(batch, v, full, non):
-    """Take points that are known to be in full shadow, or in none, out of those that are to be traced."""
+def answer(batch, v, full, non, counts):
+    """Take points that are known to be in full shadow, or in none, out of those that are to be traced, and count
+    them."""
     live = np.int64(batch.live[v])
     batch.live[v] = live & ~(full | non)
     batch.lit[v] |= live & non
+    counts[CULLED] += ones(live & full)
+    counts[DYNAMIC_ONLY] += ones(live & non)
 
 
 @subkernel
@@ -107,14 +110,11 @@ def cull(words, found, light, count, batch, counts):
     if light >= MAX_CULLED_LIGHTS:
         return
     for v in range(vectors(count)):
-        live = np.int64(batch.live[v])
-        if live == 0:
+        if batch.live[v] == 0:
             continue
         look_up(words, v, found)
         full, non = trusted(found, light, v)
-        answer(batch, v, full, non)
-        counts[CULLED] += ones(live & full)
-        counts[DYNAMIC_ONLY] += ones(live & non)
+        answer(batch, v, full, non, counts)
 
 
 @subkernel

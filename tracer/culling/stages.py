@@ -51,8 +51,8 @@ class Stages(NamedTuple):
 
 
 class Call(NamedTuple):
-    """What a stage is given: the stage's first row in `scratch`; which of the samples it is asked about, and whether it
-    was asked about another one of the same light before, for the same wave; the number of the tile; the bounce, 0 for
+    """What a stage is given: the stage's first row in `scratch`; which of the samples it is asked about, and which of
+    its light's that is, 0 for the first; the number of the tile; the bounce, 0 for
     primary hits; the memory of the surface points, of the rays that hit them, of the shadow batch, and of the stages,
     (rows, n) float32 each; the positions of all lights' samples (s, 3) float32; and place (n,) int32, where in the
     picture the pixels of the tile are, by their numbers in the wave.
@@ -61,7 +61,7 @@ class Call(NamedTuple):
 
     first_row: int
     sample: int
-    again: bool
+    nth: int
     tile: int
     bounce: int
     points: F32x2D
@@ -88,10 +88,10 @@ def run_stages(stages, which, call, light, count, counts):
 
 
 @inlined
-def write_sample(call, sample, again):
+def write_sample(call, sample, nth):
     """Say which sample the stages are asked about next."""
     store(call + 8, np.int64(sample))
-    store(call + 16, np.int64(again))
+    store(call + 16, np.int64(nth))
 
 
 @inlined

@@ -2,8 +2,9 @@
 
 Before shading, certificates are made for what the primary hits are about to need and what other rays requested in the
 last frame (`tracer.culling.certified`).  In shadow testing `find` leads each point to its cell, `choose` answers the
-rays that the cell's certificates say all about, and tests the candidates of those that they say much about, and
-`finish` notes what reflected and refracted rays have missed.
+rays that the cell's certificates say all about, and tests the candidates of those that they say much about; rays of
+lamps, which have no certificates, it answers for all samples at once.  `finish` notes what reflected and refracted rays
+have missed.
 """
 
 from __future__ import annotations
@@ -11,10 +12,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.certified.lamp_answers import (
+    LAMP_ANSWER_ROWS,
+    answer_sample,
+    find_answers,
+    lamp_answers_in,
+)
 from tracer.culling.certified.lookup import (
     CELL_POINT_ROWS,
     cell_points_in,
-    cull_again,
     cull_by_certificates,
     find_cells,
     record_cells,
@@ -56,11 +62,15 @@ def find(data, call, light, count, counts):
 
 @entry
 def choose(data, call, light, count, counts):
-    """Answer rays by certificates; candidates are asked where packets of primary hits' rays are not quicker."""
+    """Answer rays by certificates, and those of lamps by beams; candidates are asked where packets of primary hits'
+    rays are not quicker."""
     given, certified = call_at(call), view_at(data)
     points, batch, found = points_in(given.points), shadow_batch_in(given.shadows), cell_points_in(scratch_of(given))
-    if given.again:
-        cull_again(certified, light, count, found, batch, i64_at(counts))
+    if light < len(certified.lamps.known) and certified.lamps.known[light] != 0:
+        answers = lamp_answers_in(scratch_of(given)[CELL_POINT_ROWS:])
+        if given.nth == 0:
+            find_answers(certified, points, answers, given.samples, given.sample, light, count, i64_at(counts))
+        answer_sample(answers, given.nth, count, batch, i64_at(counts))
         return
     asks, position = given.bounce >= certified.first_asking, given.samples[given.sample]
     cull_by_certificates(certified, points, found, position, light, count, asks, batch, i64_at(counts))
@@ -124,7 +134,7 @@ class CertifiedCells(ShadowMethod):
                 self.services.world, len(frame.lights), frame.workers, self.services.cost_model
             )
             self.scheduler = CertificateScheduler(self.store, self.services.clock)
-        self.store.follow(frame.corners, frame.resting, frame.workers)
+        self.store.follow(frame.shading.lamps, frame.resting, frame.workers)
 
     def prepare(self, frame: FrameView) -> None:
         self.take_requests(frame, frame.settings.certificate_seconds)
@@ -139,6 +149,8 @@ class CertifiedCells(ShadowMethod):
         """Certify for so many seconds, at most, what is requested."""
         store, tiles = self.store, frame.tiles
         assert store is not None and self.scheduler is not None, "followed before"
+        if not store.certified.any():
+            return
 
         def request(numbers: NDArray[np.int64], requests: Requests) -> None:
             view = pack(store.view(len(tiles), requests))
@@ -155,8 +167,9 @@ class CertifiedCells(ShadowMethod):
         assert self.store is not None, "followed before"
         requests = self._requests if learns and self._requests is not None else make_requests(0)
         view = self.store.view(len(frame.tiles), requests, self._cell if learns else np.empty(0, np.int32))
+        rows = CELL_POINT_ROWS + (LAMP_ANSWER_ROWS if view.lamps.known.any() else 0)
         asks = finish if len(requests.key) else None
-        return [Stage(view, find=find, choose=choose, finish=asks, rows=CELL_POINT_ROWS)]
+        return [Stage(view, find=find, choose=choose, finish=asks, rows=rows)]
 
     def keep(self, frame: FrameView) -> None:
         self._words = self._words_seen()  # cells may get other numbers now

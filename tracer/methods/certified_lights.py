@@ -88,8 +88,8 @@ class CertifiedLights(ShadowMethod):
     def follow(self, frame: FrameView) -> None:
         self.made_now = self.store is None
         if self.store is None:
-            self.store = RegionStore(self.services.world, frame.corners, self.services.clock)
-        self.store.follow(frame.corners)
+            self.store = RegionStore(self.services.world, frame.shading.lamps, self.services.clock)
+        self.store.follow(frame.shading.lamps)
 
     def prepare(self, frame: FrameView) -> None:
         self.certify(frame, frame.settings.certificate_seconds)

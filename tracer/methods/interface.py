@@ -63,8 +63,8 @@ class FrameView(Protocol):
     rays: Pinhole
     tiles: NDArray[np.int64]  # (n, 5): left, top, right, bottom, number
     buffers: Buffers
+    shading: ShadingData
     lights: NDArray[np.float32]  # (l, 3) their centres
-    corners: NDArray[np.float32]  # (l, 8, 3) corners of boxes around their samples
     resting: Resting
     workers: int
     progressive: bool  # whether the picture is shown before all of it is shaded

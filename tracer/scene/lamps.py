@@ -11,6 +11,7 @@ from tracer.scene.lights import Light
 
 COLOR, FALLS_OFF = 0, 3
 LAMP_COLUMNS = 4
+ROUNDED_UP = 1.000001  # times a number, in float32 no less than that
 
 
 class Lamps(NamedTuple):
@@ -18,14 +19,14 @@ class Lamps(NamedTuple):
 
     places (l, 3) float32 are their centres, or the one sample that they have; samples (n, 3) float32 are positions,
     those of lamp i from first[i] to first[i + 1] - 1, first (l + 1,) int32; rows (l, 4) float32 are the colour of each
-    sample, and 1 where it falls off with the square of the distance.  corners (l, 8, 3) float32 are those of a box in
-    which the lamp's samples lie: all the same for a single one."""
+    sample, and 1 where it falls off with the square of the distance.  radii (l,) float32 are those of balls around
+    places in which the lamp's samples lie: 0 for a single one."""
 
     places: NDArray[np.float32]
     samples: NDArray[np.float32]
     first: NDArray[np.int32]
     rows: NDArray[np.float32]
-    corners: NDArray[np.float32]
+    radii: NDArray[np.float32]
 
 
 class LampTable:
@@ -50,11 +51,10 @@ class LampTable:
         samples = (centers[self._owner] + self._offsets).astype(np.float32)
         places = centers.astype(np.float32)
         places[self.single] = samples[self._first[:-1][self.single]]
-        return Lamps(places, samples, self._first, self._rows, self._corners(samples))
+        return Lamps(places, samples, self._first, self._rows, self._radii(places, samples))
 
-    def _corners(self, samples: NDArray[np.float32]) -> NDArray[np.float32]:
+    def _radii(self, places: NDArray[np.float32], samples: NDArray[np.float32]) -> NDArray[np.float32]:
         if not len(self.lights):
-            return np.empty((0, 8, 3), np.float32)
-        bounds = [around.reduceat(samples, self._first[:-1], axis=0) for around in (np.minimum, np.maximum)]
-        of_corner = np.array([[(k >> axis) & 1 for axis in range(3)] for k in range(8)])
-        return np.stack(bounds)[of_corner, :, np.arange(3)].transpose(2, 0, 1).copy()
+            return np.empty(0, np.float32)
+        away = np.linalg.norm(samples.astype(np.float64) - places[self._owner], axis=1)
+        return (ROUNDED_UP * np.maximum.reduceat(away, self._first[:-1])).astype(np.float32)

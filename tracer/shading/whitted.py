@@ -114,7 +114,7 @@ def _add_lights(world, shading, wave, points, stages, counts, pixels, tile, boun
     scratch, call = room(space.scratch, wave.size), local_memory(CALL)
     write_call(
         call,
-        Call(0, 0, False, tile, bounce, points.memory, wave.memory, batch.memory, scratch, lamps.samples, pixels.place),
+        Call(0, 0, 0, tile, bounce, points.memory, wave.memory, batch.memory, scratch, lamps.samples, pixels.place),
     )
     run_stages(stages, FIND, call, 0, wave.size, counts)
     if selects(stages.looks, wave.size):
@@ -124,7 +124,7 @@ def _add_lights(world, shading, wave, points, stages, counts, pixels, tile, boun
             counts[PASSED_OVER] += wave.size * (lamps.first[light + 1] - lamps.first[light])
             continue
         for sample in range(lamps.first[light], lamps.first[light + 1]):
-            write_sample(call, sample, sample > lamps.first[light])
+            write_sample(call, sample, sample - lamps.first[light])
             shadow_testing(world, points, wave.size, lamps.samples[sample], light, stages, call, batch, counts)
             add_light(points, lamps, light, sample, batch.lit, wave, points.light)
             if stages.verify:
@@ -181,6 +181,6 @@ def _find(shading, wave, points, stages, counts, pixels, tile, space):
     """Call the stages' kernels for a new wave; returns the memory that they were given, as `_add_lights` does."""
     shadows, scratch, call = room(space.shadows, wave.size), room(space.scratch, wave.size), local_memory(CALL)
     samples = shading.lamps.samples
-    write_call(call, Call(0, 0, False, tile, 0, points.memory, wave.memory, shadows, scratch, samples, pixels.place))
+    write_call(call, Call(0, 0, 0, tile, 0, points.memory, wave.memory, shadows, scratch, samples, pixels.place))
     run_stages(stages, FIND, call, 0, wave.size, counts)
     return shadows, scratch

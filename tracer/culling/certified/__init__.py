@@ -18,5 +18,9 @@ requests are gathered into tasks (`gather_requests`), which are run in parallel 
 known, and drops what no longer holds when something moves (`invalidate`).  What a cancelled frame has certified can be
 undone (`journal`).
 
+The rays of lamps, lights with many samples, need no cells: what may come between a lamp and points that are shaded
+together is found at once for all of their rays (`beams`, `lamp_answers`), sample by sample in the penumbra
+(`seen_by_lamp`).
+
 docs/certified-cells.md tells it all.
 """

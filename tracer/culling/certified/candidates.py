@@ -54,7 +54,7 @@ def _prefetch_lanes(table, size, numbers):
 def _open(certified, points, found, number, count, room, stride):
     """Put a question, at an address, for each of `count` points with a few candidates; how many there are."""
     lists, names, asked = address_of(certified.lists), address_of(certified.names), address_of(found.asked)
-    light_space = address_of(certified.light_space[number])
+    light_space = address_of(certified.occluders.light_space[number])
     lights, at, step = np.int32(certified.lists.shape[1]), address_of(points.lifted), 4 * points.lifted.shape[1]
 
     # Find the list of each point's cell.
@@ -164,7 +164,7 @@ def ask_candidates(certified, points, found, light, number, count, live, lit):
     out of the bits `live`, sixteen to an int32, and put into the bits `lit` where nothing static blocks the light.
     (how many points are known now, tests made)."""
     room, stride = address_of(found.questions), 4 * found.questions.shape[1]
-    names, light_space = address_of(certified.names), address_of(certified.light_space[number])
+    names, light_space = address_of(certified.names), address_of(certified.occluders.light_space[number])
     tests, known = np.int64(0), np.int64(0)
     count = _open(certified, points, found, number, count, room, stride)
     while count > 0:

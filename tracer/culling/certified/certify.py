@@ -77,12 +77,12 @@ def make_scratch() -> Scratch:
 
 
 @subkernel
-def _meet(s, o, numbers, n, count, counts):
+def _meet(s, o, light, numbers, n, count, counts):
     """Classify n <= 16 primitives, their numbers at an address; those that may come between join the `count` found.
 
     How many there are then, or -1 where one hides the whole cell: then it alone is found."""
     counts[TESTS] += n
-    hit, missed = classify_occluders(o.rows, numbers, o.farthest, s.shaft)
+    hit, missed = classify_occluders(o.rows, numbers, o.farthest, light, s.shaft)
     there = lanes_below(n, 0)
     hit &= there
     if hit != 0:
@@ -94,20 +94,20 @@ def _meet(s, o, numbers, n, count, counts):
 
 
 @subkernel
-def _from_list(s, o, given, given_count, counts):
+def _from_list(s, o, light, given, given_count, counts):
     """Find primitives among given (given_count,) int32; how many, or -1 as `_meet` says."""
     count, numbers = np.int64(0), local_memory(64)
     for first in range(0, given_count, LANES):
         for k in range(LANES):
             i32_at(numbers)[k] = given[min(first + k, given_count - 1)]
-        count = _meet(s, o, numbers, min(LANES, given_count - first), count, counts)
+        count = _meet(s, o, light, numbers, min(LANES, given_count - first), count, counts)
         if count < 0:
             return count
     return count
 
 
 @subkernel
-def _from_tree(s, o, number, counts):
+def _from_tree(s, o, number, light, counts):
     """Find primitives in the tree of light `number`; how many, -1 as `_meet` says, or more than MOST for too many."""
     count, stack, waiting = np.int64(0), i64_at(local_memory(STACK)), local_memory(WAITING)
     numbers, n = i32_at(waiting), 0
@@ -142,35 +142,35 @@ def _from_tree(s, o, number, counts):
                     those &= those - 1
                     n += 1
                 if n >= LANES:
-                    count = _meet(s, o, waiting, LANES, count, counts)
+                    count = _meet(s, o, light, waiting, LANES, count, counts)
                     if count < 0 or count > MOST:
                         return count
                     n -= LANES
                     for k in range(n):
                         numbers[k] = numbers[LANES + k]
-    return _meet(s, o, waiting, n, count, counts) if n > 0 else count
+    return _meet(s, o, light, waiting, n, count, counts) if n > 0 else count
 
 
 @subkernel
-def certify(s, o, number, given, given_count, few, counts):
+def certify(s, o, number, light, given, given_count, few, counts):
     """Certify the cell and light that s.shaft was put to: (state, how many primitives it names).
 
-    s.found begins with these.  o are the `Occluders`, number that of the light.  Candidates are those of `given`
-    (given_count,) int32 where there are no more than MOST, else they come from the tree.  More than MOST make
-    CANDIDATES of TOO_MANY, which are not named.  As few as `few`, which rays will test, are SETTLED besides.  counts
-    (COUNTERS,) int64 are added to."""
+    s.found begins with these.  o are the `Occluders`, number that of the light, light (3,) its position.  Candidates
+    are those of `given` (given_count,) int32 where there are no more than MOST, else they come from the tree.  More
+    than MOST make CANDIDATES of TOO_MANY, which are not named.  As few as `few`, which rays will test, are SETTLED
+    besides.  counts (COUNTERS,) int64 are added to."""
     counts[CERTIFICATES] += 1
     if given_count <= MOST:
-        count = _from_list(s, o, given, given_count, counts)
+        count = _from_list(s, o, light, given, given_count, counts)
     else:
-        count = _from_tree(s, o, number, counts)
+        count = _from_tree(s, o, number, light, counts)
     if count < 0:
         return FULL, 1
     if count == 0:
         return LIT, 0
     if count > MOST:
         return CANDIDATES, TOO_MANY
-    fused = fuse(s, o, count)
+    fused = fuse(s, o, light, count)
     if fused > 0:
         return FULL, fused
     return CANDIDATES, count + (SETTLED if count <= few else 0)

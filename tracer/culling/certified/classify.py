@@ -21,8 +21,7 @@ from tracer.culling.certified.error_bounds import (
     functions,
     length16,
     rows_at,
-    seen_from_all,
-    seen_from_corner,
+    seen_from,
     sure_hit_length,
 )
 from tracer.culling.certified.shaft import CORNERS, PLANES
@@ -40,10 +39,10 @@ def _short(a):
 
 
 @inlined
-def _at(shaft, k, lamp=0):
-    """The direction from a corner of the light to a shaft's k-th corner, and that corner, in float32."""
-    d, p, i = shaft.directions, shaft.corners, CORNERS * lamp + k
-    return _short((d[0, i], d[1, i], d[2, i])), _short((p[0, k], p[1, k], p[2, k]))
+def _at(shaft, k):
+    """The direction to a shaft's k-th corner, and that corner, in float32."""
+    d, p = shaft.directions, shaft.corners
+    return _short((d[0, k], d[1, k], d[2, k])), _short((p[0, k], p[1, k], p[2, k]))
 
 
 @inlined
@@ -53,21 +52,18 @@ def _both(extreme, x):
 
 
 @inlined
-def _over(t, row, shaft):
-    """Extremes over the corners of a shaft's cell and of its light.
+def _over(t, shaft):
+    """Extremes over a shaft's corners.
 
-    (least and greatest U, V, D - U - V, D - T and D; their error bounds; the greatest |D|), of triangles as seen from
-    all of these, in rows."""
+    (least and greatest U, V, D - U - V, D - T and D; their error bounds; the greatest |D|), of triangles as seen."""
     start = f32x16(HUGE), f32x16(-HUGE)
     us, vs, ws, bs, ds, near, coordinates = start, start, start, start, start, f32x16(ZERO), ZERO
-    for lamp in range(shaft.used[0]):
-        here = seen_from_corner(shaft.lamp, lamp, row)
-        for k in range(CORNERS):
-            direction, end = _at(shaft, k, lamp)
-            u, v, w, b, d = functions(here, direction, end)
-            us, vs, ws, bs, ds = _both(us, u), _both(vs, v), _both(ws, w), _both(bs, b), _both(ds, d)
-            near = maximum(near, length16((end[0] - t.corner[0], end[1] - t.corner[1], end[2] - t.corner[2])))
-            coordinates = max(coordinates, abs(end[0]) + abs(end[1]) + abs(end[2]))
+    for k in range(CORNERS):
+        direction, end = _at(shaft, k)
+        u, v, w, b, d = functions(t, direction, end)
+        us, vs, ws, bs, ds = _both(us, u), _both(vs, v), _both(ws, w), _both(bs, b), _both(ds, d)
+        near = maximum(near, length16((end[0] - t.corner[0], end[1] - t.corner[1], end[2] - t.corner[2])))
+        coordinates = max(coordinates, abs(end[0]) + abs(end[1]) + abs(end[2]))
     along = maximum(ds[1], -ds[0])
     return us, vs, ws, bs, ds, error_bounds(t, np.float32(shaft.longest[0]), near, along, coordinates), along
 
@@ -84,28 +80,26 @@ def _parting(x, y, low, high):
 
 
 @inlined
-def _parted_by_two(row, shaft, m):
+def _parted_by_two(t, shaft, m):
     """Mask of triangles of which some sum of two functions with positive factors is negative at all corners."""
     start = f32x16(ZERO), f32x16(HUGE)
     ub, vb, wb, uv, uw, vw = start, start, start, start, start, start
-    for lamp in range(shaft.used[0]):
-        here = seen_from_corner(shaft.lamp, lamp, row)
-        for k in range(CORNERS):
-            direction, end = _at(shaft, k, lamp)
-            u, v, w, b, _d = functions(here, direction, end)
-            u, v, w, b = u + m.u, v + m.v, w + m.w, b + m.behind
-            ub, vb, wb = _parting(u, b, ub[0], ub[1]), _parting(v, b, vb[0], vb[1]), _parting(w, b, wb[0], wb[1])
-            uv, uw, vw = _parting(u, v, uv[0], uv[1]), _parting(u, w, uw[0], uw[1]), _parting(v, w, vw[0], vw[1])
+    for k in range(CORNERS):
+        direction, end = _at(shaft, k)
+        u, v, w, b, _d = functions(t, direction, end)
+        u, v, w, b = u + m.u, v + m.v, w + m.w, b + m.behind
+        ub, vb, wb = _parting(u, b, ub[0], ub[1]), _parting(v, b, vb[0], vb[1]), _parting(w, b, wb[0], wb[1])
+        uv, uw, vw = _parting(u, v, uv[0], uv[1]), _parting(u, w, uw[0], uw[1]), _parting(v, w, vw[0], vw[1])
     parted = (ub[0] < ub[1]) | (vb[0] < vb[1]) | (wb[0] < wb[1])
     return parted | (uv[0] < uv[1]) | (uw[0] < uw[1]) | (vw[0] < vw[1])
 
 
 @inlined
-def _before_planes(t, m, depth, shaft):
+def _before_planes(t, m, depth, light, shaft):
     """Mask of triangles that lie before a plane of the shaft, by more than a reported hit may lie beyond them."""
     # Twice m / depth: the bounds are doubled for our own errors, which do not count here.
     part, beyond = maximum(m.u, maximum(m.v, m.w)) / depth, m.behind / depth * np.float32(shaft.longest[0])
-    parted, light = depth < ZERO, shaft.lamp[0]
+    parted = depth < ZERO
     for k in range(PLANES):
         plane = shaft.planes[k]
         n, offset = _short(plane), np.float32(plane[3] - dot(plane, light))
@@ -135,14 +129,14 @@ def _beside(row, away, shaft):
 
 
 @subkernel
-def classify_occluders(rows, numbers, farthest, shaft):
+def classify_occluders(rows, numbers, farthest, light, shaft):
     """Which of sixteen primitives every ray of a shaft is certain to hit, and which none is: bits of both.
 
-    rows (n, ROW); the primitives' numbers, int32, are at an address; only rays that are shorter than `farthest`
-    (SureHitLength) are certain of a hit."""
+    rows (n, ROW); the primitives' numbers, int32, are at an address; light (3,); only rays that are shorter than
+    `farthest` (SureHitLength) are certain of a hit."""
     row = rows_at(rows, numbers)
-    t = seen_from_all(shaft.lamp, shaft.used[0], row)
-    us, vs, ws, bs, ds, m, along = _over(t, row, shaft)
+    t = seen_from(_short(light), ZERO, row)
+    us, vs, ws, bs, ds, m, along = _over(t, shaft)
     # Hit for certain: all functions clear their bounds at all corners.
     hit = (
         t.firm
@@ -164,37 +158,31 @@ def classify_occluders(rows, numbers, farthest, shaft):
 
     # Or a plane or box parts the triangle from the shaft.
     depth = maximum(select(t.firm, t.height - m.behind, ZERO), maximum(least - m.d, -most - m.d))
-    missed = missed | (t.sane & _before_planes(t, m, depth, shaft)) | _beside(row, t.away, shaft)
+    missed = missed | (t.sane & _before_planes(t, m, depth, light, shaft)) | _beside(row, t.away, shaft)
 
     # Or, which takes longest, a plane through one of the triangle's edges does.
     if any_lane(t.firm & ~missed & ~hit):
-        missed = missed | (t.firm & _parted_by_two(row, shaft, m))
+        missed = missed | (t.firm & _parted_by_two(t, shaft, m))
     hit = hit & (sure_hit_length(farthest, numbers) > np.float32(shaft.longest[0]))
     return bits_of(hit), bits_of(missed)
 
 
 @subkernel
-def put_hidden_parts(rows, numbers, farthest, shaft, parts):
+def put_hidden_parts(rows, numbers, farthest, light, shaft, parts):
     """The parts of a cell that each of sixteen triangles hides, where all four functions are positive.
 
     Functions less their error bounds go into parts (FUNCTIONS, 3, 16) float32 at the address `parts`, at the cell's
-    three corners, of floor and ceiling and all corners of the light whichever is least.  Bits of the triangles of which
-    they hold.  The numbers, int32, of the triangles among rows (n, ROW) are at an address."""
-    row = rows_at(rows, numbers)
-    t = seen_from_all(shaft.lamp, shaft.used[0], row)
-    _us, _vs, _ws, _bs, _ds, m, along = _over(t, row, shaft)
+    three corners, of floor and ceiling whichever is less.  Bits of the triangles of which they hold.  The numbers,
+    int32, of the triangles among rows (n, ROW) are at an address."""
+    t = seen_from(_short(light), ZERO, rows_at(rows, numbers))
+    _us, _vs, _ws, _bs, _ds, m, along = _over(t, shaft)
     for k in range(BELOW):
-        u, v, w, b = f32x16(HUGE), f32x16(HUGE), f32x16(HUGE), f32x16(HUGE)
-        for lamp in range(shaft.used[0]):
-            here = seen_from_corner(shaft.lamp, lamp, row)
-            (near, low), (far, high) = _at(shaft, k, lamp), _at(shaft, BELOW + k, lamp)
-            below, above = functions(here, near, low), functions(here, far, high)
-            u, v = minimum(u, minimum(below[0], above[0])), minimum(v, minimum(below[1], above[1]))
-            w, b = minimum(w, minimum(below[2], above[2])), minimum(b, minimum(below[3], above[3]))
-        store(parts + 64 * k, u - np.float32(INSIDE) * m.u)
-        store(parts + 64 * (BELOW + k), v - np.float32(INSIDE) * m.v)
-        store(parts + 64 * (2 * BELOW + k), w - np.float32(INSIDE) * m.w)
-        store(parts + 64 * (3 * BELOW + k), b - m.behind)
+        (near, low), (far, high) = _at(shaft, k), _at(shaft, BELOW + k)
+        below, above = functions(t, near, low), functions(t, far, high)
+        store(parts + 64 * k, minimum(below[0], above[0]) - np.float32(INSIDE) * m.u)
+        store(parts + 64 * (BELOW + k), minimum(below[1], above[1]) - np.float32(INSIDE) * m.v)
+        store(parts + 64 * (2 * BELOW + k), minimum(below[2], above[2]) - np.float32(INSIDE) * m.w)
+        store(parts + 64 * (3 * BELOW + k), minimum(below[3], above[3]) - m.behind)
     return bits_of(
         t.firm
         & (t.height > np.float32(LAMP) * along)

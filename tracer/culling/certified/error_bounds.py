@@ -40,9 +40,11 @@ close to the triangle.
   asks that (`hit_triangle`), and the fast structure tests the box of a triangle's block.  What passes that box by
   does not hit.
 
-A lamp shines from many points. All of them lie in a box, and U, V, D and D - T are linear in where the ray starts, too,
-as long as their sign is not turned: d x s has no square of L. So over the cell and the box they are greatest and least
-where a corner of the one meets a corner of the other. The bounds grow with lengths that are greatest there as well.
+A lamp shines from many points, all in a ball around its centre. U, V, D and T are linear in where the ray starts, too,
+as long as their sign is not turned: d x s has no square of L. So for rays to one point P they are greatest and least at
+the centre and, times the ball's radius, the length of their gradient to either side: (P - a) x e2 is that of U,
+e1 x (P - a) that of V, n that of D and of T, and D - T has none. The bounds hold of all of the ball if lengths and
+distances are taken a radius longer.
 
 What rests under a transform is known less well in the kd-tree: rays are carried to it, in float32.  Its
 corners are then somewhere within `blur` of where they are taken to be, and a ray that hits it passes that near
@@ -59,7 +61,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tracer.kernels import inlined
-from tracer.simd import address_of, load_columns, load_i32x16, maximum, minimum, select, square_root
+from tracer.simd import address_of, load_columns, load_i32x16, maximum, select, square_root
 
 EPSILON = 2.0**-24  # the largest relative error of a float32 rounding
 ENLARGED = 1.25e-5  # the part of itself by which the fast structure takes a triangle to be larger, and a little
@@ -81,16 +83,17 @@ _FIRM, _FIRM_BLUR = np.float32(44 * EPSILON), np.float32(1.25)
 
 
 class SeenTriangles(NamedTuple):
-    """Sixteen triangles as a light sees them; vectors of lanes, lengths in units of the scene.
+    """Sixteen triangles as a lamp sees them; vectors of lanes, lengths in units of the scene.
 
     Attributes:
         corner: the first corner, three coordinates.
-        s: from there to the light.
+        s: from there to the lamp's centre.
         e1, e2: the two edges at that corner.
-        u, v, d: vectors whose dot products with a direction are U, V and D, times the sign of T.
+        u, v, d: vectors whose dot products with a direction from the centre are U, V and D, times the sign of T.
         height, highest: |T|, the light's height above the plane times the normal's length: at least, and at most.
         away, first, second, across: lengths of s, e1, e2 and the normal.
         turned: the sign of T, by which u, v and d are turned.
+        unsure: by how much T must differ from 0 for its sign to be certain.
         blur: how far the corners may be elsewhere.
         firm: whether the sign of T is certain.
         sane: whether float32 can tell anything at all.
@@ -110,6 +113,7 @@ class SeenTriangles(NamedTuple):
     second: Any
     across: Any
     turned: Any
+    unsure: Any
     blur: Any
     firm: Any
     sane: Any
@@ -164,7 +168,7 @@ def length16(a):
 
 
 @inlined
-def _scaled(a, x):
+def scaled(a, x):
     """A vector times a number."""
     return a[0] * x, a[1] * x, a[2] * x
 
@@ -193,57 +197,27 @@ def rows_at(rows, numbers):
 
 
 @inlined
-def seen_from(light, row):
-    """Sixteen triangles, columns of their rows, as a light (3,) float32 sees them."""
-    # Turn all functions so that T is positive.
-    s = light[0] - row[0], light[1] - row[1], light[2] - row[2]
-    return _seen(light, row, select(dot(s, cross(row[3:6], row[6:9])) >= ZERO, ONE, -ONE))
+def seen_from(light, radius, row):
+    """Sixteen triangles, columns of their rows, as a lamp sees them, whose samples lie in a ball around light (3,).
 
-
-@inlined
-def seen_from_corner(corners, k, row):
-    """Sixteen triangles as the k-th of a lamp's corners (any, 3) float32 sees them.
-
-    Functions are turned by the sign that T has at the first corner, so that they are linear from corner to corner."""
-    light = corners[0, 0], corners[0, 1], corners[0, 2]
-    s = light[0] - row[0], light[1] - row[1], light[2] - row[2]
-    turned = select(dot(s, cross(row[3:6], row[6:9])) >= ZERO, ONE, -ONE)
-    return _seen((corners[k, 0], corners[k, 1], corners[k, 2]), row, turned)
-
-
-@inlined
-def seen_from_all(corners, count, row):
-    """Sixteen triangles as the first of a lamp's corners sees them, with the least height, and the greatest height and
-    distance of its `count` corners; firm and sane only where they are from each."""
-    t = seen_from_corner(corners, 0, row)
-    height, highest, away, firm, sane = t.height, t.highest, t.away, t.firm, t.sane
-    for k in range(1, count):
-        other = seen_from_corner(corners, k, row)
-        height, highest = minimum(height, other.height), maximum(highest, other.highest)
-        away, firm, sane = maximum(away, other.away), firm & other.firm, sane & other.sane
-    return SeenTriangles(
-        t.corner, t.s, t.e1, t.e2, t.u, t.v, t.d, height, highest, away,
-        t.first, t.second, t.across, t.turned, t.blur, firm, sane,
-    )  # fmt: skip
-
-
-@inlined
-def _seen(light, row, turned):
-    """Sixteen triangles as a light sees them, their functions turned by this sign."""
+    The height is the least of any point of the ball, distances are the greatest; firm and sane hold for all of them."""
     e1, e2, blur = row[3:6], row[6:9], row[BLUR]
     s = light[0] - row[0], light[1] - row[1], light[2] - row[2]
     n = cross(e1, e2)
-    height = dot(s, n) * turned
-    away, first, second = length16(s), length16(e1), length16(e2)
+    # Turn all functions so that T is positive.
+    facing = dot(s, n)
+    turned = select(facing >= ZERO, ONE, -ONE)
+    first, second, across = length16(e1), length16(e2), length16(n)
+    away, height, reach = length16(s) + radius, facing * turned, radius * across
+    highest, height = height + reach, height - reach
 
     # Is T's sign certain?
-    unsure = away * (_FIRM * first * second + _FIRM_BLUR * blur * (first + second)) + blur * first * second
+    unsure = away * (_FIRM * first * second + _FIRM_BLUR * blur * (first + second)) + blur * first * second + SMALL
     sane = maximum(away, maximum(first, second)) < LARGE
-    firm = sane & (height > unsure + SMALL)
-    u, v, d = _scaled(cross(e2, s), turned), _scaled(cross(s, e1), turned), _scaled(n, -turned)
-    highest, across = maximum(height, -height), length16(n)
+    firm = sane & (height > unsure)
+    u, v, d = scaled(cross(e2, s), turned), scaled(cross(s, e1), turned), scaled(n, -turned)
     return SeenTriangles(
-        row[0:3], s, e1, e2, u, v, d, height, highest, away, first, second, across, turned, blur, firm, sane
+        row[0:3], s, e1, e2, u, v, d, height, highest, away, first, second, across, turned, unsure, blur, firm, sane
     )
 
 

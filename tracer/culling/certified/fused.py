@@ -115,15 +115,15 @@ def _cut_off(s, lane, pieces):
 
 
 @subkernel
-def fuse(s, o, count):
+def fuse(s, o, light, count):
     """How many of the `count` primitives in s.found hide the whole cell together, those first; 0 where they do not.
 
-    s is a worker's `Scratch`, o are the `Occluders`."""
+    s is a worker's `Scratch`, o are the `Occluders`, light (3,) is a position."""
     if count > FUSED or count < 2:
         return 0
     # Find the part of the cell that each hides.
     s.found[count:LANES] = s.found[0]  # all sixteen lanes are computed
-    certain = put_hidden_parts(o.rows, address_of(s.found), o.farthest, s.shaft, address_of(s.parts))
+    certain = put_hidden_parts(o.rows, address_of(s.found), o.farthest, light, s.shaft, address_of(s.parts))
     certain &= lanes_below(count, 0)
     parts = 0
     for k in range(count):

@@ -37,9 +37,9 @@ def _names_one(cells, cell, light, gone):
 
 
 @subkernel
-def _meets_any(s, boxes, lamp):
-    """Whether a box (k, 6) may meet the shaft from a light with these corners to the cell that s.shaft was put to."""
-    if not put_light(s.shaft, lamp):
+def _meets_any(s, boxes, light):
+    """Whether a box (k, 6) may meet the shaft from a light (3,) to the cell that s.shaft was put to."""
+    if not put_light(s.shaft, (np.float64(light[0]), np.float64(light[1]), np.float64(light[2]))):
         return True
     met = False
     for k in range(len(boxes)):
@@ -48,19 +48,19 @@ def _meets_any(s, boxes, lamp):
 
 
 @kernel
-def invalidate_certificates(cells, o, lamps, scale, gone, boxes, near, s):
+def invalidate_certificates(cells, o, lights, scale, gone, boxes, near, s):
     """Drop the certificates that name primitives which are gone, and those that boxes may come between from now on.
 
-    gone (primitives,) bool; boxes (lights, k, 6), inverted for none; lamps (n, LAMP_CORNERS, 3) are corners; scale is
-    the `SceneScale`, o the `Occluders`, s a worker's `Scratch`.  near (primitives,) are words like modes, without the
-    bits of those lights from which something in a box may come before a primitive.  A cell that took its certificate
-    over from another loses it with that one."""
+    gone (primitives,) bool; boxes (lights, k, 6), inverted for none; lights (n, 3) are positions; scale is the
+    `SceneScale`, o the `Occluders`, s a worker's `Scratch`.  near (primitives,) are words like modes, without the bits
+    of those lights from which something in a box may come before a primitive.  A cell that took its certificate over
+    from another loses it with that one."""
     cells, o, s = borrowed(cells), borrowed(o), borrowed(s)
     dropped = np.zeros(cells.used[0], np.uint64)
     for cell in range(1, cells.used[0]):
         word, owner, parent = cells.words[cell], np.int64(cells.owner[cell]), np.int64(cells.parent[cell])
         placed, tried = False, False
-        for light in range(len(lamps)):
+        for light in range(len(lights)):
             state = state_of(word, light)
             if state == UNTRIED or (state == CANDIDATES and cells.lists[cell, light] == OVERFLOW):
                 continue
@@ -78,7 +78,7 @@ def invalidate_certificates(cells, o, lamps, scale, gone, boxes, near, s):
                     side, at = 1.0 - 2.0 * (owner & 1), (np.float64(u), np.float64(v), np.float64(size))
                     placed = put_cell(s.shaft, o.rows, owner >> 1, side, at[0], at[1], at[2], scale)
                     tried = True
-                drop = not placed or _meets_any(s, boxes[light], lamps[light])
+                drop = not placed or _meets_any(s, boxes[light], lights[light])
             if drop:
                 set_state(cells, cell, light, UNTRIED)
                 cells.lists[cell, light] = NOBODY

@@ -81,7 +81,7 @@ def put_light_space(rows, farthest, light, light_space):
     for first in range(0, len(light_space), LANES):
         store(numbers, minimum(lane_numbers_x16() + np.int32(first), i32x16(np.int32(len(rows) - 1))))
         row = rows_at(rows, numbers)
-        t = seen_from(light, row)
+        t = seen_from(light, ZERO, row)
         edges = t.first * t.second
         half_d = _HALF_D * (FOUR * edges + FIVE * t.across)
         blurred = _BLURRED * t.blur * maximum(t.first, t.second)

@@ -25,7 +25,7 @@ from tracer.culling.certified.cells import (
 )
 from tracer.culling.certified.quadtree import descend
 from tracer.culling.certified.shaft import LOWEST
-from tracer.culling.counters import CANDIDATES_ONLY, CULLED, DYNAMIC_ONLY, TESTS
+from tracer.culling.counters import CANDIDATES_ONLY, TESTS
 from tracer.culling.shadow_modes import answer, look_up, trusted, words_of
 from tracer.culling.stages import vectors
 from tracer.geometry.offsets import RAY_OFFSET
@@ -69,7 +69,6 @@ class CellPoints(NamedTuple):
         unit: the cell of each point, 0 for none.
         low, high, looked_up: its word (`tracer.culling.shadow_modes.PointWords`).
         u, v, owner: coordinates in the triangle, and the owner there, NOWHERE for none.
-        full, lit: bits of the points of which the light's certificate says so; the same for all its samples.
         untried, doubtful: bits, sixteen points a number: those with a light for which nothing is known yet, and those
             with one for which only candidates are.
         asked: points that test candidates, one after the other.
@@ -84,8 +83,6 @@ class CellPoints(NamedTuple):
     u: Row
     v: Row
     owner: IntRow
-    full: IntRow
-    lit: IntRow
     untried: IntRow
     doubtful: IntRow
     asked: IntRow
@@ -147,18 +144,6 @@ def find_cells(certified, points, count, found):
 
 
 @subkernel
-def cull_again(certified, number, count, found, batch, counts):
-    """Answer the rays to a further sample of light `number`, as `cull_by_certificates` has found for its first."""
-    if number >= len(certified.stationary) or certified.stationary[number] == 0:
-        return
-    for v in range(vectors(count)):
-        live, full, lit = np.int64(batch.live[v]), np.int64(found.full[v]), np.int64(found.lit[v])
-        answer(batch, v, full, lit)
-        counts[CULLED] += ones(live & full)
-        counts[DYNAMIC_ONLY] += ones(live & lit)
-
-
-@subkernel
 def cull_by_certificates(certified, points, found, light, number, count, asks, batch, counts):
     """Answer the rays to light `number` at light (3,) of which certificates tell all.
 
@@ -166,19 +151,15 @@ def cull_by_certificates(certified, points, found, light, number, count, asks, b
     counters."""
     if number >= len(certified.stationary) or certified.stationary[number] == 0:
         return
-    asks = asks and certified.max_asked > 0 and certified.points[number] != 0
-    words, asked, is_lamp = certified.words, np.int64(0), certified.points[number] == 0
+    asks = asks and certified.max_asked > 0
+    words, asked = certified.words, np.int64(0)
     for v in range(vectors(count)):
-        live = np.int64(batch.live[v])
-        if live == 0 and not is_lamp:
+        if batch.live[v] == 0:
             continue
         look_up(words, v, found)
         full, non = trusted(found, number, v)
-        found.full[v], found.lit[v] = full, non
-        answer(batch, v, full, non)
-        counts[CULLED] += ones(live & full)
-        counts[DYNAMIC_ONLY] += ones(live & non)
-        live &= ~(full | non)
+        answer(batch, v, full, non, counts)
+        live = np.int64(batch.live[v])
         if live == 0:
             continue
 

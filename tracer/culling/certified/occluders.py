@@ -21,10 +21,9 @@ from tracer.culling.certified.error_bounds import (
     SureHitLength,
     error_bounds,
     rows_at,
-    seen_from_all,
+    seen_from,
 )
 from tracer.culling.certified.light_space import put_light_space
-from tracer.culling.certified.shaft import LAMP_CORNERS, PLANES, is_point
 from tracer.geometry.memory import borrowed
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import VACANT, WIDTH, Topology
@@ -43,6 +42,7 @@ from tracer.simd import (
     select,
     store,
 )
+from tracer.simd.records import I32, F32x2D, F32x3D, I32x2D
 
 BOXES = 6 * WIDTH  # float32 of a node: lower x of its eight children, then lower y and so on
 BLOCK = 9 * WIDTH  # float32 of a leaf: corner and two edges of its triangles, x of all eight, then y and so on
@@ -70,16 +70,16 @@ class Occluders(NamedTuple):
         farthest: how long rays may be to be certain of a hit.
     """
 
-    rows: NDArray[np.float32]
+    rows: F32x2D
     first_quadric: int
-    children: NDArray[np.int32]
-    blocks: NDArray[np.float32]
-    numbers: NDArray[np.int32]
-    roots: NDArray[np.int32]
-    boxes: NDArray[np.float32]
-    error_radii: NDArray[np.float32]
-    leaf_radii: NDArray[np.float32]
-    light_space: NDArray[np.float32]
+    children: I32x2D
+    blocks: F32x2D
+    numbers: I32x2D
+    roots: I32
+    boxes: F32x3D
+    error_radii: F32x2D
+    leaf_radii: F32x3D
+    light_space: F32x3D
     farthest: SureHitLength
 
 
@@ -107,23 +107,23 @@ def joined(shapes: list[Topology]) -> tuple[Topology, NDArray[np.int32]]:
 
 
 @subkernel
-def _find_error_radii(o, number, lamp, farthest, rounded):
-    """Put how far from each triangle a ray from a light with these corners can report a hit into
+def _find_error_radii(o, number, light, radius, farthest, rounded):
+    """Put how far from each triangle a ray from a lamp, a ball around light (3,), can report a hit into
     o.error_radii[number]."""
     error_radii, numbers = address_of(o.error_radii[number]), local_memory(64)
-    corners = 1 if is_point(lamp) else LAMP_CORNERS
+    place = np.float32(light[0]), np.float32(light[1]), np.float32(light[2])
     farthest, rounded = np.float32(farthest), np.float32(rounded)
     for first in range(0, len(o.rows), LANES):
         which = minimum(lane_numbers_x16() + np.int32(first), i32x16(np.int32(len(o.rows) - 1)))
         store(numbers, which)
         row = rows_at(o.rows, numbers)
-        t = seen_from_all(lamp, corners, row)
+        t = seen_from(place, np.float32(radius), row)
         # |D| enters the bounds by the same part of itself, whatever it is: that is added at the end.
         m = error_bounds(t, TWO * farthest, farthest, t.highest, ZERO)
         depth = t.height - m.behind
         part = maximum(m.u, maximum(m.v, m.w)) / depth + np.float32(1e-5)
-        radius = part * (t.first + t.second) + (m.behind / depth + np.float32(1e-6)) * farthest + t.blur
-        radius = select(t.firm & (depth > ZERO), radius, FAR)
+        apart = part * (t.first + t.second) + (m.behind / depth + np.float32(1e-6)) * farthest + t.blur
+        apart = select(t.firm & (depth > ZERO), apart, FAR)
 
         # No hit is reported outside of the primitive's box: how far is that from the triangle, along an axis?
         room = f32x16(ZERO)
@@ -132,7 +132,7 @@ def _find_error_radii(o, number, lamp, farthest, rounded):
             low, high = corner + minimum(ZERO, minimum(e1, e2)), corner + maximum(ZERO, maximum(e1, e2))
             room = maximum(room, maximum(high - row[BOX + axis], row[BOX + 3 + axis] - low))
         room = DIAGONAL * (room + np.float32(REPORTED) * t.away)
-        store(error_radii + 4 * first, minimum(minimum(radius, room) + rounded, FAR))
+        store(error_radii + 4 * first, minimum(minimum(apart, room) + rounded, FAR))
 
 
 @inlined
@@ -200,15 +200,15 @@ def _leaf_box(o, leaf, number, farthest):
 
 
 @kernel
-def enlarge_boxes(o, number, lamp, farthest, largest):
-    """Fit all boxes, and the light-space triangles, to light `number` with corners lamp (LAMP_CORNERS, 3) float32.
+def enlarge_boxes(o, number, light, radius, farthest, largest):
+    """Fit all boxes, and the light-space triangles, to light `number`, a ball of a radius around light (3,) float32.
 
     No ray from it is longer than `farthest`, and no coordinate larger than `largest`, in units of the scene."""
     o = borrowed(o)
     boxes = o.boxes[number]
-    _find_error_radii(o, number, lamp, farthest, ROUNDED * largest)
-    if is_point(lamp):  # candidates are asked about points alone
-        put_light_space(o.rows, o.farthest, lamp[0], o.light_space[number])
+    _find_error_radii(o, number, light, radius, farthest, ROUNDED * largest)
+    if radius == 0.0:  # rays test candidates of points alone
+        put_light_space(o.rows, o.farthest, light, o.light_space[number])
     for node in range(len(o.children) - 1, -1, -1):  # children come after their parents
         for child in range(WIDTH):
             code = o.children[node, child]
@@ -228,13 +228,13 @@ def enlarge_boxes(o, number, lamp, farthest, largest):
 
 @inlined
 def children_met(box, shaft):
-    """Bits of the eight boxes at an address that may meet a shaft."""
+    """Bits of the eight boxes at an address that may meet a shaft, or a beam."""
     x0, y0, z0 = load_f32x8(box), load_f32x8(box + 32), load_f32x8(box + 64)
     x1, y1, z1 = load_f32x8(box + 96), load_f32x8(box + 128), load_f32x8(box + 160)
     b = shaft.box
     met = (x0 <= np.float32(b[3])) & (y0 <= np.float32(b[4])) & (z0 <= np.float32(b[5]))
     met = met & (x1 >= np.float32(b[0])) & (y1 >= np.float32(b[1])) & (z1 >= np.float32(b[2]))
-    for k in range(PLANES):
+    for k in range(len(shaft.planes)):
         nx, ny, nz = np.float32(shaft.planes[k, 0]), np.float32(shaft.planes[k, 1]), np.float32(shaft.planes[k, 2])
         # Take the corner of each box that is farthest behind the plane.
         x = x0 if nx > np.float32(0) else x1
@@ -258,7 +258,7 @@ def triangles_met(block, leaf_radii, shaft):
         c, e1, e2 = (x, ax, bx) if k == 0 else ((y, ay, by) if k == 1 else (z, az, bz))
         low, high = minimum(zero, minimum(e1, e2)), maximum(zero, maximum(e1, e2))
         met = met & (c + low - radius <= np.float32(b[3 + k])) & (c + high + radius >= np.float32(b[k]))
-    for k in range(PLANES):
+    for k in range(len(shaft.planes)):
         nx, ny, nz = np.float32(shaft.planes[k, 0]), np.float32(shaft.planes[k, 1]), np.float32(shaft.planes[k, 2])
         e1, e2 = ax * nx + ay * ny + az * nz, bx * nx + by * ny + bz * nz
         least = x * nx + y * ny + z * nz + minimum(zero, minimum(e1, e2))

@@ -1,8 +1,5 @@
 """The shaft of a cell: all shadow rays from a light that end in it, with planes around them.
 
-A light is a point or a lamp of many samples, which lie in a box: then the shaft is what lies between that box and the
-cell.
-
 Shadow rays start at the light and end a little above the surface: no lower than a part of the usual offset, no higher
 than `SceneScale.max_height`.  They look their cell up by coordinates that are rounded.  So the cell is a prism, as wide
 as where its rays may truly end, and a shaft is what lies between the light and the six corners of that prism.  No ray
@@ -26,7 +23,6 @@ from tracer.kernels import inlined, subkernel
 
 LOWEST = 0.5  # of RAY_OFFSET: a ray that ends lower belongs to no cell
 CORNERS = 6  # of a cell: three of its floor, then three of its ceiling
-LAMP_CORNERS = 8  # of the box around a lamp's samples
 PLANES = 4  # around a shaft: three through the light and an edge of the cell, then the cell's floor
 
 
@@ -47,17 +43,13 @@ class Shaft(NamedTuple):
 
     Attributes:
         corners: (3, CORNERS) float64, x, y and z of the prism's corners, floor first.
-        lamp: (LAMP_CORNERS, 3) float32, the corners of the light: its place where it is a point.
-        used: (1,) int64, how many these are, 1 for a point.
-        directions: (3, LAMP_CORNERS * CORNERS) float64, from each of them to each corner of the prism.
+        directions: (3, CORNERS) float64, from the light to each of them.
         planes: (PLANES, 4) float64, outward unit normals and offsets: the shaft lies where normal . x <= offset.
         box: (6,) float64, the lower and upper corner around it, light included.
         longest: (1,) float64, the length of the longest direction.
     """
 
     corners: NDArray[np.float64]
-    lamp: NDArray[np.float32]
-    used: NDArray[np.int64]
     directions: NDArray[np.float64]
     planes: NDArray[np.float64]
     box: NDArray[np.float64]
@@ -66,15 +58,7 @@ class Shaft(NamedTuple):
 
 def make_shaft() -> Shaft:
     """Memory for a shaft."""
-    return Shaft(
-        corners=np.zeros((3, CORNERS)),
-        lamp=np.zeros((LAMP_CORNERS, 3), np.float32),
-        used=np.zeros(1, np.int64),
-        directions=np.zeros((3, LAMP_CORNERS * CORNERS)),
-        planes=np.zeros((PLANES, 4)),
-        box=np.zeros(6),
-        longest=np.zeros(1),
-    )
+    return Shaft(np.zeros((3, CORNERS)), np.zeros((3, CORNERS)), np.zeros((PLANES, 4)), np.zeros(6), np.zeros(1))
 
 
 @inlined
@@ -150,91 +134,54 @@ def put_cell(shaft, rows, i, side, u, v, size, scale):
     return True
 
 
-@inlined
-def is_point(corners):
-    """Whether the corners (LAMP_CORNERS, 3) of a light are all in one place."""
-    one = True
-    for axis in range(3):
-        one &= corners[0, axis] == corners[LAMP_CORNERS - 1, axis]  # opposite corners of a box
-    return one
-
-
 @subkernel
-def put_light(shaft, lamp):
-    """Put a shaft that has a cell to a light with corners lamp (LAMP_CORNERS, 3) float32.
+def put_light(shaft, light):
+    """Put a shaft that has a cell to a light (3,): directions, box and side planes.
 
-    That is directions, box and side planes.  False where the light is not clearly before the cell's plane."""
-    used = 1 if is_point(lamp) else LAMP_CORNERS
-    shaft.used[0] = used
-
+    False where the light is not clearly before the cell's plane."""
     # Find the directions to the corners, and the longest.
     longest = 0.0
-    for j in range(used):
+    for k in range(CORNERS):
+        square = 0.0
         for axis in range(3):
-            shaft.lamp[j, axis] = lamp[j, axis]
-        for k in range(CORNERS):
-            square = 0.0
-            for axis in range(3):
-                d = shaft.corners[axis, k] - np.float64(lamp[j, axis])
-                shaft.directions[axis, CORNERS * j + k] = d
-                square += d * d
-            longest = max(longest, square)
+            d = shaft.corners[axis, k] - light[axis]
+            shaft.directions[axis, k] = d
+            square += d * d
+        longest = max(longest, square)
     shaft.longest[0] = math.sqrt(longest)
 
     # Bound light and corners by a box.
     for axis in range(3):
-        low = high = np.float64(lamp[0, axis])
-        for j in range(1, used):
-            low, high = min(low, np.float64(lamp[j, axis])), max(high, np.float64(lamp[j, axis]))
+        low = high = light[axis]
         for k in range(CORNERS):
             low, high = min(low, shaft.corners[axis, k]), max(high, shaft.corners[axis, k])
         shaft.box[axis], shaft.box[3 + axis] = low, high
 
     # Refuse a light that does not see the cell's plane from above, at more than a graze.
     below = shaft.planes[3, 0], shaft.planes[3, 1], shaft.planes[3, 2]
-    for j in range(used):
-        for k in range(3, CORNERS):
-            if not dot(below, _corner(shaft.directions, CORNERS * j + k)) > 1e-4 * shaft.longest[0]:
-                return False
+    for k in range(3, CORNERS):
+        if not dot(below, _corner(shaft.directions, k)) > 1e-4 * shaft.longest[0]:
+            return False
     for j in range(3):
-        _put_side(shaft, used, j, (j + 1) % 3, (j + 2) % 3)
+        _put_side(shaft, light, j, (j + 1) % 3, (j + 2) % 3)
     return True
 
 
 @inlined
-def _put_side(shaft, used, i, j, opposite):
-    """Put the plane through a corner of the light and the cell's edge from corner i to j, so far out that all lies
-    behind it; through that corner for which this is the least."""
-    best = np.inf
+def _put_side(shaft, light, i, j, opposite):
+    """Put the plane through the light and the cell's edge from corner i to j, so far out that all lies behind it."""
+    n = cross(_corner(shaft.directions, i), _corner(shaft.directions, j))
+    ln = length(n)
+    scale = 1.0 / ln if ln > 0.0 else 0.0
+    if dot(n, _corner(shaft.directions, opposite)) > 0.0:
+        scale = -scale
+    n = n[0] * scale, n[1] * scale, n[2] * scale
+    most = 0.0
+    for k in range(CORNERS):
+        most = max(most, dot(n, _corner(shaft.directions, k)))
     for axis in range(3):
-        shaft.planes[i, axis] = 0.0
-    shaft.planes[i, 3] = np.inf
-    for corner in range(used):
-        first = CORNERS * corner
-        n = cross(_corner(shaft.directions, first + i), _corner(shaft.directions, first + j))
-        ln = length(n)
-        if not ln > 0.0:
-            continue
-        scale = 1.0 / ln
-        if dot(n, _corner(shaft.directions, first + opposite)) > 0.0:
-            scale = -scale
-        n = n[0] * scale, n[1] * scale, n[2] * scale
-        most = 0.0
-        for k in range(CORNERS):
-            most = max(most, dot(n, _corner(shaft.directions, first + k)))
-        light = np.float64(shaft.lamp[corner, 0]), np.float64(shaft.lamp[corner, 1]), np.float64(shaft.lamp[corner, 2])
-        for other in range(used):
-            x, y, z = (
-                np.float64(shaft.lamp[other, 0]) - light[0],
-                np.float64(shaft.lamp[other, 1]) - light[1],
-                np.float64(shaft.lamp[other, 2]) - light[2],
-            )
-            most = max(most, dot(n, (x, y, z)))
-        if most < best:
-            best = most
-            for axis in range(3):
-                shaft.planes[i, axis] = n[axis]
-            shaft.planes[i, 3] = dot(n, light) + most
+        shaft.planes[i, axis] = n[axis]
+    shaft.planes[i, 3] = dot(n, light) + most if ln > 0.0 else np.inf
 
 
 @subkernel

@@ -87,9 +87,9 @@ class StaticGeometry:
         return result
 
     @staticmethod
-    def _farthest(lamp: NDArray[np.float32], bounds: NDArray[np.float64]) -> float:
-        """No less than the distance of a light with these corners (n, 3) from any point of bounds (2, 3)."""
-        return float(np.linalg.norm(np.abs(lamp[:, None] - bounds).max((0, 1)))) * 1.001
+    def _farthest(light: NDArray[np.float32], radius: float, bounds: NDArray[np.float64]) -> float:
+        """No less than the distance of any point of a ball around light (3,) from any of bounds (2, 3)."""
+        return (float(np.linalg.norm(np.abs(light - bounds).max(0))) + radius) * 1.001
 
     def follow(self, started: NDArray[np.int64], stopped: NDArray[np.int64], outlines: Outlines) -> None:
         """Let objects (k,) that have started no longer be static, and those that have stopped be static."""
@@ -99,15 +99,18 @@ class StaticGeometry:
             self._add(int(index), outlines)
         self._join()
 
-    def update_lights(self, numbers: list[int], lamps: NDArray[np.float32], highest: float) -> None:
-        """Fit boxes and light-space triangles to where lights of these numbers are now, of lamps (n, LAMP_CORNERS, 3).
+    def update_lights(
+        self, numbers: list[int], lights: NDArray[np.float32], radii: NDArray[np.float32], highest: float
+    ) -> None:
+        """Fit boxes and light-space triangles to where lights of these numbers are now, balls around lights (n, 3).
 
         Their rays end no higher above what is static than `highest`."""
 
         def update(chunk: int, worker: int) -> None:
-            lamp = lamps[numbers[chunk]]
-            farthest = self._farthest(lamp, self.bounds) + 2.0 * highest
-            enlarge_boxes(self.occluders, numbers[chunk], lamp, farthest, self.largest)
+            number = numbers[chunk]
+            light, radius = lights[number], float(radii[number])
+            farthest = self._farthest(light, radius, self.bounds) + 2.0 * highest
+            enlarge_boxes(self.occluders, number, light, radius, farthest, self.largest)
 
         for_each_chunk(update, len(numbers), self._threads)
 

@@ -39,10 +39,10 @@ from tracer.culling.certified.journal import Journal
 from tracer.culling.certified.occluders import Occluders
 from tracer.culling.certified.quadtree import part_of
 from tracer.culling.certified.requests import Requests
-from tracer.culling.certified.shaft import LAMP_CORNERS, SceneScale
+from tracer.culling.certified.shaft import SceneScale
 from tracer.culling.certified.static_geometry import StaticGeometry
 from tracer.culling.certified.tasks import KEPT, commit, make_tasks, run_tasks, tasks_in
-from tracer.culling.certified.view import CertificateView, RequestRows
+from tracer.culling.certified.view import CertificateView, LampsView, RequestRows
 from tracer.culling.dependence import drop_dependent
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.modes import NON_SHADOW as LIT
@@ -53,6 +53,7 @@ from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.primitives import Outlines
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
+from tracer.scene.lamps import Lamps
 
 STATES = ("none", "full", "lit", "candidates")
 BATCH = 4096  # tasks of one call of `certify`, at most
@@ -67,8 +68,9 @@ class CertificateStore:
     Attributes:
         cells: the cells in use; replaced when they need more room.
         count: lights that can be certified, the first ones.
-        lamps: (count, LAMP_CORNERS, 3) float32, their corners: eight times the same for a point.
-        stationary: (count,) bool, lights that are certified, as they have not moved for a frame.
+        lights: (count, 3) float32, their places.
+        radii: (count,) float32, of balls around these in which the samples of lamps lie; 0 for points.
+        stationary: (count,) bool, those that have not moved for a frame.
         scale: what errors grow with.
         threads: how many work.
         cost_model: what certificates are worth.
@@ -89,7 +91,9 @@ class CertificateStore:
         """Begin with nothing known."""
         self._static = StaticGeometry(self._world, self.count, self.threads, self.cost_model.max_asked > 0)
         self._resting = nothing_rests(len(self._world.primitives.triangle_starts) - 1)
-        self.lamps = np.full((self.count, LAMP_CORNERS, 3), np.nan, np.float32)
+        self.lights = np.full((self.count, 3), np.nan, np.float32)
+        self.radii = np.zeros(self.count, np.float32)
+        self._samples = np.ones(self.count, np.int32)
         self.stationary = np.zeros(self.count, np.bool_)
         self.cells: Cells = make_cells(len(self._world.object_of), self.count)
         self._seen = np.zeros(len(self.cells.waiting), np.int32)  # the frame that last saw each root
@@ -118,14 +122,9 @@ class CertificateStore:
         self.cells.waiting[2 * rows.start : 2 * rows.stop] = 0
 
     @property
-    def lights(self) -> NDArray[np.float32]:
-        """(count, 3) float32: the place of each light, or a corner of each lamp."""
-        return np.ascontiguousarray(self.lamps[:, 0])
-
-    @property
-    def points(self) -> NDArray[np.bool_]:
-        """(count,) bool: lights that are points."""
-        return (self.lamps[:, 0] == self.lamps[:, -1]).all(axis=1)
+    def certified(self) -> NDArray[np.bool_]:
+        """(count,) bool: lights that cells are certified for, points that have not moved for a frame."""
+        return self.stationary & (self.radii == 0.0)
 
     @property
     def occluders(self) -> Occluders:
@@ -139,28 +138,28 @@ class CertificateStore:
 
     # --- what moves -------------------------------------------------------------------------------------
 
-    def follow(self, lights: NDArray[np.float32], resting: Resting, threads: int) -> None:
+    def follow(self, lamps: Lamps, resting: Resting, threads: int) -> None:
         """Drop what no longer holds, with lights and objects where they are now, and nothing else.
 
-        lights are positions (n, 3) of points, or corners (n, LAMP_CORNERS, 3) of lamps.  A light is certified once it
-        has not moved for a frame.  From now on work is done by so many threads."""
+        A light is certified once it has not moved for a frame.  From now on work is done by so many threads."""
         self.threads, self._journal = threads, None
         self._scratch += [make_scratch() for _ in range(len(self._scratch), threads)]
         if self._world.extent > self._static.allowed:  # boxes may have grown beyond those that are known
             self._start()
         self._follow_rest(resting)
-        lamps = lights[: self.count].reshape(-1, 1, 3) if lights.ndim == 2 else lights[: self.count]
-        moved = ~(lamps == self.lamps).all(axis=(1, 2))
+        lights, radii = lamps.places[: self.count], lamps.radii[: self.count]
+        moved = ~(lights == self.lights).all(axis=1) | (radii != self.radii)
         words = self.cells.words[: self.cells.used[0]]
         for number in np.flatnonzero(moved):
             words &= ~words.dtype.type(3 << (2 + 2 * int(number)))
             self.cells.lists[: len(words), number] = NOBODY
-        new = np.isnan(self.lamps).any(axis=(1, 2))
+        new = np.isnan(self.lights).any(axis=1)
         stationary = ~moved | new
         settled = stationary & ~self.stationary
-        self.lamps[:] = lamps
+        self.lights[:], self.radii[:] = lights, radii
+        self._samples[:] = np.diff(lamps.first)[: self.count]
         self.stationary[:] = stationary
-        self._static.update_lights(np.flatnonzero(settled).tolist(), self.lamps, self.scale.max_height)
+        self._static.update_lights(np.flatnonzero(settled).tolist(), lights, radii, self.scale.max_height)
 
     def _follow_rest(self, resting: Resting) -> None:
         """Drop what depends on objects that have started or stopped."""
@@ -187,9 +186,9 @@ class CertificateStore:
         gone = np.isin(self._world.object_of, started.which)
         near = all_marked(len(gone), self.cells.words.dtype.type)
         near[self.cells.rooted[: len(near)] == 0] = 0  # of what has no cells nothing need be known
-        lamps, points = np.nan_to_num(self.lamps), self.points
+        lights = np.nan_to_num(self.lights)
         known = np.flatnonzero(self.stationary).tolist()
-        self._static.update_lights(known, self.lamps, self.scale.max_height)
+        self._static.update_lights(known, lights, self.radii, self.scale.max_height)
         boxes = np.zeros((self.count, len(stopped.which), 6))  # by light, of which the others have no certificates
         for k, index in enumerate(stopped.which):
             boxes[known, k] = self._static.reported_within(int(index), known)
@@ -197,10 +196,8 @@ class CertificateStore:
             [boxes[known, :, :3].min(0, initial=np.inf), boxes[known, :, 3:].max(0, initial=-np.inf)], 1
         )
         around += 2.0 * self.scale.max_height * OUTWARDS  # rays end above what they are asked for
-        drop_dependent(near, outlines, lamps[:, 0].copy(), around.astype(np.float32), LIT, self.threads)
-        for light in np.flatnonzero(~points):  # something may come before a primitive and a part of a lamp
-            near &= ~near.dtype.type(3 << (2 + 2 * int(light)))
-        invalidate_certificates(self.cells, self.occluders, lamps, self.scale, gone, boxes, near, self._scratch[0])
+        drop_dependent(near, outlines, lights, around.astype(np.float32), LIT, self.threads)
+        invalidate_certificates(self.cells, self.occluders, lights, self.scale, gone, boxes, near, self._scratch[0])
 
     # --- what is added ----------------------------------------------------------------------------------
 
@@ -231,7 +228,7 @@ class CertificateStore:
             self._slots = np.zeros(slots, np.int32)
         if self._journal is not None:
             self._journal.note_owners(self.cells, (-1 - key[key < 0]).astype(np.int64))
-        known = self.cells, self.occluders, self.lights, self.stationary
+        known = self.cells, self.occluders, self.lights, self.certified
         return gather_tasks(*known, key, u, v, patience, self._slots, points), points
 
     def certify(
@@ -252,7 +249,7 @@ class CertificateStore:
 
         def work(chunk: int, worker: int) -> None:
             run_tasks(
-                self.cells, self.occluders, self.lights, self.lamps, self.stationary, self.scale,
+                self.cells, self.occluders, self.lights, self.certified, self.scale,
                 chunk * size, min(len(todo), (chunk + 1) * size), tasks, points,
                 cost_model.split_requests, cost_model.settled_candidates, lights, self._scratch[worker], counts[worker],
             )  # fmt: skip
@@ -303,9 +300,9 @@ class CertificateStore:
             rooted=cells.rooted,
             lists=cells.lists,
             names=cells.names,
-            light_space=self.occluders.light_space,
-            stationary=self.stationary,
-            points=self.points,
+            stationary=self.certified,
+            occluders=self.occluders,
+            lamps=self._lamps(),
             highest=self.scale.max_height,
             max_asked=model.max_asked,
             first_asking=model.first_asking,
@@ -315,6 +312,12 @@ class CertificateStore:
             requests=RequestRows(*requests),
             cell=cell,
         )
+
+    def _lamps(self) -> LampsView:
+        room = self.scale.max_height * OUTWARDS
+        within = (self._static.bounds.reshape(-1) + room).astype(np.float32)
+        known = self.stationary & (self.radii > 0.0) & (self._samples >= self.cost_model.least_samples)
+        return LampsView(known, self.lights, self.radii, self._samples, within)
 
     def at_pixels(self, cell: NDArray[np.int32]) -> NDArray[np.unsignedinteger]:
         """The words of cells, of any shape."""

@@ -32,7 +32,7 @@ from tracer.culling.certified.certify import MOST, certify
 from tracer.culling.certified.error_bounds import dot, row_of
 from tracer.culling.certified.gather_requests import facing_lights
 from tracer.culling.certified.quadtree import part_of, place_of_part
-from tracer.culling.certified.shaft import is_point, put_cell, put_light
+from tracer.culling.certified.shaft import put_cell, put_light
 from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
 
@@ -144,9 +144,9 @@ def _put_cell(cells, o, cell, scale, s):
 
 
 @subkernel
-def _certify(cells, o, lamp, light, cell, few, s, counts):
-    """Certify the cell that the worker's shaft was put to for a lamp with these corners: (state, how many it names)."""
-    if not put_light(s.shaft, lamp):
+def _certify(cells, o, place, light, cell, few, s, counts):
+    """Certify the cell that the worker's shaft was put to for a light at a place: (state, how many it names)."""
+    if not put_light(s.shaft, place):
         return np.int64(CANDIDATES), np.int64(TOO_MANY)
 
     # Start from the candidates of the cell that this one is a part of, where they are known.
@@ -156,11 +156,11 @@ def _certify(cells, o, lamp, light, cell, few, s, counts):
         if start != OVERFLOW:
             count = np.int64(cells.names[start]) & (SETTLED - 1)
             given = cells.names[start + 1 : start + 1 + count]
-    return certify(s, o, light, given, count, few, counts)
+    return certify(s, o, light, place, given, count, few, counts)
 
 
 @subkernel
-def _run_task(cells, o, lights, lamps, stationary, scale, task, tasks, points, patience, few, most, s, counts):
+def _run_task(cells, o, lights, stationary, scale, task, tasks, points, patience, few, most, s, counts):
     """Run one task, as `run_tasks` says."""
     cell = np.int64(tasks.cell[task])
     first, last = tasks.first[task], tasks.last[task]
@@ -184,8 +184,8 @@ def _run_task(cells, o, lights, lamps, stationary, scale, task, tasks, points, p
             put, placed = True, _put_cell(cells, o, cell, scale, s)
         state, amount = np.int64(CANDIDATES), np.int64(TOO_MANY)
         if placed:
-            asked = few if is_point(lamps[light]) else 0  # rays test no candidates of larger lamps
-            state, amount = _certify(cells, o, lamps[light], light, cell, asked, s, counts)
+            place = np.float64(lights[light, 0]), np.float64(lights[light, 1]), np.float64(lights[light, 2])
+            state, amount = _certify(cells, o, place, light, cell, few, s, counts)
         tasks.state[task, light], tasks.amount[task, light] = state, amount
         if amount != TOO_MANY:
             for k in range(amount & (SETTLED - 1)):
@@ -214,17 +214,16 @@ def _is_settled(cells, cell, light):
 
 
 @kernel
-def run_tasks(cells, o, lights, lamps, stationary, scale, first, last, tasks, points, patience, few, most, s, counts):
+def run_tasks(cells, o, lights, stationary, scale, first, last, tasks, points, patience, few, most, s, counts):
     """Run tasks first to last - 1: find certificates, and sort requests into parts.
 
     cells are `Cells`, o the `Occluders`, scale the `SceneScale`, points the `RequestPoints`, s a worker's `Scratch`.
-    Certificates are for those of lights (n, 3) float32 with corners lamps (n, LAMP_CORNERS, 3) float32 that are
-    `stationary` (n,) bool, `most` at a time.  A leaf is
+    Certificates are for those of lights (n, 3) float32 that are `stationary` (n,) bool, `most` at a time.  A leaf is
     divided once `patience` points have requested it, but not for a light with no more than `few` candidates, which rays
     will test.  counts (COUNTERS,) int64 are added to."""
     cells, o, tasks, points, s = borrowed(cells), borrowed(o), borrowed(tasks), borrowed(points), borrowed(s)
     for task in range(first, last):
-        _run_task(cells, o, lights, lamps, stationary, scale, task, tasks, points, patience, few, most, s, counts)
+        _run_task(cells, o, lights, stationary, scale, task, tasks, points, patience, few, most, s, counts)
 
 
 @subkernel

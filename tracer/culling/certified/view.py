@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from tracer.culling.certified.occluders import Occluders
 from tracer.culling.shadow_modes import Words
-from tracer.simd.records import I32, Bytes, F32x2D, F32x3D, I32x2D, I64x2D, reading
+from tracer.simd.records import F32, I32, Bytes, F32x2D, I32x2D, I64x2D, reading
 
 
 class RequestRows(NamedTuple):
@@ -18,13 +19,31 @@ class RequestRows(NamedTuple):
     of: I64x2D
 
 
+class LampsView(NamedTuple):
+    """The lamps whose rays are answered by beams.
+
+    Attributes:
+        known: (lights,) bool, which lights are such lamps and have not moved.
+        places, radii: (lights, 3) and (lights,) float32, the ball in which a lamp's samples lie.
+        samples: (lights,) int32, how many.
+        within: (6,) float32, a box outside of which nothing is known of where rays end.
+    """
+
+    known: Bytes
+    places: F32x2D
+    radii: F32
+    samples: I32
+    within: F32
+
+
 class CertificateView(NamedTuple):
     """All certificates, as kernels that are called by address read them.
 
     Attributes:
         words, child, receivers, rooted, lists, names: of all cells (`tracer.culling.certified.cells.Cells`).
-        light_space: (lights, n, LIGHT_ROW) float32, rows of the primitives that certificates name.
-        stationary, points: (lights,) bool, which lights are certified, and which of these are points.
+        stationary: (lights,) bool, which lights are certified.
+        occluders: all that is static.
+        lamps: lights that are lamps.
         highest: how high above a cell a ray may end, in units of the scene.
         max_asked, first_asking: candidates that a ray tests at most, and from which bounce on (`CostModel`).
         costly_rays: whether rays cost so much that every look-up pays (`CostModel`).
@@ -39,9 +58,9 @@ class CertificateView(NamedTuple):
     rooted: I32
     lists: I32x2D
     names: I32
-    light_space: F32x3D
     stationary: Bytes
-    points: Bytes
+    occluders: Occluders
+    lamps: LampsView
     highest: float
     max_asked: int
     first_asking: int

@@ -22,6 +22,7 @@ from tracer.culling.regions.patches import Patches, find_patches
 from tracer.geometry.accelerators import BVH8
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
+from tracer.scene.lamps import Lamps
 from tracer.simd.records import I32, I64, Bytes, F32x2D
 
 COARSE = 8  # regions on a side of the blocks for which lights are left out first
@@ -52,17 +53,15 @@ class Block(NamedTuple):
 class RegionStore:
     """What is known of a world's regions."""
 
-    def __init__(
-        self, world: World, corners: NDArray[np.float32], clock: Callable[[], float] = time.perf_counter
-    ) -> None:
-        """For lights whose samples lie between corners (l, 8, 3)."""
+    def __init__(self, world: World, lamps: Lamps, clock: Callable[[], float] = time.perf_counter) -> None:
+        """For these lights."""
         self._world, self._clock = world, clock
         triangles = world.triangles_of(0).rows
         self._bounds = _bounds(triangles)
         # Only the fast structure lets no ray slip between triangles (`tracer.culling.regions.hidden`).
         self.patches: Patches = find_patches(triangles, merges=world.accelerator == BVH8)
         self.longest_sure = world.hit_padding / LONGEST * float(np.abs(self._bounds).max())
-        self._begin(_boxes(corners))
+        self._begin(_boxes(lamps))
 
     def _begin(self, boxes: NDArray[np.float32]) -> None:
         """Begin with nothing known, of lights in these boxes (l, 6)."""
@@ -83,9 +82,9 @@ class RegionStore:
         blocks = [block.leaves for block in self._blocks.values()]
         return sum(a.nbytes for arrays in (self._starts, self._lights, blocks) for a in arrays)
 
-    def follow(self, corners: NDArray[np.float32]) -> None:
-        """Lights are between corners (l, 8, 3) now."""
-        boxes, before = _boxes(corners), self._boxes
+    def follow(self, lamps: Lamps) -> None:
+        """Lights are where these lamps have them now."""
+        boxes, before = _boxes(lamps), self._boxes
         if boxes.shape != before.shape:
             self._begin(boxes)
             return
@@ -203,6 +202,7 @@ def _bounds(triangles: NDArray[np.float32]) -> NDArray[np.float64]:
     return np.stack([every.min(0), every.max(0)])
 
 
-def _boxes(corners: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Boxes (l, 6) around corners (l, 8, 3)."""
-    return np.concatenate([corners.min(1), corners.max(1)], 1)
+def _boxes(lamps: Lamps) -> NDArray[np.float32]:
+    """Boxes (l, 6), lower and upper corner, around the samples of each of l > 0 lamps."""
+    low, high = (around.reduceat(lamps.samples, lamps.first[:-1], axis=0) for around in (np.minimum, np.maximum))
+    return np.concatenate([low, high], 1)

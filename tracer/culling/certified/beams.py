@@ -1,0 +1,206 @@
+"""Beams: all shadow rays from a lamp to some neighbouring points, with what may come between.
+
+A lamp's samples lie in a ball.  A beam is what lies between the ball and the points, bounded by a box and by planes:
+four around the way from the lamp to the points, and one along the surface that they lie on.  It is made for vectors of
+sixteen points that are shaded together, as a shaft is for a cell (`shaft`), and used at once.
+
+Beams of many rays are older than ray tracing by packets (P. Heckbert and P. Hanrahan, "Beam Tracing Polygonal Objects",
+SIGGRAPH 1984).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.certified.error_bounds import ONE, ZERO, cross, dot
+from tracer.culling.certified.occluders import BLOCK, BOXES, STACK, children_met, triangles_met
+from tracer.culling.counters import STEPS
+from tracer.geometry.wide_tree.topology import WIDTH
+from tracer.kernels import inlined, subkernel
+from tracer.simd import (
+    address_of,
+    f32x16,
+    i32_at,
+    i64_at,
+    largest,
+    load_three,
+    local_memory,
+    lowest_bit,
+    mask16,
+    maximum,
+    minimum,
+    select,
+    smallest,
+    square_root,
+)
+
+SIDES = 4  # planes around a beam; one more is along the surface
+AROUND = np.float32(1e-5)  # of the way from the lamp: what the planes are moved out by for rounding
+AT = np.float32(1e-6)  # of coordinates: the same
+HUGE, TWO = np.float32(3e38), np.float32(2)
+
+
+class Beam(NamedTuple):
+    """What `put_beam` makes, read like a `shaft.Shaft`.
+
+    Attributes:
+        planes: (SIDES + 1, 4) float32, outward normals and offsets: the beam lies where normal . x <= offset.
+        box: (6,) float32, the lower and upper corner around it, lamp included.
+    """
+
+    planes: NDArray[np.float32]
+    box: NDArray[np.float32]
+
+
+@inlined
+def make_beam():
+    """Memory for a beam."""
+    return Beam(np.empty((SIDES + 1, 4), np.float32), np.empty(6, np.float32))
+
+
+@inlined
+def _unit(a):
+    """A vector of length 1, or of 0 where it has no direction."""
+    size = square_root(dot(a, a))
+    scale = ONE / size if size > ZERO else ZERO
+    return a[0] * scale, a[1] * scale, a[2] * scale
+
+
+@inlined
+def _across(a):
+    """A unit vector across a unit vector."""
+    x, y, z = abs(a[0]), abs(a[1]), abs(a[2])
+    if x <= y and x <= z:
+        return _unit((ZERO, a[2], -a[1]))
+    if y <= z:
+        return _unit((a[2], ZERO, -a[0]))
+    return _unit((a[1], -a[0], ZERO))
+
+
+@inlined
+def _points_of(lifted, bits, v, some):
+    """Where the v-th vector's points are, those whose bits are set; the others are at `some` place."""
+    x, y, z = load_three(lifted, v)
+    mask = mask16(np.int64(bits[v]))
+    return select(mask, x, some[0]), select(mask, y, some[1]), select(mask, z, some[2])
+
+
+@subkernel
+def put_beam(beam, points, bits, first, last, light, radius, within):
+    """Put a beam around the rays from a lamp, a ball of a radius around light (3,) float32, to where those points of
+    vectors first to last - 1 are lifted whose `bits` are set, at least one.
+
+    False where nothing is known of such rays: they end outside the box within (6,) float32, or too near the lamp."""
+    v = first
+    while bits[v] == 0:
+        v += 1
+    i, lifted, up = 16 * v + lowest_bit(np.int64(bits[v])), points.lifted, points.geometric
+    some = lifted[0, i], lifted[1, i], lifted[2, i]
+
+    # Bound the points by a box.
+    low, high = (f32x16(some[0]), f32x16(some[1]), f32x16(some[2])), (f32x16(some[0]), f32x16(some[1]), f32x16(some[2]))
+    for v in range(first, last):
+        if bits[v] != 0:
+            x, y, z = _points_of(lifted, bits, v, some)
+            low = minimum(low[0], x), minimum(low[1], y), minimum(low[2], z)
+            high = maximum(high[0], x), maximum(high[1], y), maximum(high[2], z)
+    low = smallest(low[0]), smallest(low[1]), smallest(low[2])
+    high = largest(high[0]), largest(high[1]), largest(high[2])
+    inside, size, away = True, ZERO, ZERO
+    for axis in range(3):
+        inside &= low[axis] >= within[axis] and high[axis] <= within[3 + axis]
+        size = max(size, max(abs(light[axis]), max(abs(low[axis]), abs(high[axis]))))
+        away += max(abs(low[axis] - light[axis]), abs(high[axis] - light[axis]))
+    if not inside:
+        return False
+    rounded = AROUND * (away + radius) + AT * size
+    for axis in range(3):
+        beam.box[axis] = min(low[axis], light[axis] - radius) - rounded
+        beam.box[3 + axis] = max(high[axis], light[axis] + radius) + rounded
+
+    # Find how wide the way from the lamp to the points is, as slopes of planes that touch the ball.
+    half = np.float32(0.5)
+    along = _unit(
+        (
+            half * (low[0] + high[0]) - light[0],
+            half * (low[1] + high[1]) - light[1],
+            half * (low[2] + high[2]) - light[2],
+        )
+    )
+    right = _across(along)
+    top, normal = cross(along, right), (up[0, i], up[1, i], up[2, i])
+    near = f32x16(HUGE)
+    slopes = f32x16(-HUGE), f32x16(-HUGE), f32x16(-HUGE), f32x16(-HUGE)
+    floor = f32x16(HUGE)
+    for v in range(first, last):
+        if bits[v] != 0:
+            x, y, z = _points_of(lifted, bits, v, some)
+            way = x - light[0], y - light[1], z - light[2]
+            far, aside, above = dot(way, along), dot(way, right), dot(way, top)
+            near, floor, scale = minimum(near, far), minimum(floor, dot(way, normal)), ONE / far
+            slopes = (
+                maximum(slopes[0], (aside - radius) * scale),
+                maximum(slopes[1], (-aside - radius) * scale),
+                maximum(slopes[2], (above - radius) * scale),
+                maximum(slopes[3], (-above - radius) * scale),
+            )
+    if not smallest(near) > TWO * radius + rounded:
+        return False
+    for k in range(SIDES):
+        side, sign = (right if k < 2 else top), (ONE if k % 2 == 0 else -ONE)
+        slope = largest(slopes[0] if k == 0 else (slopes[1] if k == 1 else (slopes[2] if k == 2 else slopes[3])))
+        scale = ONE / square_root(ONE + slope * slope)
+        for axis in range(3):
+            beam.planes[k, axis] = (sign * side[axis] - slope * along[axis]) * scale
+        _put_offset(beam, k, light, radius + rounded)
+    for axis in range(3):
+        beam.planes[SIDES, axis] = -normal[axis]
+    _put_offset(beam, SIDES, light, max(-smallest(floor), radius) + rounded)
+    return True
+
+
+@inlined
+def _put_offset(beam, k, light, out):
+    """Let the k-th plane be so far out from the light."""
+    p = beam.planes
+    p[k, 3] = p[k, 0] * light[0] + p[k, 1] * light[1] + p[k, 2] * light[2] + out
+
+
+@subkernel
+def primitives_met(o, number, beam, most, room, counts):
+    """Find the primitives that may come between light `number` and the points of a beam, `most` of them; how many, or
+    -1 for more.
+
+    o are the `Occluders`.  Their numbers, int32, go to the address `room`, with room for eight more."""
+    count, numbers, stack = np.int64(0), i32_at(room), i64_at(local_memory(STACK))
+    boxes, blocks, leaf_radii = address_of(o.boxes[number]), address_of(o.blocks), address_of(o.leaf_radii[number])
+    for root in o.roots:
+        stack[0], pending = np.int64(root), 1
+        while pending > 0:
+            pending -= 1
+            node = stack[pending]
+            counts[STEPS] += 1
+            met = np.int64(children_met(boxes + 4 * BOXES * node, beam))
+            while met != 0:
+                child = lowest_bit(met)
+                met &= met - 1
+                code = np.int64(o.children[node, child])
+                if code >= 0:
+                    stack[pending] = code
+                    pending += 1
+                    continue
+                counts[STEPS] += 1
+                leaf = ~code
+                those = np.int64(1)
+                if o.numbers[leaf, 0] < o.first_quadric:
+                    those = np.int64(triangles_met(blocks + 4 * BLOCK * leaf, leaf_radii + 4 * WIDTH * leaf, beam))
+                while those != 0:
+                    numbers[count] = o.numbers[leaf, lowest_bit(those)]
+                    those &= those - 1
+                    count += 1
+                if count > most:
+                    return np.int64(-1)
+    return count

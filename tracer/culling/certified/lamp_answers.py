@@ -1,0 +1,233 @@
+"""Answer the shadow rays of lamps: for all samples of a lamp at once, before any of them is traced.
+
+Points that are shaded together are neighbours, and a lamp's samples are, too.  So what may come between is looked for
+only once for all of their rays: in the tree for a group of vectors, with a beam around it (`beams`), and then vector by
+vector in what was found.  Where nothing is left the lamp is seen as a whole; where all of it is hidden it is dark.
+Of the points in between, in the penumbra, each has a bit for each sample (`seen_by_lamp`).  Only rays to samples of
+which nothing is certain are traced.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.certified.beams import make_beam, primitives_met, put_beam
+from tracer.culling.certified.error_bounds import LANES
+from tracer.culling.certified.seen_by_lamp import (
+    KEPT,
+    MOST_SAMPLES,
+    PREPARED,
+    SAMPLES,
+    ask_points,
+    ask_samples,
+    prepare,
+    prepared_met,
+    put_samples,
+)
+from tracer.culling.counters import TESTS
+from tracer.culling.shadow_modes import answer
+from tracer.culling.stages import vectors
+from tracer.geometry.wide_tree.topology import WIDTH
+from tracer.kernels import inlined, subkernel
+from tracer.simd import (
+    address_of,
+    bits_of,
+    i32_at,
+    i32x16,
+    lanes_below,
+    load_i32,
+    load_i32x16,
+    load_three,
+    local_memory,
+    lowest_bit,
+    ones,
+    store,
+)
+from tracer.simd.records import IntRow, Memory, Rows, row_count, rows_of
+
+GROUP = 8  # vectors of points with one way through the tree
+# Primitives that may come between, at most: a group's, or else each of its vectors goes through the tree by itself; and
+# a vector's, or else its rays are traced.
+OF_GROUP, OF_VECTOR = 96, 256
+WORDS = MOST_SAMPLES // 32  # with a bit for each sample
+GROUPS = MOST_SAMPLES // LANES
+NUMBERS, ALL_PREPARED = 4 * (OF_VECTOR + LANES + WIDTH), PREPARED * (OF_GROUP // LANES)  # bytes
+MARKS = 4 * LANES * GROUPS  # bytes: a bit for each sample of each point of a vector
+
+
+class LampAnswers(NamedTuple):
+    """What is known of n points of a wave and a lamp, in rows.
+
+    Attributes:
+        open: bits of the points of which some ray may be due and nothing is known, sixteen points a number.
+        full, lit: bits of those from which the lamp is hidden as a whole, and not at all.
+        partly: bits of those with a bit for each sample.
+        blocked, unblocked: WORDS rows of these bits: samples that are hidden, and that are not.
+    """
+
+    memory: Memory
+    open: IntRow
+    full: IntRow
+    lit: IntRow
+    partly: IntRow
+    blocked: Annotated[NDArray[np.int32], Rows(WORDS, "int32")]
+    unblocked: Annotated[NDArray[np.int32], Rows(WORDS, "int32")]
+
+
+lamp_answers_in = rows_of(LampAnswers)
+LAMP_ANSWER_ROWS = row_count(LampAnswers)
+
+
+class Room(NamedTuple):
+    """Addresses of memory: of samples, of primitives' numbers and these prepared, of what is kept of one and a vector's
+    points, and of bits of samples, 16 points one after the other, that are blocked and of which nothing is certain."""
+
+    samples: int
+    numbers: int
+    prepared: int
+    kept: int
+    blocked: int
+    unsure: int
+
+
+@subkernel
+def answer_sample(answers, sample, count, batch, counts):
+    """Answer the rays of `count` points to a lamp's sample, by what is known.  batch is a `ShadowBatch`."""
+    blocked, unblocked = address_of(answers.blocked[sample >> 5]), address_of(answers.unblocked[sample >> 5])
+    bit = np.int32(np.int64(1) << (sample & 31))
+    for v in range(vectors(count)):
+        if batch.live[v] == 0:
+            continue
+        full, lit, partly = np.int64(answers.full[v]), np.int64(answers.lit[v]), np.int64(answers.partly[v])
+        if partly != 0:
+            full |= partly & bits_of((load_i32x16(blocked + 64 * v) & bit) == bit)
+            lit |= partly & bits_of((load_i32x16(unblocked + 64 * v) & bit) == bit)
+        answer(batch, v, full, lit, counts)
+
+
+@subkernel
+def find_answers(certified, points, answers, samples, first, number, count, counts):
+    """Find what is known of `count` points and lamp `number`, whose samples are those of (any, 3) from the first on."""
+    lamps, o, beam = certified.lamps, certified.occluders, make_beam()
+    place, radius = lamps.places[number], lamps.radii[number]
+    light = place[0], place[1], place[2]
+    room = Room(
+        local_memory(SAMPLES),
+        local_memory(NUMBERS),
+        local_memory(ALL_PREPARED),
+        local_memory(KEPT),
+        local_memory(MARKS),
+        local_memory(MARKS),
+    )
+    groups = put_samples(samples, first, np.int64(lamps.samples[number]), light, room.samples)
+    lamp = number, light, radius, groups
+    for start in range(0, vectors(count), GROUP):
+        end = min(start + GROUP, vectors(count))
+        some = _open_points(points, answers, light, radius, start, end, count)
+        if some == 0:
+            continue
+        found = np.int64(-1)
+        if some > 1 and put_beam(beam, points, answers.open, start, end, light, radius, lamps.within):
+            found = _find_primitives(o, number, beam, OF_GROUP, room, counts)
+            for batch in range(batches_of(found)):
+                prepare(o, number, light, radius, room.numbers + 64 * batch, room.prepared + PREPARED * batch)
+        for v in range(start, end):
+            if answers.open[v] == 0:
+                continue
+            if found == 0:
+                answers.lit[v] = answers.open[v]
+            elif put_beam(beam, points, answers.open, v, v + 1, light, radius, lamps.within):
+                known = found if found > 0 else _find_primitives(o, number, beam, OF_VECTOR, room, counts)
+                if known >= 0:
+                    _ask_vector(o, points, answers, v, lamp, beam, known, found > 0, room, counts)
+
+
+@inlined
+def batches_of(count):
+    """How many vectors of sixteen so many primitives make, none where they are too many."""
+    return (count + LANES - 1) // LANES
+
+
+@inlined
+def _open_points(points, answers, light, radius, start, end, count):
+    """Find the points of vectors that may be due to some sample of a lamp; how many vectors have any."""
+    some = 0
+    for v in range(start, end):
+        px, py, pz = load_three(points.position, v)
+        gx, gy, gz = load_three(points.geometric, v)
+        x, y, z = light[0] - px, light[1] - py, light[2] - pz
+        room = np.float32(1.001) * radius + np.float32(1e-5) * (abs(light[0]) + abs(light[1]) + abs(light[2]))
+        answers.open[v] = bits_of(gx * x + gy * y + gz * z > -room) & lanes_below(count, v)
+        answers.full[v] = answers.lit[v] = answers.partly[v] = 0
+        some += answers.open[v] != 0
+    return some
+
+
+@subkernel
+def _find_primitives(o, number, beam, most, room, counts):
+    """Find the primitives that may come into a beam, whole vectors of them; how many, or -1 for more than `most`."""
+    found = primitives_met(o, number, beam, most, room.numbers, counts)
+    for k in range(found, LANES * batches_of(found)):
+        store(room.numbers + 4 * k, i32_at(room.numbers)[0])
+    return found
+
+
+@subkernel
+def _ask_vector(o, points, answers, v, lamp, beam, found, prepared, room, counts):
+    """Ask the primitives that come into a beam about the points of a vector: so many as were found, and perhaps
+    `prepared`.  lamp is its number, light (3,), radius and how many vectors its samples make."""
+    number, light, radius, groups = lamp
+    end, every = load_three(points.lifted, v), np.int64(answers.open[v])
+    live, begun = every, np.int64(0)  # points that may see some sample, and those that have bits of samples
+    for batch in range(batches_of(found)):
+        made = room.prepared + PREPARED * batch * prepared
+        if not prepared:
+            if live == 0:
+                break
+            prepare(o, number, light, radius, room.numbers + 64 * batch, made)
+        met = np.int64(prepared_met(made, beam)) & lanes_below(found, batch)
+        while met != 0 and live != 0:
+            triangle = made + 4 * lowest_bit(met)
+            met &= met - 1
+            counts[TESTS] += ones(live)
+            hidden, missed, can = ask_points(triangle, end, light, radius, room.kept)
+            live &= ~hidden
+            unsure = live & ~missed
+            while unsure != 0:
+                lane = lowest_bit(unsure)
+                bit = np.int64(1) << lane
+                unsure &= unsure - 1
+                blocked, doubt = room.blocked + 4 * GROUPS * lane, room.unsure + 4 * GROUPS * lane
+                if begun & bit == 0:
+                    begun |= bit
+                    for at in range(0, 4 * groups, 64):
+                        store(blocked + at, i32x16(0))
+                        store(doubt + at, i32x16(0))
+                if ask_samples(triangle, room.kept, lane, can & bit != 0, room.samples, groups, blocked, doubt):
+                    live &= ~bit
+    answers.full[v] = every & ~live
+    answers.lit[v] = live & ~begun
+    answers.partly[v] = live & begun
+    if live & begun != 0:
+        _write_bits(answers, v, live & begun, groups, room)
+
+
+@subkernel
+def _write_bits(answers, v, lanes, groups, room):
+    """Write the bits of samples of some of a vector's points into their rows."""
+    for word in range((groups + 1) // 2):
+        blocked, unblocked = answers.blocked[word], answers.unblocked[word]
+        some = lanes
+        while some != 0:
+            lane = lowest_bit(some)
+            some &= some - 1
+            at = 4 * (GROUPS * lane + 2 * word)
+            hidden, doubt = np.int64(load_i32(room.blocked + at)), np.int64(load_i32(room.unsure + at))
+            if 2 * word + 1 < groups:
+                hidden |= np.int64(load_i32(room.blocked + at + 4)) << 16
+                doubt |= np.int64(load_i32(room.unsure + at + 4)) << 16
+            blocked[16 * v + lane] = np.int32(hidden)
+            unblocked[16 * v + lane] = np.int32(~(hidden | doubt))
