@@ -45,7 +45,7 @@ ZERO, ONE = np.float32(0), np.float32(1)
 @subkernel
 def shadow_testing(world, points, count, light, number, stages, call, batch, counts):
     """Which of `count` points are due to light `number` at light (3,), and which does it reach?  Into the batch."""
-    _find_due(points, light, count, looked_at(stages.looks, number, count), stages.everything, batch, counts)
+    _find_due(points, light, count, looked_at(stages.looks, number, count), number < stages.everything, batch, counts)
     run_stages(stages, CHOOSE, call, number, count, counts)
     _ask_dynamic(world, points, light, count, batch, counts)
     _trace_live(world, points, light, count, stages.occluders, batch, counts)

@@ -39,14 +39,14 @@ class Stages(NamedTuple):
     that are traced; and whether answers are verified.
 
     Where a stage selects, looks (lights, words) int64 has a bit for each vector of a wave that must look at a light; it
-    has no rows where all do, and larger waves look at all lights.  `everything`: somebody wants to know of the rays to
-    all lights; those that need not be looked at then count as due and culled."""
+    has no rows where all do, and larger waves look at all lights.  Of the first `everything` lights somebody wants to
+    know all rays: those to which points need not look then count as due and culled."""
 
     table: NDArray[np.int64]
     rows: int
     occluders: bool
     verify: bool
-    everything: bool
+    everything: int
     looks: NDArray[np.int64]
 
 

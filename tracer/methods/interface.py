@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from tracer.culling.cells import primitives_are_units
 from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.mode_history import ModeHistory
+from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.rest import Resting
 from tracer.culling.stages import COLUMNS, Stages
 from tracer.geometry.camera import Pinhole
@@ -172,13 +173,13 @@ class ShadowMethod:
         return sum(part.memory_bytes for part in self.parts)
 
 
-ALL_LOOK = np.empty((0, 1), np.int64)
+ALL_LOOK, ALL_LIGHTS = np.empty((0, 1), np.int64), 1 << 31
 
 
 class StageTable:
     """The stages of one worker as kernels get them; keeps what they point to."""
 
-    def __init__(self, stages: list[Stage], verify: bool, everything: bool = False) -> None:
+    def __init__(self, stages: list[Stage], verify: bool, records: bool = False) -> None:
         self._stages = stages
         self._blocks = [np.zeros(1, np.int64) if stage.data is None else pack(stage.data) for stage in stages]
         table, rows = np.zeros((len(stages), COLUMNS), np.int64), 0
@@ -188,12 +189,13 @@ class StageTable:
             rows += stage.rows
         looks = [stage.looks for stage in stages if stage.looks is not None]
         assert len(looks) < 2, "one stage selects"
-        learns = any(stage.learn is not None for stage in stages)  # from what all rays are answered
+        learns = any(stage.learn is not None for stage in stages)  # from all rays to lights that have modes
+        everything = ALL_LIGHTS if verify or records else MAX_CULLED_LIGHTS if learns else 0
         self.given = Stages(
             table,
             rows,
             any(stage.occluders for stage in stages),
             verify,
-            everything or verify or learns,
+            everything,
             looks[0] if looks else ALL_LOOK,
         )

@@ -120,7 +120,7 @@ def _add_lights(world, shading, wave, points, stages, counts, pixels, tile, boun
     if selects(stages.looks, wave.size):
         run_stages(stages, SELECT, call, 0, wave.size, counts)
     for light in range(len(lamps.places)):
-        if not stages.everything and not _is_looked_at(stages.looks, light, wave.size):
+        if light >= stages.everything and not _is_looked_at(stages.looks, light, wave.size):
             counts[PASSED_OVER] += wave.size * (lamps.first[light + 1] - lamps.first[light])
             continue
         for sample in range(lamps.first[light], lamps.first[light + 1]):
