@@ -20,8 +20,6 @@ from tracer.methods.payoff import Payoff, Plan, Trial
 from tracer.statistics import FrameStatistics, shadow_counts
 
 GOLDEN = 0.618033988749895  # steps of it visit all tiles evenly
-# Seconds, about, that setting certificates up takes for each primitive, and for each light besides.
-SET_UP, SET_UP_LIGHT = 2e-6, 2e-7
 
 
 class Auto(ShadowMethod):
@@ -35,9 +33,7 @@ class Auto(ShadowMethod):
         self.forget()
 
     def forget(self) -> None:
-        services = self.services
-        price = (SET_UP + SET_UP_LIGHT * len(services.shading.lamps.places)) * len(services.world.object_of)
-        self.payoff = Payoff(price, services.cost_model.costly_rays)
+        self.payoff = Payoff(self._certified.price, self._certified.pays_as_a_rule)
         self._plan = Plan()
         self._next_trial = 0  # of the tiles that are shaded both ways
         self._tried: frozenset[int] = frozenset()
@@ -108,8 +104,8 @@ class Auto(ShadowMethod):
             seconds[looks_up] = clock() - start
         counts += counted[self._plan.looks_up]
         rays = shadow_counts(counted[True][SHADOW:])
-        known = rays.culled + rays.dynamic_only + rays.candidates_only
-        self._trials.append(Trial(seconds[False], seconds[True], rays.due, known))
+        known = rays.culled + rays.dynamic_only + rays.candidates_only + rays.passed_over
+        self._trials.append(Trial(seconds[False], seconds[True], rays.due + rays.passed_over, known))
 
     def keep(self, frame: FrameView) -> None:
         if self._plan.needs_certificates:

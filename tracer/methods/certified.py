@@ -49,6 +49,8 @@ from tracer.simd import any_lane, i32x16, i64_at, select
 from tracer.simd.records import pack
 from tracer.statistics import FrameStatistics
 
+SET_UP, SET_UP_LIGHT = 2e-6, 2e-7  # seconds for each primitive, and for each of these and each light
+
 
 @entry
 def find(data, call, light, count, counts):
@@ -210,6 +212,18 @@ class CertifiedCells(ShadowMethod):
 
     def forget(self) -> None:
         self.store = self.scheduler = None
+
+    @property
+    def price(self) -> float:
+        """Seconds, about, that it takes to set the store up."""
+        services = self.services
+        lights = min(len(services.shading.lamps.places), MAX_CULLED_LIGHTS)
+        return (SET_UP + SET_UP_LIGHT * lights) * len(services.world.object_of)
+
+    @property
+    def pays_as_a_rule(self) -> bool:
+        """Whether certificates can be expected to save time."""
+        return self.services.cost_model.costly_rays
 
     @property
     def memory_bytes(self) -> int:

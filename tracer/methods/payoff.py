@@ -34,7 +34,7 @@ PAUSE = 200  # frames for which nothing is certified then
 SMALLEST = 2e-3  # seconds: less is not worth the search for what to certify
 RECENT = 0.8  # of the memory of how long a frame takes is kept from one to the next
 TRIED_FIRST = 0.15  # of a frame's time may go into trials where look-ups are made before any trial
-AT_ONCE = 2  # trials in a frame, at most
+AT_ONCE, FEW_TILES = 2, 16  # trials in a frame, at most, and of a picture with fewer tiles not in each
 IDLE_TRIALS = 8  # tiles, in a frame that nobody waits for
 
 
@@ -86,8 +86,9 @@ class Payoff:
         if patience > 0.0:
             return Plan(self.looks_up, 0.0 if paused else patience, min(tiles, IDLE_TRIALS))
         saved, doubt = self.saving
-        # Whether looking up is right must be known soon.
-        urgent = min(tiles, AT_ONCE) if self.looks_up and saved <= doubt and len(self._trials) < MANY else 0
+        # Whether looking up is right must be known soon, but small pictures of few tiles cannot try one in each frame.
+        unknown = self.looks_up and saved <= doubt and len(self._trials) < MANY
+        urgent = min(tiles, AT_ONCE) if unknown and self._frame % max(1, FEW_TILES // max(1, tiles)) == 0 else 0
         if not self._frame or self._purse < (0.0 if self._ready else self._price):
             return Plan(self.looks_up, trials=urgent)
         left = self._purse if self._ready else self._purse - self._price
