@@ -135,6 +135,8 @@ def statistics_table(statistics: FrameStatistics, title: str, verified: bool = F
     table.add_row(f"  {terms.TRACED}", f"{fully_traced(shadow) / due:.1%}", "", f"{fully_traced(shadow):,}")
     if verified:
         table.add_row(f"  {terms.WRONG}", f"{shadow.wrong / due:.3%}", "", f"{shadow.wrong:,}")
+    if shadow.passed_over:
+        table.add_row(f"samples {terms.PASSED_OVER}", "", "", f"{shadow.passed_over:,}")
     if statistics.certificates:
         table.add_row("certificates made", "", "", f"{statistics.certificates:,}")
         table.add_row("  traversal steps", "", "", f"{statistics.certificate_steps:,}")

@@ -260,7 +260,7 @@ def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
     )
     if not Method.parse(frame.settings.method).culls:
         note = Note("Culling is off (C): every shadow ray is traced, so nothing can be wrong.", Tone.WARNING)
-    elif not shadow.culled + shadow.candidates_only + shadow.dynamic_only + shadow.cache_hits:
+    elif not any((shadow.culled, shadow.candidates_only, shadow.dynamic_only, shadow.cache_hits, shadow.passed_over)):
         note = Note("No shadow ray of this frame was culled, so none can be wrong.", Tone.WARNING)
     elif not found.pixels:
         note = Note("Nothing is wrong: every culled shadow ray has the answer that tracing gives.", Tone.GOOD)

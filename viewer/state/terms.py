@@ -12,6 +12,7 @@ CANDIDATES_ONLY = "candidates"
 CACHE_HITS = "cache hits"
 TRACED = "traced"
 WRONG = "wrong answers"
+PASSED_OVER = "passed over"
 
 SAMPLES_DUE = "due"
 SAMPLES_REACHED = "reaching"
@@ -24,6 +25,7 @@ MEANINGS = {
     CANDIDATES_ONLY: "tested against a few primitives and dynamic objects instead of the whole scene",
     CACHE_HITS: "blocked by the primitive that blocked a ray there before",
     TRACED: "nothing was known: traced through the whole scene",
+    PASSED_OVER: "samples of lights, at all points, that are proven not to reach them: not even looked at, and not due",
     WRONG: "shadow rays for which culling and tracing disagree",
 }
 

@@ -117,6 +117,6 @@ def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
     shadow = c.frame.statistics.shadow
     if shadow.wrong:
         return f"{count(shadow.wrong)} wrong ({percent(shadow.wrong, shadow.due)})", ERROR
-    if not shadow.culled + shadow.candidates_only + shadow.dynamic_only + shadow.cache_hits:
+    if not any((shadow.culled, shadow.candidates_only, shadow.dynamic_only, shadow.cache_hits, shadow.passed_over)):
         return "nothing culled", QUIET
     return "none wrong", GOOD

@@ -91,8 +91,8 @@ def _lights(ui: Ui) -> None:
         return
     if number > MAX_CULLED_LIGHTS:
         paragraph(
-            f"{icons.ICON_FA_TRIANGLE_EXCLAMATION} Culling covers the first {MAX_CULLED_LIGHTS} lights; the other "
-            f"{count(number - MAX_CULLED_LIGHTS)} are traced without it.",
+            f"{icons.ICON_FA_TRIANGLE_EXCLAMATION} Only the first {MAX_CULLED_LIGHTS} lights have modes. The methods "
+            "certified and auto take all of them into account.",
             WARNING,
         )
     lights.table(ui)

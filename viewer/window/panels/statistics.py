@@ -94,6 +94,9 @@ def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
         fate(terms.TRACED, fully_traced(shadow))
         if frame.settings.verify:
             fate(terms.WRONG, shadow.wrong)
+        if shadow.passed_over:
+            tip = f"{terms.MEANINGS[terms.PASSED_OVER]} ({count(shadow.passed_over)})"
+            amount(terms.PASSED_OVER.capitalize(), number(shadow.passed_over), tip)
     with _amounts("cost of deciding") as shown:
         if not shown:
             return
