@@ -22,7 +22,7 @@ from tracer.simd import as_f32, as_i32, fma, select
 ZERO = np.float32(0)
 ONE = np.float32(1)
 SIGN = np.int32(-0x80000000)
-EDGE = np.float32(1e-5)  # of a triangle, by which it is larger: rays along a common edge must meet either side
+EDGE = np.float32(2e-6)  # of a triangle, by which it is larger: rays along a common edge must meet either side
 
 
 class Triangle(NamedTuple):

@@ -15,7 +15,7 @@ less than 3 eps of the product of the lengths, a dot product by 3 eps of the sam
 the distance of P from a alone, D - T = (a - P) . n, and the rest by the length of n: that is how rays can end so
 close above their own triangle; s, d and the dot products add 4 eps of |n| times |s| and |d|, and t = T / D two
 roundings. D - U - V bears the errors of all three, and the reciprocal that u and v are multiplied with adds a few
-roundings of numbers no greater than D. The fast structure takes a triangle to be 1e-5 of itself larger. The error
+roundings of numbers no greater than D. The fast structure takes a triangle to be 2e-6 of itself larger. The error
 bounds m are the sum of all of that, a quarter enlarged. The functions are computed here in float32, too, which adds
 errors of our own: as much again to U, V and D; but D - T is taken from P - a, which is hardly wrong where it matters,
 close to the triangle.
@@ -64,7 +64,7 @@ from tracer.kernels import inlined
 from tracer.simd import address_of, load_columns, load_i32x16, maximum, select, square_root
 
 EPSILON = 2.0**-24  # the largest relative error of a float32 rounding
-ENLARGED = 1.25e-5  # the part of itself by which the fast structure takes a triangle to be larger, and a little
+ENLARGED = 2.5e-6  # the part of itself by which the fast structure takes a triangle to be larger, and a little
 SURPLUS = 1.25  # by which all bounds are enlarged
 INSIDE = 1.75  # bounds by which a certain hit lies inside of a triangle: 2.5 m and our own error
 LONGEST = 13 * EPSILON  # times a ray's length: what boxes must be padded by for it to be sure of a hit
