@@ -133,9 +133,10 @@ def test_triangles_that_are_not_finite_are_dropped_and_counted(read):
     )
     assert scene.triangle_count == 3
     assert np.isfinite(scene.objects[0].triangles.corners).all()
-    first, second = scene.warnings
+    first, far, second = scene.warnings
     what = "a triangle with a corner that is not a finite number is dropped; correct it"
-    assert first.endswith(f"scene.aff:2: {what} (the first of 3 in this file)")
+    assert first.endswith(f"scene.aff:2: {what} (the first of 2 in this file)")
+    assert far.endswith("scene.aff:4: a triangle with a corner beyond 1e+09 is dropped; bring it nearer")
     assert second.endswith(f"part.aff:3: {what}")
 
 
