@@ -100,7 +100,8 @@ class _Reader:
             raise SceneError(f"{self.path}: cannot be read: {reason(error)}; check the path") from None
         if not file.words:
             raise SceneError(f"{self.path}:1: the file is empty; give a scene with at least one statement")
-        self.run_file(file, 0.0, 1.0)
+        with np.errstate(all="ignore"):  # shapes of numbers that overflow are dropped at the end
+            self.run_file(file, 0.0, 1.0)
 
     def open(self, path: Path) -> AffFile:
         """The words of a file, split once however often it is included; raises OSError or ValueError."""

@@ -63,7 +63,7 @@ def check_scene_file(path: Path) -> None:
         if not path.exists():
             raise SceneError(f"{path}: no such file; check the path")
         if not path.is_file():
-            raise SceneError(f"{path}: it is not a regular file; give one")
+            raise SceneError(f"{path}: cannot be read: it is not a regular file; check the path")
         if not os.access(path, os.R_OK):
             raise SceneError(f"{path}: reading it is not permitted; change its permissions")
     except (OSError, ValueError):

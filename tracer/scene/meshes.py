@@ -111,9 +111,9 @@ def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str]]:
             except SceneError as error:
                 troubles.append(f"{path}: texture {name!a}: {error}; the surface keeps its material colour")
                 raise
-            except Exception:
+            except (OSError, ValueError, RuntimeError, StopIteration):  # among them circles of links, and nothing found
                 troubles.append(f"{path}: {name!a}, which it refers to, cannot be read; put it beside the file")
-                raise FileNotFoundError(name) from None
+                raise SceneError(troubles[-1]) from None
             return data
 
         def keys(self) -> list[str]:
@@ -165,8 +165,8 @@ def _shapes(mesh: Any, place: _MeshPlace, table: MaterialTable) -> Iterator[tupl
     faces = np.asarray(mesh.faces, np.int64)
     corners = np.asarray(mesh.vertices, np.float64)[faces]
     normals, uvs = _vertex_normals(mesh), getattr(mesh.visual, "uv", None)
-    normals = None if normals is None else normals[faces]
-    uvs = None if uvs is None or len(uvs) != len(mesh.vertices) else np.asarray(uvs, np.float64)[faces]
+    normals = None if np.shape(normals) != np.shape(mesh.vertices) else np.asarray(normals, np.float64)[faces]
+    uvs = None if np.shape(uvs) != (len(mesh.vertices), 2) else np.asarray(uvs, np.float64)[faces]
     for which, material, texture in table.parts(mesh, place()):
         yield (
             Mesh(

@@ -102,8 +102,10 @@ def _light(use: _Use, declared: Any, box: Float64 | None) -> tuple[Light, list[s
             color = np.array(declared.get("color", (1.0, 1.0, 1.0)), np.float64) * intensity
     except (TypeError, ValueError, OverflowError):
         raise _Unusable("its colour or intensity is not made of numbers") from None
-    if color.shape != (3,) or not ((color >= 0).all() and (color <= _BRIGHTEST).all()):
-        raise _Unusable(f"its colour and intensity are not three numbers and one, of 0 to {_BRIGHTEST:g}")
+    if color.shape != (3,) or not (np.isfinite(color).all() and (color >= 0).all()):
+        raise _Unusable("its colour and intensity are not three numbers and one, of 0 or more")
+    if color.max() > _BRIGHTEST:
+        raise _Unusable(f"it is brighter than {_BRIGHTEST:g}")
     named = _json(declared, str, "name") or f"light {use.number}"
     name = named if use.node.isdigit() else use.node  # trimesh names nodes without one by their numbers
     r, g, b = color.tolist()
