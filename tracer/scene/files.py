@@ -18,7 +18,8 @@ def read_regular(path: Path, most: int = MOST_BYTES) -> bytes:
     """All of a regular file; raises OSError or ValueError (a name that no file can have)."""
     if path.is_dir():
         raise IsADirectoryError(0, "it is a folder, not a file")
-    with open(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)), "rb") as file:  # opening a pipe would wait
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)  # opening a pipe would wait
+    with open(os.open(path, flags), "rb") as file:
         found = os.fstat(file.fileno())
         if not stat.S_ISREG(found.st_mode):
             raise OSError(0, "it is not a regular file")

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracer.scene.animation import Animation
 from tracer.scene.arrays import Float64
@@ -164,9 +165,8 @@ def _shapes(mesh: Any, place: _MeshPlace, table: MaterialTable) -> Iterator[tupl
     """Parts of one material each, with its number and that of the texture."""
     faces = np.asarray(mesh.faces, np.int64)
     corners = np.asarray(mesh.vertices, np.float64)[faces]
-    normals, uvs = _vertex_normals(mesh), getattr(mesh.visual, "uv", None)
-    normals = None if np.shape(normals) != np.shape(mesh.vertices) else np.asarray(normals, np.float64)[faces]
-    uvs = None if np.shape(uvs) != (len(mesh.vertices), 2) else np.asarray(uvs, np.float64)[faces]
+    normals = _of_corners(_vertex_normals(mesh), faces, (len(mesh.vertices), 3))
+    uvs = _of_corners(getattr(mesh.visual, "uv", None), faces, (len(mesh.vertices), 2))
     for which, material, texture in table.parts(mesh, place()):
         yield (
             Mesh(
@@ -178,6 +178,11 @@ def _shapes(mesh: Any, place: _MeshPlace, table: MaterialTable) -> Iterator[tupl
             material,
             texture if uvs is not None else -1,
         )
+
+
+def _of_corners(values: Any, faces: NDArray[np.int64], shape: tuple[int, int]) -> Float64 | None:
+    """Numbers of vertices, as those of triangles' corners (n, 3, k), where they are of the shape that is expected."""
+    return None if values is None or np.shape(values) != shape else np.asarray(values, np.float64)[faces]
 
 
 def _vertex_normals(mesh: Any) -> Float64 | None:
