@@ -6,7 +6,7 @@ import logging
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from threading import Lock
+from threading import Lock, get_ident
 from typing import Any
 
 import numpy as np
@@ -22,13 +22,18 @@ _open = Image.open
 @contextmanager
 def quiet() -> Iterator[None]:
     """Without what trimesh, numpy and Pillow say of a file to the terminal: it is judged by us."""
-    log = logging.getLogger("trimesh")
-    log.propagate = False
-    if not log.handlers:
-        log.addHandler(logging.NullHandler())
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore")
-        yield
+    log, here = logging.getLogger("trimesh.util"), get_ident()
+
+    def elsewhere(record: logging.LogRecord) -> bool:
+        return record.thread != here
+
+    log.addFilter(elsewhere)
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        log.removeFilter(elsewhere)
 
 
 @contextmanager
