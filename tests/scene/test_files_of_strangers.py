@@ -179,6 +179,18 @@ def test_a_damaged_mesh_file_is_called_that(tmp_path, changed):
     )
 
 
+def test_nodes_nested_too_deep(tmp_path):
+    (tmp_path / "a.gltf").write_text(
+        gltf(nodes=[{"mesh": 0, "children": [i + 1]} for i in range(1000)] + [{"mesh": 0}])
+    )
+    assert refused(tmp_path / "a.gltf").endswith("more than 256 nodes around each other; make it simpler")
+
+
+def test_what_is_no_json_is_no_gltf(tmp_path):
+    (tmp_path / "a.gltf").write_text("[" * 100_000)
+    assert "cannot be read as GLTF: it is damaged" in refused(tmp_path / "a.gltf")
+
+
 def test_data_from_elsewhere(secret):
     path = secret.parent / "scene" / "a.gltf"
     path.write_text(gltf(buffers=[{"byteLength": 36, "uri": "../secret.aff"}]))

@@ -8,7 +8,7 @@ lights are added.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -22,7 +22,7 @@ from tracer.scene.arrays import Float64
 from tracer.scene.assembly import Geometry
 from tracer.scene.files import SceneFiles, read_regular
 from tracer.scene.framing import bounds, framing_camera, framing_lights
-from tracer.scene.limits import LARGEST, MOST_PRIMITIVES
+from tracer.scene.limits import LARGEST, MOST_NESTED, MOST_PRIMITIVES
 from tracer.scene.mesh_materials import MaterialTable
 from tracer.scene.mesh_reading import only_known_images, quiet
 from tracer.scene.model import Camera, Progress, Scene, SceneError
@@ -103,6 +103,9 @@ def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str]]:
             pass
 
         def get(self, name: str) -> bytes:
+            if kind.lower() == "gltf" and name == "model.gltf":  # tried where the file itself is no JSON
+                raise FileNotFoundError(name)
+            shown = f"{name[:80]!a}"
             # Files of other machines have paths of those: the name alone may be found beside the mesh.
             wanted = (path.parent / part for part in (name.strip(), name.strip().lstrip("/"), Path(name).name))
             try:
@@ -110,10 +113,10 @@ def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str]]:
                 if Path(name).suffix.lower() not in (".mtl", ".bin"):
                     open_image(BytesIO(data)).close()
             except SceneError as error:
-                troubles.append(f"{path}: texture {name!a}: {error}; the surface keeps its material colour")
+                troubles.append(f"{path}: texture {shown}: {error}; the surface keeps its material colour")
                 raise
             except (OSError, ValueError, RuntimeError, StopIteration):  # among them circles of links, and nothing found
-                troubles.append(f"{path}: {name!a}, which it refers to, cannot be read; put it beside the file")
+                troubles.append(f"{path}: {shown}, which it refers to, cannot be read; put it beside the file")
                 raise SceneError(troubles[-1]) from None
             return data
 
@@ -130,8 +133,12 @@ def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str]]:
     kind = path.suffix[1:]
     try:
         data = read_regular(path)
+    except OSError as error:
+        raise SceneError(f"{path}: cannot be read: {error.strerror or error}; check it") from None
+    try:
         with quiet(), only_known_images():
             model = trimesh.load_scene(BytesIO(data), file_type=kind.lower(), resolver=Beside(), process=False)
+            _check_nesting(model.graph.transforms.parents, path)
             triangles = 0
             for node in model.graph.nodes_geometry:
                 mesh = model.geometry[model.graph[node][1]]
@@ -142,12 +149,23 @@ def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str]]:
             raise SceneError(f"{path}: more than {MOST_PRIMITIVES} triangles; make it simpler")
     except SceneError:
         raise
-    except OSError as error:
-        raise SceneError(f"{path}: cannot be read: {error.strerror or error}; check it") from None
     except Exception:  # trimesh lets whatever its parsers raise on broken files through
         what = f"cannot be read as {kind.upper()}: it is damaged or incomplete"
         raise SceneError(f"{path}: {what}; repair or convert the file") from None
     return model, list(dict.fromkeys(troubles))
+
+
+def _check_nesting(parents: Mapping[str, str], path: Path) -> None:
+    """Raise SceneError where nodes lie too deep below each other; each would be placed by all matrices above it."""
+    depths: dict[str, int] = {}
+    for node in parents:
+        way: list[str] = []
+        while node in parents and node not in depths and len(way) <= MOST_NESTED:
+            way.append(node)
+            node = parents[node]
+        depths |= {passed: depth for depth, passed in enumerate(reversed(way), depths.get(node, 0) + 1)}
+    if max(depths.values(), default=0) > MOST_NESTED:
+        raise SceneError(f"{path}: more than {MOST_NESTED} nodes around each other; make it simpler")
 
 
 def _check(mesh: Any, path: Path) -> None:
