@@ -22,7 +22,7 @@ export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
 export MPLCONFIGDIR := $(CURDIR)/.cache/matplotlib
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all golden bench frames quickest lamps counters window motion memory growth docs linkcheck pictures lint format lock clean distclean help
+.PHONY: run kernels test quick test-all fuzz golden bench frames quickest lamps counters window motion memory growth docs linkcheck pictures lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -40,6 +40,10 @@ quick:  ## run the tests that show soonest whether something is broken, one wind
 
 test-all:  ## run the tests with many times as many random scenes and frames as in every run
 	@SHADOWCULL_TESTS=all $(MAKE) --no-print-directory test
+
+fuzz:  ## read damaged files of all kinds, and trace what is left of them (ARGS="--seconds 600 --seed 1000")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.fuzz.readers $(ARGS)
 
 golden:  ## render the golden pictures of the tests anew, and say what changed
 	@tools/environment.sh dev

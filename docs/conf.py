@@ -44,7 +44,12 @@ numpydoc_class_members_toctree = False
 linkcheck_timeout = 20
 
 # Pages that are files at the top of the project: their links are those of that folder.
-SHARED = {"architecture": "ARCHITECTURE.md", "contributing": "CONTRIBUTING.md", "changes": "CHANGELOG.md"}
+SHARED = {
+    "architecture": "ARCHITECTURE.md",
+    "contributing": "CONTRIBUTING.md",
+    "changes": "CHANGELOG.md",
+    "security": "SECURITY.md",
+}
 
 
 def read_shared(app: Sphinx, page: str, source: list[str]) -> None:

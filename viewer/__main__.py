@@ -19,14 +19,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return command_line.main(sys.argv[1:] if arguments is None else arguments, _open_window)
 
 
-def _open_window(scene: Path | None, settings: dict[str, Any]) -> int:
+def _open_window(scene: Path | None, settings: dict[str, Any], folders: Sequence[Path]) -> int:
     """Open the viewer with some settings; raises OSError, in one line, where a library that it needs is missing."""
     try:
         from viewer.window import app
     except ImportError as error:
         why = f"no window can be opened, as a library is missing ({error}); 'shadowcull render' needs none"
         raise OSError(why) from error
-    return app.run(scene, settings)
+    return app.run(scene, settings, folders)
 
 
 if __name__ == "__main__":

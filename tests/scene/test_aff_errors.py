@@ -133,14 +133,15 @@ def test_triangles_that_are_not_finite_are_dropped_and_counted(read):
     )
     assert scene.triangle_count == 3
     assert np.isfinite(scene.objects[0].triangles.corners).all()
-    first, second = scene.warnings
+    first, second, far = scene.warnings
     what = "a triangle with a corner that is not a finite number is dropped; correct it"
-    assert first.endswith(f"scene.aff:2: {what} (the first of 3 in this file)")
+    assert first.endswith(f"scene.aff:2: {what} (the first of 2 in this file)")
+    assert far.endswith("scene.aff:4: a triangle with a corner beyond 1e+09 is dropped; bring it nearer")
     assert second.endswith(f"part.aff:3: {what}")
 
 
 def test_overflow_by_a_transform_is_dropped_too(read):
-    scene = read(SETTING + "xs 1e30 1 1 0 1 0 0 0 0 0 { p 3 1e30 0 0 0 1 0 0 0 1 } " + TRIANGLE)
+    scene = read(SETTING + "xs 1e9 1 1 0 1 0 0 0 0 0 { p 3 1e30 0 0 0 1 0 0 0 1 } " + TRIANGLE)
     assert scene.triangle_count == 1
     assert len(scene.warnings) == 1
 

@@ -7,15 +7,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.geometry.boxes import transform_boxes
 from tracer.scene.arrays import Float64
 from tracer.scene.chains import Chains
+from tracer.scene.limits import LARGEST, SMALLEST
 
 
 class Poses(NamedTuple):
     """Where n objects are at `time` seconds: maps (n, 3, 4) float64 to the world and back, and present (n,) bool.
 
-    An object is absent if it is empty, hidden, or scaled to nothing, so that no ray can be transformed to its space.
-    Its maps are 0 then.
+    An object is absent if it is empty, hidden, scaled to nothing, so that no ray can be transformed to its space, or
+    moved farther away than `LARGEST`.  Its maps are 0 then.
     """
 
     time: float
@@ -24,10 +26,14 @@ class Poses(NamedTuple):
     present: NDArray[np.bool_]
 
 
-def poses_at(chains: Chains, empty: NDArray[np.bool_], time: float) -> Poses:
-    """The poses of n objects at `time` seconds; empty (n,) bool tells which have no primitives."""
-    present = chains.visible(time) & ~empty
-    to_world = np.where(present[:, None, None], chains.matrices(time)[:, :3], 0.0)
+def poses_at(chains: Chains, boxes: Float64, time: float) -> Poses:
+    """The poses of n objects at `time` seconds; boxes (n, 6) are around them in their own spaces, inverted for those
+    without primitives."""
+    matrices = chains.matrices(time)[:, :3]
+    present = chains.visible(time) & (boxes[:, 0] <= boxes[:, 3])
+    with np.errstate(all="ignore"):  # what a track brings beyond all numbers compares as false
+        present &= np.abs(transform_boxes(boxes, matrices)).max(1) <= LARGEST
+    to_world = np.where(present[:, None, None], matrices, 0.0)
     to_object = np.zeros_like(to_world)
     try:
         to_object[present] = inverses(to_world[present])
@@ -38,6 +44,8 @@ def poses_at(chains: Chains, empty: NDArray[np.bool_], time: float) -> Poses:
             except np.linalg.LinAlgError:
                 present[i] = False
                 to_world[i] = 0.0
+    lost = ~(np.abs(to_object[:, :, :3]).max((1, 2)) <= 1 / SMALLEST)
+    present[lost], to_world[lost], to_object[lost] = False, 0.0, 0.0
     return Poses(time, to_world, to_object, present)
 
 

@@ -13,7 +13,7 @@ from tracer.geometry.poses import Poses, inverses, products
 from tracer.kernels import kernel
 from tracer.scene.arrays import Float32, Float64, Int32
 from tracer.scene.deformation import deformed
-from tracer.scene.model import SPHERE, Scene
+from tracer.scene.model import SPHERE, Scene, SceneObject
 
 
 def triangle_rows(corners: Float32) -> Float32:
@@ -69,7 +69,7 @@ class Primitives:
     quadrics (q, 16) float32: map to canonical space, kind, radii and side; the same map in float64 is
     to_canonical (q, 3, 4), its inverse to_object.  Those of object i begin at triangle_starts[i] and
     quadric_starts[i], (n + 1,) int32, and end before the next object's; object_of (t + q,) int32 tells whose
-    each is.
+    each is.  boxes (n, 6) float64 are around objects, whatever shape those take that deform; inverted around none.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -91,8 +91,18 @@ class Primitives:
         self.object_of = np.concatenate([np.repeat(np.arange(len(objects)), n) for n in counts]).astype(np.int32)
         self.attributes = attribute_rows(scene, self.triangles, self.object_of)
         self.normals = self.attributes[: len(corners), CORNER_NORMALS:FACE_NORMAL]
-        self.empty: NDArray[np.bool_] = counts[0] + counts[1] == 0
         self.deformations = {i: o.deformation for i, o in enumerate(objects) if o.deformation is not None}
+        self.boxes = np.array([self._box(i, o) for i, o in enumerate(objects)])
+
+    def _box(self, index: int, one: SceneObject) -> Float64:
+        which, corners = (
+            self.quadrics_of(index),
+            one.triangles.corners if one.deformation is None else one.deformation.corners,
+        )
+        points, boxes = corners.reshape(-1, 3), self.quadric_boxes(which, self.to_object[which])
+        lower = np.concatenate([points, boxes[:, :3]]).min(0, initial=np.inf)
+        upper = np.concatenate([points, boxes[:, 3:]]).max(0, initial=-np.inf)
+        return np.concatenate([lower, upper]).astype(np.float64)
 
     def triangles_of(self, index: int) -> slice:
         """The numbers of an object\'s triangles."""

@@ -93,7 +93,7 @@ class World:
 
         The structure stays as it is until `place` is called with these poses."""
         self.primitives.deform(time)
-        return poses_at(self._chains, self.primitives.empty, time)
+        return poses_at(self._chains, self.primitives.boxes, time)
 
     def place(self, when: float | Poses, resting: NDArray[np.bool_] | None = None) -> None:
         """Move the dynamic objects to where they are.

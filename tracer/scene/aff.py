@@ -7,7 +7,7 @@ material is global: neither a closing brace nor the end of an included file rest
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
@@ -19,7 +19,9 @@ from tracer.scene.aff_lights import FoundLight, read_lamp, read_light, settled
 from tracer.scene.aff_tokens import AffFile, Cursor, quoted, reason
 from tracer.scene.animation import Animation, Chain, TrackSet
 from tracer.scene.assembly import Geometry
+from tracer.scene.files import SceneFiles
 from tracer.scene.framing import bounds, framing_camera
+from tracer.scene.limits import MOST_FRAMES, MOST_INCLUDES, MOST_NESTED, MOST_PRIMITIVES
 from tracer.scene.model import Camera, Material, Progress, Scene, SceneError
 from tracer.scene.pieces import Mesh, Piece, Quadric
 from tracer.scene.textures import TextureTable
@@ -27,13 +29,15 @@ from tracer.scene.textures import TextureTable
 SECONDS_BETWEEN_REPORTS = 0.02
 
 
-def load_aff(path: str | Path, progress: Progress | None = None, detail: int | None = None) -> Scene:
+def load_aff(
+    path: str | Path, progress: Progress | None = None, detail: int | None = None, folders: Iterable[Path] = ()
+) -> Scene:
     """An AFF or NFF scene with everything it includes.
 
-    `detail` overrides what the file says with `d`.  Raises SceneError, in one line that names file
-    and line, and lets what `progress` raises (Cancelled) through.
+    `detail` overrides what the file says with `d`; all that it names lies below its folder or one of `folders`.  Raises
+    SceneError, in one line that names file and line, and lets what `progress` raises (Cancelled) through.
     """
-    reader = _Reader(Path(path), progress, detail)
+    reader = _Reader(Path(path), progress, detail, folders)
     reader.run()
     return reader.scene()
 
@@ -41,19 +45,23 @@ def load_aff(path: str | Path, progress: Progress | None = None, detail: int | N
 class _Reader:
     """The state of a scene while its files are run."""
 
-    def __init__(self, path: Path, progress: Progress | None, detail: int | None) -> None:
+    def __init__(self, path: Path, progress: Progress | None, detail: int | None, folders: Iterable[Path]) -> None:
         self.path = path
+        self.scene_files = SceneFiles(path, folders)
         self.progress = progress
         self.reported = 0.0
         self.detail_is_fixed = detail is not None
         self.detail = detail or 0
         self.files: dict[Path, AffFile] = {}
         self.including: list[AffFile] = []  # the file that is being run comes last
+        self.includes = 0  # that were run
+        self.nested = 0  # transforms around here
+        self.primitives = 0
         self.chain: Chain = ()
         self.geometry = Geometry()
         self.materials: list[Material] = []
         self.material = -1
-        self.textures = TextureTable(path)
+        self.textures = TextureTable(path, self.scene_files)
         self.tracks: dict[str, TrackSet] = {}
         self.lights: list[FoundLight] = []
         self.camera: Camera | None = None
@@ -92,13 +100,14 @@ class _Reader:
             raise SceneError(f"{self.path}: cannot be read: {reason(error)}; check the path") from None
         if not file.words:
             raise SceneError(f"{self.path}:1: the file is empty; give a scene with at least one statement")
-        self.run_file(file, 0.0, 1.0)
+        with np.errstate(all="ignore"):  # shapes of numbers that overflow are dropped at the end
+            self.run_file(file, 0.0, 1.0)
 
     def open(self, path: Path) -> AffFile:
         """The words of a file, split once however often it is included; raises OSError or ValueError."""
         resolved = path.resolve()
         if resolved not in self.files:
-            self.files[resolved] = AffFile(path)
+            self.files[resolved] = AffFile(path, self.scene_files.read(path))
         return self.files[resolved]
 
     def run_file(self, file: AffFile, low: float, high: float) -> None:
@@ -116,7 +125,11 @@ class _Reader:
                 if not opened:
                     raise at.error("'}' that closes nothing; remove it or open a brace before it")
                 self.chain = opened.pop()[0]
+                self.nested -= 1
             elif word in (b"x", b"xs"):
+                if self.nested == MOST_NESTED:
+                    raise at.error(f"more than {MOST_NESTED} transforms around each other; write fewer")
+                self.nested += 1
                 before = self.chain
                 self.chain = self.read_transform(at) if word == b"xs" else (*before, at.name("the name of a transform"))
                 at.expect(b"{", "of a transform")
@@ -150,6 +163,11 @@ class _Reader:
             raise at.error(f"{what}; add it or correct the name") from None
         if file in self.including:
             raise at.error(f"{name!a} includes itself; break the circle")
+        self.includes += 1
+        if self.includes > MOST_INCLUDES or len(self.including) > MOST_NESTED:
+            raise at.error(
+                f"more than {MOST_INCLUDES} files are included, or {MOST_NESTED} by each other; include fewer"
+            )
         self.run_file(file, low, high)
 
     # Statements
@@ -167,7 +185,7 @@ class _Reader:
 
     def read_animation(self, at: Cursor) -> None:
         start, end = at.numbers(2, "the time range").tolist()
-        self.frames = at.count("frames", least=1)
+        self.frames = at.count("frames", least=1, most=MOST_FRAMES)
         self.time_range = (start, end)
 
     def read_viewpoint(self, at: Cursor) -> None:
@@ -238,14 +256,24 @@ class _Reader:
             self.material = 0
         return self.material
 
+    def count(self, primitives: int) -> None:
+        """Add to the number of primitives, or refuse to."""
+        self.primitives += primitives
+        if self.primitives > MOST_PRIMITIVES:
+            file = self.including[-1]
+            raise SceneError(f"{file.path}: more than {MOST_PRIMITIVES} triangles, spheres and cones; make it simpler")
+
     def add_mesh(self, mesh: Mesh) -> None:
+        self.count(len(mesh.corners))
         texture = -1 if mesh.texture is None else self.textures.number(mesh.texture, self.including[-1].path)
         self.geometry.meshes.append(Piece(mesh, self.chain, self.current_material(), texture))
 
     def add_quadric(self, quadric: Quadric) -> None:
+        self.count(1)
         self.geometry.quadrics.append(Piece(quadric, self.chain, self.current_material()))
 
     def read_morph(self, at: Cursor) -> None:
+        self.count(1)
         self.geometry.morphs.append(Piece(aff_blocks.read_morph(at), self.chain, self.current_material()))
 
     # The end

@@ -28,6 +28,7 @@ from tracer.scene.animation import Chain, TrackSet
 from tracer.scene.arrays import Float64
 from tracer.scene.assembly import resolve
 from tracer.scene.lights import DEFAULT_SAMPLES, FALLOFFS, KINDS, MAX_SAMPLES, Light
+from tracer.scene.limits import LARGEST
 
 _SIMILAR = 1e-6  # part of its square by which a scale may differ between directions
 _NUMBERS = {b"at": 3, b"radius": 1, b"edges": 6, b"up": 3, b"color": 3}
@@ -107,9 +108,7 @@ def _read_words(at: Cursor, kind: str) -> dict[bytes, Any]:
             takes = ", ".join(w.decode() for w in known)
             raise at.error(f"a {kind} lamp has no '{word.decode()}', it takes {takes}; remove it")
         if word == b"samples":
-            given[word] = at.count("samples", least=1)
-            if given[word] > MAX_SAMPLES:
-                raise at.error(f"{given[word]} samples; give at most {MAX_SAMPLES}")
+            given[word] = at.count("samples", least=1, most=MAX_SAMPLES)
         elif word == b"falloff":
             falloff = at.word(what)
             if falloff not in _FALLOFFS:
@@ -129,6 +128,10 @@ def settled(found: Iterable[FoundLight], tracks: Mapping[str, TrackSet]) -> tupl
     lights, warnings = [], []
     for one in found:
         light = one.light
+        lengths = (*light.position, light.radius, *(x for edge in light.edges for x in edge))
+        if not all(abs(x) <= LARGEST for x in lengths):
+            warnings.append(f"{one.place()}: a light beyond {LARGEST:g} is left out; bring it nearer")
+            continue
         of_name = tracks.get(light.track or "")
         moves = of_name is not None and of_name.translation is not None
         lights.append(light if moves else replace(light, track=None))

@@ -17,18 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.scene.arrays import Float64
+from tracer.scene.limits import LARGEST
 from tracer.scene.model import SceneError
 
 _COMMENT = re.compile(rb"[#%][^\n]*")
 _SPACE = np.zeros(256, np.bool_)
 _SPACE[list(b" \t\n\r\x0b\x0c")] = True
-
-
-def read_bytes(path: Path) -> bytes:
-    """All of a regular file; raises OSError or ValueError (a name that no file can have)."""
-    if path.exists() and not path.is_file():
-        raise IsADirectoryError(0, "it is a folder, not a file" if path.is_dir() else "it is not a regular file")
-    return path.read_bytes()
 
 
 def reason(error: Exception) -> str:
@@ -46,10 +40,10 @@ def quoted(word: bytes, limit: int = 40) -> str:
 class AffFile:
     """The words of one file.  Braces are words of their own; comments are gone."""
 
-    def __init__(self, path: Path) -> None:
-        """Raises OSError or ValueError where the file cannot be read."""
+    def __init__(self, path: Path, data: bytes) -> None:
+        """What was read from the file."""
         self.path = path
-        text = read_bytes(path).replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+        text = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
         if b"#" in text or b"%" in text:
             text = _COMMENT.sub(b"", text)
         self._text = text.replace(b"{", b" { ").replace(b"}", b" } ")
@@ -121,16 +115,21 @@ class Cursor:
         return words
 
     def numbers(self, count: int, what: str, finite: bool = True) -> Float64:
-        """(count,) float64.  Infinities and NaN are errors unless the caller deals with them."""
+        """(count,) float64.  What is not finite or beyond LARGEST is an error unless the caller deals with it."""
         words = self._take(count, what)
         try:
             values = np.array(list(map(float, words)), np.float64)
         except ValueError:
             raise self._not_a_number(words, what, float) from None
-        if finite and not np.isfinite(values).all():
-            bad = int(np.flatnonzero(~np.isfinite(values))[0])
+        if finite and not (good := np.abs(values) <= LARGEST).all():
+            bad = int(np.flatnonzero(~good)[0])
             index = self.position - count + bad
-            raise self.error(f"{quoted(words[bad])} in {what} is not finite; write a number", index)
+            how = (
+                f"beyond {LARGEST:g}; write a smaller number"
+                if np.isfinite(values[bad])
+                else "not finite; write a number"
+            )
+            raise self.error(f"{quoted(words[bad])} in {what} is {how}", index)
         return values
 
     def number(self, what: str) -> float:
@@ -148,8 +147,8 @@ class Cursor:
         except (ValueError, OverflowError):
             raise self._not_a_number(words, what, _index) from None
 
-    def count(self, what: str, least: int = 0) -> int:
-        """A number of things that follow, at least `least`."""
+    def count(self, what: str, least: int = 0, most: int | None = None) -> int:
+        """A number of things, at least `least` and at most `most`."""
         (word,) = self._take(1, f"the number of {what}")
         try:
             count = int(word)
@@ -157,6 +156,8 @@ class Cursor:
             raise self._not_a_number([word], f"the number of {what}", int) from None
         if count < least:
             raise self.error(f"{count} {what}; give at least {least}")
+        if most is not None and count > most:
+            raise self.error(f"{count} {what}; give at most {most}")
         return count
 
     def _not_a_number(self, words: list[bytes], what: str, convert: Any) -> SceneError:

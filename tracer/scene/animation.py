@@ -21,6 +21,7 @@ import numpy as np
 from tracer.scene import rotations
 from tracer.scene.arrays import Float64
 from tracer.scene.camera import Camera
+from tracer.scene.limits import LARGEST
 
 Chain = tuple[Float64 | str, ...]
 
@@ -193,15 +194,16 @@ class Animation:
         if known is not None and known[0] == time:
             return known[1]
         placed = np.tile(np.eye(4), (len(self.tracks), 1, 1))
-        which, segments = self._rotations
-        if segments is not None:
-            placed[which, :3, :3] = _squad(*segments.find(time))
-        which, segments = self._scales
-        if segments is not None:
-            placed[which, :3, :3] *= _hermite(*segments.find(time))[:, None, :]
-        which, segments = self._translations
-        if segments is not None:
-            placed[which, :3, 3] = _hermite(*segments.find(time))
+        with np.errstate(all="ignore"):  # keys far apart within no time make speeds beyond all numbers
+            which, segments = self._rotations
+            if segments is not None:
+                placed[which, :3, :3] = _squad(*segments.find(time))
+            which, segments = self._scales
+            if segments is not None:
+                placed[which, :3, :3] *= _hermite(*segments.find(time))[:, None, :]
+            which, segments = self._translations
+            if segments is not None:
+                placed[which, :3, 3] = _hermite(*segments.find(time))
         placed.flags.writeable = False
         self._latest["matrices"] = (time, placed)  # one assignment: safe from any thread
         return placed
@@ -216,7 +218,8 @@ class Animation:
                 step = self.matrices(time)[self._numbers[element]]
             else:
                 continue
-            product = step if product is None else product @ step
+            with np.errstate(all="ignore"):
+                product = step if product is None else product @ step
         return np.eye(4) if product is None else product.copy()
 
     def visible(self, chain: Chain, time: float) -> bool:
@@ -225,9 +228,10 @@ class Animation:
         return all(self.tracks[name].visible(time) for name in names)
 
     def translation(self, name: str, time: float) -> Float64:
-        """(3,) float64; zero where no track of that name translates."""
+        """(3,) float64, of at most LARGEST; zero where no track of that name translates."""
         number = self._numbers.get(name)
-        return np.zeros(3) if number is None else self.matrices(time)[number, :3, 3].copy()
+        moved = np.zeros(3) if number is None else np.nan_to_num(self.matrices(time)[number, :3, 3])
+        return np.clip(moved, -LARGEST, LARGEST)
 
     def camera(self, base: Camera, time: float) -> Camera:
         """`base` moved by the tracks named `camera`: they replace what they tell, and leave the rest."""
@@ -239,8 +243,10 @@ class Animation:
             x, y, z = self.translation("camera", time)
             position = (float(x), float(y), float(z))
         if tracks.rotation is not None:
-            segments = _Segments.of([tracks.rotation], [_rotation_knots(tracks.rotation)])
-            rotation = _squad(*segments.find(time))[0]
+            with np.errstate(all="ignore"):
+                segments = _Segments.of([tracks.rotation], [_rotation_knots(tracks.rotation)])
+                rotation = _squad(*segments.find(time))[0]
+            rotation = rotation if np.isfinite(rotation).all() else np.eye(3)
             direction = tuple((-rotation[:, 2]).tolist())
             up = tuple(rotation[:, 1].tolist())
         return Camera(position, direction, up, base.angle)

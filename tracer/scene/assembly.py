@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 from tracer.scene.animation import Chain
 from tracer.scene.arrays import Float64
 from tracer.scene.deformation import Deformation
+from tracer.scene.framing import quadric_box
+from tracer.scene.limits import LARGEST, SMALLEST
 from tracer.scene.model import CONE, Quadrics, SceneObject, Triangles, empty_quadrics, empty_triangles
 from tracer.scene.normals import unit_normals
 from tracer.scene.pieces import Mesh, Morph, Piece, Place, Quadric
@@ -152,10 +154,15 @@ class _Origin:
 
 
 def _finite(corners: Float64, origin: _Origin, remarks: Remarks) -> NDArray[np.bool_]:
-    """(n,) which of n triangles (n, ...) single precision can hold; the others are remarked on."""
-    good: NDArray[np.bool_] = np.all(np.isfinite(corners.astype(np.float32)).reshape(len(corners), -1), axis=1)
+    """(n,) which of n triangles (n, ...) tracing can bear; the others are remarked on."""
+    inside = (np.abs(corners) <= LARGEST).reshape(len(corners), -1)
+    good: NDArray[np.bool_] = np.all(inside, axis=1)
     if not good.all():
-        origin.remark(~good, "a triangle with a corner that is not a finite number is dropped; correct it", remarks)
+        finite = np.all(np.isfinite(corners).reshape(len(corners), -1), axis=1)
+        origin.remark(~finite, "a triangle with a corner that is not a finite number is dropped; correct it", remarks)
+        origin.remark(
+            finite & ~good, f"a triangle with a corner beyond {LARGEST:g} is dropped; bring it nearer", remarks
+        )
     return good
 
 
@@ -208,14 +215,26 @@ def _uvs(mesh: Mesh, matrix: Float64) -> NDArray[np.float32]:
     return np.nan_to_num(uvs.astype(np.float32), nan=0.0, posinf=0.0, neginf=0.0)
 
 
+def _invertible(linear: Float64) -> bool:
+    """Whether rays can be brought to the space that a matrix (3, 3) maps from."""
+    try:
+        return bool(np.abs(np.linalg.inv(linear)).max() <= 1 / SMALLEST)
+    except np.linalg.LinAlgError:
+        return False
+
+
 def _quadrics(pieces: list[tuple[Piece[Quadric], Float64]], remarks: Remarks) -> tuple[Quadrics, list[Counted]]:
     good: list[tuple[Piece[Quadric], Float64]] = []
     for piece, baked in pieces:
         placed, radii = baked @ piece.shape.placed, piece.shape.radii
         what = "a cone" if piece.shape.kind == CONE else "a sphere"
-        if not np.isfinite(np.append(placed, radii).astype(np.float32)).all():
+        if not np.isfinite(np.append(placed, radii)).all():
             remarks.add(piece.shape.place, 0, f"{what} with a number that is not finite is dropped; correct it")
-        elif max(radii) == 0 or np.linalg.det(placed[:3, :3]) == 0:
+        elif not np.abs([*quadric_box(piece.shape.kind, placed, np.array(radii))]).max() <= LARGEST:
+            remarks.add(
+                piece.shape.place, 0, f"{what} beyond {LARGEST:g} is dropped; make it smaller or bring it nearer"
+            )
+        elif max(radii) == 0 or not _invertible(placed[:3, :3]):
             remarks.add(piece.shape.place, 0, f"{what} without extent is dropped; give it a radius and a length")
         else:
             good.append((piece, placed))
@@ -238,12 +257,12 @@ def _deforming(pieces: list[tuple[Piece[Morph], Float64]], remarks: Remarks) -> 
     origin = _Origin([piece.shape.place for piece, _ in pieces], [1] * len(pieces))
     good = _finite(np.concatenate([corners.reshape(len(corners), -1), times], axis=1), origin, remarks)
     corners, times = corners[good], times[good]
-    normals = np.nan_to_num(normals[good], nan=0.0, posinf=0.0, neginf=0.0)
+    single = np.nan_to_num(normals[good].astype(np.float32), nan=0.0, posinf=0.0, neginf=0.0)
     first = Triangles(
         corners[:, 0].astype(np.float32),
-        unit_normals(normals[:, 0], corners[:, 0]),
+        unit_normals(single[:, 0], corners[:, 0]),
         np.zeros((len(corners), 3, 2), np.float32),
         np.array([piece.material for piece, _ in pieces], np.int32)[good],
         np.full(len(corners), -1, np.int32),
     )
-    return first, Deformation(times, corners.astype(np.float32), normals.astype(np.float32))
+    return first, Deformation(times, corners.astype(np.float32), single)

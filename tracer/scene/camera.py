@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tracer.scene.arrays import Float64
+from tracer.scene.limits import LARGEST
 
 
 @dataclass(frozen=True)
@@ -20,9 +21,9 @@ class Camera:
 
     def basis(self) -> Float64:
         """Right, up and forward, orthonormal, as the rows of a (3, 3) array."""
-        forward = np.asarray(self.direction, np.float64)
+        forward, up = _moderate(self.direction), _moderate(self.up)
         forward = forward / np.linalg.norm(forward)
-        right = np.cross(forward, np.asarray(self.up, np.float64))
+        right = np.cross(forward, up)
         if np.linalg.norm(right) < 1e-9:  # up along the view: any right hand will do
             right = np.cross(forward, np.eye(3)[np.argmin(np.abs(forward))])
         right = right / np.linalg.norm(right)
@@ -50,6 +51,14 @@ class Camera:
         vectors = (position, direction, up)
         if any(len(v) != 3 for v in vectors) or not np.all(np.isfinite([*position, *direction, *up, angle])):
             raise ValueError("a camera's position, direction and up are three finite numbers each")
+        if np.abs(position).max() > LARGEST:
+            raise ValueError(f"a camera's position lies within {LARGEST:g}")
         if not 0.0 < angle < 180.0 or not any(direction):
             raise ValueError("a camera's angle lies between 0 and 180 degrees, and its direction is not zero")
         return Camera(position, direction, up, angle)  # type: ignore[arg-type]
+
+
+def _moderate(vector: tuple[float, float, float]) -> Float64:
+    """(3,) a vector, scaled where its square would leave the range of float64."""
+    largest = float(np.abs(vector).max())
+    return np.asarray(vector, np.float64) / (1.0 if 1e-100 < largest < 1e100 else largest or 1.0)

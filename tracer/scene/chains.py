@@ -47,13 +47,18 @@ class Chains:
         self._constants = np.stack(matrices)
         parents, steps = np.array(list(nodes)).T
         steps = np.where(steps < 0, len(matrices) + ~steps, steps)
-        by_depth = [np.flatnonzero(np.array(depth) == d) for d in range(1, max(depth) + 1)]
+        depths = np.array(depth)
+        by_depth = np.split(np.argsort(depths, kind="stable"), np.cumsum(np.bincount(depths))[:-1])[1:]
         self._levels = [(level, parents[level], steps[level]) for level in by_depth]
         self._count = len(depth)
-        hiding = [name for name, tracks in animation.tracks.items() if tracks.visibility is not None]
+        hidden: dict[str, list[int]] = {}
+        for i, chain in enumerate(chains):
+            for name in {element for element in chain if isinstance(element, str)} & numbers.keys():
+                hidden.setdefault(name, []).append(i)
         self._hidden_by: list[tuple[TrackSet, NDArray[np.int64]]] = [
-            (animation.tracks[name], np.array([i for i, chain in enumerate(chains) if _names(chain, name)], np.int64))
-            for name in hiding
+            (animation.tracks[name], np.array(which, np.int64))
+            for name, which in hidden.items()
+            if animation.tracks[name].visibility is not None
         ]
 
     def matrices(self, time: float) -> Float64:
@@ -62,7 +67,8 @@ class Chains:
         placed = np.empty((self._count, 4, 4))
         placed[0] = np.eye(4)
         for nodes, parents, which in self._levels:
-            placed[nodes] = placed[parents] @ steps[which]
+            with np.errstate(all="ignore"):  # what grows beyond all numbers is not placed
+                placed[nodes] = placed[parents] @ steps[which]
         return placed[self._leaf]
 
     def visible(self, time: float) -> NDArray[np.bool_]:
@@ -72,7 +78,3 @@ class Chains:
             if not tracks.visible(time):
                 visible[objects] = False
         return visible
-
-
-def _names(chain: Chain, name: str) -> bool:
-    return any(isinstance(element, str) and element == name for element in chain)

@@ -9,26 +9,32 @@ import numpy as np
 from tracer.scene.animation import Animation
 from tracer.scene.arrays import Float64
 from tracer.scene.deformation import deformed
+from tracer.scene.limits import SMALLEST
 from tracer.scene.model import CONE, Camera, Light, SceneObject
 
 
 def bounds(objects: Sequence[SceneObject], animation: Animation, time: float) -> Float64 | None:
-    """(2, 3) float64, least and greatest corner of everything at a time, or None where there is nothing."""
-    boxes = []
+    """(2, 3) float64, least and greatest corner of everything at a time, or None where there is nothing.
+
+    Objects that a track moves beyond all numbers are nowhere."""
+    boxes: list[tuple[Float64, Float64]] = []
     for o in objects:
         matrix = animation.matrix(o.chain, time)
+        if not (np.abs(matrix) <= 1 / SMALLEST).all():
+            continue
         corners = o.triangles.corners if o.deformation is None else deformed(o.deformation, time)[0]
         if len(corners):
             points = corners.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
             boxes.append((points.min(axis=0), points.max(axis=0)))
         for kind, placed, radii in zip(o.quadrics.kind, o.quadrics.to_object, o.quadrics.radii, strict=True):
-            boxes.append(_quadric_box(int(kind), matrix @ np.vstack([placed, (0, 0, 0, 1)]), radii))
+            boxes.append(quadric_box(int(kind), matrix @ np.vstack([placed, (0, 0, 0, 1)]), radii))
     if not boxes:
         return None
     return np.stack([np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)])
 
 
-def _quadric_box(kind: int, placed: Float64, radii: Float64) -> tuple[Float64, Float64]:
+def quadric_box(kind: int, placed: Float64, radii: Float64) -> tuple[Float64, Float64]:
+    """Least and greatest corner, (3,) each, of a sphere or cone under a map (4, 4) from its canonical space."""
     linear, centre = placed[:3, :3], placed[:3, 3]
     if kind != CONE:
         reach = np.linalg.norm(linear, axis=1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ AFF_EXTENSIONS = (".aff", ".nff")
 SCENE_EXTENSIONS = (*AFF_EXTENSIONS, *MESH_EXTENSIONS)
 
 
-def load_scene(path: str | Path, progress: Progress | None = None) -> Scene:
+def load_scene(path: str | Path, progress: Progress | None = None, folders: Iterable[Path] = ()) -> Scene:
     """Read a scene from a file: AFF, NFF, OBJ, PLY, STL, glTF or GLB.
 
     Parameters
@@ -27,6 +28,8 @@ def load_scene(path: str | Path, progress: Progress | None = None) -> Scene:
         The file.
     progress : callable, optional
         Called with what is done and the fraction done (0 to 1). It may raise Cancelled to stop.
+    folders : iterable of Path
+        Folders besides its own that the scene may read files from.
 
     Returns
     -------
@@ -43,7 +46,10 @@ def load_scene(path: str | Path, progress: Progress | None = None) -> Scene:
     check_scene_file(path)
     if progress is not None:
         progress(f"Reading {path.name}", 0.0)
-    scene = load_aff(path, progress) if path.suffix.lower() in AFF_EXTENSIONS else load_mesh(path, progress)
+    if path.suffix.lower() in AFF_EXTENSIONS:
+        scene = load_aff(path, progress, folders=folders)
+    else:
+        scene = load_mesh(path, progress, folders)
     if progress is not None:
         progress(f"Read {path.name}", 1.0)
     return scene
@@ -56,6 +62,8 @@ def check_scene_file(path: Path) -> None:
             raise SceneError(f"{path}: it is a folder; give a file in it")
         if not path.exists():
             raise SceneError(f"{path}: no such file; check the path")
+        if not path.is_file():
+            raise SceneError(f"{path}: cannot be read: it is not a regular file; check the path")
         if not os.access(path, os.R_OK):
             raise SceneError(f"{path}: reading it is not permitted; change its permissions")
     except (OSError, ValueError):
@@ -65,9 +73,9 @@ def check_scene_file(path: Path) -> None:
         raise SceneError(f"{path}: unknown kind of scene; give a file of one of these kinds: {known}")
 
 
-def load_visible_scene(path: str | Path, progress: Progress | None = None) -> Scene:
+def load_visible_scene(path: str | Path, progress: Progress | None = None, folders: Iterable[Path] = ()) -> Scene:
     """As `load_scene`, but a scene with nothing to see in it is a SceneError too."""
-    scene = load_scene(path, progress)
+    scene = load_scene(path, progress, folders)
     if scene.primitive_count == 0:
         raise SceneError(f"{path}: nothing to see in it: no triangles, spheres or cones")
     return scene

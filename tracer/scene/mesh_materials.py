@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.scene.model import Material, SceneError, Texture
-from tracer.scene.textures import texture_of
+from tracer.scene.textures import check_pixels, texture_of
 
 AMBIENT = 0.15
 """Ambient colour as a part of the diffuse one; the files have none that fits point lights."""
@@ -74,6 +74,7 @@ class MaterialTable:
             try:
                 self._textures[id(image)] = len(self.textures)
                 self.textures.append(texture_of(image, name))
+                check_pixels(self.textures)
             except SceneError as error:
                 self._textures[id(image)] = -1
                 self.warnings.append(f"{where}: texture {name!a}: {error}; the surface keeps its material colour")

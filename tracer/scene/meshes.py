@@ -8,20 +8,23 @@ lights are added.
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracer.scene.animation import Animation
 from tracer.scene.arrays import Float64
 from tracer.scene.assembly import Geometry
+from tracer.scene.files import SceneFiles, read_regular
 from tracer.scene.framing import bounds, framing_camera, framing_lights
+from tracer.scene.limits import LARGEST, MOST_NESTED, MOST_PRIMITIVES
 from tracer.scene.mesh_materials import MaterialTable
+from tracer.scene.mesh_reading import only_known_images, quiet
 from tracer.scene.model import Camera, Progress, Scene, SceneError
 from tracer.scene.pieces import Mesh, Piece
 from tracer.scene.punctual_lights import punctual_lights
@@ -49,12 +52,14 @@ class _MeshPlace:
         return f"{self.path}: {self.mesh!a}, triangle {item}"
 
 
-def load_mesh(path: str | Path, progress: Progress | None = None) -> Scene:
-    """A mesh file as a static scene; raises SceneError in one line that names the file."""
+def load_mesh(path: str | Path, progress: Progress | None = None, folders: Iterable[Path] = ()) -> Scene:
+    """A mesh file as a static scene; raises SceneError in one line that names the file.
+
+    What it refers to lies below its folder or one of `folders`."""
     path = Path(path)
     report = progress or (lambda what, fraction: None)
     report(f"Reading {path.name}", 0.0)
-    model, troubles = _read(path)
+    model, troubles = _read(path, SceneFiles(path, folders))
     table = MaterialTable(path)
     geometry = Geometry()
     nodes = list(model.graph.nodes_geometry)
@@ -87,51 +92,99 @@ def load_mesh(path: str | Path, progress: Progress | None = None) -> Scene:
     )
 
 
-def _read(path: Path) -> tuple[Any, list[str]]:
+def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str]]:
     """The trimesh scene in a file, and warnings of what it refers to and could not be read."""
     import trimesh  # here, because it takes a while that other scenes need not wait for
 
-    class Beside(trimesh.resolvers.FilePathResolver):
+    class Beside(trimesh.resolvers.Resolver):
         """Reads what a mesh file refers to.  Failures, over which trimesh passes in silence, become warnings."""
 
+        def __init__(self) -> None:
+            pass
+
         def get(self, name: str) -> bytes:
+            if kind.lower() == "gltf" and name == "model.gltf":  # tried where the file itself is no JSON
+                raise FileNotFoundError(name)
+            shown = f"{name[:80]!a}"
+            # Files of other machines have paths of those: the name alone may be found beside the mesh.
+            wanted = (path.parent / part for part in (name.strip(), name.strip().lstrip("/"), Path(name).name))
             try:
-                data = super().get(name)
+                data = files.read(next(w for w in wanted if files.holds(w) and w.is_file()))
                 if Path(name).suffix.lower() not in (".mtl", ".bin"):
                     open_image(BytesIO(data)).close()
             except SceneError as error:
-                troubles.append(f"{path}: texture {name!a}: {error}; the surface keeps its material colour")
+                troubles.append(f"{path}: texture {shown}: {error}; the surface keeps its material colour")
                 raise
-            except Exception:
-                troubles.append(f"{path}: {name!a}, which it refers to, cannot be read; put it beside the file")
-                raise
+            except (OSError, ValueError, RuntimeError, StopIteration):  # among them circles of links, and nothing found
+                troubles.append(f"{path}: {shown}, which it refers to, cannot be read; put it beside the file")
+                raise SceneError(troubles[-1]) from None
             return data
 
+        def keys(self) -> list[str]:
+            return []
+
+        def namespaced(self, namespace: str) -> Beside:
+            return self
+
+        def write(self, name: str, data: str | bytes) -> None:
+            raise PermissionError(name)
+
     troubles: list[str] = []
+    kind = path.suffix[1:]
     try:
-        with warnings.catch_warnings():  # large images: the size is judged by us
-            warnings.simplefilter("ignore")
-            model = trimesh.load_scene(str(path), resolver=Beside(str(path)), process=False)
-        for mesh in model.geometry.values():
-            faces = getattr(mesh, "faces", None)
-            if faces is not None and len(faces) and (faces.min() < 0 or faces.max() >= len(mesh.vertices)):
-                raise SceneError(f"{path}: a triangle refers to a vertex that is not there; repair the file")
+        data = read_regular(path)
+    except OSError as error:
+        raise SceneError(f"{path}: cannot be read: {error.strerror or error}; check it") from None
+    try:
+        with quiet(), only_known_images():
+            model = trimesh.load_scene(BytesIO(data), file_type=kind.lower(), resolver=Beside(), process=False)
+            _check_nesting(model.graph.transforms.parents, path)
+            triangles = 0
+            for node in model.graph.nodes_geometry:
+                mesh = model.geometry[model.graph[node][1]]
+                if hasattr(mesh, "faces"):
+                    _check(mesh, path)
+                    triangles += len(mesh.faces)
+        if triangles > MOST_PRIMITIVES:
+            raise SceneError(f"{path}: more than {MOST_PRIMITIVES} triangles; make it simpler")
     except SceneError:
         raise
-    except Exception as error:  # trimesh lets whatever its parsers raise on broken files through
-        what = " ".join(str(error).split()) or type(error).__name__
-        kind = path.suffix[1:].upper()
-        raise SceneError(f"{path}: cannot be read as {kind} ({what[:120]}); repair or convert the file") from None
+    except Exception:  # trimesh lets whatever its parsers raise on broken files through
+        what = f"cannot be read as {kind.upper()}: it is damaged or incomplete"
+        raise SceneError(f"{path}: {what}; repair or convert the file") from None
     return model, list(dict.fromkeys(troubles))
+
+
+def _check_nesting(parents: Mapping[str, str], path: Path) -> None:
+    """Raise SceneError where nodes lie too deep below each other; each would be placed by all matrices above it."""
+    depths: dict[str, int] = {}
+    for node in parents:
+        way: list[str] = []
+        while node in parents and node not in depths and len(way) <= MOST_NESTED:
+            way.append(node)
+            node = parents[node]
+        depths |= {passed: depth for depth, passed in enumerate(reversed(way), depths.get(node, 0) + 1)}
+    if max(depths.values(), default=0) > MOST_NESTED:
+        raise SceneError(f"{path}: more than {MOST_NESTED} nodes around each other; make it simpler")
+
+
+def _check(mesh: Any, path: Path) -> None:
+    """Raise SceneError where the arrays of a mesh are not of the shapes that belong together."""
+    vertices, faces = np.asarray(mesh.vertices), np.asarray(mesh.faces)
+    if vertices.ndim != 2 or vertices.shape[1:] != (3,) or vertices.dtype.kind not in "fiu":
+        raise SceneError(f"{path}: a vertex has not three coordinates; repair the file")
+    if faces.ndim != 2 or faces.shape[1:] != (3,) or faces.dtype.kind not in "iu":
+        raise SceneError(f"{path}: a face is no triangle; convert the file")
+    if len(faces) and (faces.min() < 0 or faces.max() >= len(vertices)):
+        raise SceneError(f"{path}: a triangle refers to a vertex that is not there; repair the file")
 
 
 def _shapes(mesh: Any, place: _MeshPlace, table: MaterialTable) -> Iterator[tuple[Mesh, int, int]]:
     """Parts of one material each, with its number and that of the texture."""
     faces = np.asarray(mesh.faces, np.int64)
     corners = np.asarray(mesh.vertices, np.float64)[faces]
-    normals, uvs = _vertex_normals(mesh), getattr(mesh.visual, "uv", None)
-    normals = None if normals is None else normals[faces]
-    uvs = None if uvs is None or len(uvs) != len(mesh.vertices) else np.asarray(uvs, np.float64)[faces]
+    normals = _of_corners(_vertex_normals(mesh), faces, (len(mesh.vertices), 3))
+    uvs = _of_corners(getattr(mesh.visual, "uv", None), faces, (len(mesh.vertices), 2))
     for which, material, texture in table.parts(mesh, place()):
         yield (
             Mesh(
@@ -143,6 +196,11 @@ def _shapes(mesh: Any, place: _MeshPlace, table: MaterialTable) -> Iterator[tupl
             material,
             texture if uvs is not None else -1,
         )
+
+
+def _of_corners(values: Any, faces: NDArray[np.int64], shape: tuple[int, int]) -> Float64 | None:
+    """Numbers of vertices, as those of triangles' corners (n, 3, k), where they are of the shape that is expected."""
+    return None if values is None or np.shape(values) != shape else np.asarray(values, np.float64)[faces]
 
 
 def _vertex_normals(mesh: Any) -> Float64 | None:
@@ -163,6 +221,6 @@ def _own_camera(model: Any) -> Camera | None:
         return None
     placed = np.asarray(model.camera_transform, np.float64)
     direction, up, angle = -placed[:3, 2], placed[:3, 1], float(model.camera.fov[1])
-    if not (np.isfinite(placed).all() and direction.any() and 0.0 < angle < 180.0):
+    if not ((np.abs(placed) <= LARGEST).all() and direction.any() and 0.0 < angle < 180.0):
         return None
     return Camera(tuple(placed[:3, 3].tolist()), tuple(direction.tolist()), tuple(up.tolist()), angle)

@@ -18,12 +18,14 @@ from typing import Any
 import numpy as np
 
 from tracer.scene.arrays import Float64
+from tracer.scene.limits import LARGEST
 from tracer.scene.model import Light, SceneObject
 
 EXTENSION = "KHR_lights_punctual"
 AWAY = 10.0
 """Radii of the model from its centre to a directional light."""
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+_BRIGHTEST = 1e30
 _MOST_TRIANGLES = 4096  # that the exposure is judged by
 
 
@@ -92,13 +94,18 @@ def _light(use: _Use, declared: Any, box: Float64 | None) -> tuple[Light, list[s
         raise _Unusable(f"{kind!a} is no type of light")
     if not np.isfinite(use.matrix).all():
         raise _Unusable("its place is not known")
+    if np.abs(use.matrix).max() > LARGEST:
+        raise _Unusable(f"it lies beyond {LARGEST:g}")
     try:
         intensity = float(declared.get("intensity", 1.0))
-        color = np.array(declared.get("color", (1.0, 1.0, 1.0)), np.float64) * intensity
-    except (TypeError, ValueError):
+        with np.errstate(over="ignore"):
+            color = np.array(declared.get("color", (1.0, 1.0, 1.0)), np.float64) * intensity
+    except (TypeError, ValueError, OverflowError):
         raise _Unusable("its colour or intensity is not made of numbers") from None
     if color.shape != (3,) or not (np.isfinite(color).all() and (color >= 0).all()):
         raise _Unusable("its colour and intensity are not three numbers and one, of 0 or more")
+    if color.max() > _BRIGHTEST:
+        raise _Unusable(f"it is brighter than {_BRIGHTEST:g}")
     named = _json(declared, str, "name") or f"light {use.number}"
     name = named if use.node.isdigit() else use.node  # trimesh names nodes without one by their numbers
     r, g, b = color.tolist()
@@ -128,13 +135,13 @@ def _exposed(lights: Sequence[Light], objects: Sequence[SceneObject]) -> tuple[L
     arriving = np.zeros(len(centers))
     for light in lights:
         squares = np.sum((centers - light.position) ** 2, axis=1) if light.falloff != "none" else np.ones(len(centers))
-        with np.errstate(divide="ignore", invalid="ignore"):  # a light within the model
+        with np.errstate(all="ignore"):  # a light within the model
             arriving += np.nan_to_num(_LUMINANCE @ light.color / squares, posinf=1e30)
     usual = float(np.median(arriving)) if len(centers) else 0.0
     if not usual > 0:
         return tuple(lights)
     scaled = []
     for light in lights:
-        r, g, b = (part / usual for part in light.color)
+        r, g, b = (min(part / usual, _BRIGHTEST) for part in light.color)
         scaled.append(replace(light, color=(r, g, b)))
     return tuple(scaled)

@@ -26,6 +26,9 @@ from tracer.simd import (
 )
 
 MIN_WEIGHT = np.float32(1 / 256)
+SPLITS = 10
+"""Bounces at which a ray may be reflected and refracted; at later ones only the stronger of the two rays goes on, so
+that no pixel has more than 2 ** SPLITS rays under way, whatever mirrors and glass face each other."""
 ZERO, ONE = np.float32(0), np.float32(1)
 
 
@@ -82,10 +85,11 @@ def _sunk(points, v):
 
 
 @subkernel
-def _refract(points, wave, out):
+def _refract(points, wave, out, splits):
     """Refracted rays, scaled by the transmission, into the rows of `out`; how many.
 
-    Where nothing passes, the transmission is added to the specular colour: it takes the refracted ray's share."""
+    Where nothing passes, the transmission is added to the specular colour: it takes the refracted ray's share.  Unless
+    a ray splits, only the stronger of two goes on: the specular colour becomes 0, or there is no refracted ray."""
     n = 0
     for v in range((wave.size + 15) // 16):
         through = load_f32x16(row_of(points.memory, TRANSMISSION_ROW) + 64 * v)
@@ -95,11 +99,15 @@ def _refract(points, wave, out):
         ior = load_f32x16(row_of(points.memory, IOR_ROW) + 64 * v)
         eta = select(mask16(np.int64(points.entering[v])), ONE / ior, ior)
         passes, direction = _refracted(load_three(wave.direction, v), load_three(points.normal, v), eta)
-        n = _send(wave, v, out, n, transmits & passes, _sunk(points, v), direction, (through, through, through))
-        share = select(transmits, select(passes, ZERO, through), ZERO)
+        going, share = transmits & passes, select(transmits, select(passes, ZERO, through), ZERO)
+        if not splits:
+            red, green, blue = load_three(points.specular, v)
+            going = going & (through >= maximum(red, maximum(green, blue)))
+        n = _send(wave, v, out, n, going, _sunk(points, v), direction, (through, through, through))
         for c in range(3):
             a = row_of(points.memory, SPECULAR_ROW + c) + 64 * v
-            store(a, load_f32x16(a) + share)
+            specular = load_f32x16(a) + share
+            store(a, specular if splits else select(going, ZERO, specular))
     return n
 
 
@@ -114,12 +122,12 @@ def _reflect(points, wave, out, n):
 
 
 @inlined
-def next_wave(points, wave, memory):
+def next_wave(points, wave, bounce, memory):
     """The rays sent on from here, refracted ones first, sorted by direction; and memory for the wave after them.
 
     They lie in this memory or in the wave's own, or in more where they are too many."""
     out = room(memory, 2 * wave.size)
-    n = _reflect(points, wave, out, _refract(points, wave, out))
+    n = _reflect(points, wave, out, _refract(points, wave, out, bounce < SPLITS))
     spare = room(wave.memory, n)
     if sorted_by_direction(out, n, spare):
         out, spare = spare, out

@@ -85,7 +85,7 @@ def shade_tile(world, shading, camera, tile, lanes, depth, stages, buffers, coun
         if bounce == depth:
             break
         # Send reflected and refracted rays on to the next one.
-        wave, spare = next_wave(points, wave, spare)
+        wave, spare = next_wave(points, wave, bounce, spare)
         if wave.size == 0:
             break
         trace(world, wave, counts[SECONDARY:])

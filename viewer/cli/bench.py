@@ -42,7 +42,7 @@ def bench(path: Path, options: Namespace) -> bool:
     if by_lamps and "plot" in wanted:
         raise ValueError("--plot: it draws one kind of lamps; give one --lamp-radius and one --lamp-samples")
     with working() as work:
-        scene = load_visible_scene(path, work.progress)
+        scene = load_visible_scene(path, work.progress, options.folder)
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
         times = experiment.path_times(scene, options.path_frames)

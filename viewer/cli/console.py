@@ -22,7 +22,7 @@ from tracer.scene.model import Cancelled
 from tracer.statistics import FrameStatistics
 from viewer.state import terms
 from viewer.state.history import fully_traced
-from viewer.util.messages import in_one_line, say
+from viewer.util.messages import in_one_line, printable, say
 from viewer.util.time_left import TimeLeft
 
 
@@ -106,7 +106,7 @@ def print_table(table: Table) -> None:
     console = Console(width=console.width if console.is_terminal else 100)
     title, table.title = table.title, None
     if title is not None:
-        console.print(Text(str(title), str(table.title_style or "")), soft_wrap=True)
+        console.print(Text(printable(title), str(table.title_style or "")), soft_wrap=True)
     console.print(table)
 
 

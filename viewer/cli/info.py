@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +14,10 @@ from viewer.cli.console import print_table, working
 from viewer.util.messages import say
 
 
-def info(path: Path, as_json: bool) -> None:
+def info(path: Path, as_json: bool, folders: Sequence[Path] = ()) -> None:
     """Print what a scene holds; raises SceneError."""
     with working() as work:
-        scene = load_scene(path, work.progress)
+        scene = load_scene(path, work.progress, folders)
     facts = scene_info(scene)
     print(json.dumps(facts, indent=2)) if as_json else print_table(_facts_table(path, facts))
 

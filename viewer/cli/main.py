@@ -26,9 +26,9 @@ from viewer.util import resources
 from viewer.util.messages import ERROR, say
 from viewer.util.screen import has_display, no_display_reason
 
-OpenWindow = Callable[[Path | None, dict[str, Any]], int]
-"""Opens the viewer on a scene or a saved picture, with some settings; returns the exit code, or raises OSError in one
-line."""
+OpenWindow = Callable[[Path | None, dict[str, Any], Sequence[Path]], int]
+"""Opens the viewer on a scene or a saved picture, with some settings, and folders that scenes may read files from;
+returns the exit code, or raises OSError in one line."""
 
 FAILED, INTERRUPTED = 1, 130
 PICTURE = Path("out") / "first-light.png"
@@ -90,7 +90,8 @@ def _view(arguments: list[str], commands: list[str], open_window: OpenWindow) ->
         return MISUSED
     lamps = {name: getattr(options, name) for name in ("lamp_radius", "lamp_samples")}
     settings = {name: value for name, value in lamps.items() if value is not None}
-    return open_window(resources.scene_path(options.scene) if options.scene is not None else None, settings)
+    scene = resources.scene_path(options.scene) if options.scene is not None else None
+    return open_window(scene, settings, options.folder)
 
 
 def _check_is_scene(parser: parsers.Parser, name: str, commands: list[str]) -> None:
@@ -108,6 +109,8 @@ def _picture_instead(options: Namespace) -> int:
     PICTURE.parent.mkdir(exist_ok=True)
     where = ["--frame", "12", "--warmup", "12"] if options.scene is None else []  # others may have no frames before
     where += ["--size", "640x480", "--method", "certified"]  # which culls most
+    for folder in options.folder:
+        where += ["--folder", str(folder)]
     for name in ("lamp_radius", "lamp_samples"):
         if getattr(options, name) is not None:
             where += [f"--{name.replace('_', '-')}", str(getattr(options, name))]
@@ -155,5 +158,7 @@ def _info(arguments: list[str]) -> int:
     from viewer.cli import info, saved_pictures
 
     path = resources.scene_path(options.scene)
-    info.info(saved_pictures.defaults(path)[0] if saved_pictures.is_capture(path) else path, options.json)
+    info.info(
+        saved_pictures.defaults(path)[0] if saved_pictures.is_capture(path) else path, options.json, options.folder
+    )
     return 0

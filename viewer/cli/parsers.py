@@ -43,7 +43,7 @@ def viewer() -> Parser:
         description="An interactive ray tracer that shows shadow culling at work.",
         epilog=examples.COMMANDS,
     )
-    parser.add_argument("scene", nargs="?", metavar="SCENE", help=_scene_help())
+    _add_scene(parser)
     _add_lamps(parser)
     parser.add_argument("--version", action="version", version=f"shadowcull {program_version()}")
     parser.add_argument("--or-picture", action="store_true", help=argparse.SUPPRESS)
@@ -58,7 +58,7 @@ def render() -> Parser:
         epilog=examples.RENDER + examples.methods(),
     )
     add = parser.add_argument
-    add("scene", nargs="?", metavar="SCENE", help=f"{_scene_help()}, or a saved picture, to render it again")
+    _add_scene(parser, ", or a saved picture, to render it again")
     add("-o", "--output", type=Path, metavar="FILE", help="the picture; a .png also remembers how it was made")
     _add_moment(parser)
     add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
@@ -98,7 +98,7 @@ def bench() -> Parser:
         epilog=examples.BENCH + examples.methods(),
     )
     add = parser.add_argument
-    add("scene", nargs="?", metavar="SCENE", help=_scene_help())
+    _add_scene(parser)
     add(
         "--methods",
         type=lambda text: [name.strip() for name in text.split(",")],
@@ -126,7 +126,7 @@ def zoom() -> Parser:
         epilog=examples.ZOOM,
     )
     add = parser.add_argument
-    add("scene", nargs="?", metavar="SCENE", help=_scene_help())
+    _add_scene(parser)
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--primitive", type=count(0, 2**31 - 1), metavar="N", help="towards this primitive")
     which.add_argument("--pixel", type=pixel, metavar="X,Y", help="towards what this pixel of the first frame shows")
@@ -158,9 +158,17 @@ def info() -> Parser:
         "bounds, and warnings.",
         epilog=examples.INFO,
     )
-    parser.add_argument("scene", nargs="?", metavar="SCENE", help=_scene_help())
+    _add_scene(parser)
     parser.add_argument("--json", action="store_true", help="as JSON on standard output")
     return parser
+
+
+def _add_scene(parser: Parser, more: str = "") -> None:
+    """The scene, and where its files may be."""
+    add = parser.add_argument
+    add("scene", nargs="?", metavar="SCENE", help=_scene_help() + more)
+    help_ = "another folder than its own that the scene may read files from; may be given several times"
+    add("--folder", type=Path, action="append", default=[], metavar="DIR", help=help_)
 
 
 def _add_moment(parser: Parser) -> None:

@@ -33,7 +33,7 @@ from viewer.state.readings import MOST_RECORDED, can_record_lights, records_ligh
 from viewer.state.session import Session
 from viewer.state.views import View
 from viewer.util.files import check_writable, write_whole
-from viewer.util.messages import say
+from viewer.util.messages import printable, say
 
 PICTURES = {
     ".png": "PNG",
@@ -60,7 +60,7 @@ def render(path: Path, options: Namespace) -> None:
         may = "may make" if method.adaptive else "makes"
         raise ValueError(f"--view certificate: the method {settings.method} {may} none; give --method {CERTIFIED}")
     with working() as work:
-        scene = load_visible_scene(path, work.progress)
+        scene = load_visible_scene(path, work.progress, options.folder)
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
         if view.of_light and light >= len(scene.lights):
@@ -91,7 +91,7 @@ def render(path: Path, options: Namespace) -> None:
     print_table(statistics_table(frame.statistics, title, verify))
     for written in (options.output, options.buffers):
         if written is not None:
-            print(written)
+            print(printable(written))
 
 
 def buffers(frame: Frame) -> dict[str, np.ndarray]:

@@ -7,12 +7,14 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
+from tracer.scene.files import read_regular
 from tracer.scene.model import Camera
 from viewer.cli.argument_types import ChosenView
 from viewer.output import capture
 from viewer.services.scene_files import find_scene, is_capture
 
 _A_CAMERA = '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
+_LARGEST_CAMERA = 1 << 20  # bytes
 _SETTINGS = ("method", "samples", "depth", "symmetric", "zoom_factor", "verify", "lamp_radius", "lamp_samples")
 
 
@@ -59,7 +61,7 @@ def _camera_from(text: str) -> Camera:
     name = text[:60]
     try:
         if not text.lstrip().startswith("{"):
-            text = Path(text).read_text(encoding="utf-8")
+            text = read_regular(Path(text), _LARGEST_CAMERA).decode("utf-8")
         data = json.loads(text)
     except OSError as error:
         raise ValueError(f"--camera: neither JSON nor a file that can be read: {name}: {error.strerror}") from None

@@ -55,7 +55,7 @@ def run(path: Path, options: Namespace) -> bool:
     wanted = exports.wanted_files(options)
     results = None
     with working() as work:
-        scene = load_visible_scene(path, work.progress)
+        scene = load_visible_scene(path, work.progress, options.folder)
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
         time = moment(scene, options.frame, options.time)

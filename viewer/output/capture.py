@@ -11,6 +11,7 @@ import json
 import string
 import struct
 from datetime import datetime
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, PngImagePlugin
 
+from tracer.scene.files import read_regular
+from tracer.scene.model import SceneError
+from tracer.scene.textures import open_image
 from viewer.state.session import Snapshot
 from viewer.util.files import reserve, write_whole
 
@@ -119,12 +123,12 @@ def read(path: Path) -> Snapshot:
 def read_with_size(path: Path) -> tuple[Snapshot, tuple[int, int] | None]:
     """The same, and the frame's width and height if they are known; raises CaptureError."""
     try:
-        with Image.open(path) as image:
+        with open_image(BytesIO(read_regular(path)), ("PNG",)) as image:
             image.load()  # text chunks may follow the pixels
             text = getattr(image, "text", {}).get(CHUNK)
     except FileNotFoundError:
         raise CaptureError(f"{path}: no such file") from None
-    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+    except (SceneError, OSError, ValueError, SyntaxError) as error:
         raise CaptureError(f"{path}: cannot be read as a picture: {' '.join(str(error).split())}") from None
     if text is None:
         raise CaptureError(f"{path}: a picture, but not one captured by Shadowcull")

@@ -33,12 +33,12 @@ class Shot:
 
     def pixels(self) -> NDArray[np.uint8]:
         """(height, width, 3), row 0 at the top."""
-        with Image.open(io.BytesIO(self.png)) as image:
+        with Image.open(io.BytesIO(self.png), formats=("PNG",)) as image:
             return np.asarray(image.convert("RGB"))
 
     def thumbnail(self, height: int) -> NDArray[np.uint8]:
         """The same, so many pixels high at most."""
-        with Image.open(io.BytesIO(self.png)) as image:
+        with Image.open(io.BytesIO(self.png), formats=("PNG",)) as image:
             image.thumbnail((4 * height, height), Image.Resampling.BOX)
             return np.asarray(image.convert("RGB"))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -47,12 +47,14 @@ def refusal(path: Path) -> str | None:
     return None
 
 
-def open_scene(path: Path, settings: Settings, ready: Callable[[], bool], progress: Progress) -> Opened:
+def open_scene(
+    path: Path, settings: Settings, ready: Callable[[], bool], progress: Progress, folders: Sequence[Path] = ()
+) -> Opened:
     """Read a scene and build its trees; waits for the tracer to be `ready` in between.
 
     Raises SceneError or Cancelled; runs on a thread of its own."""
     started = time.perf_counter()
-    scene = load_visible_scene(path, progress)
+    scene = load_visible_scene(path, progress, folders)
     while not ready():
         progress(f"{path.name} is read; waiting for the tracer", 1.0)
         time.sleep(0.02)

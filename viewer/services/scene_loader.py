@@ -6,7 +6,7 @@ is cancelled.  A second request to open takes the place of the first.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -48,6 +48,7 @@ class SceneLoader:
         self._ask_first, self._wake = ask_first, wake
         self.warm_up_job: Job[None] | None = None
         self.load_job: Job[scene_files.Opened] | None = None
+        self._folders: tuple[Path, ...] = ()
         self._abandoned: list[Job] = []
         self._place: Snapshot | None = None  # where to go once the scene is loaded
         self._restored: Arrival | None = None
@@ -64,10 +65,12 @@ class SceneLoader:
         """Whether all kernels are; those that make certificates come last, and pictures without them look the same."""
         return self.warm_up_job is None
 
-    def start(self, path: Path | None, settings: Mapping[str, Any] | None = None) -> None:
+    def start(self, path: Path | None, settings: Mapping[str, Any] | None = None, folders: Sequence[Path] = ()) -> None:
         """Compile or load the kernels in the background, and open a first scene meanwhile.
 
-        `settings` hold for what is opened first, also where a saved place in it has others."""
+        `settings` hold for what is opened first, also where a saved place in it has others.  All scenes may read files
+        from `folders` besides their own."""
+        self._folders = tuple(folders)
         self._given = dict(settings or {})
         self._session.settings = replace(self._session.settings, **self._given)
         title = "Loading the tracer" if compiled_before() else "Compiling the tracer (first start only)"
@@ -176,7 +179,7 @@ class SceneLoader:
         settings = self._session.settings
         self.load_job = Job(
             f"Loading {path.name}",
-            lambda progress: scene_files.open_scene(path, settings, self._kernels_ready, progress),
+            lambda progress: scene_files.open_scene(path, settings, self._kernels_ready, progress, self._folders),
             self._wake,
         )
 

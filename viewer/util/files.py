@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 MOST_NUMBERS = 100_000
+_OF_DEVICES = "/dev"
 
 
 def check_writable(path: Path) -> None:
@@ -20,6 +21,8 @@ def check_writable(path: Path) -> None:
     if str(path) == "-":
         raise OSError("-: results are not written to standard output; give the name of a file")
     target = _target(path)
+    if os.path.realpath(target.parent) == _OF_DEVICES:
+        raise OSError(f"{path}: a folder of devices; give a folder for files")
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {path.parent if target == path else target.parent}")
     probe = _temporary(target)

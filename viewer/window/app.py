@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -47,13 +47,15 @@ DRAWN_BY_PROCESSOR = ("llvmpipe", "softpipe", "swrast", "software")
 class App:
     """The window's life: made, run once, closed."""
 
-    def __init__(self, scene_path: Path | None, settings: dict[str, Any] | None = None) -> None:
+    def __init__(
+        self, scene_path: Path | None, settings: dict[str, Any] | None = None, folders: Sequence[Path] = ()
+    ) -> None:
         preferences, problem = load_preferences()
         self.controller = Controller(preferences)
         self.ui = Ui(self.controller)
         self.ui.guard = Guard(self.controller.notices, lambda name, fault: faults.instead(self.ui, name, fault))
         self.ui.commands = commands.build(self.ui)
-        self.scene_path, self.given_settings = scene_path, settings or {}
+        self.scene_path, self.given_settings, self.folders = scene_path, settings or {}, folders
         self.layout_file = LayoutFile(config_folder())
         self.params = self._params()
         self.layout = Layout(self.ui, self.params)
@@ -248,7 +250,7 @@ class App:
         glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
         opener = self.controller.loader
-        opener.start(self.scene_path, self.given_settings)
+        opener.start(self.scene_path, self.given_settings, self.folders)
         if self.scene_path is None and not (self.controller.preferences.start_where_left and opener.go_on()):
             opener.open(default_scene())
 
@@ -287,8 +289,8 @@ def _configure_imgui() -> None:
     configure_recovery()
 
 
-def run(scene_path: Path | None = None, settings: dict[str, Any] | None = None) -> int:
+def run(scene_path: Path | None = None, settings: dict[str, Any] | None = None, folders: Sequence[Path] = ()) -> int:
     """Open the viewer on a scene or a saved picture; without one on what was open last, where that is wanted, else on
-    the embedded room.  `settings` are fields of `tracer.Settings` that win over what is opened first.  Returns the exit
-    code."""
-    return App(scene_path, settings).run()
+    the embedded room.  `settings` are fields of `tracer.Settings` that win over what is opened first; scenes may read
+    files from `folders` besides their own.  Returns the exit code."""
+    return App(scene_path, settings, folders).run()

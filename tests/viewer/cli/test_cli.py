@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -90,8 +91,9 @@ def test_lamps_that_cannot_be_are_said(
 def test_the_window_is_given_the_lamps(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[tuple[Path | None, dict[str, object]]] = []
 
-    def open_window(scene: Path | None, settings: dict[str, object]) -> int:
+    def open_window(scene: Path | None, settings: dict[str, object], folders: Sequence[Path]) -> int:
         opened.append((scene, settings))
+        assert list(folders) == []
         return 0
 
     monkeypatch.setattr("viewer.cli.main.has_display", lambda: True)

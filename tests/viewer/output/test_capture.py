@@ -123,3 +123,13 @@ def test_other_files_are_refused_in_one_line(tmp_path: Path):
         with pytest.raises(capture.CaptureError, match=told) as caught:
             capture.read(path)
         assert str(path) in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_program_named_like_a_picture_is_not_run(tmp_path, monkeypatch):
+    started: list[int] = []
+    monkeypatch.setattr("PIL.EpsImagePlugin.Ghostscript", lambda *_, **__: started.append(1))
+    path = tmp_path / "saved.png"
+    path.write_bytes(b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 10 10\n%%EndComments\nshowpage\n")
+    with pytest.raises(capture.CaptureError, match=r"saved\.png: cannot be read as a picture"):
+        capture.read(path)
+    assert not started

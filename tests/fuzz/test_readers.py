@@ -1,0 +1,32 @@
+"""A short run of the fuzzer: `make fuzz` goes on for longer."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.fuzz.readers import attempt, case
+from tests.fuzz.seeds import seeds, write_beside
+from tests.sweeps import examples
+
+
+@pytest.fixture(scope="module")
+def files():
+    return seeds()
+
+
+@pytest.mark.parametrize("name", ["a.aff", "a.obj", "a.ply", "b.ply", "a.stl", "b.stl", "a.gltf", "a.glb"])
+def test_whole_files_are_read(tmp_path, files, name):
+    write_beside(tmp_path)
+    (tmp_path / name).write_bytes(files[name])
+    scene = attempt(tmp_path / name)
+    assert scene is not None
+    assert scene.primitive_count > 0
+
+
+@pytest.mark.parametrize("start", range(0, examples(160), 16))
+def test_damaged_files_give_a_scene_or_one_line(tmp_path, files, start):
+    write_beside(tmp_path)
+    for number in range(start, start + 16):
+        name, data = case(number, files)
+        (tmp_path / name).write_bytes(data)
+        attempt(tmp_path / name)
