@@ -1,4 +1,4 @@
-"""Regions: lights that a patch hides from a whole region are not looked at."""
+"""Regions: lights that a triangle hides from a whole region are not looked at."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from tests.tracing.same import assert_same
 from tests.tracing.worlds import quad, scene
 from tracer.culling.certified.scheduler import Budget
 from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.culling.regions.blockers import find_blockers
 from tracer.culling.regions.certify import hidden_from
 from tracer.culling.regions.grid import boxes_of, make_grid, region_at
 from tracer.culling.regions.light_tree import LEAVES, build_light_tree
-from tracer.culling.regions.patches import find_patches
 from tracer.culling.regions.store import RegionStore
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.explanation import explain
@@ -67,78 +67,63 @@ def test_every_light_is_in_one_leaf_and_below_boxes_that_hold_it(count: int):
         assert (box[:3] == inside[:, :3].min(0)).all() and (box[3:] == inside[:, 3:].max(0)).all()
 
 
-# --- patches --------------------------------------------------------------------------------------
+# --- blockers -------------------------------------------------------------------------------------
 
 
-def test_triangles_of_a_wall_are_one_patch_with_an_outline_around_it_and_around_its_hole():
-    patches = find_patches(rows_of(wall(4, 3, hole=(1, 1))), merges=True)
-    assert len(patches.first) == 1
-    first, seams, last = patches.ranges[0]
-    length = np.linalg.norm(patches.edges[first:seams, 2:] - patches.edges[first:seams, :2], axis=1).sum()
-    assert length == pytest.approx(14.0 + 4.0, rel=1e-6)
-    assert last - seams == 11 + 9 + 8 - 4, "a diagonal in each rectangle, and what neighbours share but for the hole's"
+def test_blockers_are_the_largest_triangles_with_their_sides_around_them():
+    rng = np.random.default_rng(7)
+    corners = rng.normal(size=(40, 3, 3)) * 10.0 ** rng.uniform(-2, 1, (40, 1, 1))
+    corners[3] = corners[3, :1]  # of no area
+    rows = rows_of(corners.tolist())
+    blockers = find_blockers(rows)
+    assert sorted(blockers.numbers.tolist()) == [i for i in range(40) if i != 3]
+    for frame, box, sides, number in zip(
+        blockers.frames, blockers.boxes, blockers.sides, blockers.numbers, strict=True
+    ):
+        row = rows[number].astype(np.float64)
+        points = np.stack([row[:3], row[:3] + row[3:6], row[:3] + row[6:], row[:3] + (row[3:6] + row[6:]) / 3])
+        local = points @ frame[:, :3].T + frame[:, 3]
+        size = np.ptp(points, axis=0).max()
+        assert np.abs(local[:, 2]).max() < 1e-9 * (size + np.abs(points).max())
+        assert (local[:3, :2].min(0) == pytest.approx(box[:2])) and (local[:3, :2].max(0) == pytest.approx(box[2:]))
+        away = local[:, :2] @ sides[:, :2].T + sides[:, 2]
+        assert (away[3] > 0.0).all(), "its middle is inside of all sides"
+        assert (np.sort(np.abs(away[:3]), axis=1)[:, :2] < 1e-9 * size).all(), "two sides meet at each corner"
 
 
-def test_triangles_alone_are_patches_of_their_own():
-    patches = find_patches(rows_of(wall(4, 3)), merges=False)
-    assert len(patches.first) == 24 and (patches.ranges[:, 1] == patches.ranges[:, 2]).all()
+def test_only_the_largest_are_taken(monkeypatch):
+    monkeypatch.setattr("tracer.culling.regions.blockers.MOST", 2)
+    small, large = quad((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)), quad((0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1))
+    assert sorted(find_blockers(rows_of(small + large)).numbers.tolist()) == [2, 3]
 
 
-def test_what_bends_folds_or_touches_at_a_corner_only_is_not_one_patch():
-    square = quad((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))
-    bent = quad((1, 0, 0), (2, 0, 0.1), (2, 1, 0.1), (1, 1, 0))
-    folded = [[(1, 0, 0), (1, 1, 0), (0.2, 0.5, 0)]]  # on the same side of the edge that they share
-    corner = quad((1, 1, 0), (2, 1, 0), (2, 2, 0), (1, 2, 0))
-    for other in (bent, folded, corner):
-        assert len(find_patches(rows_of(square + other), merges=True).first) == 2
-
-
-def test_nothing_has_no_patches():
-    assert len(find_patches(np.empty((0, 9), np.float32), merges=True).first) == 0
-    assert len(find_patches(rows_of([[(0, 0, 0), (1, 0, 0), (2, 0, 0)]]), merges=True).first) == 0
+def test_nothing_has_no_blockers():
+    assert len(find_blockers(np.empty((0, 9), np.float32)).numbers) == 0
+    assert len(find_blockers(rows_of([[(0, 0, 0), (1, 0, 0), (2, 0, 0)]])).numbers) == 0
 
 
 # --- the proof ------------------------------------------------------------------------------------
 
 
-def _rays(
-    rng: np.random.Generator, lights: np.ndarray, region: np.ndarray, place: np.ndarray, move: np.ndarray, cuts: tuple
-) -> tuple[np.ndarray, np.ndarray, int]:
-    """Origins and ends (n, 3) of rays from one box (6,) to another, many through edges of the wall that is cut so.
-
-    place (3, 3) and move (3,) take the wall to where it is."""
-    n = 4000
-    origins, ends = rng.uniform(lights[:3], lights[3:], (n, 3)), rng.uniform(region[:3], region[3:], (n, 3))
-    origins[: n // 8] = np.where(rng.random((n // 8, 3)) < 0.5, lights[:3], lights[3:])
-    start, end = ((points - move) @ np.linalg.inv(place).T for points in (origins, ends))
-    at = start + (end - start) * (start[:, 2:] / (start[:, 2:] - end[:, 2:]))
-
-    # Move each to an upright, a level or a slanting edge nearby.
-    size = np.array([4.0 / cuts[0], 3.0 / cuts[1]])
-    low = np.floor(at[:, :2] / size) * size
-    on = np.where(rng.random((n, 2)) < 0.5, low, low + size)
-    which = rng.integers(3, size=n)
-    at[which == 0, 0], at[which == 1, 1] = on[which == 0, 0], on[which == 1, 1]
-    slant = low[:, 1] + (at[:, 0] - low[:, 0]) * size[1] / size[0]
-    at[which == 2, 1] = slant[which == 2]
-    through = start + (at - start) * ((end[:, 2:] - start[:, 2:]) / (at[:, 2:] - start[:, 2:]))
-    through = through @ place.T + move
-    aimed = ((through > region[:3]) & (through < region[3:])).all(1)
-    ends[aimed] = through[aimed]
-    ends = np.clip(ends.astype(np.float32), *region.astype(np.float32).reshape(2, 3))
-    return np.clip(origins.astype(np.float32), *lights.astype(np.float32).reshape(2, 3)), ends, int(aimed.sum())
+def _rays(rng: np.random.Generator, lights: np.ndarray, region: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Origins and ends (n, 3) of rays from one box (6,) to another, many from corners to corners."""
+    n, sides = 4000, np.stack([lights.reshape(2, 3), region.reshape(2, 3)])
+    part = np.where(rng.random((n, 1, 1)) < 0.5, rng.random((n, 2, 3)), rng.integers(0, 2, (n, 2, 3)))
+    points = (sides[:, 0] + part * (sides[:, 1] - sides[:, 0])).astype(np.float32)
+    points = np.clip(points, sides[:, 0].astype(np.float32), sides[:, 1].astype(np.float32))
+    return points[:, 0], points[:, 1]
 
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
-def test_no_ray_gets_past_a_patch_that_hides_a_light(accelerator: str):
-    """Walls of many sizes, turned and moved away from the origin; rays through seams above all."""
-    proved = aimed = 0
+def test_no_ray_gets_past_a_blocker_that_hides_a_light(accelerator: str):
+    """Walls of many sizes, turned and moved away from the origin; rays close to edges above all."""
+    proved = 0
     for seed in range(cases(16, 600)):
         rng = np.random.default_rng(seed)
         turn = np.linalg.qr(rng.normal(size=(3, 3)))[0] if rng.random() < 0.5 else np.eye(3)
         scale = 10.0 ** rng.uniform(-2, 3)
         place, move = turn * scale, rng.normal(size=3) * scale * rng.choice([0.0, 1.0, 30.0])
-        columns, rows = (int(n) for n in rng.integers(1, 6, 2))
+        columns, rows = (int(n) for n in rng.choice([1, 1, 2, 3, 5], 2))
         hole = (columns // 2, rows // 2) if columns > 1 and rng.random() < 0.3 else None
         corners = np.array(wall(columns, rows, hole)) @ place.T + move
         world = World(scene(corners), accelerator=accelerator)
@@ -146,19 +131,19 @@ def test_no_ray_gets_past_a_patch_that_hides_a_light(accelerator: str):
         for _ in range(12):
             middle = np.array([rng.uniform(0, 4), rng.uniform(0, 3), 0.0])
             away = np.array([*rng.normal(size=2) * rng.choice([0.2, 1.0]), 1.0])
-            centers = middle + away * 10.0 ** rng.uniform(-1, 1), middle - away * 10.0 ** rng.uniform(-1, 0.5)
+            centers = middle + away * 10.0 ** rng.uniform(-1.5, 0.5), middle - away * 10.0 ** rng.uniform(-1, 0.5)
             half = 10.0 ** rng.uniform(-3, -0.5, (2, 1)) * rng.random((2, 3)) * scale
             light, region = (
                 np.concatenate([place @ c + move - h, place @ c + move + h]).astype(np.float32).astype(np.float64)
                 for c, h in zip(centers, half, strict=True)
             )
-            if hidden_from(store.patches, store.longest_sure, region[None], light[None]) < 0:
+            if hidden_from(store.blockers, store.longest_sure, region[None], light[None]) < 0:
                 continue
-            origins, ends, through = _rays(rng, light, region, place, move, (columns, rows))
+            origins, ends = _rays(rng, light, region)
             blocked = world.any_hits(ray_batch(origins, ends - origins, LIGHT_MARGIN, 1.0), threads=1)
             assert blocked.all(), (seed, int((~blocked).sum()))
-            proved, aimed = proved + 1, aimed + through
-    assert proved > cases(16, 600) and (aimed > 20 * cases(16, 600) or accelerator == "kdtree"), (proved, aimed)
+            proved += 1
+    assert proved > cases(16, 600), proved
 
 
 # --- regions --------------------------------------------------------------------------------------
@@ -215,7 +200,7 @@ def test_lights_that_a_wall_hides_are_passed_over_and_nothing_changes(accelerato
         assert frame.color.tobytes() == none.color.tobytes()
     shadow, all_due = frame.statistics.shadow, none.statistics.shadow.due
     assert shadow.passed_over > (0.2 if accelerator == "bvh8" else 0.1) * all_due
-    assert shadow.due < (0.9 if accelerator == "bvh8" else 0.98) * all_due and frame.statistics.certificates == 0
+    assert shadow.due < (0.95 if accelerator == "bvh8" else 0.98) * all_due and frame.statistics.certificates == 0
 
 
 def test_what_is_recorded_of_lights_that_are_passed_over_is_what_none_records():

@@ -1,7 +1,7 @@
-"""Which lights is a region left with?  All but those that a patch hides from every point of it.
+"""Which lights is a region left with?  All but those that a blocker hides from every point of it.
 
-The tree of lights is descended.  The patches that may hide a node are those that part its centre from the centre of the
-region; what hid the last nodes is tried first, since a wall hides many.
+The tree of lights is descended.  The blockers that may hide a node are those that part its centre from the centre of
+the region; what hid the last nodes is tried first, since a wall hides many.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from tracer.geometry.memory import borrowed
 from tracer.kernels import inlined, kernel, subkernel
 from tracer.simd import address_of, bits_of, f32x16, load_f32x16, lowest_bit, maximum, minimum
 
-TRIED = 12  # patches, for a node and a region, at most
-RECENT = 4  # patches that are tried before any are looked for
+TRIED = 12  # blockers, for a node and a region, at most
+RECENT = 4  # blockers that are tried before any are looked for
 FIRST_ROOM = 4096  # leaves, to begin with
 STACK = 64  # nodes that wait on the way down: no tree of 2^31 lights is deeper
 
@@ -32,7 +32,7 @@ def _row(at, k, point):
 
 @inlined
 def _parting(filters, group, region, lights):
-    """Bits of the patches of a group that part the centre of the region from that of the lights."""
+    """Bits of the blockers of a group that part the centre of the region from that of the lights."""
     at, a, b = address_of(filters[group]), lights[0], region[0]
     above, below = _row(at, 2, a), _row(at, 2, b)
     part = above / (above - below)
@@ -61,24 +61,24 @@ def _between(around, sixteen, region, lights):
 
 
 @subkernel
-def hider(patches, longest_sure, region, lights, recent, counts):
-    """The patch that hides a box of lights from a region, -1 for none.  recent (RECENT,) int32 are tried first."""
+def hider(blockers, longest_sure, region, lights, recent, counts):
+    """The blocker that hides a box of lights from a region, -1 for none.  recent (RECENT,) int32 are tried first."""
     for k in range(RECENT):
         counts[TESTS] += 1
-        if hides(patches, recent[k], region, lights, longest_sure):
+        if hides(blockers, recent[k], region, lights, longest_sure):
             return np.int64(recent[k])
     tried = 0
-    for sixteen in range(len(patches.around)):
-        groups = _between(patches.around, sixteen, region, lights)
+    for sixteen in range(len(blockers.around)):
+        groups = _between(blockers.around, sixteen, region, lights)
         while groups != 0:
             group = 16 * sixteen + lowest_bit(groups)
             groups &= groups - 1
-            bits = _parting(patches.filters, group, region, lights)
+            bits = _parting(blockers.filters, group, region, lights)
             while bits != 0:
                 number = 16 * group + lowest_bit(bits)
                 bits &= bits - 1
                 counts[TESTS] += 1
-                if hides(patches, number, region, lights, longest_sure):
+                if hides(blockers, number, region, lights, longest_sure):
                     for k in range(RECENT - 1, 0, -1):
                         recent[k] = recent[k - 1]
                     recent[0] = number
@@ -90,13 +90,13 @@ def hider(patches, longest_sure, region, lights, recent, counts):
 
 
 @kernel
-def leaves_left(tree, patches, longest_sure, regions, starts, leaves, counts):
+def leaves_left(tree, blockers, longest_sure, regions, starts, leaves, counts):
     """The leaves of a `LightTree` whose lights may shine on each of regions (n, 6) float64, lower and upper corners.
 
     Nodes are descended from those that are known to matter: starts (n, 2) int64 are the first and the last + 1 of each
     region's in leaves (m,) int32.  Returns (ends (n,) int64, found (k,) int32): the leaves of one region after those of
-    another.  patches are `Patches`; counts (COUNTERS,) int64 are added to."""
-    tree, patches = borrowed(tree), borrowed(patches)
+    another.  blockers are `Blockers`; counts (COUNTERS,) int64 are added to."""
+    tree, blockers = borrowed(tree), borrowed(blockers)
     stack, recent = np.empty(STACK, np.int32), np.zeros(RECENT, np.int32)
     ends, found, end = np.empty(len(regions), np.int64), np.empty(FIRST_ROOM, np.int32), np.int64(0)
     for i in range(len(regions)):
@@ -107,7 +107,7 @@ def leaves_left(tree, patches, longest_sure, regions, starts, leaves, counts):
                 pending -= 1
                 node = np.int64(stack[pending])
                 counts[STEPS] += 1
-                if hider(patches, longest_sure, region, box_of(tree.boxes, node), recent, counts) >= 0:
+                if hider(blockers, longest_sure, region, box_of(tree.boxes, node), recent, counts) >= 0:
                     continue
                 child = tree.children[node]
                 if child != 0:
@@ -126,7 +126,7 @@ def leaves_left(tree, patches, longest_sure, regions, starts, leaves, counts):
 
 
 @kernel
-def hidden_from(patches, longest_sure, region, lights):
-    """The patch that hides a box of lights from a region, the first of boxes (1, 6) float64 each; -1 for none."""
-    patches, uncounted, recent = borrowed(patches), np.zeros(COUNTERS, np.int64), np.zeros(RECENT, np.int32)
-    return hider(patches, longest_sure, box_of(region, 0), box_of(lights, 0), recent, uncounted)
+def hidden_from(blockers, longest_sure, region, lights):
+    """The blocker that hides a box of lights from a region, the first of boxes (1, 6) float64 each; -1 for none."""
+    blockers, uncounted, recent = borrowed(blockers), np.zeros(COUNTERS, np.int64), np.zeros(RECENT, np.int32)
+    return hider(blockers, longest_sure, box_of(region, 0), box_of(lights, 0), recent, uncounted)

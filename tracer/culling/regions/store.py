@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 
 from tracer.culling.certified.error_bounds import LONGEST
 from tracer.culling.certified.scheduler import Budget, Counts
+from tracer.culling.regions.blockers import Blockers, find_blockers
 from tracer.culling.regions.certify import COUNTERS, STEPS, TESTS, hidden_from, leaves_left
 from tracer.culling.regions.grid import Grid, blocks_around, boxes_of, make_grid, region_at
 from tracer.culling.regions.light_tree import LightTree, build_light_tree
-from tracer.culling.regions.patches import Patches, find_patches
-from tracer.geometry.accelerators import BVH8
 from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 from tracer.scene.lamps import Lamps
@@ -58,8 +57,7 @@ class RegionStore:
         self._world, self._clock = world, clock
         triangles = world.triangles_of(0).rows
         self._bounds = _bounds(triangles)
-        # Only the fast structure lets no ray slip between triangles (`tracer.culling.regions.hidden`).
-        self.patches: Patches = find_patches(triangles, merges=world.accelerator == BVH8)
+        self.blockers: Blockers = find_blockers(triangles)
         self.longest_sure = world.hit_padding / LONGEST * float(np.abs(self._bounds).max())
         self._begin(_boxes(lamps))
 
@@ -154,7 +152,7 @@ class RegionStore:
             those = slice(chunk * CHUNK, (chunk + 1) * CHUNK)
             ends = np.cumsum([0, *(len(nodes) for nodes in above[those])])
             starts = np.stack([ends[:-1], ends[1:]], 1)
-            known = self.tree, self.patches, self.longest_sure, regions[those]
+            known = self.tree, self.blockers, self.longest_sure, regions[those]
             ends, found = leaves_left(*known, starts, np.concatenate(above[those]), counts[worker])
             results[chunk] = np.split(found, ends[:-1])
 
@@ -184,13 +182,13 @@ class RegionStore:
         return RegionView(self.grid, self._starts[0], self._lights[0], self._boxes, self._moved)
 
     def hidden_by(self, point: NDArray[np.float32], light: int) -> int:
-        """The number of a triangle of the patch that hides a light from the region of a point (3,); -1 for none."""
+        """The number of a triangle of the blocker that hides a light from the region of a point (3,); -1 for none."""
         number = region_at(self.grid, point)
         if number < 0 or self._moved[light]:
             return -1
         region, lights = boxes_of(self.grid, np.array([number])), self._boxes[light : light + 1].astype(np.float64)
-        patch = hidden_from(self.patches, self.longest_sure, region, lights)
-        return int(self.patches.first[patch]) if patch >= 0 else -1
+        blocker = hidden_from(self.blockers, self.longest_sure, region, lights)
+        return int(self.blockers.numbers[blocker]) if blocker >= 0 else -1
 
 
 def _bounds(triangles: NDArray[np.float32]) -> NDArray[np.float64]:
