@@ -4,7 +4,7 @@ whatever it decides."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -206,3 +206,18 @@ def test_a_frame_that_nobody_waits_for_certifies_as_long_as_it_may():
     settings = tracer.Settings(96, 64, 2, "auto", certificate_seconds=5.0, patient=True)
     auto = tracer.Renderer(walk.scene, settings)
     assert auto.render(*walk.frames[0]).statistics.certificates > 0
+
+
+def test_with_lamps_of_another_kind_it_measures_anew():
+    """What certificates saved with points says nothing of lamps, but what has been set up stays."""
+    made = nasty_walk(3, lights=2).scene
+    renderer = tracer.Renderer(made, tracer.Settings(32, 24, 1, "auto", threads=1))
+    auto = next(method for method in renderer.begin(made.time_range[0]).methods if isinstance(method, Auto))
+    for change in ({"lamp_samples": 16, "lamp_radius": 0.2}, {"lamp_samples": 64}):
+        renderer.render(made.time_range[0])
+        before = auto.payoff
+        renderer.render(made.time_range[0])
+        assert auto.payoff is before
+        renderer.settings = replace(renderer.settings, **change)
+        renderer.render(made.time_range[0])
+        assert auto.payoff is not before, change

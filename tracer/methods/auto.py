@@ -33,6 +33,11 @@ class Auto(ShadowMethod):
         self.forget()
 
     def forget(self) -> None:
+        self._kind: tuple[float | None, int | None] | None = None  # of lamps: their radius and samples
+        self._start()
+
+    def _start(self) -> None:
+        """Nothing has been measured yet."""
         self.payoff = Payoff(self._certified.price, self._certified.pays_as_a_rule)
         self._plan = Plan()
         self._next_trial = 0  # of the tiles that are shaded both ways
@@ -41,6 +46,12 @@ class Auto(ShadowMethod):
 
     def begin(self, frame: FrameView) -> None:
         settings = frame.settings
+        kind = settings.lamp_radius, settings.lamp_samples
+        if self._kind not in (None, kind):  # rays of other lamps cost, and save, something else
+            self._start()
+            if self._certified.store is not None:
+                self.payoff.made_ready()
+        self._kind = kind
         patience = settings.certificate_seconds if settings.patient else 0.0
         plan = self.payoff.plan(len(frame.tiles), patience)
         counts_all = settings.verify or settings.record_work  # then no tile may be shaded twice

@@ -204,3 +204,27 @@ def primitives_met(o, number, beam, most, room, counts):
                 if count > most:
                     return np.int64(-1)
     return count
+
+
+@inlined
+def passes_by(beam, box):
+    """Whether a beam misses a box (6,) float32, made larger by more than roundings, which is empty where its lower
+    corner is far above the upper one."""
+    missed, b = False, beam.box
+    rx, ry, rz = (
+        AROUND * (abs(box[0]) + abs(box[3]) + abs(b[0]) + abs(b[3])),
+        AROUND * (abs(box[1]) + abs(box[4]) + abs(b[1]) + abs(b[4])),
+        AROUND * (abs(box[2]) + abs(box[5]) + abs(b[2]) + abs(b[5])),
+    )
+    low, high = (box[0] - rx, box[1] - ry, box[2] - rz), (box[3] + rx, box[4] + ry, box[5] + rz)
+    for axis in range(3):
+        missed |= low[axis] > b[3 + axis] or high[axis] < b[axis]
+    for k in range(SIDES + 1):
+        n = beam.planes[k, 0], beam.planes[k, 1], beam.planes[k, 2]
+        nearest = (
+            (low[0] if n[0] > ZERO else high[0]),
+            (low[1] if n[1] > ZERO else high[1]),
+            (low[2] if n[2] > ZERO else high[2]),
+        )
+        missed |= dot(n, nearest) > beam.planes[k, 3]
+    return missed

@@ -8,6 +8,8 @@ within its ball.  Points of which that cannot tell are asked about one after the
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
 from tracer.culling.certified.error_bounds import (
@@ -75,6 +77,16 @@ _INSIDE, _LAMP, _HALF = np.float32(INSIDE), np.float32(LAMP), np.float32(0.5)
 _WIDE, _ROUNDING = np.float32(2 * REPORTED), np.float32(1e-6)
 
 
+class Lamp(NamedTuple):
+    """A lamp as kernels know it: its number; a ball of a radius around light (3,); and how many vectors of sixteen its
+    samples make."""
+
+    number: int
+    light: Any
+    radius: Any
+    groups: int
+
+
 @subkernel
 def put_samples(samples, first, count, light, room):
     """Put `count` of a lamp's samples (any, 3) float32, from the first on, to the address `room`, as offsets from light
@@ -90,11 +102,11 @@ def put_samples(samples, first, count, light, room):
 
 
 @subkernel
-def prepare(o, number, light, radius, numbers, made):
-    """Prepare sixteen primitives, whose numbers are at an address, for lamp `number`, a ball of a radius around light
-    (3,) float32: at the address `made`, PREPARED bytes.  o are the `Occluders`."""
-    row = rows_at(o.rows, numbers)
-    t = seen_from(light, radius, row)
+def prepare(o, lamp, numbers, made):
+    """Prepare sixteen primitives, whose numbers are at an address, for a `Lamp`: at the address `made`, PREPARED bytes.
+    o are the `Occluders`."""
+    row, radius = rows_at(o.rows, numbers), lamp.radius
+    t = seen_from(lamp.light, radius, row)
     store_three(made + 64 * CORNER, 64, t.corner)
     store_three(made + 64 * FIRST, 64, t.e1)
     store_three(made + 64 * SECOND, 64, t.e2)
@@ -120,7 +132,7 @@ def prepare(o, number, light, radius, numbers, made):
     store(made + 64 * UNSURE, t.unsure)
     store(made + 64 * SURE, sure_hit_length(o.farthest, numbers))
     store(made + 64 * FIRM, select(t.firm, ONE, select(t.sane, ZERO, -ONE)))
-    store(made + 64 * RADIUS, gather_f32x16(address_of(o.error_radii[number]), load_i32x16(numbers)))
+    store(made + 64 * RADIUS, gather_f32x16(address_of(o.error_radii[lamp.number]), load_i32x16(numbers)))
 
     # The box in which hits are reported, with room for rounding.
     box, room = row[BOX:ROW], _WIDE * t.away

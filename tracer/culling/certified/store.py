@@ -36,7 +36,7 @@ from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.certified.gather_requests import RequestPoints, gather_tasks
 from tracer.culling.certified.invalidate import all_marked, copy_kept, invalidate_certificates
 from tracer.culling.certified.journal import Journal
-from tracer.culling.certified.occluders import Occluders
+from tracer.culling.certified.occluders import FAR, Occluders
 from tracer.culling.certified.quadtree import part_of
 from tracer.culling.certified.requests import Requests
 from tracer.culling.certified.shaft import SceneScale
@@ -59,6 +59,7 @@ STATES = ("none", "full", "lit", "candidates")
 BATCH = 4096  # tasks of one call of `certify`, at most
 SHARES, CHUNK = 4, (32, 256)  # of a batch that each thread takes, one at a time; least and most tasks of one
 FEW_TILES = 4  # of a picture: with so many every vector of points makes requests, with twice as many every other
+NOTHING_MOVES = np.array([FAR, FAR, FAR, -FAR, -FAR, -FAR], np.float32)  # instead of a box around what does
 NOT_RECORDED = np.empty(0, np.int32)  # where nobody wants to know which cells primary hits see
 
 
@@ -314,10 +315,16 @@ class CertificateStore:
         )
 
     def _lamps(self) -> LampsView:
-        room = self.scale.max_height * OUTWARDS
-        within = (self._static.bounds.reshape(-1) + room).astype(np.float32)
-        known = self.stationary & (self.radii > 0.0) & (self._samples >= self.cost_model.least_samples)
-        return LampsView(known, self.lights, self.radii, self._samples, within)
+        room, placed = self.scale.max_height * OUTWARDS, self._world.placed
+        return LampsView(
+            known=self.stationary & (self.radii > 0.0) & (self._samples >= self.cost_model.least_samples),
+            places=self.lights,
+            radii=self.radii,
+            samples=self._samples,
+            within=(self._static.bounds.reshape(-1) + room).astype(np.float32),
+            moving=placed.moving_box if placed.has_dynamic else NOTHING_MOVES,
+            ray_cost=self.cost_model.ray_cost,
+        )
 
     def at_pixels(self, cell: NDArray[np.int32]) -> NDArray[np.unsignedinteger]:
         """The words of cells, of any shape."""
