@@ -88,7 +88,7 @@ EDITS = (
             ("certified/certify", 4, "TESTS", "n"),
             ("certified/beams", 16, "STEPS", "1"),
             ("certified/beams", 12, "STEPS", "1"),
-            ("certified/lamp_answers", 12, "TESTS", "ones(live)"),
+            ("certified/lamp_answers", 4, "TESTS", "ones(open_)"),
             ("regions/certify", 16, "STEPS", "1"),
             ("regions/certify", 16, "TESTS", "1"),
             ("regions/certify", 8, "TESTS", "1"),
