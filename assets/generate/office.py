@@ -344,6 +344,6 @@ def text(folder: str) -> str:
     """The root file; everything else is included from `folder`."""
     comments = (
         "An office of 64 rooms under 256 ceiling panels.  Written by assets/make_scenes.py.",
-        "Each panel shines from 16 points, 4,096 in all; a walk of 400 frames past open and shut doors.",
+        "Each panel shines from 16 points, 4,096 in all; a walk of 420 frames past open and shut doors.",
     )
     return root_file(comments, (0.0, 0.0, 0.0), 58.0, f"{folder}/office.aff", Flight(WAYPOINTS), FRAMES)

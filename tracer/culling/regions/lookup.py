@@ -61,7 +61,7 @@ def look(regions, points, count, looks):
         x, y, z = load_three(points.lifted, v)
         there = mask16(lanes_below(count, v))
         number = regions_of(grid, x, y, z, there)
-        found = gather_i32x16(certified, maximum_i32(number))
+        found = gather_i32x16(certified, or_first(number))
         found = select(number > np.int32(NOWHERE), found, i32x16(0))
         store(numbers, number)
         store(lists, found)
@@ -87,8 +87,8 @@ def look(regions, points, count, looks):
 
 
 @inlined
-def maximum_i32(number):
-    """Numbers, 0 instead of those that are negative."""
+def or_first(number):
+    """Numbers of regions, that of the first instead of none."""
     return select(number > np.int32(0), number, i32x16(0))
 
 

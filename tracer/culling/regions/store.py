@@ -182,7 +182,7 @@ class RegionStore:
         return RegionView(self.grid, self._starts[0], self._lights[0], self._boxes, self._moved)
 
     def hidden_by(self, point: NDArray[np.float32], light: int) -> int:
-        """The number of a triangle of the blocker that hides a light from the region of a point (3,); -1 for none."""
+        """The number of the triangle that hides a light from the region of a point (3,); -1 for none."""
         number = region_at(self.grid, point)
         if number < 0 or self._moved[light]:
             return -1
