@@ -9,7 +9,19 @@ from pathlib import Path
 from typing import NoReturn
 
 from viewer.cli import examples
-from viewer.cli.argument_types import count, factors, lamp_samples, method, number, pixel, several, size, view
+from viewer.cli.argument_types import (
+    count,
+    curve,
+    factors,
+    lamp_samples,
+    method,
+    number,
+    pixel,
+    several,
+    size,
+    span,
+    view,
+)
 from viewer.util import resources
 from viewer.util.messages import ERROR, say
 from viewer.util.version import program_version
@@ -80,6 +92,7 @@ def render() -> Parser:
         "saved:share (default: color)",
     )
     add("--legend", action="store_true", help="draw the view's legend into the picture")
+    _add_display(parser)
     add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
     add("--camera", metavar="JSON", help=f"another camera: {_CAMERA}")
     add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
@@ -169,6 +182,21 @@ def _add_scene(parser: Parser, more: str = "") -> None:
     add("scene", nargs="?", metavar="SCENE", help=_scene_help() + more)
     help_ = "another folder than its own that the scene may read files from; may be given several times"
     add("--folder", type=Path, action="append", default=[], metavar="DIR", help=help_)
+
+
+def _add_display(parser: Parser) -> None:
+    """How colours and numbers that were found become those of a picture."""
+    from viewer.state.tone import MOST_EXPOSURE, WHITES, Curve
+
+    add, stops = parser.add_argument, number(-MOST_EXPOSURE, MOST_EXPOSURE)
+    add("--exposure", type=stops, default=0.0, metavar="STOPS", help="brighter by so many stops (default: 0)")
+    help_ = "the colour, once exposed, that becomes white (default: 1)"
+    add("--white", type=number(*WHITES), default=1.0, metavar="W", help=help_)
+    help_ = f"the tone curve: {', '.join(Curve)} (default: none)"
+    add("--tone", type=curve, default=Curve.NONE, metavar="CURVE", help=help_)
+    add("--mark-clipped", action="store_true", help="stripes over pixels that are too bright, or black")
+    help_ = "what has the first and the last colour in the views depth, saved, cost and lights (default: as they come)"
+    add("--range", type=span, metavar="LOW:HIGH", help=help_)
 
 
 def _add_moment(parser: Parser) -> None:

@@ -31,6 +31,7 @@ from viewer.output.pictures import lights_in_words, picture
 from viewer.state.methods import CERTIFIED, default_for
 from viewer.state.readings import MOST_RECORDED, can_record_lights, records_lights
 from viewer.state.session import Session
+from viewer.state.tone import Tone
 from viewer.state.views import View
 from viewer.util.files import check_writable, write_whole
 from viewer.util.messages import printable, say
@@ -55,6 +56,7 @@ def render(path: Path, options: Namespace) -> None:
     modes = view.of_modes or options.buffers is not None
     settings = replace(tracing_settings(options), method=options.method or default_for(view), modes=modes)
     _check_outputs(options.output, options.buffers)
+    _check_display(options)
     method = Method.parse(settings.method)
     if view is View.CERTIFICATE and (method.adaptive or not method.has_certificates):
         may = "may make" if method.adaptive else "makes"
@@ -141,6 +143,22 @@ def _check_outputs(output: Path | None, npz: Path | None) -> None:
             check_writable(path)
 
 
+def _tone(options: Namespace) -> Tone:
+    return Tone(options.exposure, options.white, options.tone)
+
+
+def _check_display(options: Namespace) -> None:
+    """Raises ValueError for options that the view has no use for."""
+    view, shares = options.view.view, options.view.shares
+    if not view.shows_picture and not _tone(options).neutral:
+        raise ValueError(f"--exposure, --white and --tone are for pictures: --view {view.value} shows none")
+    if options.mark_clipped and view not in (View.COLOR, View.WIPE):
+        raise ValueError(f"--mark-clipped is for the views color and wipe, not {view.value}")
+    if options.range is not None and (not view.has_range or shares):
+        names = ", ".join(one.value for one in View if one.has_range)
+        raise ValueError(f"--range is for views of numbers: {names}{' as counts' if shares else ''}")
+
+
 def _times_before(scene: Scene, time: float, count: int) -> list[float]:
     """Times of the frames that lead up to `time`, one frame's duration apart, none before the animation starts.
 
@@ -173,17 +191,23 @@ def _render_before(renderer: Renderer, time: float, options: Namespace, work: Wo
 def _write_picture(path: Path, scene: Scene, frame: Frame, options: Namespace) -> None:
     """The frame in the view asked for; a PNG remembers, as the window's captures do, how it was made."""
     view, light, wipe, shares = options.view
-    pixels = picture(frame, view, light, marked=not options.no_marks, wipe=wipe, shares=shares)
+    tone, clipping, span = _tone(options), options.mark_clipped, options.range
+    drawn = {"wipe": wipe, "shares": shares, "tone": tone, "clipping": clipping, "span": span}
+    pixels = picture(frame, view, light, marked=not options.no_marks, **drawn)
     if options.legend:
         name = scene.lights[light].name if view.of_light else ""
-        legend = legend_of(frame, view, Chosen(light, name, not options.no_marks, shares))
+        legend = legend_of(frame, view, Chosen(light, name, not options.no_marks, shares, span, tone, clipping))
         described = with_legend(pixels, legend, LEGEND_PLACE) if legend is not None else None
         if described is None:
             say(f"no legend: {'the picture is too small for it' if legend else 'the traced picture needs none'}")
         pixels = pixels if described is None else described
     image = Image.fromarray(pixels)
     settings = replace(frame.settings, verify=options.verify)  # what was chosen; a view verifies by itself
-    session = Session(scene, frame.time, options.camera, settings=settings, view=view, light=light, wipe=wipe)
+    session = Session(
+        scene, frame.time, options.camera, settings=settings, view=view, light=light, wipe=wipe, tone=tone
+    )
+    if span is not None:
+        session.spans[view] = span
     notes = PngImagePlugin.PngInfo()
     size = (frame.width, frame.height)
     text = capture.metadata(session.snapshot(), session.frame, size, frame.statistics.to_dict())

@@ -12,10 +12,14 @@ from tracer.scene.model import Camera
 from viewer.cli.argument_types import ChosenView
 from viewer.output import capture
 from viewer.services.scene_files import find_scene, is_capture
+from viewer.state.tone import Curve
 
 _A_CAMERA = '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
 _LARGEST_CAMERA = 1 << 20  # bytes
 _SETTINGS = ("method", "samples", "depth", "symmetric", "zoom_factor", "verify", "lamp_radius", "lamp_samples")
+
+
+_TONE = ("exposure", "white", "tone")
 
 
 def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
@@ -32,12 +36,21 @@ def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
     if not snapshot.follow:
         kept["camera"] = snapshot.camera
     kept["view"] = ChosenView(snapshot.view, snapshot.light, snapshot.wipe)
+    kept["exposure"], kept["white"], kept["tone"] = snapshot.tone.exposure, snapshot.tone.white, snapshot.tone.curve
+    if snapshot.span is not None:
+        kept["range"] = snapshot.span
     kept["moment"] = snapshot.time
     return scene, kept
 
 
 def settle(options: Namespace, kept: dict[str, Any], picture: Path) -> None:
-    """What options mean together: a frame or a time that was given wins over the picture's, as does a file's name."""
+    """What options mean together: a frame or a time that was given wins over the picture's, as does a file's name, and
+    in another view its tone and its range go."""
+    view = options.view.view
+    if not view.shows_picture and all(getattr(options, name) == kept[name] for name in _TONE):
+        options.exposure, options.white, options.tone = 0.0, 1.0, Curve.NONE
+    if options.range == kept.get("range") and view is not kept["view"].view:
+        options.range = None
     if options.frame is None and options.time is None:
         options.time = kept["moment"]
     if options.output is None and options.buffers is None:

@@ -16,6 +16,7 @@ from typing import Any
 from tracer.renderer import Settings
 from tracer.scene.model import Camera, Scene
 from viewer.state.methods import DEFAULT
+from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
 
 # Settings that say how a frame was asked for, not what the user chose; those of this machine and of the open scene.
@@ -38,10 +39,12 @@ class Snapshot:
     view: View
     light: int
     wipe: float = 0.5
+    tone: Tone = NEUTRAL
+    span: tuple[float, float] | None = None
 
     def to_json(self) -> dict[str, Any]:
         data = asdict(self)
-        return data | {"camera": self.camera.to_json(), "view": self.view.value}
+        return data | {"camera": self.camera.to_json(), "view": self.view.value, "tone": self.tone.to_json()}
 
     @staticmethod
     def from_json(data: Any) -> Snapshot:
@@ -61,11 +64,23 @@ class Snapshot:
                 view=View(data.get("view", View.COLOR)),
                 light=max(0, int(data.get("light", 0))),
                 wipe=wipe if 0.0 <= wipe <= 1.0 else 0.5,
+                tone=Tone.from_json(data.get("tone", {})),
+                span=_span(data.get("span")),
             )
         except KeyError as error:
             raise ValueError(f"its saved state lacks {error}") from None
         except TypeError:
             raise ValueError("its saved state is damaged") from None
+
+
+def _span(data: Any) -> tuple[float, float] | None:
+    """A range of the colour map, if it is one."""
+    if data is None:
+        return None
+    low, high = (float(number) for number in data)
+    if not (math.isfinite(low) and math.isfinite(high) and low < high):
+        raise ValueError("its range is none")
+    return low, high
 
 
 def settings_to_json(settings: Settings) -> dict[str, Any]:
@@ -89,7 +104,9 @@ def settings_from_json(data: Any) -> dict[str, Any]:
 
 @dataclass
 class Session:
-    """The state behind the window; plain data and what it implies, no threads and no widgets."""
+    """The state behind the window; plain data and what it implies, no threads and no widgets.
+
+    `spans` are the ranges that were chosen for views of numbers; `clipping` marks what the screen cuts off."""
 
     scene: Scene | None = None
     time: float = 0.0
@@ -99,6 +116,9 @@ class Session:
     view: View = View.COLOR
     light: int = 0
     wipe: float = 0.5
+    tone: Tone = NEUTRAL
+    clipping: bool = False
+    spans: dict[View, tuple[float, float]] = field(default_factory=dict)
     selected: tuple[float, float] | None = None
 
     @property
@@ -183,6 +203,8 @@ class Session:
             view=self.view,
             light=self.light,
             wipe=self.wipe,
+            tone=self.tone,
+            span=self.spans.get(self.view),
         )
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -196,4 +218,7 @@ class Session:
         self.settings = replace(self.settings, **{k: v for k, v in snapshot.settings.items() if k not in _NOT_RESTORED})
         self.view = snapshot.view
         self.light = min(snapshot.light, max(len(self.scene.lights) - 1, 0))
-        self.wipe = snapshot.wipe
+        self.wipe, self.tone = snapshot.wipe, snapshot.tone
+        self.spans.pop(snapshot.view, None)
+        if snapshot.span is not None:
+            self.spans[snapshot.view] = snapshot.span

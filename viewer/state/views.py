@@ -70,6 +70,16 @@ class View(StrEnum):
         return self in (View.SHADOW, View.CERTIFICATE, View.PENUMBRA)
 
     @property
+    def has_range(self) -> bool:
+        """Whether it shows a number on the colour map, whose range can be chosen."""
+        return self in (View.DEPTH, View.SAVED, View.COST, View.LIGHTS)
+
+    @property
+    def shows_picture(self) -> bool:
+        """Whether it shows traced colours, by the tone that is chosen."""
+        return self in (View.COLOR, View.DIFFERENCE, View.WIPE)
+
+    @property
     def of_modes(self) -> bool:
         """Whether it shows modes, of frames that keep them alone."""
         return self in (View.OCCLUSION, View.SHADOW, View.PIXEL_COUNT)
@@ -232,6 +242,11 @@ BENEATH = 0.3
 """Brightness of the traced picture beneath the difference."""
 
 WIPE_LINE = _hex("F2F4F7")
+
+TOO_BRIGHT, BLACK = _hex("FF3B30"), _hex("2F7BFF")
+"""Stripes over pixels of which the screen cuts something off, where these are marked."""
+CLIP_STRIPE = 4
+"""Pixels across which such a stripe goes, and the gap beside it."""
 
 # Viridis (even to the eye, in greys and to the colour-blind) as a polynomial of degree 6, constant term first.
 _VIRIDIS = np.array(

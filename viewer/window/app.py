@@ -168,6 +168,9 @@ class App:
             line=not c.tracing.becoming_finer,
             shares=p.work_shares,
             beneath=p.beneath,
+            tone=c.session.tone,
+            clipping=c.session.clipping,
+            span=c.session.spans.get(c.tracing.drawn_view),
         )
 
     def _capture_picture(self) -> None:

@@ -19,16 +19,19 @@ from numpy.typing import NDArray
 from tracer.culling.modes import OcclusionMode, has_shadow_mode
 from tracer.shading.screen import to_screen
 from viewer.state.marks import wipe_column
+from viewer.state.tone import NEUTRAL, Curve, Tone
 from viewer.state.views import (
     ARRIVAL_COLORS,
     BACKGROUND,
     BENEATH,
+    BLACK,
     CELL_LINE,
     CERTIFICATE_COLORS,
     GREY,
     OCCLUSION_COLORS,
     RING_DIMMING,
     SHADOW_COLORS,
+    TOO_BRIGHT,
     WIPE_LINE,
     WRONG,
     View,
@@ -49,7 +52,8 @@ class Look:
     `marked` draws rings around wrong pixels, sized for pixels that are shown `magnified` times,
     `wipe` is the place of the line, 0 to 1 from the left, and `line` whether it is drawn.
     `shares` makes shares of the counts in maps of work; `beneath` is the brightness of the picture
-    beneath the difference."""
+    beneath the difference.  Pictures have a `tone`, and stripes where they are cut off if that is to be seen
+    (`clipping`); maps of numbers go over `span`, or, where that is None, over what the frame has."""
 
     view: View = View.COLOR
     light: int = 0
@@ -63,12 +67,16 @@ class Look:
     line: bool = True
     shares: bool = False
     beneath: float = BENEATH
+    tone: Tone = NEUTRAL
+    clipping: bool = False
+    span: tuple[float, float] | None = None
 
     @property
     def plain(self) -> bool:
         """Whether the picture is shown as it was traced: then it is brought to the target without a pass over it, which
         takes long where a processor draws."""
-        return self.view is View.COLOR and not self.outlines and self.selected < 0
+        as_traced = self.tone.neutral and not self.clipping
+        return self.view is View.COLOR and as_traced and not self.outlines and self.selected < 0
 
 
 class Display:
@@ -206,8 +214,12 @@ class Display:
             "outlines": look.outlines,
             "selected": look.selected,
             "light": look.light if has_shadow_mode(words, look.light) else -1,
-            "range": ranges.depth if view is View.DEPTH else (0.0, 1.0),
-            "top": ranges.top(view),
+            "range": look.span or ranges.span(view),
+            "curve": list(Curve).index(look.tone.curve),
+            "gain": look.tone.gain,
+            "white": look.tone.white,
+            "clipping": look.clipping,
+            "clip_colors": [TOO_BRIGHT, BLACK],
             "shares": look.shares,
             "beneath": look.beneath,
             "cell_line": CELL_LINE,

@@ -24,7 +24,9 @@ def of_picture(ui: Ui) -> Legend | None:
         return None
     light = c.session.light
     name = scene.lights[light].name if light < len(scene.lights) else ""
-    chosen = Chosen(light, name, c.preferences.mark_wrong, c.preferences.work_shares)
+    s, p = c.session, c.preferences
+    span = s.spans.get(view)
+    chosen = Chosen(light, name, p.mark_wrong, p.work_shares, span, s.tone, s.clipping)
     found: Legend | None = ui.cached("legend", frame, (view, chosen), lambda: legend_of(frame, view, chosen))
     return found
 
