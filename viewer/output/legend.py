@@ -65,12 +65,14 @@ class Entry:
 
 @dataclass(frozen=True)
 class Scale:
-    """The colour map as a bar, and what its ends and its middle stand for; `reverse` begins with its last colour."""
+    """The colour map as a bar, and what its ends and its middle stand for; `reverse` begins with its last colour, and
+    `signed` is that of a signed difference."""
 
     low: str
     high: str
     middle: str = ""
     reverse: bool = False
+    signed: bool = False
 
 
 @dataclass(frozen=True)
@@ -269,7 +271,7 @@ def _lights(frame: Frame, view: View, chosen: Chosen) -> Legend:
     middle = count(found.most // 2) if found.most % 2 == 0 else ""
     scale = Scale("0", count(found.most), middle)
     if chosen.span is not None:
-        scale = Scale(*(f"{number:.4g}" for number in chosen.span))
+        scale = Scale(f"{chosen.span[0]:.4g}", f"{chosen.span[1]:.4g}")
     return Legend("Lights that each pixel has to look at", (), entries, scale, facts)
 
 

@@ -17,6 +17,7 @@ from tracer.scene.model import Scene
 from tracer.zoom import Step
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
+from viewer.services.comparing import Comparing
 from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
 from viewer.services.questions import Questions
@@ -54,6 +55,7 @@ class Controller:
         self.tracing = Tracing(session, preferences, renderer, self.runs.refuses, awaken)
         self.settings = SettingsController(session, preferences, notices, self.runs.refuses)
         self.motion = Motion(session, preferences, notices, self.runs.refuses)
+        self.comparing = Comparing(session, self.tracing, self.settings, notices)
         self.bookmarks = Bookmarks(session, preferences, self.settings, notices)
         self.inspector = ShadowInspector(self.selection, renderer)
         self.recorder = LightRecorder(session, renderer, self.tracing)
@@ -88,6 +90,7 @@ class Controller:
         self.captures.follow()
         self.questions.follow()
         frame = self._take_frame()
+        self.comparing.follow()
         traced, motion, run = self.traced, self.motion, self.runs.current
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
         self.tracing.ask(Conditions(size, motion.under_way, run, self.loader.ready, self.selection.hovered))

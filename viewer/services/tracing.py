@@ -19,6 +19,7 @@ from viewer.services.refinement import Refinement
 from viewer.services.render_thread import Pictures, RenderRequest, Traced
 from viewer.services.requests import as_asked, fulfils, lacks, settings_for
 from viewer.services.runs import Run
+from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.preferences import Preferences
 from viewer.state.readings import can_draw, records_lights
 from viewer.state.session import Session
@@ -50,7 +51,9 @@ class Tracing:
         wake: Callable[[], None] = lambda: None,
         governor: Governor | None = None,
     ) -> None:
-        """Nothing is traced again on the user's behalf while `locked()`, which says so itself."""
+        """Nothing is traced again on the user's behalf while `locked()`, which says so itself.  `second` is the method
+        that traces each frame once more; none where it is empty."""
+        self.second = ""
         self._session, self._preferences, self._renderer = session, preferences, renderer
         self._locked, self._wake = locked, wake
         self.now = Conditions()
@@ -161,7 +164,7 @@ class Tracing:
             settings, samples = replace(settings, lamp_samples=lamp_samples), 1
         seconds = refinement.SECONDS if self._refines else 0.0
         wanted = RenderRequest(
-            session.time, session.camera, settings, plan.divisor, self._serial, seconds, samples,
+            session.time, session.camera, settings, plan.divisor, self._serial, seconds, samples, self._second,
             plan.parts, moving or session.playing, focus=now.focus,
         )  # fmt: skip
         if self._answered(wanted):
@@ -198,7 +201,14 @@ class Tracing:
 
     @property
     def _frame_seconds(self) -> float:
-        return 1.0 / self._preferences.target_fps
+        """That a picture may take until some of it is shown: half of a frame's where each is traced twice."""
+        return (0.5 if self.second else 1.0) / self._preferences.target_fps
+
+    @property
+    def _second(self) -> str:
+        """The second method, or the one without culling until what makes certificates has been compiled."""
+        waits = bool(self.second) and not self.now.ready and Method.parse(self.second).has_certificates
+        return with_base(self.second, NO_CULLING) if waits else self.second
 
     # --- samples of lamps ------------------------------------------------------------------------
 
@@ -216,6 +226,8 @@ class Tracing:
     def _shows_session(self, asked: RenderRequest) -> bool:
         """Whether a request is for what the session looks at now, however finely."""
         session = self._session
+        if asked.second != self._second:
+            return False
         settings = as_asked(self.settings, asked.settings)
         return (session.time, session.camera, settings) == (asked.time, asked.camera, asked.settings)
 

@@ -104,7 +104,7 @@ def toned(color: NDArray[np.float32], tone: Tone) -> NDArray[np.float32]:
         return color
     x, white = np.maximum(color, np.float32(0.0)) * np.float32(tone.gain), np.float32(tone.white)
     if tone.curve is Curve.REINHARD:
-        return x * (1 + x / (white * white)) / (1 + x)
+        return (x * (1 + x / (white * white)) / (1 + x)).astype(np.float32, copy=False)
     if tone.curve is Curve.FILMIC:
         return (_hable(x) / _hable(white)).astype(np.float32)
     if tone.curve is Curve.SRGB:
@@ -134,7 +134,7 @@ class Clipped:
 def clipped(color: NDArray[np.float32], tone: Tone) -> Clipped:
     """What of colours (h, w, 3) is cut off by the screen."""
     shown = toned(color, tone)
-    return Clipped((shown > 1.0).any(axis=-1), (shown <= 0.0).all(axis=-1))
+    return Clipped(np.any(shown > 1.0, axis=-1), np.all(shown <= 0.0, axis=-1))
 
 
 def brighter(tone: Tone, stops: float) -> Tone:

@@ -24,7 +24,8 @@ from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, menus, palette, style
+from viewer.window import commands, comparing, menus, palette, style
+from viewer.window.compared import Compared
 from viewer.window.display import Display, Look
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
@@ -110,6 +111,7 @@ class App:
         overlay("The strip of folded panels", lambda: strip.show(self.ui), lambda: setattr(self.ui.fold, "drawer", ""))
         step("Reading the keys", lambda: menus.handle_keys(self.ui))
         step("Flying", lambda: picture.fly(self.ui))
+        step("Comparing", lambda: comparing.follow_key(self.ui))
         overlay("The progress of loading", lambda: loading.show(self.ui))
         dialogs.show(self.ui)
         overlay("The tour", lambda: tour.show(self.ui), self.ui.tour.end)
@@ -146,7 +148,9 @@ class App:
         if display is None:
             return
         display.show(c.frame)
-        display.draw(self._look(c.selection.picked.primitive if c.selection.picked is not None else -1))
+        look = self._look(c.selection.picked.primitive if c.selection.picked is not None else -1)
+        display.draw(look)
+        comparing.draw(self.ui, look)
 
     def _bring_shots(self) -> None:
         if self.ui.shots is not None:
@@ -161,7 +165,7 @@ class App:
             shading=p.shading,
             outlines=p.outlines,
             selected=selected,
-            smooth=p.smooth_upscaling,
+            smooth=p.smooth_upscaling and self.ui.zoom.fits,
             marked=p.mark_wrong,
             magnified=c.tracing.magnified,
             wipe=c.session.wipe,
@@ -170,7 +174,7 @@ class App:
             beneath=p.beneath,
             tone=c.session.tone,
             clipping=c.session.clipping,
-            span=c.session.spans.get(c.tracing.drawn_view),
+            span=c.comparing.span(c.tracing.drawn_view),
         )
 
     def _capture_picture(self) -> None:
@@ -182,7 +186,8 @@ class App:
             look = self._look(selected=-1)  # the mark is for the user, not for the picture
             self.ui.display.draw(look)
             described = legend.of_picture(self.ui) if c.preferences.legend_in_pictures else None
-            c.captures.capture(c.frame, self.ui.display.read() if self.ui.display.drawn(look) else None, described)
+            pixels = self.ui.display.read() if self.ui.display.drawn(look) else None
+            c.captures.capture(c.frame, None if pixels is None else comparing.composed(self.ui, pixels), described)
         if self.ui.capture_wanted is CaptureKind.WINDOW:
             self.ui.capture_wanted = None
             self._capture_this_frame = True  # when it is drawn, from here on, with all that was asked for before
@@ -195,7 +200,8 @@ class App:
 
     def _stay_awake(self) -> None:
         """Doze but when something moves: whatever comes from a thread wakes the window, and it needs the processor."""
-        idling, lively = self.params.fps_idling, self.controller.motion.lively
+        idling = self.params.fps_idling
+        lively = self.controller.motion.lively or self.controller.comparing.blinks()
         by_processor = lively and self.drawn_by_processor
         idling.enable_idling = by_processor or not lively
         idling.fps_idle = SLOWEST_BY_PROCESSOR if by_processor else IDLE
@@ -243,6 +249,7 @@ class App:
         """The window and its GL context exist."""
         self.ui.display = Display()
         self.ui.shots = Shots(self.ui.display.context)
+        self.ui.compared = Compared(self.ui.display.passes)
         self.ui.renderer_name = self.ui.display.context.info["GL_RENDERER"]
         self.drawn_by_processor = any(name in self.ui.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
         if self.drawn_by_processor:
@@ -272,6 +279,9 @@ class App:
     def _release(self) -> None:
         self.ui.full_screen.end()
         self.controller.wake = lambda: None  # threads may still be at work when the window is gone
+        if self.ui.compared is not None:
+            self.ui.compared.release()
+            self.ui.compared = None
         if self.ui.display is not None:
             self.ui.display.release()
             self.ui.display = None

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
-MENUS = ("File", "View", "Camera", "Time", "Culling", "Run", "Help")
+MENUS = ("File", "View", "Compare", "Camera", "Time", "Culling", "Run", "Help")
 
 HELD_KEYS = (
     ("W  A  S  D", "fly forward, left, back, right"),
@@ -20,7 +20,11 @@ HELD_KEYS = (
     ("Left or right drag", "look around (fly); orbit around what was clicked, or pan (orbit)"),
     ("Middle drag", "pan"),
     ("Wheel", "set the speed (fly); go nearer or farther (orbit)"),
-    ("Drag the wipe's line", "compare the picture with the right one"),
+    ("Ctrl+wheel, Ctrl+drag", "zoom into the picture itself around the pointer; move it"),
+    ("Shift+drag", "choose a region, whose values the panel Pixels counts"),
+    ("X", "show A while it is held, where pictures are compared"),
+    ("Right click", "a menu for the pixel"),
+    ("Drag the wipe's line", "compare the picture with the right one, or A with B"),
     ("Drag the legend", "put it elsewhere in the picture; it snaps to edges and corners"),
     ("Click", "inspect a pixel, and draw its shadow rays; click the background to let go"),
 )
@@ -57,6 +61,8 @@ _SPELLED = {
     "LeftArrow": "left_arrow",
     "KeypadAdd": "keypad_add",
     "KeypadSubtract": "keypad_subtract",
+    "RightBracket": "right_bracket",
+    "LeftBracket": "left_bracket",
 }
 
 
@@ -75,6 +81,13 @@ def chord(key: str) -> int:
 
 def key_label(key: str) -> str:
     """A key as the user reads it."""
-    for name, shown in (("RightArrow", "Right"), ("LeftArrow", "Left"), ("Equal", "+"), ("Minus", "-")):
+    for name, shown in (
+        ("RightArrow", "Right"),
+        ("LeftArrow", "Left"),
+        ("Equal", "+"),
+        ("Minus", "-"),
+        ("RightBracket", "]"),
+        ("LeftBracket", "["),
+    ):
         key = key.replace(name, shown)
     return key

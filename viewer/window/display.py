@@ -36,8 +36,8 @@ from viewer.state.views import (
     WRONG,
     View,
 )
-from viewer.util.resources import shader_source
 from viewer.window.frame_textures import NAMES, TABLE_WIDTH, DisplayError, FrameTextures
+from viewer.window.passes import Passes
 
 if TYPE_CHECKING:
     from tracer.renderer import Frame
@@ -82,12 +82,13 @@ class Look:
 class Display:
     """Textures of the newest frame and the target its view is drawn into; needs a current GL context."""
 
-    def __init__(self) -> None:
-        self.context = moderngl.create_context()
+    def __init__(self, passes: Passes | None = None) -> None:
+        """`passes` are those of another display, whose context this one shares."""
+        self.passes, self._shares_passes = passes or Passes(), passes is not None
+        self.context = self.passes.context
         self._buffers = FrameTextures(self.context)
         self._drawn: tuple[int, Look] | None = None
         self._failed: tuple[int, Look] | None = None
-        self._passes: dict[View, tuple[Any, Any]] = {}
         self._target: Any = None
 
     @property
@@ -147,12 +148,10 @@ class Display:
             raise DisplayError(f"the GPU could not draw this: {problem}")
 
     def _render_into(self, target: Any, look: Look) -> None:
-        program, triangle = self._pass(look.view)
+        program, triangle = self.passes.made(look.view.value, units=NAMES)
         self._set_uniforms(program, look)
         self._buffers.use(program, look.light, look.magnified)
-        target.use()
-        self.context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        triangle.render(moderngl.TRIANGLES, vertices=3)
+        self.passes.draw(triangle, target)
 
     def drawn(self, look: Look) -> bool:
         """Whether the target shows the frame in this look."""
@@ -174,27 +173,12 @@ class Display:
         return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 3)[::-1])
 
     def release(self) -> None:
-        """Free everything on the GPU."""
-        for program, triangle in self._passes.values():
-            triangle.release()
-            program.release()
+        """Free everything on the GPU, but what it shares with others."""
+        if not self._shares_passes:
+            self.passes.release()
         self._buffers.release()
         self._release_target()
-        self._passes.clear()
-
-    def _pass(self, view: View) -> tuple[Any, Any]:
-        """The compiled shader of a view, and the triangle it draws."""
-        if view not in self._passes:
-            version = "#version 330 core\n"
-            program = self.context.program(
-                vertex_shader=version + shader_source("fullscreen.vert"),
-                fragment_shader=version + shader_source("common.glsl") + shader_source(f"{view.value}.frag"),
-            )
-            for unit, name in enumerate(NAMES):
-                if name in program:
-                    program[name] = unit
-            self._passes[view] = (program, self.context.vertex_array(program, []))
-        return self._passes[view]
+        self._drawn = None
 
     def _set_uniforms(self, program: Any, look: Look) -> None:
         frame, view, ranges = self._buffers.frame, look.view, self._buffers.ranges

@@ -16,8 +16,11 @@ from viewer.output.legend import light_in_words
 from viewer.services.controller import Controller
 from viewer.services.file_browser import Browser
 from viewer.services.tour import Tour
+from viewer.state.pixels import Pixels, Point
 from viewer.state.preferences import default_screenshot_folder
+from viewer.state.zooming import FIT, Zoom
 from viewer.window.command import Command
+from viewer.window.compared import Compared
 from viewer.window.display import Display
 from viewer.window.full_screen import FullScreen
 from viewer.window.guard import Guard
@@ -52,7 +55,9 @@ class Ui:
     the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector; `light_filters` is
     what is typed above each list of lights; `screening` is the recorded picture that is shown in the picture's place;
     `legend_shown` says whether the picture shows its legend, `legend_held` where the pointer holds that; `tour_height`
-    is what the picture leaves free below it for the tour, `tour_place` where that is: left, top and width."""
+    is what the picture leaves free below it for the tour, `tour_place` where that is: left, top and width.
+    `zoom` is how closely the picture itself is looked at; `gesture` is what a drag does that moves no camera, from
+    `gesture_at` on, a point of the picture; `menu_at` is the point that the menu over the picture is about."""
 
     controller: Controller
     display: Display | None = None
@@ -86,6 +91,12 @@ class Ui:
     light_filters: dict[str, str] = field(default_factory=dict)
     shots: Shots | None = None
     screening: Screening | None = None
+    compared: Compared | None = None
+    zoom: Zoom = FIT
+    pixels: Pixels = field(default_factory=Pixels)
+    gesture: str = ""
+    gesture_at: Point = (0.0, 0.0)
+    menu_at: Point = (0.0, 0.0)
     legend_shown: bool = False
     legend_held: tuple[float, float] = (0.0, 0.0)
     tour_height: float = 0.0

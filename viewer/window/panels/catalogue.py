@@ -9,11 +9,13 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.window.panels import (
     camera,
+    compare,
     culling,
     experiment,
     inspector,
     log,
     picture,
+    pixels,
     plots,
     rendering,
     saving,
@@ -51,6 +53,8 @@ PANELS = {
         Panel("Culling", "RightMiddle", icons.ICON_FA_SCISSORS, culling.show),
         Panel("Inspector", "RightBottom", icons.ICON_FA_MAGNIFYING_GLASS, inspector.show),
         Panel("Plots", "Bottom", icons.ICON_FA_CHART_LINE, plots.show, wide=True),
+        Panel("Compare", "Bottom", icons.ICON_FA_CODE_COMPARE, compare.show, wide=True),
+        Panel("Pixels", "Bottom", icons.ICON_FA_BORDER_ALL, pixels.show, wide=True),
         Panel("Experiment", "Bottom", icons.ICON_FA_FLASK, experiment.show, wide=True),
         Panel("Zoom test", "Bottom", icons.ICON_FA_MAGNIFYING_GLASS_PLUS, zoom.show, wide=True),
         Panel("Log", "Bottom", icons.ICON_FA_LIST, log.show, wide=True),

@@ -5,7 +5,9 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.method import Method
+from viewer.state.comparison import Way
 from viewer.state.views import View
+from viewer.window import comparing
 from viewer.window.ui import Ui
 from viewer.window.widgets import em
 
@@ -20,7 +22,7 @@ _DARK, _LIGHT, _HELD = (
 def handle(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
     """Let the pointer drag the line across the picture, which is ImGui's last item; whether the line holds it."""
     c = ui.controller
-    if c.tracing.drawn_view is not View.WIPE:
+    if not _there(ui):
         ui.wiping = False
         return False
     if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left) and _near(ui, corner, size):
@@ -34,6 +36,23 @@ def handle(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
     return held
 
 
+def _there(ui: Ui) -> bool:
+    """Whether a line is seen: between the culled picture and the right one, or between A and B."""
+    seen = comparing.shown(ui)
+    if seen is not None:
+        return seen[2] is Way.WIPE and not comparing.shows_a(ui)
+    return ui.controller.tracing.drawn_view is View.WIPE
+
+
+def _names(ui: Ui) -> tuple[str, str]:
+    """Of what lies left of the line, and right of it."""
+    c, seen = ui.controller, comparing.shown(ui)
+    if seen is not None:
+        return c.comparing.names(seen[0], seen[1])
+    method = c.frame.settings.method if c.frame is not None else ""
+    return method if Method.parse(method).culls else "no culling", "reference"
+
+
 def _near(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
     return abs(imgui.get_io().mouse_pos.x - corner.x - ui.controller.session.wipe * size.x) <= em(_REACH)
 
@@ -41,7 +60,7 @@ def _near(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """The line, its handle, and the names of both sides near the picture's upper edge, below the text there."""
     c = ui.controller
-    if c.tracing.drawn_view is not View.WIPE or c.frame is None:
+    if not _there(ui) or c.frame is None:
         return
     x = corner.x + c.session.wipe * (end.x - corner.x)
     dark, light, held = (imgui.get_color_u32(color) for color in (_DARK, _LIGHT, _HELD))
@@ -52,10 +71,10 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     draw.add_rect_filled(ImVec2(x - 2.0 * half, corner.y), ImVec2(x + 2.0 * half, end.y), dark)
     draw.add_rect_filled(ImVec2(x - half, corner.y), ImVec2(x + half, end.y), bright)
     _knob(draw, ImVec2(x, (corner.y + end.y) / 2.0), bright, dark)
-    left = c.frame.settings.method if Method.parse(c.frame.settings.method).culls else "no culling"
+    left, right = _names(ui)
     pad, text = em(0.35), imgui.get_text_line_height()
     top = corner.y + text + 4.0 * pad
-    for name, side in ((left, -1.0), ("reference", 1.0)):
+    for name, side in ((left, -1.0), (right, 1.0)):
         width = imgui.calc_text_size(name).x + 2.0 * pad
         start = x + 2.0 * pad if side > 0.0 else x - 2.0 * pad - width
         if corner.x <= start and start + width <= end.x:

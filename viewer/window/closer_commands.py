@@ -1,0 +1,96 @@
+"""Commands for comparing pictures, and for looking closely at one, which are some of those of `commands`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from viewer.state.comparison import Way
+from viewer.state.tone import NEUTRAL, brighter
+from viewer.state.zooming import MOST, STEP
+from viewer.window import closer
+from viewer.window.command import Command
+from viewer.window.ui import Ui
+
+_STOPS = 0.5  # of exposure by a key
+
+
+def comparing(ui: Ui) -> list[Command]:
+    """The menu Compare."""
+    c = ui.controller
+    comparing, state = c.comparing, c.comparing.state
+    there = lambda: comparing.b is not None  # noqa: E731
+
+    def keep() -> None:
+        comparing.keep()
+        ui.show_panel("Compare")
+
+    def by(way: Way) -> Command:
+        return Command(
+            f"{way.label} of A and B" if way is Way.DIFFERENCE else f"{way.label}, A and B",
+            "Compare",
+            lambda: comparing.toggle(way),
+            checked=lambda: state.on and state.way is way,
+            enabled=there,
+            tip=way.meaning,
+        )
+
+    return [
+        Command("Keep as A", "Compare", keep, "Ctrl+A", enabled=there),
+        Command("Let go of A", "Compare", comparing.forget, enabled=lambda: state.kept is not None),
+        Command(
+            "Two methods live",
+            "Compare",
+            comparing.toggle_methods,
+            "Shift+C",
+            checked=lambda: bool(c.tracing.second),
+            enabled=there,
+            tip="trace each frame by a second method as well, with modes and counters of its own",
+        ),
+        Command("Next way to compare", "Compare", comparing.next_way, "Shift+X", enabled=there, separated=True),
+        *[by(way) for way in Way],
+        Command("B alone", "Compare", comparing.end, "Ctrl+X", checked=lambda: not state.on, separated=True),
+    ]
+
+
+def looking(ui: Ui) -> list[Command]:
+    """Of the menu View: zoom and values of pixels, exposure and what is clipped."""
+    session, p = ui.controller.session, ui.controller.preferences
+
+    def expose(stops: float) -> Callable[[], None]:
+        def change() -> None:
+            session.tone = brighter(session.tone, stops)
+            ui.controller.notices.say(f"exposure {session.tone.exposure:+.3g} stops")
+
+        return change
+
+    def toggle_values() -> None:
+        p.pixel_values = not p.pixel_values
+
+    def clear_region() -> None:
+        ui.pixels.region = None
+
+    return [
+        Command("Zoom in", "View", lambda: closer.zoom_by(ui, STEP, _at(ui)), "Equal", repeats=True, separated=True,
+                enabled=lambda: ui.zoom.scale < MOST, other_keys=("Shift+Equal", "KeypadAdd")),
+        Command("Zoom out", "View", lambda: closer.zoom_by(ui, 1.0 / STEP, _at(ui)), "Minus", repeats=True,
+                enabled=lambda: not ui.zoom.fits, other_keys=("KeypadSubtract",)),
+        Command("Fit picture", "View", lambda: closer.fit(ui), "Z", enabled=lambda: not ui.zoom.fits),
+        Command("Values in pixels", "View", toggle_values, checked=lambda: p.pixel_values),
+        Command("Watch pixel", "View", lambda: closer.pin_what_is_pointed_at(ui), "Shift+P"),
+        Command("Clear the watched pixels", "View", ui.pixels.watched.clear, enabled=lambda: bool(ui.pixels.watched)),
+        Command("Clear the region", "View", clear_region, enabled=lambda: ui.pixels.region is not None),
+        Command("Brighter", "View", expose(_STOPS), "RightBracket", repeats=True, separated=True),
+        Command("Darker", "View", expose(-_STOPS), "LeftBracket", repeats=True),
+        Command("Colours as traced", "View", lambda: setattr(session, "tone", NEUTRAL),
+                enabled=lambda: not session.tone.neutral),
+        Command("Mark clipped pixels", "View", lambda: setattr(session, "clipping", not session.clipping), "Shift+M",
+                checked=lambda: session.clipping),
+    ]  # fmt: skip
+
+
+def _at(ui: Ui) -> tuple[float, float]:
+    """Where the pointer is in the picture's room, else its middle."""
+    hovered, zoom = ui.controller.selection.hovered, ui.zoom
+    if hovered is None:
+        return 0.5, 0.5
+    return (hovered[0] - zoom.left) * zoom.scale, (hovered[1] - zoom.top) * zoom.scale

@@ -1,0 +1,99 @@
+"""A comparison in the window: what of A and B is brought to the GPU, what is seen of the two, and what is saved."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+from imgui_bundle import imgui
+from numpy.typing import NDArray
+
+from viewer.output.compared import composed as composed_of
+from viewer.output.compared import difference_legend
+from viewer.output.legend import Legend
+from viewer.state.comparison import Side, Way
+from viewer.window.display import Look
+from viewer.window.ui import Ui
+
+HELD_KEY = imgui.Key.x
+
+
+def follow_key(ui: Ui) -> None:
+    """While the key is held, A is seen."""
+    io, state = imgui.get_io(), ui.controller.comparing.state
+    free = not (io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or io.key_shift)
+    state.held = state.on and free and bool(imgui.is_key_down(HELD_KEY))
+
+
+def draw(ui: Ui, look: Look) -> None:
+    """Bring to the GPU what is to be seen besides the live picture, which is drawn with this look."""
+    c, compared = ui.controller, ui.compared
+    if compared is None:
+        return
+    sides = c.comparing.sides
+    if sides is None:
+        compared.release()
+        return
+    a, b = sides
+    if c.comparing.state.way is Way.DIFFERENCE:
+        found = c.comparing.difference(a, b)
+        if found is not None:
+            compared.difference.draw(found.pixels, c.comparing.limit(found))
+    compared.draw_a(a.frame, _look_of_a(ui, look, a, b))
+
+
+def _look_of_a(ui: Ui, look: Look, a: Side, b: Side) -> Look:
+    session = ui.controller.session
+    span = look.span if a.view is b.view else session.spans.get(a.view)
+    return replace(look, view=a.view, light=a.light, selected=-1, line=False, span=span)
+
+
+def shown(ui: Ui) -> tuple[Side, Side, Way] | None:
+    """A, B and the way in which both are seen now; None where only B is."""
+    c, compared = ui.controller, ui.compared
+    sides = c.comparing.sides
+    if sides is None or compared is None or compared.a_texture is None:
+        return None
+    way = c.comparing.state.way
+    if way is Way.DIFFERENCE and (compared.difference.texture_id is None or c.comparing.difference(*sides) is None):
+        way = Way.FLIP
+    return *sides, way
+
+
+def shows_a(ui: Ui) -> bool:
+    """Whether it is A alone that is seen, of the ways that show one at a time or while the key is held."""
+    state = ui.controller.comparing.state
+    return shown(ui) is not None and state.shows_a(time.monotonic()) and state.way is not Way.SIDE
+
+
+def texture(ui: Ui) -> int | None:
+    """Of what fills the picture: B, or A, or their difference; A's part of a wipe is drawn over it."""
+    seen, compared = shown(ui), ui.compared
+    own = ui.display.texture_id if ui.display is not None else None
+    if seen is None or compared is None:
+        return own
+    if shows_a(ui):
+        return compared.a_texture
+    return compared.difference.texture_id if seen[2] is Way.DIFFERENCE else own
+
+
+def legend(ui: Ui) -> Legend | None:
+    """Of the signed difference, while that is seen."""
+    seen = shown(ui)
+    if seen is None or seen[2] is not Way.DIFFERENCE or shows_a(ui):
+        return None
+    comparing = ui.controller.comparing
+    found = comparing.difference(seen[0], seen[1])
+    return None if found is None else difference_legend(found.apart, found.values, comparing.limit(found))
+
+
+def composed(ui: Ui, b: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """The picture to save: B as it was drawn, (h, w, 3) uint8, and what is compared with it."""
+    seen, compared = shown(ui), ui.compared
+    if seen is None or compared is None:
+        return b
+    alone = shows_a(ui)
+    if seen[2] is Way.DIFFERENCE and not alone:
+        return compared.difference.read()
+    return composed_of(compared.read_a(), b, seen[2], ui.controller.session.wipe, alone)
