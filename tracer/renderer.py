@@ -261,6 +261,16 @@ class Renderer:
         """
         return Renderer(self.scene, self.settings, world=self.world)
 
+    def follow(self, other: Renderer) -> None:
+        """Let the next picture that is refined begin with the pixels with which that of another renderer begins.
+
+        Parameters
+        ----------
+        other : Renderer
+            A renderer whose next picture has not begun yet.
+        """
+        self._turn = other._turn
+
     def take_turn(self, time: float) -> None:
         """Place the world once more as the frame that this renderer has begun needs it.
 

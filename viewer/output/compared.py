@@ -8,10 +8,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from viewer.output.legend import Entry, Legend, Scale
+from viewer.output.legend import Entry, Legend, Note, Scale, Tone
 from viewer.state.comparison import Apart, Way, fitted
 from viewer.state.marks import wipe_column
-from viewer.state.values import Values
+from viewer.state.values import AXES, CHANNELS, Values
 from viewer.state.views import LESS, MORE, SAME, WIPE_LINE
 from viewer.util.numbers import count, percent
 
@@ -42,17 +42,30 @@ def composed(a: NDArray[np.uint8], b: NDArray[np.uint8], way: Way, wipe: float, 
     return a if shows_a else b
 
 
+def _signed(number: float) -> str:
+    return f"{number:+.4g}" if number else "0"
+
+
+def what_of(values: Values) -> str:
+    """What the numbers are, in words."""
+    together: dict[tuple[str, ...], str] = {CHANNELS: "colour", AXES: "normal"}
+    return together.get(values.names, values.names[0])
+
+
 def difference_legend(found: Apart, values: Values, limit: float) -> Legend:
     """What a signed difference shows, with its range, and how far the pictures are apart."""
     pixels = Entry("pixels that differ", None, (f"{count(found.pixels)} ({percent(found.pixels, found.of)})",))
+    if not found.pixels:
+        said = f"Nothing differs: {what_of(values)} is the same in both, bit for bit."
+        return Legend("B - A", notes=(Note(said, Tone.GOOD),))
     if values.classes:
         entries = (Entry("another one in B", MORE), Entry("the same in both", SAME))
         return Legend(f"B - A: {values.names[0]}", (), entries, facts=(pixels,))
-    what = "colour, in the channel that differs most" if len(values.names) > 1 else values.names[0]
+    what = f"{what_of(values)}, in the channel that differs most" if len(values.names) > 1 else what_of(values)
     scale = Scale(f"-{limit:.3g}", f"+{limit:.3g}", "0", signed=True)
     facts = (
         pixels,
-        Entry("least and largest", None, (f"{found.least:+.4g}   {found.largest:+.4g}",)),
-        Entry("mean", None, (f"{found.mean:+.3g}",)),
+        Entry("least and largest", None, (f"{_signed(found.least)}   {_signed(found.largest)}",)),
+        Entry("mean", None, (_signed(found.mean),)),
     )
     return Legend(f"B - A: {what}", (), (), scale, facts)

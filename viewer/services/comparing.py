@@ -161,7 +161,7 @@ class Comparing:
         if self._session.view is View.WIPE:  # one line is enough
             self._settings.set_view(View.COLOR)
         self._follow_second()
-        if self.remark and self.a is None:
+        if self.state.source is Source.KEPT and self.state.kept is None:
             self._notices.say(self.remark)
 
     def toggle(self, way: Way) -> None:

@@ -32,6 +32,8 @@ class Paired(Protocol):
 
     def beside(self) -> Any: ...
 
+    def follow(self, other: Any) -> None: ...
+
     def take_turn(self, time: float) -> None: ...
 
 
@@ -66,6 +68,7 @@ class Pair:
 
         The world is left as the first has placed it."""
         self._second.settings = replace(self._first.settings, method=method)
+        self._second.follow(self._first)
         with closing(asked.of(self._first)) as ours, closing(asked.of(self._second)) as theirs:
             begun = False
             try:

@@ -19,7 +19,7 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Protocol
+from typing import Any, Protocol
 
 from tracer.renderer import Frame, Settings
 from tracer.scene.model import Camera, Cancelled
@@ -49,6 +49,8 @@ class Traces(Protocol):
     def reset_modes(self) -> None: ...
 
     def beside(self) -> Traces: ...
+
+    def follow(self, other: Any) -> None: ...
 
     def take_turn(self, time: float) -> None: ...
 

@@ -59,6 +59,9 @@ _ALWAYS = (terms.DUE.capitalize(), terms.TRACED.capitalize(), "Frame")
 
 def _rows(a: Frame, b: Frame) -> Iterator[Row]:
     s, t = a.statistics, b.statistics
+    if a.statistics.part < 1.0 or b.statistics.part < 1.0:
+        shaded = [round(one.primitive.size * one.statistics.part) for one in (a, b)]
+        yield Row("Shaded pixels", "so far; all counts but those of primary rays are theirs", shaded[0], shaded[1])
     yield Row("Shadow rays", heading=True)
     for term in (terms.DUE, terms.CULLED, terms.DYNAMIC_ONLY, terms.CANDIDATES_ONLY, terms.CACHE_HITS):
         field = {terms.CANDIDATES_ONLY: "candidates_only"}.get(term, term.replace(" ", "_"))

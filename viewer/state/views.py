@@ -80,6 +80,11 @@ class View(StrEnum):
         return self in (View.COLOR, View.DIFFERENCE, View.WIPE)
 
     @property
+    def is_smooth(self) -> bool:
+        """Whether it may be smoothed where it is enlarged."""
+        return self in (View.COLOR, View.WIPE)
+
+    @property
     def of_modes(self) -> bool:
         """Whether it shows modes, of frames that keep them alone."""
         return self in (View.OCCLUSION, View.SHADOW, View.PIXEL_COUNT)

@@ -30,6 +30,7 @@ from viewer.window.display import Display, Look
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout, LayoutFile
+from viewer.window.magnifier import Magnifier
 from viewer.window.panels import dialogs, faults, legend, loading, picture, status, strip, tour
 from viewer.window.shots import Shots
 from viewer.window.ui import CaptureKind, Ui
@@ -151,6 +152,7 @@ class App:
         look = self._look(c.selection.picked.primitive if c.selection.picked is not None else -1)
         display.draw(look)
         comparing.draw(self.ui, look)
+        comparing.magnify(self.ui, look)
 
     def _bring_shots(self) -> None:
         if self.ui.shots is not None:
@@ -250,6 +252,7 @@ class App:
         self.ui.display = Display()
         self.ui.shots = Shots(self.ui.display.context)
         self.ui.compared = Compared(self.ui.display.passes)
+        self.ui.magnifier = Magnifier(self.ui.display.passes)
         self.ui.renderer_name = self.ui.display.context.info["GL_RENDERER"]
         self.drawn_by_processor = any(name in self.ui.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
         if self.drawn_by_processor:
@@ -282,6 +285,9 @@ class App:
         if self.ui.compared is not None:
             self.ui.compared.release()
             self.ui.compared = None
+        if self.ui.magnifier is not None:
+            self.ui.magnifier.release()
+            self.ui.magnifier = None
         if self.ui.display is not None:
             self.ui.display.release()
             self.ui.display = None

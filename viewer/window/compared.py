@@ -29,6 +29,16 @@ class SignedDifference:
     def texture_id(self) -> int | None:
         return self._target.color_attachments[0].glo if self._target is not None else None
 
+    @property
+    def picture(self) -> Any:
+        """That texture, or None."""
+        return self._target.color_attachments[0] if self._target is not None else None
+
+    @property
+    def version(self) -> object:
+        """Another one whenever another picture has been drawn."""
+        return self._drawn
+
     def draw(self, difference: NDArray[np.float32], limit: float) -> None:
         """Draw it as far as `limit` to both sides, unless it is there.  Raises DisplayError for what is too large."""
         if self._shown is difference and self._drawn == (id(difference), limit):
@@ -78,6 +88,11 @@ class Compared:
         self._passes = passes
         self._a: Display | None = None
         self.difference = SignedDifference(passes)
+
+    @property
+    def a(self) -> Display | None:
+        """What A is drawn in; None while it is not."""
+        return self._a
 
     @property
     def a_texture(self) -> int | None:

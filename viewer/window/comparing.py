@@ -13,10 +13,13 @@ from viewer.output.compared import composed as composed_of
 from viewer.output.compared import difference_legend
 from viewer.output.legend import Legend
 from viewer.state.comparison import Side, Way
-from viewer.window.display import Look
+from viewer.window.compared import SignedDifference
+from viewer.window.display import Display, Look
 from viewer.window.ui import Ui
 
 HELD_KEY = imgui.Key.x
+PICTURE, OF_A = "picture", "A"
+"""What the magnifier calls what fills the picture, and A beside it."""
 
 
 def follow_key(ui: Ui) -> None:
@@ -67,15 +70,31 @@ def shows_a(ui: Ui) -> bool:
     return shown(ui) is not None and state.shows_a(time.monotonic()) and state.way is not Way.SIDE
 
 
-def texture(ui: Ui) -> int | None:
-    """Of what fills the picture: B, or A, or their difference; A's part of a wipe is drawn over it."""
+def filling(ui: Ui) -> Display | SignedDifference | None:
+    """What fills the picture: B, or A, or their difference; A's part of a wipe is drawn over it."""
     seen, compared = shown(ui), ui.compared
-    own = ui.display.texture_id if ui.display is not None else None
     if seen is None or compared is None:
-        return own
+        return ui.display
     if shows_a(ui):
-        return compared.a_texture
-    return compared.difference.texture_id if seen[2] is Way.DIFFERENCE else own
+        return compared.a
+    return compared.difference if seen[2] is Way.DIFFERENCE else ui.display
+
+
+def magnify(ui: Ui, look: Look) -> None:
+    """Where single pixels are to be seen, draw what is shown as large as it is shown, with crisp pixels."""
+    magnifier, size = ui.magnifier, ui.picture_size
+    if magnifier is None or min(size) < 1:
+        return
+    seen = shown(ui)
+    beside = seen is not None and seen[2] in (Way.SIDE, Way.WIPE) and not shows_a(ui)
+    for name, drawn in ((PICTURE, filling(ui)), (OF_A, ui.compared.a if beside and ui.compared is not None else None)):
+        picture = drawn.picture if drawn is not None else None
+        smooth = look.smooth and look.view.is_smooth and drawn is not None and not isinstance(drawn, SignedDifference)
+        enlarged = picture is not None and (size[0] > picture.size[0] or not ui.zoom.fits)
+        if drawn is not None and enlarged and not smooth:
+            magnifier.draw(name, picture, drawn.version, ui.zoom, size)
+        else:
+            magnifier.drop(name)
 
 
 def legend(ui: Ui) -> Legend | None:

@@ -42,8 +42,6 @@ from viewer.window.passes import Passes
 if TYPE_CHECKING:
     from tracer.renderer import Frame
 
-_PICTURES = (View.COLOR, View.WIPE)
-
 
 @dataclass(frozen=True)
 class Look:
@@ -97,6 +95,16 @@ class Display:
         return self._target.color_attachments[0].glo if self._target is not None else None
 
     @property
+    def picture(self) -> Any:
+        """That texture, or None."""
+        return self._target.color_attachments[0] if self._target is not None else None
+
+    @property
+    def version(self) -> object:
+        """Another one whenever another picture has been drawn."""
+        return self._drawn
+
+    @property
     def size(self) -> tuple[int, int]:
         return self._buffers.size
 
@@ -141,7 +149,7 @@ class Display:
             target.color_attachments[0].write(_on_screen(frame.color), alignment=1)
         else:
             self._render_into(target, look)
-        filtering = moderngl.LINEAR if look.smooth and look.view in _PICTURES else moderngl.NEAREST
+        filtering = moderngl.LINEAR if look.smooth and look.view.is_smooth else moderngl.NEAREST
         target.color_attachments[0].filter = (filtering, filtering)
         problem = self.context.error
         if problem != "GL_NO_ERROR":

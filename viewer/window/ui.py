@@ -24,6 +24,7 @@ from viewer.window.compared import Compared
 from viewer.window.display import Display
 from viewer.window.full_screen import FullScreen
 from viewer.window.guard import Guard
+from viewer.window.magnifier import Magnifier
 from viewer.window.screening import Screening
 from viewer.window.shots import Shots
 
@@ -51,7 +52,8 @@ class Fold:
 
 @dataclass
 class Ui:
-    """See the module.  `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says that
+    """See the module.  `picture_area` is the size, in framebuffer pixels, that the picture may fill, `picture_size` the
+    one that it fills; `wiping` says that
     the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector; `light_filters` is
     what is typed above each list of lights; `screening` is the recorded picture that is shown in the picture's place;
     `legend_shown` says whether the picture shows its legend, `legend_held` where the pointer holds that; `tour_height`
@@ -92,6 +94,8 @@ class Ui:
     shots: Shots | None = None
     screening: Screening | None = None
     compared: Compared | None = None
+    magnifier: Magnifier | None = None
+    picture_size: tuple[int, int] = (0, 0)
     zoom: Zoom = FIT
     pixels: Pixels = field(default_factory=Pixels)
     gesture: str = ""

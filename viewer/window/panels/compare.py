@@ -123,7 +123,7 @@ def _limit(ui: Ui) -> None:
     limit = comparing.limit(found)
     row("Range", "to both sides of 0; drag, or Ctrl+click to type")
     imgui.set_next_item_width(-em(4.2))
-    changed, limit = imgui.drag_float("##limit", limit, max(limit / 100.0, 1e-6), 1e-6, 1e9, "+-%.4g")
+    changed, limit = imgui.drag_float("##limit", limit, max(limit / 100.0, 1e-6), 1e-6, 1e9, "\u00b1 %.4g")
     if changed and limit > 0.0:
         state.limit = limit
     imgui.same_line(0.0, em(0.3))
@@ -193,8 +193,7 @@ def _heads(a: Side, b: Side, names: tuple[str, str]) -> None:
     clipped("pixels", QUIET)
     for side in (a, b):
         imgui.table_next_column()
-        part = side.frame.statistics.part
-        right(f"{side.frame.width} x {side.frame.height}{f', {part:.0%}' if part < 1.0 else ''}", QUIET)
+        right(f"{side.frame.width} x {side.frame.height}", QUIET)
     shaded = [side.frame.primitive.size * side.frame.statistics.part for side in (a, b)]
     imgui.table_next_column()
     imgui.table_next_column()

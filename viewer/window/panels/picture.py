@@ -19,7 +19,7 @@ from viewer.state.picking import point_at
 from viewer.state.zooming import FIT
 from viewer.window import comparing
 from viewer.window.palette import ON_PICTURE_ERROR
-from viewer.window.panels import closeup, explanation, film, legend, missing, sides, timeline, tour, wipe
+from viewer.window.panels import closeup, explanation, film, layers, legend, missing, sides, timeline, tour, wipe
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, em, paragraph
@@ -42,9 +42,7 @@ def show(ui: Ui) -> None:
     strip = tour.leave_room(ui, imgui.get_cursor_screen_pos(), room)
     room = ImVec2(room.x, room.y - strip)
     scale = imgui.get_io().display_framebuffer_scale
-    beside = c.comparing.sides is not None and c.comparing.state.way is Way.SIDE
-    across = (room.x - em(sides.GAP)) / 2.0 if beside else room.x
-    ui.picture_area = (max(0, int(across * scale.x)), max(0, int(room.y * scale.y)))
+    ui.picture_area = sides.area_of_b(ui, (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y))))
     ui.picture_focused = imgui.is_window_focused()
     top = imgui.get_cursor_pos()
     if room.x >= 1.0 and room.y >= 1.0 and not film.screen(ui, room):
@@ -58,7 +56,8 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     c = ui.controller
     c.selection.hovered = None
     frame = c.frame
-    texture = comparing.texture(ui)
+    filling = comparing.filling(ui)
+    texture = filling.texture_id if filling is not None else None
     if frame is None or texture is None:
         _placeholder(ui, room)
         return
@@ -72,12 +71,12 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     top = at.y + (room.y - size.y) / 2.0
     if beside and seen is not None and ui.compared is not None:
         area = _area(ui, "picture of A", left, top, size)
-        _image(ui.compared.a_texture or 0, area)
+        layers.draw(ui, comparing.OF_A, ui.compared.a_texture or 0, area)
         _pointer(ui, area)
         closeup.show(ui, area, seen[0])
         left += size.x + gap
     area = _area(ui, "picture", left, top, size)
-    _image(texture, area)
+    layers.draw(ui, comparing.PICTURE, texture, area)
     if seen is not None:
         sides.draw_a(ui, area, seen)
     with _inside(area):
@@ -100,14 +99,9 @@ def _area(ui: Ui, name: str, left: float, top: float, size: ImVec2) -> Area:
     corner = imgui.get_cursor_screen_pos()
     imgui.set_next_item_allow_overlap()  # what lies over the picture takes the pointer there
     imgui.invisible_button(name, size, _ALL_BUTTONS)
+    scale = imgui.get_io().display_framebuffer_scale
+    ui.picture_size = max(1, round(size.x * scale.x)), max(1, round(size.y * scale.y))
     return Area(corner, size, ui.zoom)
-
-
-def _image(texture: int, area: Area) -> None:
-    """As much of a texture as is to be seen."""
-    left, top, right, bottom = area.zoom.shown()
-    draw = imgui.get_window_draw_list()
-    draw.add_image(imgui.ImTextureRef(texture), area.corner, area.end, ImVec2(left, top), ImVec2(right, bottom))
 
 
 @contextmanager
@@ -241,7 +235,9 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
         return corner.y
     pad = em(0.35)
     lower = ImVec2(corner.x + size.x + 3.0 * pad, corner.y + size.y + 2.0 * pad)
-    back, front = (imgui.get_color_u32(ImVec4(*color)) for color in ((0.05, 0.06, 0.08, 0.72), (0.93, 0.94, 0.96, 1.0)))
+    opacity = 0.72 if ui.zoom.fits else 0.94  # there may be numbers beneath
+    colors = ((0.05, 0.06, 0.08, opacity), (0.93, 0.94, 0.96, 1.0))
+    back, front = (imgui.get_color_u32(ImVec4(*color)) for color in colors)
     draw = imgui.get_window_draw_list()
     draw.add_rect_filled(corner, lower, back, em(0.3))
     draw.add_text(ImVec2(corner.x + 1.5 * pad, corner.y + pad), front, text)

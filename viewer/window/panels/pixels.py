@@ -18,7 +18,7 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right, tooltip
 
 _WIDE = 44.0  # ems of a panel that has room for the list and the histogram beside each other
-_PLOT = 9.0  # ems, the least height of the histogram
+_PLOT = 7.5  # ems, the least height of the histogram
 _OF_CHANNELS = (ImVec4(0.92, 0.33, 0.31, 1.0), ImVec4(0.25, 0.70, 0.35, 1.0), ImVec4(0.35, 0.58, 0.96, 1.0))
 _OF_VALUES = (ImVec4(0.42, 0.65, 0.93, 1.0),)
 
@@ -27,7 +27,7 @@ def show(ui: Ui) -> None:
     """The panel."""
     room = imgui.get_content_region_avail()
     if room.x > em(_WIDE):
-        imgui.begin_child("watched", ImVec2(0.5 * room.x - em(0.5), 0.0))
+        imgui.begin_child("watched", ImVec2(0.52 * room.x - em(0.5), 0.0))
         _watched(ui)
         imgui.end_child()
         imgui.same_line(0.0, em(1.0))
@@ -58,13 +58,14 @@ def _watched(ui: Ui) -> None:
         )
         return
     sides = c.comparing.sides
-    columns = 6 if sides is not None else 5
+    of_view = c.tracing.drawn_view not in (View.COLOR, View.WIPE)  # else the value is the colour
+    columns = [("", 1.2), ("pixel", 4.0), ("primitive", 3.6), ("colour", 8.4)]
+    columns += [(c.tracing.drawn_view.label.lower(), 5.0)] if of_view else []
+    columns += [("the same in A", 8.4 if not of_view else 5.0)] if sides is not None else []
     flags = int(imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg)
-    if imgui.begin_table("watched pixels", columns, flags):
-        for name, width in (("", 1.2), ("pixel", 4.0), ("primitive", 3.5), ("colour", 7.0), ("value", 6.0)):
+    if imgui.begin_table(f"watched pixels {len(columns)}", len(columns), flags):
+        for name, width in columns:
             imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch), width)
-        if sides is not None:
-            imgui.table_setup_column("A", int(imgui.TableColumnFlags_.width_stretch), 6.0)
         imgui.table_headers_row()
         gone = None
         for number, point in enumerate(ui.pixels.watched):
@@ -93,9 +94,10 @@ def _pixel(ui: Ui, frame: Frame, number: int, point: tuple[float, float], a: Sid
     primitive = int(frame.primitive[y, x])
     clipped(str(primitive) if primitive >= 0 else "miss")
     imgui.table_next_column()
-    clipped("  ".join(f"{channel:.4f}" for channel in frame.color[y, x]))
-    imgui.table_next_column()
-    clipped(_value(ui, frame, c.tracing.drawn_view, c.session.light, x, y))
+    clipped(" ".join(f"{channel:.4f}" for channel in frame.color[y, x]))
+    if c.tracing.drawn_view not in (View.COLOR, View.WIPE):
+        imgui.table_next_column()
+        clipped(_value(ui, frame, c.tracing.drawn_view, c.session.light, x, y))
     if a is not None:
         imgui.table_next_column()
         there = pixel_at(a.frame, *point)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from viewer.state.comparison import Side, Way
+from viewer.state.comparison import Side, Source, Way
 from viewer.state.views import LESS, MORE, Color
 from viewer.window import comparing
+from viewer.window.panels import layers
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, fitted
@@ -18,17 +19,24 @@ _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.78), ImVec4(0.95, 0.96, 0.97, 1.0)
 Seen = tuple[Side, Side, Way]
 
 
+def area_of_b(ui: Ui, room: tuple[int, int]) -> tuple[int, int]:
+    """The pixels that B is to have in a room for one picture: beside a picture that was kept as many as that has, so
+    that both show the same; else as many as there is room for."""
+    comparing, state = ui.controller.comparing, ui.controller.comparing.state
+    if not state.on or state.way is not Way.SIDE or min(room) < 1:
+        return room
+    if state.source is Source.KEPT:
+        kept = state.kept
+        return room if kept is None else (kept.frame.width, kept.frame.height)
+    gap = round(em(GAP) * imgui.get_io().display_framebuffer_scale.x)
+    return (max(1, (room[0] - gap) // 2), room[1]) if comparing.b is not None else room
+
+
 def draw_a(ui: Ui, area: Area, seen: Seen) -> None:
     """A, left of the line of a wipe."""
     if seen[2] is not Way.WIPE or comparing.shows_a(ui) or ui.compared is None or ui.compared.a_texture is None:
         return
-    left, top, right, bottom = area.zoom.shown()
-    column = min(max(ui.controller.session.wipe, left), right)
-    if column <= left:
-        return
-    at = area.to_screen(column, bottom)
-    texture = imgui.ImTextureRef(ui.compared.a_texture)
-    imgui.get_window_draw_list().add_image(texture, area.corner, at, ImVec2(left, top), ImVec2(column, bottom))
+    layers.draw(ui, comparing.OF_A, ui.compared.a_texture, area, ui.controller.session.wipe)
 
 
 def show_names(ui: Ui, area: Area, seen: Seen, top: float) -> None:
