@@ -157,7 +157,17 @@ def test_keys_of_the_window_are_told() -> None:
     """Each key of a command is in the table of keys."""
     table = "".join(re.findall(r"^\| (`.*?) \|", (DOCS / "viewer.md").read_text(), re.MULTILINE))
     told = set(re.findall(r"`([^`]+)`", table)) | set("1234567")  # shown as `1` … `7`
-    shown = {"RightArrow": "→", "LeftArrow": "←", "Ctrl+Equal": "+", "Ctrl+Minus": "-", "Ctrl+0": "0"}
+    shown = {
+        "RightArrow": "→",
+        "LeftArrow": "←",
+        "Ctrl+Equal": "+",
+        "Ctrl+Minus": "-",
+        "Ctrl+0": "0",
+        "Equal": "+",
+        "Minus": "-",
+        "RightBracket": "]",
+        "LeftBracket": "[",
+    }
     ui = Ui(Controller(Preferences()))
     try:
         keys = {shown.get(command.key, command.key) for command in commands.build(ui) if command.key}

@@ -12,6 +12,13 @@ from viewer.window.command import Command
 from viewer.window.ui import Ui
 
 _STOPS = 0.5  # of exposure by a key
+_NAMES = {
+    Way.FLIP: "Flip between A and B",
+    Way.WIPE: "Wipe between A and B",
+    Way.SIDE: "A and B side by side",
+    Way.DIFFERENCE: "Signed difference B - A",
+    Way.BLINK: "Blink A and B",
+}
 
 
 def comparing(ui: Ui) -> list[Command]:
@@ -26,7 +33,7 @@ def comparing(ui: Ui) -> list[Command]:
 
     def by(way: Way) -> Command:
         return Command(
-            f"{way.label} of A and B" if way is Way.DIFFERENCE else f"{way.label}, A and B",
+            _NAMES[way],
             "Compare",
             lambda: comparing.toggle(way),
             checked=lambda: state.on and state.way is way,
@@ -53,8 +60,8 @@ def comparing(ui: Ui) -> list[Command]:
 
 
 def looking(ui: Ui) -> list[Command]:
-    """Of the menu View: zoom and values of pixels, exposure and what is clipped."""
-    session, p = ui.controller.session, ui.controller.preferences
+    """The menu Picture: zoom and values of pixels, exposure and what is clipped."""
+    session, p, watched = ui.controller.session, ui.controller.preferences, ui.pixels.watched
 
     def expose(stops: float) -> Callable[[], None]:
         def change() -> None:
@@ -70,20 +77,20 @@ def looking(ui: Ui) -> list[Command]:
         ui.pixels.region = None
 
     return [
-        Command("Zoom in", "View", lambda: closer.zoom_by(ui, STEP, _at(ui)), "Equal", repeats=True, separated=True,
+        Command("Zoom in", "Picture", lambda: closer.zoom_by(ui, STEP, _at(ui)), "Equal", repeats=True,
                 enabled=lambda: ui.zoom.scale < MOST, other_keys=("Shift+Equal", "KeypadAdd")),
-        Command("Zoom out", "View", lambda: closer.zoom_by(ui, 1.0 / STEP, _at(ui)), "Minus", repeats=True,
+        Command("Zoom out", "Picture", lambda: closer.zoom_by(ui, 1.0 / STEP, _at(ui)), "Minus", repeats=True,
                 enabled=lambda: not ui.zoom.fits, other_keys=("KeypadSubtract",)),
-        Command("Fit picture", "View", lambda: closer.fit(ui), "Z", enabled=lambda: not ui.zoom.fits),
-        Command("Values in pixels", "View", toggle_values, checked=lambda: p.pixel_values),
-        Command("Watch pixel", "View", lambda: closer.pin_what_is_pointed_at(ui), "Shift+P"),
-        Command("Clear the watched pixels", "View", ui.pixels.watched.clear, enabled=lambda: bool(ui.pixels.watched)),
-        Command("Clear the region", "View", clear_region, enabled=lambda: ui.pixels.region is not None),
-        Command("Brighter", "View", expose(_STOPS), "RightBracket", repeats=True, separated=True),
-        Command("Darker", "View", expose(-_STOPS), "LeftBracket", repeats=True),
-        Command("Colours as traced", "View", lambda: setattr(session, "tone", NEUTRAL),
+        Command("Fit picture", "Picture", lambda: closer.fit(ui), "Z", enabled=lambda: not ui.zoom.fits),
+        Command("Values in pixels", "Picture", toggle_values, checked=lambda: p.pixel_values, separated=True),
+        Command("Watch pixel", "Picture", lambda: closer.pin_what_is_pointed_at(ui), "Shift+P"),
+        Command("Let go of watched pixels", "Picture", watched.clear, enabled=lambda: bool(watched)),
+        Command("Clear the region", "Picture", clear_region, enabled=lambda: ui.pixels.region is not None),
+        Command("Brighter", "Picture", expose(_STOPS), "RightBracket", repeats=True, separated=True),
+        Command("Darker", "Picture", expose(-_STOPS), "LeftBracket", repeats=True),
+        Command("Colours as traced", "Picture", lambda: setattr(session, "tone", NEUTRAL),
                 enabled=lambda: not session.tone.neutral),
-        Command("Mark clipped pixels", "View", lambda: setattr(session, "clipping", not session.clipping), "Shift+M",
+        Command("Mark clipped pixels", "Picture", lambda: setattr(session, "clipping", not session.clipping), "Shift+M",
                 checked=lambda: session.clipping),
     ]  # fmt: skip
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
-MENUS = ("File", "View", "Compare", "Camera", "Time", "Culling", "Run", "Help")
+MENUS = ("File", "View", "Picture", "Compare", "Camera", "Time", "Culling", "Run", "Help")
 
 HELD_KEYS = (
     ("W  A  S  D", "fly forward, left, back, right"),

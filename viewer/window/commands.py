@@ -17,7 +17,8 @@ from viewer.window.ui import CaptureKind, Ui
 
 def build(ui: Ui) -> list[Command]:
     """All commands, in the order of the menus."""
-    return [*_file(ui), *_view(ui), *comparing(ui), *_camera(ui), *_time(ui), *_culling(ui), *_run(ui), *_help(ui)]
+    menus = (_file, _view, looking, comparing, _camera, _time, _culling, _run, _help)
+    return [command for menu in menus for command in menu(ui)]
 
 
 def _file(ui: Ui) -> list[Command]:
@@ -81,7 +82,6 @@ def _view(ui: Ui) -> list[Command]:
         Command("Shares of rays", "View", toggle("work_shares"), "U", checked=lambda: p.work_shares),
         Command("Draw shadow rays", "View", toggle("draw_explanation"), "I", checked=lambda: p.draw_explanation),
         Command("Smooth upscaling", "View", toggle("smooth_upscaling"), checked=lambda: p.smooth_upscaling),
-        *looking(ui),
         *_looks(ui),
         Command("Hide panels", "View", hide, "Tab", checked=lambda: ui.fold.hidden, separated=True),
         Command("Full screen", "View", ui.full_screen.toggle, "F11", checked=lambda: ui.full_screen.wanted),

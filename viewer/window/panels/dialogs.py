@@ -28,10 +28,10 @@ def _shortcuts(ui: Ui) -> None:
     if shown:
         if imgui.begin_table("keys", 2, int(imgui.TableFlags_.sizing_stretch_same)):
             imgui.table_next_column()
-            for menu in MENUS[:3]:
+            for menu in MENUS[:2]:
                 _keys(menu, [(key_label(c.key), c.name) for c in ui.commands if c.menu == menu and c.key])
             imgui.table_next_column()
-            for menu in MENUS[3:]:
+            for menu in MENUS[2:]:
                 _keys(menu, [(key_label(c.key), c.name) for c in ui.commands if c.menu == menu and c.key])
             imgui.end_table()
         _keys("On the picture", list(HELD_KEYS), wide=True)

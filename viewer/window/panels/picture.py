@@ -83,8 +83,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
         explanation.show(ui, area.whole, area.whole_end)
     _pointer(ui, area)
     closeup.show(ui, area, seen[0] if seen is not None and comparing.shows_a(ui) else None)
-    with _inside(area):
-        wipe.show(ui, area.whole, area.whole_end)
+    wipe.show(ui, area)
     lower = _overlay(ui, area.corner, area.end)
     if seen is not None:
         sides.show_names(ui, area, seen, lower)
@@ -129,7 +128,7 @@ def _placeholder(ui: Ui, room: ImVec2) -> None:
 
 def _pointer(ui: Ui, area: Area) -> None:
     """Hovering, clicking and dragging on the picture, which is ImGui's last item."""
-    c, io, size = ui.controller, imgui.get_io(), area.whole_size
+    c, io = ui.controller, imgui.get_io()
     if ui.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
         ui.pivot, ui.pivot_scene, ui.zoom = None, c.session.scene, FIT
     u, v = area.to_picture(io.mouse_pos.x, io.mouse_pos.y)
@@ -137,7 +136,7 @@ def _pointer(ui: Ui, area: Area) -> None:
         c.selection.hovered = (u, v)
         if not closeup.wheel(ui, area):
             _wheel(ui, io.mouse_wheel)
-    if wipe.handle(ui, area.whole, size) or closeup.drag(ui, area):
+    if wipe.handle(ui, area) or closeup.drag(ui, area):
         return
     if imgui.is_item_activated():
         ui.dragged = False

@@ -138,6 +138,8 @@ def _histogram(ui: Ui) -> None:
     if found is None:
         paragraph("No pixel here has a value.", QUIET)
         return
+    if found.pixels < found.of:
+        paragraph(f"{count(found.pixels)} of {count(found.of)} pixels have a value", QUIET)
     _figures(found, values.names)
     if view.has_range and not (view.needs_work and c.preferences.work_shares):
         if imgui.small_button("Use as the range of colours"):
@@ -150,7 +152,7 @@ def _figures(found: Histogram, names: tuple[str, ...]) -> None:
     if imgui.begin_table("figures", 4, int(imgui.TableFlags_.sizing_stretch_same)):
         for text in ("", "least", "mean", "largest"):
             imgui.table_next_column()
-            right(text, QUIET) if text else clipped(f"{count(found.pixels)} values", QUIET)
+            right(text, QUIET)
         for number, name in enumerate(names):
             imgui.table_next_column()
             clipped(name, QUIET)

@@ -8,6 +8,7 @@ from tracer.method import Method
 from viewer.state.comparison import Way
 from viewer.state.views import View
 from viewer.window import comparing
+from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
 from viewer.window.widgets import em
 
@@ -19,19 +20,19 @@ _DARK, _LIGHT, _HELD = (
 )
 
 
-def handle(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
+def handle(ui: Ui, area: Area) -> bool:
     """Let the pointer drag the line across the picture, which is ImGui's last item; whether the line holds it."""
     c = ui.controller
     if not _there(ui):
         ui.wiping = False
         return False
-    if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left) and _near(ui, corner, size):
+    if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left) and _near(ui, area):
         ui.wiping = True
     held = ui.wiping
     if held:
-        c.session.wipe = min(max((imgui.get_io().mouse_pos.x - corner.x) / size.x, 0.0), 1.0)
+        c.session.wipe = min(max(area.to_picture(imgui.get_io().mouse_pos.x, 0.0)[0], 0.0), 1.0)
         ui.wiping = imgui.is_item_active()
-    if held or (imgui.is_item_hovered() and not imgui.is_item_active() and _near(ui, corner, size)):
+    if held or (imgui.is_item_hovered() and not imgui.is_item_active() and _near(ui, area)):
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
     return held
 
@@ -53,16 +54,21 @@ def _names(ui: Ui) -> tuple[str, str]:
     return method if Method.parse(method).culls else "no culling", "reference"
 
 
-def _near(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
-    return abs(imgui.get_io().mouse_pos.x - corner.x - ui.controller.session.wipe * size.x) <= em(_REACH)
+def _place(ui: Ui, area: Area) -> float:
+    """Where the line is on the screen: at an edge where it lies beyond what is shown."""
+    return min(max(area.to_screen(ui.controller.session.wipe, 0.0).x, area.corner.x), area.end.x)
 
 
-def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
+def _near(ui: Ui, area: Area) -> bool:
+    return abs(imgui.get_io().mouse_pos.x - _place(ui, area)) <= em(_REACH)
+
+
+def show(ui: Ui, area: Area) -> None:
     """The line, its handle, and the names of both sides near the picture's upper edge, below the text there."""
     c = ui.controller
     if not _there(ui) or c.frame is None:
         return
-    x = corner.x + c.session.wipe * (end.x - corner.x)
+    x, corner, end = _place(ui, area), area.corner, area.end
     dark, light, held = (imgui.get_color_u32(color) for color in (_DARK, _LIGHT, _HELD))
     bright = held if ui.wiping else light
     draw = imgui.get_window_draw_list()
