@@ -1,6 +1,8 @@
 """What a user does in the window, and what must come of it.  Each function is run by `tests.viewer.window`."""
 
+from tests.viewer.scenarios.closeup import closeup
 from tests.viewer.scenarios.closing import closing_while_experimenting, closing_while_loading, closing_while_tracing
+from tests.viewer.scenarios.comparing import comparing
 from tests.viewer.scenarios.culling import certifying, culling, explaining
 from tests.viewer.scenarios.drawing import difference, views, wiping
 from tests.viewer.scenarios.failing import failing
@@ -17,7 +19,8 @@ from tests.viewer.scenarios.touring import touring
 SCENARIOS = {
     scenario.__name__: scenario
     for scenario in (
-        views, difference, wiping, legends, lamps, culling, certifying, explaining, flying, orbiting, playing, resizing,
+        views, difference, wiping, comparing, closeup, legends, lamps, culling, certifying, explaining,
+        flying, orbiting, playing, resizing,
         capturing, dropping, reopening, cancelling, browsing, experimenting, zooming, asking, filmstrip, failing,
         panels, closing_panels, looks, hiding, folding, touring, fitting,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
