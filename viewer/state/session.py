@@ -77,7 +77,10 @@ def _span(data: Any) -> tuple[float, float] | None:
     """A range of the colour map, if it is one."""
     if data is None:
         return None
-    low, high = (float(number) for number in data)
+    try:
+        low, high = (float(number) for number in data)
+    except (TypeError, ValueError):
+        raise ValueError("its range is damaged") from None
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         raise ValueError("its range is none")
     return low, high
