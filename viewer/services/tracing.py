@@ -17,7 +17,7 @@ from viewer.services.governor import AT_ONCE, Governor, Plan, divided
 from viewer.services.lamps import LampSteps
 from viewer.services.refinement import Refinement
 from viewer.services.render_thread import Pictures, RenderRequest, Traced
-from viewer.services.requests import as_asked, fulfils, lacks, settings_for
+from viewer.services.requests import as_asked, fulfils, lacks, settings_for, with_modes_of
 from viewer.services.runs import Run
 from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.preferences import Preferences
@@ -59,6 +59,7 @@ class Tracing:
         self.now = Conditions()
         self.traced: Traced | None = None
         self._known: Frame | None = None  # the last that was whole and of the window's resolution
+        self._known_second: Frame | None = None  # the same by the second method
         self.governor = governor or Governor()
         self.refinement = Refinement()
         self.lamps = LampSteps(session)
@@ -76,7 +77,7 @@ class Tracing:
 
     def forget(self) -> None:
         """Begin with another scene: it has no frame yet, and its pixels cost something else."""
-        self.traced = self._known = self._asked = None
+        self.traced = self._known = self._known_second = self._asked = None
         self._new = True
         self.refinement.forget()
         self.governor.forget()
@@ -94,7 +95,7 @@ class Tracing:
         """Forget all that is known about shadows, and look again."""
         if not self._locked():
             self._renderer.reset_modes()
-            self._known = None
+            self._known = self._known_second = None
             self.refinement.forget()
             self.again()
 
@@ -122,18 +123,11 @@ class Tracing:
 
     def _with_modes(self, traced: Traced) -> Traced:
         """Modes are those of a resolution: what is coarser than the window shows what its last whole picture knew."""
-        frame, known = traced.frame, self._known
-        if traced.request.divisor == 1:
-            self._known = frame if traced.whole else known
-        elif known is not None and known.settings.keeps_modes and len(known.modes) == len(frame.modes):
-            frame = replace(
-                frame,
-                modes=known.modes,
-                pixel_count=known.pixel_count,
-                highest_count=known.highest_count,
-                statistics=replace(frame.statistics, by_modes=known.statistics.by_modes),
-            )
-            return replace(traced, frame=frame)
+        if traced.request.divisor > 1:
+            second = traced.second and with_modes_of(self._known_second, traced.second)
+            return replace(traced, frame=with_modes_of(self._known, traced.frame), second=second)
+        if traced.whole:
+            self._known, self._known_second = traced.frame, traced.second
         return traced
 
     def ask(self, now: Conditions) -> None:

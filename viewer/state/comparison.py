@@ -15,8 +15,8 @@ from tracer.frame import Frame
 from viewer.state.values import Values
 from viewer.state.views import View
 
-RATES = (0.25, 10.0)
-"""Times a second, least and most, that pictures blink."""
+RATES = (0.25, 3.0)
+"""Times a second, least and most, that pictures blink: no more, as faster flashes are dangerous to some people."""
 HIDDEN_SHARE = 0.5
 """Per cent of the pixels that differ, at most, which lie beyond the range of a difference that is fitted."""
 
@@ -127,6 +127,16 @@ def signed_difference(a: Values, b: Values) -> NDArray[np.float32]:
         return apart[..., 0]
     strongest = np.abs(apart).argmax(axis=-1)
     return np.take_along_axis(apart, strongest[..., None], -1)[..., 0]
+
+
+def difference_words(difference: NDArray[np.float32], values: Values, x: int, y: int) -> tuple[str, ...]:
+    """What a signed difference says of one pixel."""
+    apart = float(difference[y, x])
+    if values.classes:
+        return ("other",) if apart else ("same",)
+    if abs(apart) > 1e29:
+        return ("miss", "in A" if apart < 0.0 else "in B")
+    return (f"{apart:+.3g}" if apart else "0",)
 
 
 @dataclass(frozen=True)

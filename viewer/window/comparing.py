@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 from imgui_bundle import imgui
 from numpy.typing import NDArray
 
+from tracer.frame import Frame
 from viewer.output.compared import composed as composed_of
 from viewer.output.compared import difference_legend
 from viewer.output.legend import Legend
-from viewer.state.comparison import Side, Way
+from viewer.state.comparison import Side, Way, difference_words
+from viewer.state.marks import wipe_column
+from viewer.state.picking import pixel_at
+from viewer.state.values import words_at
 from viewer.window.compared import SignedDifference
 from viewer.window.display import Display, Look
 from viewer.window.ui import Ui
@@ -20,6 +25,8 @@ from viewer.window.ui import Ui
 HELD_KEY = imgui.Key.x
 PICTURE, OF_A = "picture", "A"
 """What the magnifier calls what fills the picture, and A beside it."""
+
+Words = tuple[Frame, Callable[[int, int], tuple[str, ...]]]
 
 
 def follow_key(ui: Ui) -> None:
@@ -39,11 +46,11 @@ def draw(ui: Ui, look: Look) -> None:
         compared.release()
         return
     a, b = sides
-    if c.comparing.state.way is Way.DIFFERENCE:
-        found = c.comparing.difference(a, b)
-        if found is not None:
-            compared.difference.draw(found.pixels, c.comparing.limit(found))
-    compared.draw_a(a.frame, _look_of_a(ui, look, a, b))
+    found = c.comparing.difference(a, b) if c.comparing.state.way is Way.DIFFERENCE else None
+    if found is not None:
+        compared.difference.draw(found.pixels, c.comparing.limit(found))
+    if found is None or c.comparing.state.held:
+        compared.draw_a(a.frame, _look_of_a(ui, look, a, b))
 
 
 def _look_of_a(ui: Ui, look: Look, a: Side, b: Side) -> Look:
@@ -56,18 +63,22 @@ def shown(ui: Ui) -> tuple[Side, Side, Way] | None:
     """A, B and the way in which both are seen now; None where only B is."""
     c, compared = ui.controller, ui.compared
     sides = c.comparing.sides
-    if sides is None or compared is None or compared.a_texture is None:
+    if sides is None or compared is None:
         return None
     way = c.comparing.state.way
-    if way is Way.DIFFERENCE and (compared.difference.texture_id is None or c.comparing.difference(*sides) is None):
-        way = Way.FLIP
-    return *sides, way
+    if way is Way.DIFFERENCE and compared.difference.texture_id is not None:
+        if c.comparing.difference(*sides) is not None:
+            return *sides, way
+    if compared.a_texture is None:
+        return None
+    return *sides, Way.FLIP if way is Way.DIFFERENCE else way
 
 
 def shows_a(ui: Ui) -> bool:
     """Whether it is A alone that is seen, of the ways that show one at a time or while the key is held."""
-    state = ui.controller.comparing.state
-    return shown(ui) is not None and state.shows_a(time.monotonic()) and state.way is not Way.SIDE
+    state, compared = ui.controller.comparing.state, ui.compared
+    there = compared is not None and compared.a_texture is not None and shown(ui) is not None
+    return there and state.shows_a(time.monotonic()) and state.way is not Way.SIDE
 
 
 def filling(ui: Ui) -> Display | SignedDifference | None:
@@ -105,6 +116,33 @@ def legend(ui: Ui) -> Legend | None:
     comparing = ui.controller.comparing
     found = comparing.difference(seen[0], seen[1])
     return None if found is None else difference_legend(found.apart, found.values, comparing.limit(found))
+
+
+def words(ui: Ui, side: Side | None = None) -> Words | None:
+    """The frame whose pixels are seen, and what each of them says: those of a side, or of all that fills the picture;
+    None without a frame."""
+    c, seen = ui.controller, shown(ui)
+    shares = c.preferences.work_shares
+    if side is None and seen is not None and shows_a(ui):
+        side = seen[0]
+    if side is None:
+        side = c.comparing.b
+    if side is None:
+        return None
+    own = side
+
+    def of(one: Side, x: int, y: int) -> tuple[str, ...]:
+        at = pixel_at(one.frame, (x + 0.5) / own.frame.width, (y + 0.5) / own.frame.height)
+        return words_at(one.frame, one.view, one.light, *at, shares)
+
+    if seen is not None and own.frame is seen[1].frame and seen[2] is Way.DIFFERENCE:
+        found = c.comparing.difference(seen[0], seen[1])
+        if found is not None:
+            return own.frame, lambda x, y: difference_words(found.pixels, found.values, x, y)
+    if seen is not None and own.frame is seen[1].frame and seen[2] is Way.WIPE:
+        column = wipe_column(own.frame.width, c.session.wipe)
+        return own.frame, lambda x, y: of(seen[0] if x < column else seen[1], x, y)
+    return own.frame, lambda x, y: of(own, x, y)
 
 
 def composed(ui: Ui, b: NDArray[np.uint8]) -> NDArray[np.uint8]:

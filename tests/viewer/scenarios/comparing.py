@@ -7,6 +7,7 @@ from imgui_bundle import imgui
 from PIL import Image
 
 from tests.viewer.driver import Driver
+from tests.viewer.scenarios.fitting import check_fit
 from viewer.output.compared import GAP, composed, signed_picture
 from viewer.output.pictures import picture
 from viewer.state.comparison import Source, Way
@@ -55,6 +56,12 @@ def comparing(d: Driver) -> None:
         if way is Way.SIDE:
             assert saved.shape[1] == 2 * b.shape[1] + GAP
             _watches_from_a(d)
+            for panel in ("Pixels", "Compare"):
+                d.ui.pixels.watched[:] = [(0.2, 0.3), (0.9, 0.6)]
+                d.ui.show_panel(panel)
+                d.frames(4)
+                check_fit(d, f"{panel}, comparing")
+            d.ui.pixels.watched.clear()
     d.context.key_down(KEY.x)
     d.frames(3)
     assert seen.shows_a(d.ui) and seen.filling(d.ui) is d.ui.compared.a

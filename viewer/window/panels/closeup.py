@@ -5,13 +5,14 @@ The wheel with Ctrl zooms around the pointer, a drag with Ctrl pans, and a drag 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer.state.comparison import Side
 from viewer.state.pixels import Point, region_between
-from viewer.state.values import words_at
 from viewer.state.zooming import GRID_FROM, STEP, panned, pixels_shown
-from viewer.window import closer
+from viewer.window import closer, comparing
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
 from viewer.window.widgets import em
@@ -91,20 +92,17 @@ def menu(ui: Ui) -> None:
 # --- eyes ----------------------------------------------------------------------------------------
 
 
-def show(ui: Ui, area: Area, side: Side | None) -> None:
-    """Over the picture of A, if that is given, or the live one: grid and values, watched pixels, the region."""
-    c = ui.controller
-    frame = side.frame if side is not None else c.frame
-    if frame is None:
+def show(ui: Ui, area: Area, side: Side | None = None) -> None:
+    """Over the picture of a side, or what else is seen: grid and values, watched pixels, the region."""
+    found = comparing.words(ui, side)
+    if found is None:
         return
+    frame, words = found
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(area.corner, area.end, True)
-    if c.preferences.pixel_values:
-        view = side.view if side is not None else c.tracing.drawn_view
-        light = side.light if side is not None else c.session.light
-        shares = c.preferences.work_shares
+    if ui.controller.preferences.pixel_values:
         _grid(draw, area, frame.width, frame.height)
-        _numbers(draw, area, frame.width, frame.height, lambda x, y: words_at(frame, view, light, x, y, shares))
+        _numbers(draw, area, frame.width, frame.height, words)
     if ui.pixels.region is not None:
         _region(ui, draw, area)
     for number, point in enumerate(ui.pixels.watched):
@@ -126,7 +124,9 @@ def _grid(draw: imgui.ImDrawList, area: Area, width: int, height: int) -> None:
         draw.add_line(ImVec2(area.corner.x, at), ImVec2(area.end.x, at), color)
 
 
-def _numbers(draw, area: Area, width: int, height: int, words) -> None:  # type: ignore[no-untyped-def]
+def _numbers(
+    draw: imgui.ImDrawList, area: Area, width: int, height: int, words: Callable[[int, int], tuple[str, ...]]
+) -> None:
     """The value of each pixel in it, as large as fits, where all fit."""
     across, down = area.whole_size.x / width, area.whole_size.y / height
     columns, rows = pixels_shown(area.zoom, width, height)

@@ -82,7 +82,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     with _inside(area):
         explanation.show(ui, area.whole, area.whole_end)
     _pointer(ui, area)
-    closeup.show(ui, area, seen[0] if seen is not None and comparing.shows_a(ui) else None)
+    closeup.show(ui, area)
     wipe.show(ui, area)
     lower = _overlay(ui, area.corner, area.end)
     if seen is not None:

@@ -45,12 +45,11 @@ def _watched(ui: Ui) -> None:
     tip = "numbers in the pixels, and a grid, where the picture is enlarged enough"
     checkbox("Values in pixels", p.pixel_values, lambda on: setattr(p, "pixel_values", on), tip)
     imgui.same_line(0.0, em(1.0))
-    zoom = ui.zoom
-    imgui.text_colored(QUIET, "all of the picture" if zoom.fits else f"enlarged {zoom.scale:.3g} times")
-    if not zoom.fits:
-        imgui.same_line()
+    if not ui.zoom.fits:
         if imgui.small_button("Fit"):
             closer.fit(ui)
+        imgui.same_line()
+    clipped("all of the picture" if ui.zoom.fits else f"enlarged {ui.zoom.scale:.3g} times", QUIET)
     frame = c.frame
     if frame is None or not ui.pixels.watched:
         paragraph(
@@ -118,16 +117,12 @@ def _histogram(ui: Ui) -> None:
     rows, columns = (region or ALL).pixels(frame)
     wide, high = columns.stop - columns.start, rows.stop - rows.start
     where = f"{wide} x {high} pixels from {columns.start}, {rows.start}" if region is not None else "the whole picture"
-    imgui.align_text_to_frame_padding()
-    imgui.text_unformatted(f"{view.label}: {where}")
     if region is not None:
-        imgui.same_line()
         if imgui.small_button(f"{icons.ICON_FA_XMARK}##region"):
             ui.pixels.region = None
         tooltip("count the whole picture again")
-    else:
         imgui.same_line()
-        imgui.text_colored(QUIET, "Shift+drag for a part of it")
+    clipped(f"{view.label}: {where}{'' if region is not None else '; Shift+drag for a part of it'}")
     values = ui.cached("values", frame, (view, light), lambda: values_of(frame, view, light))
     if values.classes:
         paragraph("Modes and numbers of primitives have no histogram; the legend counts them.", QUIET)
@@ -149,7 +144,10 @@ def _histogram(ui: Ui) -> None:
 
 
 def _figures(found: Histogram, names: tuple[str, ...]) -> None:
-    if imgui.begin_table("figures", 4, int(imgui.TableFlags_.sizing_stretch_same)):
+    width = imgui.get_content_region_avail().x - em(0.3)  # columns of figures at the right are a little wider by parts
+    if imgui.begin_table("figures", 4, int(imgui.TableFlags_.sizing_stretch_prop), ImVec2(width, 0.0)):
+        for column in ("name", "least", "mean", "largest"):
+            imgui.table_setup_column(column, int(imgui.TableColumnFlags_.width_stretch), 1.0)
         for text in ("", "least", "mean", "largest"):
             imgui.table_next_column()
             right(text, QUIET)
