@@ -101,6 +101,8 @@ class Comparing:
             return f"Tracing by {state.second} as well ..." if state.on else ""
         if state.on and state.way is Way.DIFFERENCE and self.difference(a, b) is None:
             return f"A has nothing for the view {b.view.label}: choose another view, or keep A in this one."
+        if state.on and state.source is Source.METHOD and a.view is not b.view:
+            return f"The frame by {a.method} has nothing for the view {b.view.label}: its picture is shown."
         coarse = self._tracing.traced is not None and self._tracing.traced.request.divisor > 1
         return "" if coarse and state.source is Source.KEPT else sizes_in_words(a.frame, b.frame)
 
@@ -147,7 +149,9 @@ class Comparing:
             return
         self.state.kept, self.state.source = b, Source.KEPT
         self._follow_second()
-        self._notices.say(f"kept as A: {b.method}, {b.view.label.lower()}, frame {b.number}")
+        part = b.frame.statistics.part
+        coarse = f", of which {part:.0%} of the pixels are shaded yet" if part < 1.0 else ""
+        self._notices.say(f"kept as A: {b.method}, {b.view.label.lower()}, frame {b.number}{coarse}")
 
     def forget(self) -> None:
         """Let go of what was kept."""

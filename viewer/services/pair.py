@@ -66,22 +66,17 @@ class Pair:
     def refine(self, asked: Asked, method: str) -> Generator[tuple[Frame, Frame], None, None]:
         """Each part of the picture by the first renderer, and the same by the second with another method.
 
-        The world is left as the first has placed it."""
+        The world is always left as the first has placed it: questions may be asked of it between two parts."""
         self._second.settings = replace(self._first.settings, method=method)
         self._second.follow(self._first)
         with closing(asked.of(self._first)) as ours, closing(asked.of(self._second)) as theirs:
             begun = False
-            try:
-                while True:
-                    if begun:
-                        self._first.take_turn(asked.time)
-                    frame = next(ours, None)
-                    if frame is None:
-                        return
+            for frame in ours:
+                try:
                     if begun:
                         self._second.take_turn(asked.time)
                     begun = True
-                    yield frame, next(theirs)
-            finally:
-                if begun:
+                    other = next(theirs)
+                finally:
                     self._first.take_turn(asked.time)
+                yield frame, other

@@ -24,6 +24,11 @@ class Row:
     heading: bool = False
 
     @property
+    def shows_any(self) -> bool:
+        """Whether either figure is more than nothing, as it is written."""
+        return any(number and round(abs(number), self.digits) for number in (self.a, self.b))
+
+    @property
     def difference(self) -> float | None:
         """B - A."""
         return None if self.a is None or self.b is None else self.b - self.a
@@ -37,9 +42,10 @@ class Row:
         """One of the figures as text."""
         if number is None:
             return "-"
-        sign = "" if not signed or number == 0.0 else "+" if number > 0.0 else "-"
         body = count(abs(number)) if not self.digits else f"{abs(number):.{self.digits}f}"
-        return f"{sign or ('-' if number < 0.0 else '')}{body}{self.unit}"
+        none = round(abs(number), self.digits) == 0.0
+        sign = "" if none else "-" if number < 0.0 else "+" if signed else ""
+        return f"{sign}{body}{self.unit}"
 
     @property
     def written_share(self) -> str:
@@ -50,7 +56,7 @@ class Row:
 def rows(a: Frame, b: Frame) -> list[Row]:
     """All figures of two frames, in the words of the panel of statistics; what neither frame has is left out."""
     found = list(_rows(a, b))
-    kept = [row for row in found if row.heading or row.a or row.b or row.name in _ALWAYS]
+    kept = [row for row in found if row.heading or row.name in _ALWAYS or row.shows_any]
     return [row for i, row in enumerate(kept) if not row.heading or (i + 1 < len(kept) and not kept[i + 1].heading)]
 
 

@@ -100,7 +100,9 @@ def magnify(ui: Ui, look: Look) -> None:
     beside = seen is not None and seen[2] in (Way.SIDE, Way.WIPE) and not shows_a(ui)
     for name, drawn in ((PICTURE, filling(ui)), (OF_A, ui.compared.a if beside and ui.compared is not None else None)):
         picture = drawn.picture if drawn is not None else None
-        smooth = look.smooth and look.view.is_smooth and drawn is not None and not isinstance(drawn, SignedDifference)
+        of_a = seen is not None and ui.compared is not None and drawn is ui.compared.a
+        view = seen[0].view if seen is not None and of_a else look.view
+        smooth = look.smooth and view.is_smooth and not isinstance(drawn, SignedDifference)
         enlarged = picture is not None and (size[0] > picture.size[0] or not ui.zoom.fits)
         if drawn is not None and enlarged and not smooth:
             magnifier.draw(name, picture, drawn.version, ui.zoom, size)

@@ -65,7 +65,7 @@ def test_the_world_is_left_to_the_first_whatever_becomes_of_the_picture():
     pictures.close()
     assert first.turns == ["paper"], "a picture that nobody wants any more"
     list(pair.refine(asked, "none"))
-    assert first.turns == ["paper", "paper", "none", "paper", "paper"]
+    assert first.turns == ["paper", "paper", "none", "paper"], "and between its parts, when questions are answered"
     first.other.failing = ValueError("no")
     with pytest.raises(ValueError, match="no"):
         list(pair.refine(asked, "none"))

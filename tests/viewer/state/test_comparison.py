@@ -16,6 +16,7 @@ from viewer.state.comparison import (
     Side,
     Way,
     apart,
+    difference_words,
     fitted,
     named,
     signed_difference,
@@ -127,3 +128,12 @@ def test_certificates_and_work_are_compared_where_both_have_them():
     assert (found == 1.0).all() and not signed_difference(*[values_of(f, View.CERTIFICATE, 0) for f in (a, b)]).any()
     with pytest.raises(ValueError, match="nothing for the view Rays traced"):
         values_of(make_frame(), View.COST)
+
+
+def test_a_difference_is_put_into_words():
+    values = values_of(make_frame(), View.DEPTH)
+    difference = np.array([[0.0, 0.25, -1.5, 1e30, -1e30]], np.float32)
+    said = [difference_words(difference, values, x, 0) for x in range(5)]
+    assert said == [("0",), ("+0.25",), ("-1.5",), ("miss", "in B"), ("miss", "in A")]
+    classes = values_of(make_frame(), View.OCCLUSION)
+    assert [difference_words(difference, classes, x, 0) for x in (0, 1)] == [("same",), ("other",)]

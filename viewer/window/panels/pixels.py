@@ -93,7 +93,8 @@ def _pixel(ui: Ui, frame: Frame, number: int, point: tuple[float, float], a: Sid
     primitive = int(frame.primitive[y, x])
     clipped(str(primitive) if primitive >= 0 else "miss")
     imgui.table_next_column()
-    clipped(" ".join(f"{channel:.4f}" for channel in frame.color[y, x]))
+    digits = 4 if a is None else 3  # to fit beside those of A
+    clipped(" ".join(f"{channel:.{digits}f}" for channel in frame.color[y, x]))
     if c.tracing.drawn_view not in (View.COLOR, View.WIPE):
         imgui.table_next_column()
         clipped(_value(ui, frame, c.tracing.drawn_view, c.session.light, x, y))

@@ -58,7 +58,7 @@ def _range(ui: Ui) -> None:
     if frame is None or not can_draw(frame, view, s.light):
         return
     chosen = s.spans.get(view)
-    low, high = chosen or ui.cached("span", frame, view, lambda: span_of(frame, view))
+    low, high = c.comparing.span(view) or ui.cached("span", frame, view, lambda: span_of(frame, view))
     row("Range", "what has the first and the last colour of the map; drag, or Ctrl+click to type")
     imgui.set_next_item_width(-em(4.2))
     speed = max((high - low) / 200.0, 1e-6)

@@ -13,10 +13,11 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import em
 
 _REACH = 0.45  # ems to either side of the line where it can be taken hold of
-_DARK, _LIGHT, _HELD = (
+_DARK, _LIGHT, _HELD, _GROUND = (
     ImVec4(0.05, 0.06, 0.08, 0.72),
     ImVec4(0.95, 0.96, 0.97, 1.0),
     ImVec4(0.42, 0.70, 0.96, 1.0),
+    ImVec4(0.05, 0.06, 0.08, 0.94),  # where numbers may lie beneath
 )
 
 
@@ -69,7 +70,7 @@ def show(ui: Ui, area: Area) -> None:
     if not _there(ui) or c.frame is None:
         return
     x, corner, end = _place(ui, area), area.corner, area.end
-    dark, light, held = (imgui.get_color_u32(color) for color in (_DARK, _LIGHT, _HELD))
+    dark, light, held, ground = (imgui.get_color_u32(color) for color in (_DARK, _LIGHT, _HELD, _GROUND))
     bright = held if ui.wiping else light
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(corner, end, True)
@@ -85,7 +86,7 @@ def show(ui: Ui, area: Area) -> None:
         start = x + 2.0 * pad if side > 0.0 else x - 2.0 * pad - width
         if corner.x <= start and start + width <= end.x:
             lower = ImVec2(start + width, top + text + 2.0 * pad)
-            draw.add_rect_filled(ImVec2(start, top), lower, dark, em(0.3))
+            draw.add_rect_filled(ImVec2(start, top), lower, dark if ui.zoom.fits else ground, em(0.3))
             draw.add_text(ImVec2(start + pad, top + pad), light, name)
     draw.pop_clip_rect()
 
