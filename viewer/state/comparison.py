@@ -48,7 +48,7 @@ _LABELS = {
 }
 
 _MEANINGS = {
-    Way.FLIP: "B is shown, and A while X is held",
+    Way.FLIP: "B is shown, and A while Z is held",
     Way.WIPE: "A left of a line, B right of it; drag the line",
     Way.SIDE: "A on the left, B on the right",
     Way.DIFFERENCE: "B - A: orange where B has more, blue where it has less",

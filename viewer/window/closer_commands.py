@@ -53,9 +53,9 @@ def comparing(ui: Ui) -> list[Command]:
             enabled=there,
             tip="trace each frame by a second method as well, with modes and counters of its own",
         ),
-        Command("Next way to compare", "Compare", comparing.next_way, "Shift+X", enabled=there, separated=True),
+        Command("Next way to compare", "Compare", comparing.next_way, "Shift+Z", enabled=there, separated=True),
         *[by(way) for way in Way],
-        Command("B alone", "Compare", comparing.end, "Ctrl+X", checked=lambda: not state.on, separated=True),
+        Command("B alone", "Compare", comparing.end, "Ctrl+Shift+A", checked=lambda: not state.on, separated=True),
     ]
 
 
@@ -81,7 +81,7 @@ def looking(ui: Ui) -> list[Command]:
                 enabled=lambda: ui.zoom.scale < MOST, other_keys=("Shift+Equal", "KeypadAdd")),
         Command("Zoom out", "Picture", lambda: closer.zoom_by(ui, 1.0 / STEP, _at(ui)), "Minus", repeats=True,
                 enabled=lambda: not ui.zoom.fits, other_keys=("KeypadSubtract",)),
-        Command("Fit picture", "Picture", lambda: closer.fit(ui), "Z", enabled=lambda: not ui.zoom.fits),
+        Command("Fit picture", "Picture", lambda: closer.fit(ui), "Shift+F", enabled=lambda: not ui.zoom.fits),
         Command("Values in pixels", "Picture", toggle_values, checked=lambda: p.pixel_values, separated=True),
         Command("Watch pixel", "Picture", lambda: closer.pin_what_is_pointed_at(ui), "Shift+P"),
         Command("Let go of watched pixels", "Picture", watched.clear, enabled=lambda: bool(watched)),

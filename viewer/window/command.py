@@ -22,7 +22,7 @@ HELD_KEYS = (
     ("Wheel", "set the speed (fly); go nearer or farther (orbit)"),
     ("Ctrl+wheel, Ctrl+drag", "zoom into the picture itself around the pointer; move it"),
     ("Shift+drag", "choose a region, whose values the panel Pixels counts"),
-    ("X", "show A while it is held, where pictures are compared"),
+    ("Z", "show A while it is held, where pictures are compared"),
     ("Right click", "a menu for the pixel"),
     ("Drag the wipe's line", "compare the picture with the right one, or A with B"),
     ("Drag the legend", "put it elsewhere in the picture; it snaps to edges and corners"),

@@ -22,7 +22,7 @@ from viewer.window.compared import SignedDifference
 from viewer.window.display import Display, Look
 from viewer.window.ui import Ui
 
-HELD_KEY = imgui.Key.x
+HELD_KEY = imgui.Key.z
 PICTURE, OF_A = "picture", "A"
 """What the magnifier calls what fills the picture, and A beside it."""
 

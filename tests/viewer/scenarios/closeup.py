@@ -40,7 +40,7 @@ def closeup(d: Driver) -> None:
         if number == 0:
             _crisp(d, shown, x, y)
             _panned(d, x, y)
-        d.press(KEY.z)
+        d.press(int(KEY.f) | SHIFT)
         assert d.ui.zoom.fits
     assert d.c.session.camera == camera and d.c.history.frames == traced and d.c.preferences.speed == speed
     d.press(KEY.equal, 3)
@@ -131,7 +131,7 @@ def _numbers(d: Driver) -> None:
         changed = (d.window() != without).any(axis=-1)[top + 30 : bottom, left:right]
         assert 0.02 < changed.mean() < 0.8, f"{view}: {changed.mean():.1%} of the picture changed"
     d.c.settings.set_view(View.COLOR)
-    d.press(KEY.z)
+    d.press(int(KEY.f) | SHIFT)
     d.settle()
 
 

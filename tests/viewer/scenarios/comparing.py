@@ -29,9 +29,9 @@ def comparing(d: Driver) -> None:
     d.c.settings.change(method="none")
     d.settle()
     state = d.c.comparing.state
-    d.press(int(KEY.x) | SHIFT)
+    d.press(int(KEY.z) | SHIFT)
     assert "Ctrl+A" in d.c.notices.message.text and seen.shown(d.ui) is None, "nothing is kept yet"
-    d.press(int(KEY.x) | CTRL)
+    d.press(int(KEY.a) | CTRL | SHIFT)
     d.press(int(KEY.a) | CTRL)
     kept = d.c.frame
     assert state.kept.frame is kept and state.kept.method == "none" and not state.on
@@ -40,7 +40,7 @@ def comparing(d: Driver) -> None:
     assert d.c.frame is not kept and d.c.session.camera != kept.camera, "Ctrl+A has flown, or D has not"
     a, b = picture(kept), picture(d.c.frame)
     for way in (Way.WIPE, Way.SIDE, Way.DIFFERENCE, Way.BLINK, Way.FLIP):
-        d.press(int(KEY.x) | SHIFT) if way is not Way.WIPE else d.c.comparing.start(way)
+        d.press(int(KEY.z) | SHIFT) if way is not Way.WIPE else d.c.comparing.start(way)
         d.settle()
         assert state.on and seen.shown(d.ui)[2] is state.way is way
         assert d.c.frame.primitive.shape == kept.primitive.shape, "both can be compared pixel by pixel"
@@ -62,11 +62,11 @@ def comparing(d: Driver) -> None:
                 d.frames(4)
                 check_fit(d, f"{panel}, comparing")
             d.ui.pixels.watched.clear()
-    d.context.key_down(KEY.x)
+    d.context.key_down(KEY.z)
     d.frames(3)
     assert seen.shows_a(d.ui) and seen.filling(d.ui) is d.ui.compared.a
     assert np.array_equal(_saved(d, "held.png"), a)
-    d.context.key_up(KEY.x)
+    d.context.key_up(KEY.z)
     d.frames(3)
     assert not seen.shows_a(d.ui) and seen.filling(d.ui) is d.ui.display
     _line(d, a, b)
@@ -133,7 +133,7 @@ def _line(d: Driver, a: np.ndarray, b: np.ndarray) -> None:
     d.frames(3)
     d.drag((right - 1.0, middle), (-0.5 * (right - left), 0.0))
     assert abs(d.c.session.wipe - 0.2) < 0.02 and d.c.session.camera == camera
-    d.press(KEY.z)
+    d.press(int(KEY.f) | SHIFT)
     assert d.ui.zoom.fits
 
 

@@ -70,7 +70,7 @@ def _controls(ui: Ui) -> None:
             if state.source is Source.METHOD:
                 row("A's method", "traces each frame once more, with modes and counters of its own")
                 _second(ui)
-            row("Show", "how A and B are seen; X shows A while it is held")
+            row("Show", "how A and B are seen; Z shows A while it is held")
             _way(ui)
             if state.way is Way.BLINK:
                 row("Rate", "times a second that both are seen")
