@@ -10,6 +10,7 @@ from typing import Any
 
 from tracer.compilation import can_draw, warm_up
 from tracer.renderer import Renderer, Settings
+from tracer.scene.files import Stamp, noting
 from tracer.scene.load import load_visible_scene, scene_info
 from tracer.scene.model import Progress, Scene
 from viewer.util import resources
@@ -48,13 +49,20 @@ def refusal(path: Path) -> str | None:
 
 
 def open_scene(
-    path: Path, settings: Settings, ready: Callable[[], bool], progress: Progress, folders: Sequence[Path] = ()
+    path: Path,
+    settings: Settings,
+    ready: Callable[[], bool],
+    progress: Progress,
+    folders: Sequence[Path] = (),
+    files: dict[Path, Stamp] | None = None,
 ) -> Opened:
-    """Read a scene and build its trees; waits for the tracer to be `ready` in between.
+    """Read a scene and build its trees; waits for the tracer to be `ready` in between.  What was read gets into
+    `files`, also where it cannot be shown.
 
     Raises SceneError or Cancelled; runs on a thread of its own."""
     started = time.perf_counter()
-    scene = load_visible_scene(path, progress, folders)
+    with noting({} if files is None else files):
+        scene = load_visible_scene(path, progress, folders)
     while not ready():
         progress(f"{path.name} is read; waiting for the tracer", 1.0)
         time.sleep(0.02)
