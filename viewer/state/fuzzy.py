@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from difflib import SequenceMatcher
 from itertools import pairwise
 
-_WHOLE, _PREFIX, _INSIDE, _SCATTERED = 100.0, 80.0, 50.0, 20.0
+_WHOLE, _PREFIX, _INITIALS, _INSIDE, _SCATTERED = 100.0, 80.0, 60.0, 50.0, 20.0
 _ALIKE = 0.7  # of a mistyped word, at least
 
 
@@ -58,7 +58,9 @@ def _word(word: str, text: str) -> Match | None:
         if best is None or score > best.score:
             best = Match(score, tuple(range(start, end)))
         start = text.find(word, start + 1)
-    return best or _scattered(word, text)
+    if best is not None and best.score > _INITIALS:
+        return best
+    return max(filter(None, (best, _scattered(word, text))), key=lambda found: found.score, default=None)
 
 
 def _scattered(word: str, text: str) -> Match | None:
@@ -76,7 +78,8 @@ def _scattered(word: str, text: str) -> Match | None:
         else:
             gaps = sum(b - a > 1 and text[b - 1].isalnum() for a, b in pairwise(places))
             if gaps <= 1:
-                score = _SCATTERED - 6.0 * gaps - 0.05 * start - 0.1 * (places[-1] - start)
+                initials = len(places) > 1 and all(p == 0 or not text[p - 1].isalnum() for p in places)
+                score = (_INITIALS if initials else _SCATTERED) - 6.0 * gaps - 0.05 * start - 0.1 * (places[-1] - start)
                 if best is None or score > best.score:
                     best = Match(score, tuple(places))
     return best

@@ -7,9 +7,10 @@ ImGui knows a letter by what is printed on its key.  A key without Ctrl, Alt or 
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Callable, Iterable
 
-from imgui_bundle import imgui
+from imgui_bundle import glfw_utils, imgui
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
@@ -42,14 +43,22 @@ def printed_there(key: int) -> str | None:
     return glfw.get_key_name(key, 0)
 
 
+def held_there(key: int) -> bool:
+    """Whether GLFW says that a key is down; needs a window."""
+    return bool(glfw.get_key(glfw_utils.glfw_window_hello_imgui(), key) == glfw.PRESS)
+
+
 class Keyboard:
     """As a US keyboard until `follow` is called."""
 
-    def __init__(self, printed: Callable[[int], str | None] = printed_there) -> None:
-        self._printed = printed
+    def __init__(
+        self, printed: Callable[[int], str | None] = printed_there, held: Callable[[int], bool] = held_there
+    ) -> None:
+        self._printed, self._held = printed, held
         self._looked = -EVERY
         self._letters: dict[str, str] = {}
         self._chords: dict[str, int] = {}
+        self._shared: set[int] = set()
 
     def follow(self) -> None:
         """Look what is printed where, now and then."""
@@ -60,6 +69,8 @@ class Keyboard:
         letters = {name: self._printed(key) or "" for name, key in PLACES.items()}
         if letters != self._letters:
             self._letters, self._chords = letters, {}
+            counts = Counter(self.chord(name) for name in PLACES)
+            self._shared = {number for number, count in counts.items() if count > 1}
 
     def chord(self, key: str) -> int:
         """ImGui's number of a key with its modifiers."""
@@ -69,6 +80,19 @@ class Keyboard:
             there = self._asked_for(name) if is_place(key) else name
             known = self._chords[key] = chord("+".join([*modifiers, there]))
         return known
+
+    def is_meant(self, key: str) -> bool:
+        """Whether ImGui's key is this one, where it takes two places for the same: French keyboards have a minus on the
+        6, and ImGui knows the key that has it elsewhere as a minus too."""
+        name = key.split("+")[-1]
+        if not is_place(key) or name not in PLACES or self.chord(name) not in self._shared:
+            return True
+        if self._held(PLACES[name]):
+            return True
+        others = [other for other in PLACES if other != name and self.chord(other) == self.chord(name)]
+        if any(self._held(PLACES[other]) for other in others):
+            return False
+        return self._asked_for(name) != name  # let go already: rather the one that has the sign printed on it
 
     def label(self, key: str) -> str:
         """A key as the user reads it on the keyboard."""
@@ -81,7 +105,7 @@ class Keyboard:
     def is_down(self, keys: Iterable[str]) -> bool:
         """Whether one of these keys is held, whatever modifiers are held with it."""
         mask = ~int(imgui.Key.mod_mask_)
-        return any(imgui.is_key_down(imgui.Key(self.chord(key) & mask)) for key in keys)
+        return any(imgui.is_key_down(imgui.Key(self.chord(key) & mask)) and self.is_meant(key) for key in keys)
 
     def pressed(self) -> str | None:
         """The key that has just been pressed, with its modifiers, as commands have it."""
@@ -90,7 +114,7 @@ class Keyboard:
         prefix = "".join(f"{name}+" for name in modifiers)
         for name in (*PLACES, *_OTHERS):
             number = self.chord(prefix + name) & ~int(imgui.Key.mod_mask_)
-            if imgui.is_key_pressed(imgui.Key(number), repeat=False):
+            if imgui.is_key_pressed(imgui.Key(number), repeat=False) and self.is_meant(prefix + name):
                 return prefix + name
         return None
 

@@ -70,7 +70,8 @@ def _pressed(ui: Ui, command: Command, key: str, modifiers: int) -> bool:
     number = ui.keyboard.chord(key)
     if number & int(imgui.Key.mod_mask_) != modifiers:
         return False
-    return imgui.is_key_pressed(imgui.Key(number & ~int(imgui.Key.mod_mask_)), repeat=command.repeats)
+    pressed = imgui.is_key_pressed(imgui.Key(number & ~int(imgui.Key.mod_mask_)), repeat=command.repeats)
+    return pressed and ui.keyboard.is_meant(key)
 
 
 def _menu_item(ui: Ui, command: Command, separated: bool) -> None:

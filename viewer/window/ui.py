@@ -54,9 +54,9 @@ class Fold:
 
 @dataclass
 class Ui:
-    """See the module. `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says
-    that the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector; `light_filters` is what
-    is typed above each list of lights; `screening` is the recorded picture that is shown in the picture's place;
+    """See the module. `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says that
+    the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector; `light_filters` is
+    what is typed above each list of lights; `screening` is the recorded picture that is shown in the picture's place;
     `legend_shown` says whether the picture shows its legend, `legend_held` where the pointer holds that; `key_wanted`
     names the command that waits for a key to be pressed; `editing` is the list and the place in it of a name that is
     being edited, `edited` that name; `tour_height` is what the picture leaves free below it for the tour, `tour_place`
