@@ -115,7 +115,6 @@ class App:
         step("Reading the keys", lambda: menus.handle_keys(self.ui))
         step("Flying", lambda: picture.fly(self.ui))
         step("Game pads", self._follow_pads)
-        self.controller.undo.held = imgui.is_any_item_active()
         overlay("The progress of loading", lambda: loading.show(self.ui))
         dialogs.show(self.ui)
         overlay("The tour", lambda: tour.show(self.ui), self.ui.tour.end)
@@ -124,6 +123,7 @@ class App:
     def after_widgets(self) -> None:
         """The window is drawn but not yet shown."""
         self.ui.guard.step("Saving the window", self._capture_window)
+        self.controller.undo.held = imgui.is_any_item_active()
         self.controller.drawn_seconds = time.perf_counter() - self._frame_began
 
     def _follow_pads(self) -> None:
