@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import gc
+import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -61,7 +64,7 @@ def open_scene(
 
     Raises SceneError or Cancelled; runs on a thread of its own."""
     started = time.perf_counter()
-    with noting({} if files is None else files):
+    with noting({} if files is None else files), _no_collecting():
         scene = load_visible_scene(path, progress, folders)
     while not ready():
         progress(f"{path.name} is read; waiting for the tracer", 1.0)
@@ -70,6 +73,27 @@ def open_scene(
         warm_up(progress, len(scene.lights), settings.accelerator)
     renderer = Renderer(scene, settings, progress)
     return Opened(scene, renderer, scene_info(scene), time.perf_counter() - started)
+
+
+@contextmanager
+def _no_collecting() -> Iterator[None]:
+    """Without Python's search for circles of objects: a scene of a million pieces has none, and the search stops the
+    window for up to a second each time."""
+    global _uncollected
+    with _lock:
+        _uncollected += 1
+        gc.disable()
+    try:
+        yield
+    finally:
+        with _lock:
+            _uncollected -= 1
+            if not _uncollected:
+                gc.enable()
+
+
+_lock = threading.Lock()
+_uncollected = 0  # scenes that are being read
 
 
 def find_scene(stored: str, picture: Path) -> Path | None:

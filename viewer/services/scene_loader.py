@@ -6,6 +6,7 @@ is cancelled.  A second request to open takes the place of the first.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,6 +22,9 @@ from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session, Snapshot
 from viewer.util.messages import ERROR, say
+
+PATIENCE = 0.5
+"""Seconds that a load which was cancelled may take to end."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +54,7 @@ class SceneLoader:
         self._ask_first, self._wake = ask_first, wake
         self.warm_up_job: Job[None] | None = None
         self.load_job: Job[scene_files.Opened] | None = None
+        self._cancelled_at = 0.0
         self._folders: tuple[Path, ...] = ()
         self._abandoned: list[Job] = []
         self._place: Snapshot | None = None  # where to go once the scene is loaded
@@ -94,6 +99,7 @@ class SceneLoader:
         if self.load_job is not None and self.load_job.done:
             load, self.load_job = self.load_job, None
             self._restored = self._loaded(load)
+        self._let_go()
         self._abandoned = [job for job in self._abandoned if not job.done]
         arrival, self._restored = self._restored, None
         return arrival
@@ -145,8 +151,22 @@ class SceneLoader:
 
     def cancel(self) -> None:
         """Give up the load that is under way; the scene that is open stays."""
-        if self.load_job is not None:
+        if self.load_job is not None and not self.load_job.stopping:
             self.load_job.cancel()
+            self._cancelled_at = time.monotonic()
+
+    def _let_go(self) -> None:
+        """Wait no longer for a load that was cancelled and cannot stop at once, as within a library that reads a mesh:
+        it ends by itself, and nothing comes of it."""
+        job = self.load_job
+        if job is not None and job.stopping and time.monotonic() - self._cancelled_at > PATIENCE:
+            self._abandoned.append(job)
+            self.load_job = self._place = None
+            self._say_cancelled()
+
+    def _say_cancelled(self) -> None:
+        stays = ": the scene that was open stays" if self._session.scene is not None else ""
+        self._notices.say(f"loading cancelled{stays}")
 
     def cancel_all(self) -> list[Job]:
         """Ask every job to stop; returns them, to be waited for."""
@@ -211,8 +231,7 @@ class SceneLoader:
         elif job.result is not None:
             self.files = self._reading
         if job.cancelled:
-            stays = ": the scene that was open stays" if self._session.scene is not None else ""
-            self._notices.say(f"loading cancelled{stays}")
+            self._say_cancelled()
         elif job.failure is not None:
             self._tell_shell(job.failure.text)
             stays = " (the scene as it was stays)" if again else ""
