@@ -153,7 +153,7 @@ class _Reader:
     def report_assembly(self) -> None:
         if self.progress is not None and (now := perf_counter()) - self.reported > SECONDS_BETWEEN_REPORTS:
             self.reported = now
-            self.progress(f"Putting {self.path.name} together", 1.0)
+            self.progress(f"Reading {self.path.name}: putting it together", 1.0)
 
     def include(self, at: Cursor, low: float, high: float) -> None:
         level = at.count("detail levels", least=-(10**9))

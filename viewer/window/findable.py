@@ -32,7 +32,7 @@ def _commands(ui: Ui) -> Iterator[Item]:
                 checked=command.checked() if command.checked is not None else None,
                 enabled=command.enabled(),
                 why_not=command.why_not,
-                also=f"{command.name} {command.tip}",
+                also=command.name,
             )
 
 
@@ -44,7 +44,7 @@ def _presets(ui: Ui) -> Iterator[Item]:
     presets = ui.controller.presets
     for name in presets.names:
         yield Item(f"preset {name}", name, Kind.PRESET, partial(presets.apply, name), "Edit > Presets",
-                   also=f"apply {presets.tip(name)}")  # fmt: skip
+                   also="apply")  # fmt: skip
 
 
 def _panels(ui: Ui) -> Iterator[Item]:
