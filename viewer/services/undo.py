@@ -98,10 +98,10 @@ class Undo:
             self._last = now
             return
         changed = _changes(self._last, now)
-        if self._name and changed:
+        name, self._name = self._name, ""
+        if name and changed:
             self._close()
-            self._add(Step(self._name, self._last, now))
-            self._name = ""
+            self._add(Step(name, self._last, now))
         elif changed:
             if self._open is not None and not changed.keys() <= self._open.fields.keys():
                 self._close()

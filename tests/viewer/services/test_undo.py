@@ -156,6 +156,14 @@ def test_what_is_named_is_one_step_with_that_name(desk: Desk):
     assert (desk.session.settings.method, desk.session.settings.depth) == ("auto", 10)
 
 
+def test_a_name_for_nothing_names_nothing_else(desk: Desk):
+    desk.undo.call_next("preset mine")
+    desk.frame()
+    desk.settings.change(depth=2)
+    desk.frame()
+    assert desk.undo.undoes == "bounces 2"
+
+
 def test_nothing_is_undone_while_it_is_locked_and_another_scene_forgets_all(desk: Desk):
     desk.settings.change(depth=2)
     desk.frame()
