@@ -69,7 +69,7 @@ class App:
         self._frame_began = time.perf_counter()
         self._capture_this_frame = False
         self.drawn_by_processor = self.iconified = False
-        self.read_pads = glfw_pads.pads
+        self.read_pads = glfw_pads.Pads().read
         if problem:
             self.controller.notices.say(problem, error=True)
 

@@ -33,7 +33,7 @@ def test_every_item_has_a_name_of_its_own(ui):
 @pytest.mark.parametrize(
     ("typed", "meant"),
     [
-        ("undo", "Undo"), ("occl", "Occlusion mode"), ("bounces", "setting Bounces"),
+        ("undo", "Undo"), ("nl", "Next light"), ("occl", "Occlusion mode"), ("bounces", "setting Bounces"),
         ("paper as", "preset As in the paper"), ("figure4", None), ("reload", "Reload"),
         ("embree", "Copy camera for Embree"), ("occulsion", "Occlusion mode"),
         ("theme", "Light theme"), ("dead zone", "setting Dead zone of sticks"),
