@@ -13,11 +13,13 @@ from viewer.state.views import View
 from viewer.window.escape import ANY_POPUP
 
 KEY = imgui.Key
+SMALL = (1000, 640)  # still with docked panels, and soon drawn
 CTRL, SHIFT = int(KEY.mod_ctrl), int(KEY.mod_shift)
 
 
 def at_home(d: Driver) -> None:
     """One thing after another, as somebody would who settles in."""
+    d.resize(*SMALL)
     d.settle()
     _palette(d)
     _undo(d)
@@ -63,11 +65,9 @@ def find(d: Driver, typed: str) -> None:
 
 def _undo(d: Driver) -> None:
     home = d.c.session.camera
-    d.hold(KEY.d, 0.2)
-    d.hold(KEY.w, 0.2)
+    d.hold(KEY.d, 0.1)
     d.drag(d.picture_centre(), (60.0, 10.0))
     d.settle()
-    away = d.c.session.camera
     slider = d.context.item_info("//View/view/##shading").rect_full
     middle, shading = (0.5 * (slider.min.x + slider.max.x), 0.5 * (slider.min.y + slider.max.y)), 0.35
     d.drag(middle, (40.0, 0.0))
@@ -82,11 +82,9 @@ def _undo(d: Driver) -> None:
         flights += 1
     d.settle()
     assert d.c.session.camera == home
-    for _ in range(flights):
-        d.press(CTRL | int(KEY.y))
-    d.settle()
-    assert d.c.session.camera == away
-    for _ in range(flights + 2):
+    d.press(CTRL | int(KEY.y))
+    assert d.c.undo.undoes == "camera" and d.c.motion.under_way
+    for _ in range(3):
         d.press(CTRL | int(KEY.z))
     d.settle()
     assert d.c.session.settings.depth == 10 and d.c.session.view is View.COLOR and not d.c.undo.undoes
@@ -137,7 +135,7 @@ def _log(d: Driver) -> None:
 
 def _reloading(d: Driver) -> None:
     scene, path = d.c.session.scene, Path(d.c.session.scene.path)
-    d.hold(KEY.d, 0.2)
+    d.hold(KEY.d, 0.1)
     d.settle()
     here, picture = d.c.session.snapshot(), d.shown()
     good = path.read_text()
@@ -152,10 +150,6 @@ def _reloading(d: Driver) -> None:
     d.wait(lambda: _failed(d), "the broken scene to be told of", 30.0)
     d.frames(2)
     assert "tiny.aff:" in d.c.notices.message.text and d.c.session.scene is scene
-    _write(path, good)
-    d.wait(lambda: d.c.session.scene is not scene, "the scene to be mended", 30.0)
-    d.settle()
-    assert np.array_equal(d.shown(), picture)
 
 
 def _failed(d: Driver) -> bool:

