@@ -9,6 +9,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state.preferences import RECENT_COMMANDS
 from viewer.window import findable
+from viewer.window.escape import ANY_POPUP
 from viewer.window.finder import Finder, Found, Item, Kind
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, em, fitted, paragraph, tooltip
@@ -66,6 +67,12 @@ def show(ui: Ui) -> None:
     imgui.end_popup()
     if do is not None:
         do()
+
+
+def close() -> None:
+    """Take it away, whatever it is at."""
+    if imgui.is_popup_open("", ANY_POPUP):
+        imgui.internal.close_popup_to_level(0, True)
 
 
 def _remember(ui: Ui, item: Item) -> None:

@@ -13,7 +13,7 @@ def show(ui: Ui) -> None:
     """All of them; each shows itself only when it is wanted."""
     ui.guard.overlay(browser.NAME, lambda: browser.show(ui), lambda: setattr(ui.browser, "open", False))
     ui.guard.overlay("The question", lambda: questions.show(ui), ui.controller.questions.drop)
-    ui.guard.overlay("The command palette", lambda: command_palette.show(ui))
+    ui.guard.overlay("The command palette", lambda: command_palette.show(ui), command_palette.close)
     ui.guard.overlay("The list of keys", lambda: keys.show(ui), lambda: setattr(ui, "shortcuts_open", False))
     ui.guard.overlay("The presets", lambda: presets.show(ui), lambda: setattr(ui, "presets_open", False))
     ui.guard.overlay("The dialog about the program", lambda: _about(ui), lambda: setattr(ui, "about_open", False))

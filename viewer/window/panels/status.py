@@ -10,6 +10,8 @@ from viewer.state.log import Level
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, tooltip
 
+IDLE = "idle"
+
 
 def show(ui: Ui) -> None:
     """The bar."""
@@ -29,11 +31,19 @@ def show(ui: Ui) -> None:
             if message.error and imgui.is_item_clicked():
                 c.notices.message = None
         else:
-            clipped(doing(c), QUIET)
+            text = doing(c)
+            clipped(text if text != IDLE else f"{text}   {_hints(ui)}", QUIET)
     imgui.end_child()
     if right:
         imgui.same_line(left + max(0.0, room - width + em(0.5)))
         imgui.text_colored(QUIET, right)
+
+
+def _hints(ui: Ui) -> str:
+    """Where to go on from, by the keys as they are."""
+    hints = [(ui.key("Keyboard and mouse"), "keys"), (ui.key("Command palette"), "find anything")]
+    told = [f"{key.strip(' ()')}: {what}" for key, what in hints if key]
+    return f"({', '.join(told)})" if told else ""
 
 
 def _badge(ui: Ui) -> None:
@@ -77,7 +87,7 @@ def doing(c: Controller) -> str:
         return "refining the picture" if c.tracing.becoming_finer or _learns(c) else "tracing"
     if c.tracing.adds_samples:
         return f"adding samples: {c.tracing.samples_shown} of {c.tracing.samples_wanted}"
-    return "idle   (F1: keyboard and mouse)"
+    return IDLE
 
 
 def _learns(c: Controller) -> bool:
