@@ -18,8 +18,8 @@ from tracer.scene.model import Camera
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _PBRT_ANGLE = 90.0  # degrees, where a pbrt camera says nothing
-_EMBREE = {"--vp": "position", "-vp": "position", "--vi": "target", "-vi": "target", "--vu": "up", "-vu": "up",
-           "--fov": "angle", "-fov": "angle"}  # fmt: skip
+_EMBREE_NAMES = {"vp": "position", "vi": "target", "vd": "direction", "vu": "up", "fov": "angle"}
+_EMBREE = {f"{dashes}{short}": name for short, name in _EMBREE_NAMES.items() for dashes in ("-", "--")}
 _PBRT_SIZE = ("xresolution", "yresolution")
 
 
@@ -61,7 +61,7 @@ def read(text: str, now: Camera, aspect: float) -> Pasted:
         raise ValueError("the clipboard holds no text")
     if text[0] in "{[":
         return _read_json(text, now)
-    if re.search(r"(^|\s)--?v[piu]\s", text):
+    if re.search(r"(^|\s)--?(v[pidu]|fov)\s", text):
         return _read_embree(text, now)
     if re.search(r"^\s*(LookAt|Camera|Transform|ConcatTransform|Scale|Rotate|Translate)\b", text, re.MULTILINE):
         return _read_pbrt(text, now, aspect)
@@ -157,6 +157,8 @@ def _camera(found: dict[str, tuple[float, ...]], now: Camera) -> Camera:
         if not length or not math.isfinite(length):
             raise ValueError("the camera stands where it looks at")
         data["direction"] = (way / length).tolist()
+    elif "direction" in found:
+        data["direction"] = list(found["direction"])
     if "up" in found:
         if not any(found["up"]):
             raise ValueError("the camera's up is zero")

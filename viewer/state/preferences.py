@@ -236,8 +236,9 @@ def checked(name: str, value: Any, default: Any) -> Any:
     if name == "presets":
         return [v for v in value if isinstance(v, dict) and isinstance(v.get("name"), str)] if listed else default
     if name == "bookmarks":
-        ok = isinstance(value, dict) and all(isinstance(v, list) for v in value.values())
-        return value if ok else default
+        if not isinstance(value, dict) or not all(isinstance(v, list) for v in value.values()):
+            return default
+        return {scene: [mark for mark in marks if isinstance(mark, dict)] for scene, marks in value.items()}
     return value if isinstance(value, type(default)) else default
 
 

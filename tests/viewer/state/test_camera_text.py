@@ -71,6 +71,8 @@ def test_what_could_not_be_used_is_told():
 
 def test_what_is_left_open_stays():
     assert read("--fov 20 --vp 1 1 1", NOW, 1.0).camera == Camera((1.0, 1.0, 1.0), NOW.direction, NOW.up, 20.0)
+    assert read("-vp 1 1 1 -vd 1 0 0 -vu 0 0 1", NOW, 1.0).camera == Camera((1, 1, 1), (1, 0, 0), (0, 0, 1), 40.0)
+    assert read("--fov 33", NOW, 1.0).camera.angle == 33.0
     assert read('{"camera": {"position": [1, 2, 3]}}', NOW, 1.0).camera.direction == NOW.direction
     assert read("LookAt 1 0 5 1 0 0 0 1 0", NOW, 1.0).camera.angle == NOW.angle
     assert read('Camera "perspective"', NOW, 1.0).camera.angle == pytest.approx(90.0), "pbrt's own"
