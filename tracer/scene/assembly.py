@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Container, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -197,14 +198,23 @@ def _told(pieces: list[Any], report: Callable[[], None]) -> Iterator[Any]:
         yield piece
 
 
+def _placed_in_runs(pieces: Iterable[tuple[Piece[Mesh], Float64]]) -> Iterator[tuple[Float64, Float64]]:
+    """Corners and normals of all pieces in their order: at once of those in a row that have the same matrix, as a scene
+    may consist of a million polygons."""
+    for (_, bare), run in groupby(pieces, key=lambda piece: (id(piece[1]), piece[0].shape.normals is None)):
+        shapes, matrices = zip(*((piece.shape, baked) for piece, baked in run))
+        normals = None if bare else np.concatenate([shape.normals for shape in shapes])
+        yield _placed(np.concatenate([shape.corners for shape in shapes]), normals, matrices[0])
+
+
 def _triangles(
     pieces: list[tuple[Piece[Mesh], Float64]], remarks: Remarks, report: Callable[[], None]
 ) -> tuple[Triangles, list[Counted]]:
     """All triangles of an object.  Those without area stay, although no ray meets them: BART counts them."""
     if not pieces:
         return empty_triangles(), []
-    placed = [_placed(piece.shape.corners, piece.shape.normals, baked) for piece, baked in _told(pieces, report)]
-    lengths = [len(corners) for corners, _ in placed]
+    placed = list(_placed_in_runs(_told(pieces, report)))
+    lengths = [len(piece.shape.corners) for piece, _ in pieces]
     corners = np.concatenate([c for c, _ in placed])
     normals = np.concatenate([n for _, n in placed])
     uvs = np.concatenate([_uvs(piece.shape, baked) for piece, baked in _told(pieces, report)])
