@@ -42,9 +42,9 @@ def _bookmarks(d: Driver) -> None:
     assert all(picture is not None for picture in pictures) and marks[0]["picture"] != marks[1]["picture"]
     d.press(ALT | int(KEY._1))
     assert d.c.motion.under_way
-    d.wait(lambda: d.c.session.camera == places[0], "the flight to the first bookmark")
+    d.wait(lambda: d.c.session.camera == places[0], "the flight to the first bookmark", 30.0)
     d.press(KEY.page_down)
-    d.wait(lambda: d.c.session.camera == places[1], "the flight to the next one")
+    d.wait(lambda: d.c.session.camera == places[1], "the flight to the next one", 30.0)
     d.ui.show_panel("Camera")
     d.frames(3)
     d.context.item_click("//Camera/$$1/\uf304")
@@ -72,7 +72,7 @@ def _texts(d: Driver) -> None:
     assert clipboard[-1].startswith("Scale -1 1 1")
     d.press(KEY.r)
     d.press(CTRL | SHIFT | int(KEY.v))
-    d.wait(lambda: not d.c.motion.under_way, "the flight to what was pasted")
+    d.wait(lambda: not d.c.motion.under_way, "the flight to what was pasted", 30.0)
     now = d.c.session.camera
     assert math.dist(now.position, camera.position) < 1e-6 and abs(now.angle - camera.angle) < 1e-6
     assert np.allclose(now.basis(), camera.basis(), atol=1e-6)
@@ -84,7 +84,7 @@ def _texts(d: Driver) -> None:
 
 def _sides(d: Driver) -> None:
     d.press(KEY.keypad7)
-    d.wait(lambda: not d.c.motion.under_way, "the view from the top")
+    d.wait(lambda: not d.c.motion.under_way, "the view from the top", 30.0)
     assert np.allclose(d.c.session.camera.basis()[2], (0.0, -1.0, 0.0), atol=1e-9)
     d.press(KEY.r)
     d.settle()
