@@ -14,7 +14,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.beams import make_beam, passes_by, primitives_met, put_beam
+from tracer.culling.certified.beams import make_beam, passes_by, primitives_met, put_beam, put_cone
 from tracer.culling.certified.error_bounds import LANES
 from tracer.culling.certified.seen_by_lamp import (
     KEPT,
@@ -24,6 +24,7 @@ from tracer.culling.certified.seen_by_lamp import (
     Lamp,
     ask_points,
     ask_samples,
+    ask_triangles,
     prepare,
     prepared_met,
     put_samples,
@@ -54,6 +55,8 @@ GROUP = 8  # vectors of points with one way through the tree
 # Primitives that may come between, at most: a group's, or else each of its vectors goes through the tree by itself; and
 # a vector's, or else its rays are traced.
 OF_GROUP, OF_VECTOR = 96, 256
+OF_CONE, OF_POINT = 128, 64
+HIDDEN, SEEN, PARTLY = range(3)
 WORDS = MOST_SAMPLES // 32  # with a bit for each sample
 GROUPS = MOST_SAMPLES // LANES
 NUMBERS, ALL_PREPARED = 4 * (OF_VECTOR + LANES + WIDTH), PREPARED * (OF_GROUP // LANES)  # bytes
@@ -174,6 +177,10 @@ def find_answers(certified, points, answers, samples, first, number, count, coun
                     if away or passes_by(beam, lamps.moving):
                         answers.alone[v] = answers.open[v]
                     _ask_vector(o, points, answers, v, lamp, beam, known, found > 0, cost, room, counts)
+                else:
+                    _ask_each(o, points, answers, v, lamp, beam, lamps, cost, room, counts)
+            else:
+                _ask_each(o, points, answers, v, lamp, beam, lamps, cost, room, counts)
             saved = lamps.ray_cost * _decided(answers, v, many)
             balance = min(balance + saved - state[EFFORT], SAVINGS * LANES * cost)
             state[EFFORT] = 0
@@ -255,6 +262,74 @@ def _ask_vector(o, points, answers, v, lamp, beam, found, prepared, cost, room, 
     answers.partly[v] = live & begun
     if live & begun != 0:
         _write_bits(answers, v, live & begun, lamp.groups, room)
+
+
+@subkernel
+def _ask_each(o, points, answers, v, lamp, beam, lamps, cost, room, counts):
+    """Ask about the points of a vector one by one: each has a beam of its own."""
+    every, state, partly = np.int64(answers.open[v]), i64_at(room.state), np.int64(0)
+    for_samples = FOR_SAMPLES * lamp.groups + FOR_POINT
+    most, some = min(OF_POINT, cost // (WORTH * for_samples)), every
+    while some != 0:
+        lane = lowest_bit(some)
+        i, bit = 16 * v + lane, np.int64(1) << lane
+        some &= some - 1
+        end = points.lifted[0, i], points.lifted[1, i], points.lifted[2, i]
+        normal = points.geometric[0, i], points.geometric[1, i], points.geometric[2, i]
+        if not put_cone(beam, end, normal, lamp.light, lamp.radius, lamps.within):
+            continue
+        found = _find_primitives(o, lamp.number, beam, OF_CONE, room, counts)
+        if found < 0:
+            continue
+        if passes_by(beam, lamps.moving):
+            answers.alone[v] |= bit
+        said = _ask_point(o, lamp, beam, end, found, most, lane, room, counts)
+        if said == HIDDEN:
+            answers.full[v] |= bit
+        elif said == SEEN:
+            answers.lit[v] |= bit
+        else:
+            partly |= bit
+    if partly != 0:
+        answers.partly[v] |= partly
+        _write_bits(answers, v, partly, lamp.groups, room)
+
+
+@subkernel
+def _ask_point(o, lamp, beam, end, found, most, lane, room, counts):
+    """Ask the primitives that were found about one point: HIDDEN, SEEN, or PARTLY with bits in the lane."""
+    blocked, doubt, begun, asked = room.blocked + 4 * GROUPS * lane, room.unsure + 4 * GROUPS * lane, False, 0
+    state = i64_at(room.state)
+    for batch in range(batches_of(found)):
+        made = room.prepared
+        prepare(o, lamp, room.numbers + 64 * batch, made)
+        met = np.int64(prepared_met(made, beam)) & lanes_below(found, batch)
+        counts[TESTS] += 1
+        if met == 0:
+            continue
+        hidden, missed, able = ask_triangles(made, end, lamp.light, lamp.radius, room.kept)
+        state[EFFORT] += FOR_POINTS
+        if hidden & met != 0:
+            return HIDDEN
+        met &= ~missed
+        while met != 0:
+            k = lowest_bit(met)
+            met &= met - 1
+            if not begun:
+                begun = True
+                for at in range(0, 4 * lamp.groups, 64):
+                    store(blocked + at, i32x16(0))
+                    store(doubt + at, i32x16(0))
+            asked += 1
+            if asked > most:
+                for at in range(0, 4 * lamp.groups, 64):
+                    store(doubt + at, i32x16(-1))
+                return PARTLY
+            state[EFFORT] += FOR_SAMPLES * lamp.groups
+            able_to = able & (np.int64(1) << k) != 0
+            if ask_samples(made + 4 * k, room.kept, k, able_to, room.samples, lamp.groups, blocked, doubt):
+                return HIDDEN
+    return PARTLY if begun else SEEN
 
 
 @inlined

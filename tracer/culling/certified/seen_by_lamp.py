@@ -41,6 +41,7 @@ from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     bits_of,
+    f32x16,
     gather_f32x16,
     load_f32,
     load_f32x16,
@@ -50,6 +51,7 @@ from tracer.simd import (
     minimum,
     select,
     size_of,
+    square_root,
     store,
     store_three,
 )
@@ -242,6 +244,65 @@ def ask_points(triangle, end, light, radius, kept):
     missed = (side * u + by_u < -of_u) | (side * v + by_v < -of_v) | (side * w + by_w < -of_w)
     missed = certain & (missed | (side * (_number(t, HEIGHT) + by_d) + by_d < -_number(t, UNSURE)))
     return 0, bits_of(missed), bits_of(certain & short)
+
+
+@subkernel
+def ask_triangles(made, end, light, radius, kept):
+    """What the rays from a lamp, a ball of a radius around light (3,) float32, to one point `end`, three float32, are
+    certain of.
+
+    (bits of the sixteen prepared triangles that hide all of the lamp, of those that hide nothing of it, and of those
+    that may hide a sample for certain).  For `ask_samples` what is known goes to the address `kept`, KEPT bytes, a
+    lane for each triangle."""
+    corner, of_d, firm = _three(made, CORNER), _three(made, D), load_f32x16(made + 64 * FIRM)
+    near = end[0] - corner[0], end[1] - corner[1], end[2] - corner[2]
+    way = end[0] - light[0], end[1] - light[1], end[2] - light[2]
+    longest, behind = square_root(dot(way, way)) + radius, dot(of_d, near)
+    bound = length16(near) * load_f32x16(made + 64 * NEAR) + load_f32x16(made + 64 * BEHIND)
+    bound = bound + (longest + _HALF * (abs(end[0]) + abs(end[1]) + abs(end[2]))) * load_f32x16(made + 64 * FAR)
+
+    # Evaluate the functions at the centre, and how much they change within the ball.
+    u, v, d = dot(way, _three(made, U)), dot(way, _three(made, V)), dot(way, of_d)
+    w = d - u - v
+    to_u, to_v = cross(near, _three(made, TURNED_SECOND)), cross(_three(made, TURNED_FIRST), near)
+    to_w = ZERO - of_d[0] - to_u[0] - to_v[0], ZERO - of_d[1] - to_u[1] - to_v[1], ZERO - of_d[2] - to_u[2] - to_v[2]
+    by_u, by_v, by_w = radius * length16(to_u), radius * length16(to_v), radius * length16(to_w)
+    by_d = load_f32x16(made + 64 * REACH)
+
+    # Bound the errors of each.
+    along = maximum(d, ZERO - d) + by_d
+    larger = _LARGER * along + SMALL
+    of_u, of_v = longest * load_f32x16(made + 64 * OF_U) + larger, longest * load_f32x16(made + 64 * OF_V) + larger
+    of_w = longest * load_f32x16(made + 64 * OF_W) + larger
+    store(kept + 64 * AT_U, u)
+    store(kept + 64 * AT_V, v)
+    store(kept + 64 * AT_D, d)
+    store_three(kept + 64 * GRADIENT_U, 64, to_u)
+    store_three(kept + 64 * GRADIENT_V, 64, to_v)
+    store(kept + 64 * BOUND_U, of_u)
+    store(kept + 64 * BOUND_V, of_v)
+    store(kept + 64 * BOUND_W, of_w)
+    store(kept + 64 * AT_BEHIND, behind)
+    store(kept + 64 * BOUND_BEHIND, bound)
+    store_three(kept + 64 * POINT, 64, (f32x16(end[0]), f32x16(end[1]), f32x16(end[2])))
+
+    # Compare them.
+    short = load_f32x16(made + 64 * SURE) > longest
+    firmly, at_all = bits_of(firm > ZERO), bits_of(firm >= ZERO)
+    can = (behind > bound) & short
+    height = load_f32x16(made + 64 * HEIGHT)
+    inside = (u - by_u > _INSIDE * of_u) & (v - by_v > _INSIDE * of_v) & (w - by_w > _INSIDE * of_w)
+    hidden = bits_of(can & inside & (height > _LAMP * along)) & firmly
+    missed = firmly & bits_of((u + by_u < -of_u) | (v + by_v < -of_v) | (w + by_w < -of_w) | (behind < -bound))
+    able = firmly & bits_of(can)
+    rest = at_all & ~firmly
+    if rest != 0:
+        side, certain = select(behind >= ZERO, f32x16(ONE), f32x16(-ONE)), maximum(behind, ZERO - behind) > bound
+        past = (side * u + by_u < -of_u) | (side * v + by_v < -of_v) | (side * w + by_w < -of_w)
+        past = certain & (past | (side * (height + by_d) + by_d < -load_f32x16(made + 64 * UNSURE)))
+        missed |= rest & bits_of(past)
+        able |= rest & bits_of(certain & short)
+    return hidden, missed, able
 
 
 @subkernel
