@@ -55,7 +55,7 @@ GROUP = 8  # vectors of points with one way through the tree
 # Primitives that may come between, at most: a group's, or else each of its vectors goes through the tree by itself; and
 # a vector's, or else its rays are traced.
 OF_GROUP, OF_VECTOR = 96, 256
-OF_CONE, OF_POINT = 128, 64
+OF_CONE, OF_POINT = 240, 128
 HIDDEN, SEEN, PARTLY = range(3)
 WORDS = MOST_SAMPLES // 32  # with a bit for each sample
 GROUPS = MOST_SAMPLES // LANES
@@ -65,7 +65,7 @@ ASKED, STATE = 4 * LANES, 16  # bytes
 # Nanoseconds, about: a beam and its way to the first leaf; sixteen primitives found and prepared; one asked about a
 # vector of points; and about one point, and sixteen of its samples.
 FOR_BEAM, FOR_SIXTEEN, FOR_POINTS, FOR_POINT, FOR_SAMPLES = 250, 400, 50, 15, 12
-WORTH = 2  # as much as this, times what asking takes, is what rays must take for a point or a vector to be asked about
+WORTH = 1  # as much as this, times what asking takes, is what rays must take for a point or a vector to be asked about
 # Of a vector's rays: what beams may take before they have saved anything, at most what counts of what they have saved,
 # and what a group that is passed over counts as saved.
 ADVANCE, SAVINGS, PARDON = 2, 8, 1
