@@ -212,7 +212,7 @@ def _find_primitives(o, number, beam, most, room, counts):
     """Find the primitives that may come into a beam, whole vectors of them; how many, or -1 for more than `most`."""
     found = primitives_met(o, number, beam, most, room.numbers, counts)
     i64_at(room.state)[EFFORT] += FOR_BEAM + FOR_SIXTEEN * batches_of(found if found >= 0 else most)
-    for k in range(found, LANES * batches_of(found)):
+    for k in range(max(found, 0), LANES * batches_of(found)):
         store(room.numbers + 4 * k, i32_at(room.numbers)[0])
     return found
 
