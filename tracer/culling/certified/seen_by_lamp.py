@@ -42,6 +42,7 @@ from tracer.simd import (
     address_of,
     bits_of,
     f32x16,
+    fma,
     gather_f32x16,
     load_f32,
     load_f32x16,
@@ -317,22 +318,28 @@ def ask_samples(triangle, kept, lane, can, samples, groups, blocked, unsure):
     side = ONE if firm > ZERO or behind >= ZERO else -ONE
     if firm > ZERO or (firm == ZERO and abs(behind) > _number(k, BOUND_BEHIND)):
         u0, v0, d0 = side * _number(k, AT_U), side * _number(k, AT_V), side * _number(k, AT_D)
+        w0 = d0 - u0 - v0
         to_u, to_v = scaled(_three_numbers(k, GRADIENT_U), side), scaled(_three_numbers(k, GRADIENT_V), side)
-        of_d, height0 = scaled(_three_numbers(t, D), side), side * (_number(t, HEIGHT) + _number(t, REACH))
+        of_d = scaled(_three_numbers(t, D), -side)
+        to_w = of_d[0] - to_u[0] - to_v[0], of_d[1] - to_u[1] - to_v[1], of_d[2] - to_u[2] - to_v[2]
         of_u, of_v, of_w = _number(k, BOUND_U), _number(k, BOUND_V), _number(k, BOUND_W)
-        of_height = _number(t, UNSURE)
+        least, reach, of_height = _number(t, HEIGHT), _number(t, REACH), _number(t, UNSURE)
+        # Is the lamp so high above the triangle's plane, everywhere, that its height decides nothing?
+        high = firm > ZERO and least > _LAMP * (abs(d0) + reach)
         for group in range(groups):
+            if load_i32(blocked + 4 * group) == 0xFFFF:
+                continue
             at = samples + 64 * group
             offset = load_f32x16(at), load_f32x16(at + PLACES), load_f32x16(at + 2 * PLACES)
-            u, v, less = dot(to_u, offset) + u0, dot(to_v, offset) + v0, dot(of_d, offset)
-            d, height = d0 - less, height0 - less
-            w = d - u - v
-            missed = (u < -of_u) | (v < -of_v) | (w < -of_w) | (height < -of_height)
-            hit = np.int64(0)
-            if can:
-                inside = (u > _INSIDE * of_u) & (v > _INSIDE * of_v) & (w > _INSIDE * of_w)
-                hit = bits_of(inside & (height > of_height) & (height > _LAMP * d))
-            every &= _note(blocked + 4 * group, unsure + 4 * group, hit, bits_of(missed))
+            u, v, w = _further(u0, to_u, offset), _further(v0, to_v, offset), _further(w0, to_w, offset)
+            missed = (u < -of_u) | (v < -of_v) | (w < -of_w)
+            inside = (u > _INSIDE * of_u) & (v > _INSIDE * of_v) & (w > _INSIDE * of_w)
+            if not high:
+                less = _further(ZERO, of_d, offset)
+                d, height = d0 + less, side * (least + reach) + less
+                missed = missed | (height < -of_height)
+                inside = inside & (height > of_height) & (height > _LAMP * d)
+            every &= _note(blocked + 4 * group, unsure + 4 * group, bits_of(inside) if can else 0, bits_of(missed))
         return every == 0xFFFF
     x, y, z = _three_numbers(k, POINT)
     low, high = _three_numbers(t, LOW), _three_numbers(t, HIGH)
@@ -342,6 +349,13 @@ def ask_samples(triangle, kept, lane, can, samples, groups, blocked, unsure):
         missed = segments_miss_box(start, (x - start[0], y - start[1], z - start[2]), low, high)
         every &= _note(blocked + 4 * group, unsure + 4 * group, np.int64(0), bits_of(missed) if firm == ZERO else 0)
     return every == 0xFFFF
+
+
+@inlined
+def _further(at_centre, gradient, offset):
+    """A linear function at places that are off the centre of a lamp."""
+    nearly = fma(gradient[1], offset[1], fma(gradient[2], offset[2], f32x16(at_centre)))
+    return fma(gradient[0], offset[0], nearly)
 
 
 @inlined
