@@ -41,6 +41,7 @@ from tracer.simd import (
     i32x16,
     i64_at,
     lanes_below,
+    load_f32x16,
     load_i32,
     load_i32x16,
     load_three,
@@ -61,15 +62,15 @@ WORDS = MOST_SAMPLES // 32  # with a bit for each sample
 GROUPS = MOST_SAMPLES // LANES
 NUMBERS, ALL_PREPARED = 4 * (OF_VECTOR + LANES + WIDTH), PREPARED * (OF_GROUP // LANES)  # bytes
 MARKS = 4 * LANES * GROUPS  # bytes: a bit for each sample of each point of a vector
-ASKED, STATE = 4 * LANES, 16  # bytes
+ASKED, STATE = 4 * LANES, 24  # bytes
 # Nanoseconds, about: a beam and its way to the first leaf; sixteen primitives found and prepared; one asked about a
 # vector of points; and about one point, and sixteen of its samples.
-FOR_BEAM, FOR_SIXTEEN, FOR_POINTS, FOR_POINT, FOR_SAMPLES = 250, 400, 50, 15, 12
+FOR_BEAM, FOR_SIXTEEN, FOR_POINTS, FOR_POINT, FOR_SAMPLES = 250, 400, 50, 8, 6
 WORTH = 1  # as much as this, times what asking takes, is what rays must take for a point or a vector to be asked about
 # Of a vector's rays: what beams may take before they have saved anything, at most what counts of what they have saved,
 # and what a group that is passed over counts as saved.
 ADVANCE, SAVINGS, PARDON = 2, 8, 1
-EFFORT, LATEST = range(2)  # of a lamp's state: nanoseconds since the last account; which triangle hid a point last
+EFFORT, LATEST, HIDING = range(3)  # of a lamp's state: nanoseconds since the last account; which triangle hid a point last
 
 
 class LampAnswers(NamedTuple):
@@ -110,6 +111,7 @@ class Room(NamedTuple):
     unsure: int
     asked: int
     state: int
+    hiding: int
 
 
 @subkernel
@@ -143,12 +145,13 @@ def find_answers(certified, points, answers, samples, first, number, count, coun
         local_memory(MARKS),
         local_memory(ASKED),
         local_memory(STATE),
+        local_memory(PREPARED),
     )
     groups = put_samples(samples, first, many, light, room.samples)
     lamp = Lamp(number, light, radius, groups)
     state, cost = i64_at(room.state), many * lamps.ray_cost  # of a point's rays
     most = min(OF_VECTOR, LANES * cost // (WORTH * FOR_POINTS))
-    state[EFFORT], state[LATEST] = 0, -1
+    state[EFFORT], state[LATEST], state[HIDING] = 0, -1, 0
     balance = ADVANCE * LANES * cost
     for start in range(0, vectors(count), GROUP):
         end = min(start + GROUP, vectors(count))
@@ -276,6 +279,12 @@ def _ask_each(o, points, answers, v, lamp, beam, lamps, cost, room, counts):
         some &= some - 1
         end = points.lifted[0, i], points.lifted[1, i], points.lifted[2, i]
         normal = points.geometric[0, i], points.geometric[1, i], points.geometric[2, i]
+        if state[HIDING] != 0:  # what hid another may hide this one
+            hidden, _, _ = ask_triangles(room.hiding, end, lamp.light, lamp.radius, room.kept)
+            state[EFFORT] += FOR_POINTS
+            if hidden != 0 and _within(end, lamps.within):
+                answers.full[v] |= bit
+                continue
         if not put_cone(beam, end, normal, lamp.light, lamp.radius, lamps.within):
             continue
         found = _find_primitives(o, lamp.number, beam, OF_CONE, room, counts)
@@ -295,6 +304,22 @@ def _ask_each(o, points, answers, v, lamp, beam, lamps, cost, room, counts):
         _write_bits(answers, v, partly, lamp.groups, room)
 
 
+@inlined
+def store_block(to, made):
+    """Copy sixteen prepared primitives."""
+    for at in range(0, PREPARED, 64):
+        store(to + at, load_f32x16(made + at))
+
+
+@inlined
+def _within(end, box):
+    """Whether a point lies in a box (6,)."""
+    inside = True
+    for axis in range(3):
+        inside &= end[axis] >= box[axis] and end[axis] <= box[3 + axis]
+    return inside
+
+
 @subkernel
 def _ask_point(o, lamp, beam, end, found, most, lane, room, counts):
     """Ask the primitives that were found about one point: HIDDEN, SEEN, or PARTLY with bits in the lane."""
@@ -303,15 +328,14 @@ def _ask_point(o, lamp, beam, end, found, most, lane, room, counts):
     for batch in range(batches_of(found)):
         made = room.prepared
         prepare(o, lamp, room.numbers + 64 * batch, made)
-        met = np.int64(prepared_met(made, beam)) & lanes_below(found, batch)
-        counts[TESTS] += 1
-        if met == 0:
-            continue
         hidden, missed, able = ask_triangles(made, end, lamp.light, lamp.radius, room.kept)
+        counts[TESTS] += 1
         state[EFFORT] += FOR_POINTS
-        if hidden & met != 0:
+        if hidden != 0:
+            store_block(room.hiding, made)
+            state[HIDING] = 1
             return HIDDEN
-        met &= ~missed
+        met = lanes_below(found, batch) & ~missed
         while met != 0:
             k = lowest_bit(met)
             met &= met - 1
