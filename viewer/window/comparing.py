@@ -22,7 +22,6 @@ from viewer.window.compared import SignedDifference
 from viewer.window.display import Display, Look
 from viewer.window.ui import Ui
 
-HELD_KEY = imgui.Key.z
 PICTURE, OF_A = "picture", "A"
 """What the magnifier calls what fills the picture, and A beside it."""
 
@@ -33,7 +32,7 @@ def follow_key(ui: Ui) -> None:
     """While the key is held, A is seen."""
     io, state = imgui.get_io(), ui.controller.comparing.state
     free = not (io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or io.key_shift)
-    state.held = state.on and free and bool(imgui.is_key_down(HELD_KEY))
+    state.held = state.on and free and ui.keyboard.is_down(ui.keymap.of("Show A"))
 
 
 def draw(ui: Ui, look: Look) -> None:

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer.state.comparison import Side
+from viewer.state.keymap import HELD
 from viewer.state.pixels import Point, region_between
 from viewer.state.zooming import GRID_FROM, STEP, panned, pixels_shown
 from viewer.window import closer, comparing
@@ -18,7 +19,7 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import em
 
 _MENU = "menu of the picture"
-_FLYING = tuple(getattr(imgui.Key, key) for key in "wasdqe")
+_FLYING = tuple(name for name in HELD if name.startswith("Fly"))
 _GRID, _BACK = ImVec4(0.5, 0.5, 0.5, 0.45), ImVec4(0.03, 0.04, 0.05, 0.66)
 _FRONT, _DARK = ImVec4(0.97, 0.97, 0.98, 1.0), ImVec4(0.03, 0.04, 0.05, 0.9)
 _REGION = ImVec4(0.42, 0.70, 0.96, 1.0)
@@ -44,7 +45,7 @@ def drag(ui: Ui, area: Area) -> bool:
     """Pan with Ctrl, choose a region with Shift; whether the pointer, on ImGui's last item, does either."""
     io = imgui.get_io()
     if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
-        flying = any(imgui.is_key_down(key) for key in _FLYING)  # then Shift flies faster
+        flying = any(ui.keyboard.is_down(ui.keymap.of(name)) for name in _FLYING)  # then Shift flies faster
         ui.gesture = "pan" if io.key_ctrl else "region" if io.key_shift and not flying else ""
         ui.gesture_at = area.to_picture(io.mouse_pos.x, io.mouse_pos.y)
     released = imgui.is_item_deactivated()
