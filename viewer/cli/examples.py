@@ -8,6 +8,7 @@ commands:
   shadowcull render SCENE  trace one frame into a picture, its buffers, or both; needs no display
   shadowcull bench SCENE   measure, over a path of frames, what culling saves
   shadowcull zoom SCENE    move towards a primitive, and see whether its shadows stay right
+  shadowcull explain SCENE say what became of each ray of one pixel
   shadowcull info SCENE    say what a scene holds
 
 examples:
@@ -90,6 +91,23 @@ finished frames; the exit code is then 130.
 The tables show the steps where something changes, and a summary of each factor; the JSON and the CSV hold every
 step, and the plot draws them. In these, wrong_of_primitive counts the wrong pixels of this primitive, wrong those
 of the whole picture. A primitive that is never fully rendered is never culled, so nothing is tested.
+"""
+
+EXPLAIN = """\
+examples:
+  shadowcull explain default --pixel 300,200
+  shadowcull explain kitchen.aff --frame 50 --warmup 10 --pixel 256,400 --method paper
+  shadowcull explain kitchen.aff --frame 50 --warmup 10 --pixel 256,400 --method paper --only wrong
+  shadowcull explain default --pixel 300,200 --accelerator kdtree --json
+
+The tree has the pixel's primary, reflected and refracted rays, and below each the shadow rays from where it ends.
+Each shadow ray was not asked, as the surface faces away from its light; culled, by a mode of the paper, a certificate
+or a cached occluder; passed over, as its light is hidden from the region; or traced, with so many traversal steps and
+intersection tests, counted for the ray alone. It says what blocks a ray first, seen from the light; a culled answer
+that is not true is said to be wrong. Where a point has more than 12 lights, those with the same fate have one line.
+
+Modes are set and certificates made from frame to frame, so culling acts only after some frames: --warmup N first
+traces the N frames before the one that is explained.
 """
 
 INFO = """\

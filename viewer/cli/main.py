@@ -4,6 +4,7 @@
     shadowcull render SCENE     one frame into files
     shadowcull bench SCENE      the paper's table over a path of frames
     shadowcull zoom SCENE       towards a primitive, and whether its shadows keep up
+    shadowcull explain SCENE    what became of the rays of one pixel
     shadowcull info SCENE       what a scene holds
 
 The exit code is 0 only on success; every error is one line on standard error.  What needs GL is
@@ -41,6 +42,7 @@ def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
         "render": _render,
         "bench": _bench,
         "zoom": _zoom,
+        "explain": _explain,
         "info": _info,
     }
     try:
@@ -150,6 +152,16 @@ def _zoom(arguments: list[str]) -> int:
 
     options.camera = saved_pictures.camera(options.camera)
     return 0 if zoom.run(resources.scene_path(options.scene), options) else INTERRUPTED
+
+
+def _explain(arguments: list[str]) -> int:
+    options = parsers.explain().parse_args(arguments)
+
+    from viewer.cli import explain, saved_pictures
+
+    options.camera = saved_pictures.camera(options.camera)
+    explain.explain(resources.scene_path(options.scene), options)
+    return 0
 
 
 def _info(arguments: list[str]) -> int:

@@ -150,6 +150,31 @@ def zoom() -> Parser:
     return parser
 
 
+def explain() -> Parser:
+    """Of `explain`."""
+    parser = Parser(
+        prog="shadowcull explain",
+        description="Say what became of each ray of a pixel: which shadow rays were asked, culled or traced, and why.",
+        epilog=examples.EXPLAIN + examples.methods(),
+    )
+    add = parser.add_argument
+    _add_scene(parser)
+    add("--pixel", type=pixel, required=True, metavar="X,Y", help="column and row, counted from the upper left")
+    _add_moment(parser)
+    add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
+    add("--method", type=method, metavar="M", help=f"how shadow rays are culled: {_methods()} (default: auto)")
+    only = ("all", "traced", "culled", "blocked", "wrong")
+    add("--only", choices=only, default="all", help="which shadow rays are listed (default: all)")
+    add("--light", type=count(0, 2**31 - 1), metavar="N", help="only shadow rays to this light")
+    add("--json", action="store_true", help="all rays as JSON on standard output")
+    add("--camera", metavar="JSON", help=f"another camera: {_CAMERA}")
+    add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
+    _add_tracing_options(parser, "bvh8")
+    _add_zoom_factor(parser)
+    parser.set_defaults(verify=False, samples=1)
+    return parser
+
+
 def info() -> Parser:
     """Of `info`."""
     parser = Parser(

@@ -72,7 +72,7 @@ def render(path: Path, options: Namespace) -> None:
         time = moment(scene, options.frame, options.time)
         prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)
-        before = _render_before(renderer, time, options, work)
+        before = render_before(renderer, time, options, work)
         work.count(f"tracing {settings.width} × {settings.height}", before, before + options.samples)
         verify = settings.verify or view.needs_verify
         renderer.settings = replace(
@@ -159,7 +159,7 @@ def _times_before(scene: Scene, time: float, count: int) -> list[float]:
     return [time - step * (available - i) for i in range(first, available)]
 
 
-def _render_before(renderer: Renderer, time: float, options: Namespace, work: Work) -> int:
+def render_before(renderer: Renderer, time: float, options: Namespace, work: Work) -> int:
     """Render the frames of `--warmup`; returns how many there are."""
     times = _times_before(renderer.scene, time, options.warmup)
     if len(times) < options.warmup:

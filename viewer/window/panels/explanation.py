@@ -10,7 +10,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from tracer.explanation import Explanation
 from tracer.frame import Frame
 from viewer.services.shadow_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, Part, nearest_first, others_named
-from viewer.state.picking import kind_of
+from viewer.state.picking import kind_of, primitive_in_words
 from viewer.state.projection import place
 from viewer.state.views import (
     ARRIVAL_COLORS,
@@ -166,11 +166,7 @@ def _own(ui: Ui, receiver: int) -> str:
 def _named(ui: Ui, primitive: int) -> str:
     """A primitive as people find it again: its kind and number, its object and its material."""
     scene = ui.controller.session.scene
-    if scene is None or primitive >= scene.primitive_count:
-        return f"primitive {primitive}"
-    return (
-        f"{kind_of(scene, primitive)} {primitive} of {scene.name_of(primitive)} ({scene.material_of(primitive).name})"
-    )
+    return f"primitive {primitive}" if scene is None else primitive_in_words(scene, primitive)
 
 
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
