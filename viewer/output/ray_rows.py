@@ -18,7 +18,7 @@ from tracer.ray_tree import AWAY, VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.scene.model import Scene
 from viewer.output.legend import light_in_words
 from viewer.state.picking import primitive_in_words
-from viewer.state.verdicts import MEANING, SAID, Filter, color_of
+from viewer.state.verdicts import MEANING, SAID, Filter, color_of, color_of_all
 from viewer.state.views import Color
 from viewer.util.numbers import count
 
@@ -28,6 +28,7 @@ MOST_NAMED = 3  # primitives that are named in a row
 PATH_COLOR: Color = (0.86, 0.88, 0.92)
 
 Key = tuple[int | str, ...]
+Fate = tuple[int, int, str, int]  # verdict, lit, what blocks it, wrong
 
 
 @dataclass(frozen=True)
@@ -108,19 +109,22 @@ class RayRows:
         key, whole = (*above, "light", light), s.of_light(light)
         if whole.stop - whole.start == 1:
             return self._single(ray, s, int(places[0]), key, self._name_of_light(light))
-        text = f"{self._name_of_light(light)}: {self.summary(s, places)}"
-        return Row(key, text, "", color_of(s, int(places[0])), ray.number, places,
+        name, fates = self._name_of_light(light), self._by_fate(s, places, True)
+        if len(fates) == 1:
+            (by,) = (fate[2] for fate in fates)
+            text = f"{name}: {count(len(places))} samples {self._shared_fate(s, places, by)}"
+            below = None if s.verdict[places[0]] == AWAY else lambda: self._samples(ray, s, places, key)
+            tip = MEANING[VERDICTS[s.verdict[places[0]]]]
+            return Row(key, text, tip, color_of(s, int(places[0])), ray.number, places, below)
+        text = f"{name}: {self.summary(s, places)}"
+        return Row(key, text, "", color_of_all(s, places), ray.number, places,
                    lambda: self._fates(ray, s, places, key))  # fmt: skip
 
     def _fates(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> list[Row]:
         """A row for those with each fate: the verdict, whether the light arrives, and of one light also the object that
         blocks it."""
         one = len(np.unique(s.light[places])) == 1
-        fates: dict[Key, list[int]] = {}
-        for place in places.tolist():
-            by = self._object(s, place) if one and s.verdict[place] != AWAY and not s.lit[place] else ""
-            fates.setdefault((int(s.verdict[place]), int(s.lit[place]), by, int(s.wrong[place])), []).append(place)
-        rows = []
+        fates, rows = self._by_fate(s, places, one), []
         for fate in sorted(fates):
             same = np.array(fates[fate])
             key = (*above, "fate", *fate)
@@ -128,13 +132,21 @@ class RayRows:
                 name = self._name_of_light(int(s.light[same[0]]))
                 rows.append(self._single(ray, s, int(same[0]), key, self._name_of_sample(s, int(same[0]), one, name)))
                 continue
-            text = f"{count(len(same))} {'samples' if one else 'rays'} {self._shared_fate(s, same, str(fate[2]))}"
+            text = f"{count(len(same))} {'samples' if one else 'rays'} {self._shared_fate(s, same, fate[2])}"
             below = self._samples if one else self._lights
             rows.append(
                 Row(key, text, MEANING[VERDICTS[fate[0]]], color_of(s, int(same[0])), ray.number, same,
                     lambda same=same, key=key, below=below: below(ray, s, same, key))  # type: ignore[misc]
             )  # fmt: skip
         return rows
+
+    def _by_fate(self, s: ShadowRays, places: NDArray[np.int64], one: bool) -> dict[Fate, list[int]]:
+        """The places with each fate; what blocks them counts where they are of one light."""
+        fates: dict[Fate, list[int]] = {}
+        for place in places.tolist():
+            by = self._object(s, place) if one and s.verdict[place] != AWAY and not s.lit[place] else ""
+            fates.setdefault((int(s.verdict[place]), int(s.lit[place]), by, int(s.wrong[place])), []).append(place)
+        return fates
 
     def _samples(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> list[Row]:
         return [

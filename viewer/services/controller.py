@@ -20,6 +20,7 @@ from viewer.services.capture_service import CaptureService
 from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
 from viewer.services.questions import Questions
+from viewer.services.ray_inspector import RayInspector
 from viewer.services.render_thread import RenderThread, Traced
 from viewer.services.run_controller import RunController
 from viewer.services.scene_loader import SceneLoader
@@ -56,6 +57,7 @@ class Controller:
         self.motion = Motion(session, preferences, notices, self.runs.refuses)
         self.bookmarks = Bookmarks(session, preferences, self.settings, notices)
         self.inspector = ShadowInspector(self.selection, renderer)
+        self.rays = RayInspector(session, self.selection, renderer)
         self.recorder = LightRecorder(session, renderer, self.tracing)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
@@ -94,6 +96,7 @@ class Controller:
         if run is None:
             self.recorder.follow()
         self.inspector.follow(self.frame if run is None else None, not motion.lively)
+        self.rays.follow(self.traced if run is None else None)
         return frame
 
     def _take_scene(self) -> None:

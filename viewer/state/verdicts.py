@@ -75,6 +75,7 @@ class Filter(NamedTuple):
 GREY: Color = (0.52, 0.55, 0.60)
 LIT: Color = (0.94, 0.89, 0.26)
 DARK: Color = (0.34, 0.71, 0.91)
+PARTLY: Color = (0.90, 0.55, 0.20)
 WRONG: Color = (1.0, 0.0, 0.66)
 
 
@@ -85,3 +86,11 @@ def color_of(rays: ShadowRays, place: int) -> Color:
     if rays.verdict[place] == AWAY:
         return GREY
     return LIT if rays.lit[place] else DARK
+
+
+def color_of_all(rays: ShadowRays, places: NDArray[np.int64]) -> Color:
+    """The colour of those that share one; orange where some are lit and others are not."""
+    colors = {color_of(rays, place) for place in places.tolist()} - {GREY}
+    if WRONG in colors:
+        return WRONG
+    return PARTLY if len(colors) > 1 else next(iter(colors), GREY)

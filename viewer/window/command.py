@@ -75,6 +75,13 @@ def chord(key: str) -> int:
 
 def key_label(key: str) -> str:
     """A key as the user reads it."""
-    for name, shown in (("RightArrow", "Right"), ("LeftArrow", "Left"), ("Equal", "+"), ("Minus", "-")):
+    for name, shown in (
+        ("RightArrow", "Right"),
+        ("LeftArrow", "Left"),
+        ("Equal", "+"),
+        ("Minus", "-"),
+        ("Comma", ","),
+        ("Period", "."),
+    ):
         key = key.replace(name, shown)
     return key

@@ -78,6 +78,7 @@ def _view(ui: Ui) -> list[Command]:
         Command("Outlines", "View", toggle("outlines"), "B", checked=lambda: p.outlines),
         Command("Mark wrong pixels", "View", toggle("mark_wrong"), "M", checked=lambda: p.mark_wrong),
         Command("Shares of rays", "View", toggle("work_shares"), "U", checked=lambda: p.work_shares),
+        *_rays(ui),
         Command("Draw shadow rays", "View", toggle("draw_explanation"), "I", checked=lambda: p.draw_explanation),
         Command("Smooth upscaling", "View", toggle("smooth_upscaling"), checked=lambda: p.smooth_upscaling),
         *_looks(ui),
@@ -85,6 +86,19 @@ def _view(ui: Ui) -> list[Command]:
         Command("Full screen", "View", ui.full_screen.toggle, "F11", checked=lambda: ui.full_screen.wanted),
         Command("Default layout", "View", lambda: ui.reset_layout()),
     ]
+
+
+def _rays(ui: Ui) -> list[Command]:
+    """The tree of the clicked pixel's rays, and the steps of one of them."""
+    rays = ui.controller.rays
+    walked = lambda: bool(rays.visits)  # noqa: E731
+    return [
+        Command("Rays of the clicked pixel", "View", lambda: ui.show_panel("Rays"), "X", separated=True),
+        Command("Next step of the ray", "View", lambda: rays.go(1), "Period", enabled=walked, repeats=True),
+        Command("Previous step of the ray", "View", lambda: rays.go(-1), "Comma", enabled=walked, repeats=True),
+        Command("Play the steps of the ray", "View", rays.play, "Shift+Period", checked=lambda: rays.playing,
+                enabled=walked),
+    ]  # fmt: skip
 
 
 def _looks(ui: Ui) -> list[Command]:

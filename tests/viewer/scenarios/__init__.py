@@ -11,15 +11,16 @@ from tests.viewer.scenarios.lamps import lamps
 from tests.viewer.scenarios.legends import legends
 from tests.viewer.scenarios.moving import flying, orbiting, playing, resizing
 from tests.viewer.scenarios.panels import closing_panels, folding, hiding, looks, panels
+from tests.viewer.scenarios.rays import rays
 from tests.viewer.scenarios.runs import asking, experimenting, zooming
 from tests.viewer.scenarios.touring import touring
 
 SCENARIOS = {
     scenario.__name__: scenario
     for scenario in (
-        views, difference, wiping, legends, lamps, culling, certifying, explaining, flying, orbiting, playing, resizing,
-        capturing, dropping, reopening, cancelling, browsing, experimenting, zooming, asking, filmstrip, failing,
-        panels, closing_panels, looks, hiding, folding, touring, fitting,
+        views, difference, wiping, legends, lamps, culling, certifying, explaining, rays, flying, orbiting,
+        playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting, zooming, asking, filmstrip,
+        failing, panels, closing_panels, looks, hiding, folding, touring, fitting,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip

@@ -14,7 +14,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from viewer.state import navigation
 from viewer.state.picking import point_at
 from viewer.window.palette import ON_PICTURE_ERROR
-from viewer.window.panels import explanation, film, legend, missing, timeline, tour, wipe
+from viewer.window.panels import explanation, film, legend, missing, ray_overlay, timeline, tour, wipe
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, em, paragraph
 
@@ -64,7 +64,10 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     imgui.invisible_button("picture", size, _ALL_BUTTONS)
     end = ImVec2(corner.x + size.x, corner.y + size.y)
     imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), corner, end)
-    explanation.show(ui, corner, end)
+    if c.rays.visible:  # it shows the same rays, and more
+        ray_overlay.show(ui, corner, end)
+    else:
+        explanation.show(ui, corner, end)
     _pointer(ui, corner, size)
     wipe.show(ui, corner, end)
     _overlay(ui, corner, end)
