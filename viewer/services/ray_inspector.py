@@ -86,6 +86,8 @@ class StepsQuestion:
         return self.tree.frame.time
 
     def answer(self, renderer: Traces) -> None:
+        if self.dropped:
+            return
         try:
             world = self._worlds.of(cast(Renderer, renderer), self.accelerator, self.time, lambda: self.dropped)
             self.found = visits_of(world, self.tree, self._ray, self._place)

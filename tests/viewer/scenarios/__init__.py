@@ -19,8 +19,8 @@ SCENARIOS = {
     scenario.__name__: scenario
     for scenario in (
         views, difference, wiping, legends, lamps, culling, certifying, explaining, rays, flying, orbiting,
-        playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting, zooming, asking, filmstrip,
-        failing, panels, closing_panels, looks, hiding, folding, touring, fitting,
+        playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting, zooming, asking,
+        filmstrip, failing, panels, closing_panels, looks, hiding, folding, touring, fitting,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip
