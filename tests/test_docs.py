@@ -115,7 +115,7 @@ def test_commands_are_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(argparse.ArgumentParser, "parse_args", parse_only)
     shown = {line for page in PAGES for line in shell_lines(page) if line.startswith("shadowcull")}
-    assert {"render", "bench", "zoom", "info"} <= {word for line in shown for word in line.split()[1:2]}
+    assert {"render", "bench", "zoom", "explain", "info"} <= {word for line in shown for word in line.split()[1:2]}
     for line in sorted(shown):
         with pytest.raises(Accepted):
             main(shlex.split(line)[1:])
@@ -124,7 +124,7 @@ def test_commands_are_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_options_in_the_text_exist(capsys: pytest.CaptureFixture[str]) -> None:
     """Options that the text names, as in `--verify`, are options of some command."""
     known = {"--help", "--version"}
-    for command in ("render", "bench", "zoom", "info"):
+    for command in ("render", "bench", "zoom", "explain", "info"):
         with pytest.raises(SystemExit):
             main([command, "--help"])
         known |= set(re.findall(r"--[a-z-]+", capsys.readouterr().out))
@@ -158,6 +158,7 @@ def test_keys_of_the_window_are_told() -> None:
     table = "".join(re.findall(r"^\| (`.*?) \|", (DOCS / "viewer.md").read_text(), re.MULTILINE))
     told = set(re.findall(r"`([^`]+)`", table)) | set("1234567")  # shown as `1` … `7`
     shown = {"RightArrow": "→", "LeftArrow": "←", "Ctrl+Equal": "+", "Ctrl+Minus": "-", "Ctrl+0": "0"}
+    shown |= {"Period": ".", "Comma": ",", "Shift+Period": "Shift+."}
     ui = Ui(Controller(Preferences()))
     try:
         keys = {shown.get(command.key, command.key) for command in commands.build(ui) if command.key}

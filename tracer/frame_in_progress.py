@@ -22,7 +22,6 @@ from tracer.scene.model import Camera
 from tracer.settings import Settings
 from tracer.shading.blocks import NO_PLANES, TURNS, all_blocks, pixels_of
 from tracer.shading.buffers import Buffers, empty_buffers
-from tracer.shading.pixel_rays import PixelRays, follow_pixel
 from tracer.shading.surfaces import see_surfaces
 from tracer.shading.whitted import find_in_tile, shade_tile, trace_primary
 from tracer.state import State
@@ -357,14 +356,6 @@ class FrameInProgress:
         tiles = tiles_to_shade(width, height, lanes, self.workers)
         tile = next(tile for tile in tiles if tile[0] <= x < tile[2] and tile[1] <= y < tile[3])
         self._reshader(stages, lanes)(tile, 0, np.zeros_like(self._counts[0]))
-
-    def follow_pixel(self, x: int, y: int, lit: NDArray[np.uint8], told: PixelRays) -> int:
-        """Tell the rays of a pixel; how many there are (`tracer.shading.pixel_rays`)."""
-        space, uncounted, tile = self._state.workspaces(1)[0], np.zeros(2, np.int64), (x, y, x + 1, y + 1, 0)
-        placed, lanes, depth = self._state.world.placed, self._everywhere, self.settings.depth
-        return int(
-            follow_pixel(placed, self.shading, self.rays, tile, lanes, depth, self.buffers, lit, told, uncounted, space)
-        )
 
     # --- the result --------------------------------------------------------------------------------------
 

@@ -1,18 +1,17 @@
 """What became of a pixel's rays: its primary, reflected and refracted rays, and every shadow ray of each bounce.
 
-A tile of the picture is shaded once more with watchers between the stages of its methods, in the company in which the
-pixel was shaded.  So each shadow ray is known to have been asked or not, and what answered it, exactly as it was in the
-frame.  Those that were traced are traced once more by themselves, with their steps and tests counted; and of all that
-were due the nearest thing in their way is found, whatever culling said, so that a wrong answer is seen to be one.
+A tile of the picture is shaded once more, in the company in which the pixel was shaded, with watchers between the
+stages of its methods (`tracer.methods.watching`).  So each shadow ray is known to have been asked or not, and what
+answered it, exactly as in the frame.  Those that were traced are traced once more by themselves, with their steps and
+tests counted.  And of all that were due the nearest thing in their way is found, whatever culling said, so that a wrong
+answer is seen to be one.
 """
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from enum import Enum
-from functools import cached_property
+from collections import deque
+from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,11 +21,12 @@ from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.verdicts import Answered, Because, Verdict
 from tracer.geometry.queries import DYNAMIC_OBJECTS, EVERYTHING
 from tracer.geometry.rays import MISS, ray_batch
-from tracer.methods.watching import ANSWERED, DUE, LIT, SETTLED, Watchers
-from tracer.scene.arrays import Float32, Float64
+from tracer.methods.watching import ANSWERED, DUE, LIT, SETTLED, Seen, Watchers
+from tracer.scene.arrays import Float32
 from tracer.scene.model import Cancelled
-from tracer.shading import pixel_rays as told_as
-from tracer.shading.pixel_rays import PixelRays, pixel_rays
+from tracer.sent_rays import SentRay, sent_rays
+from tracer.shading import points, wave
+from tracer.told_rays import AWAY, NUMBER_OF, TRACED, PathRay, RayKind, RayTree, ShadowRays
 
 if TYPE_CHECKING:
     from tracer.frame import Frame
@@ -36,152 +36,9 @@ if TYPE_CHECKING:
     from tracer.methods.interface import ShadowMethod, Stage
     from tracer.renderer import Renderer
 
-VERDICTS = tuple(Verdict)
-NUMBER_OF = {verdict: number for number, verdict in enumerate(VERDICTS)}
-AWAY, TRACED = NUMBER_OF[Verdict.AWAY], NUMBER_OF[Verdict.TRACED]
-ROOM = 64  # rays of a pixel to begin with
 MOST_NAMED = 64  # lights of a point that are passed over and whose blockers are looked for
 
 Cancel = Callable[[], bool] | None
-
-
-class RayKind(Enum):
-    """What sent a ray."""
-
-    PRIMARY = "primary"
-    REFLECTED = "reflected"
-    REFRACTED = "refracted"
-
-
-@dataclass(frozen=True)
-class ShadowRays:
-    """The shadow rays of a point, s of them: one for each sample of each light, due or not.
-
-    Attributes
-    ----------
-    light : (s,) int32
-        The light of each.
-    verdict : (s,) uint8
-        What became of it, as its place among `VERDICTS`.
-    lit : (s,) bool
-        Whether the light gets to the point, as the frame has it; false if the ray is not due.
-    wrong : (s,) bool
-        Whether that is not true.
-    blocker : (s,) int32
-        The primitive that is truly in the way first, seen from the light; -1 for none.
-    blocked_at : (s,) float32
-        How far along the ray that is, 0 at the light and 1 at the point; inf for none.
-    met : (s,) int32
-        For rays that were traced, the primitive that the search came upon, which need not be the first; -1 for none.
-    asked_moving : (s,) bool
-        Whether moving objects alone were asked.
-    steps, tests : (s,) int32
-        Traversal steps and intersection tests of the ray, traced alone; 0 unless it was traced or moving objects were
-        asked.
-    named : dict of int to tuple of int
-        For rays that were culled: the primitives that this rests on, where it rests on some.
-    """
-
-    light: NDArray[np.int32]
-    verdict: NDArray[np.uint8]
-    lit: NDArray[np.bool_]
-    wrong: NDArray[np.bool_]
-    blocker: NDArray[np.int32]
-    blocked_at: Float32
-    met: NDArray[np.int32]
-    asked_moving: NDArray[np.bool_]
-    steps: NDArray[np.int32]
-    tests: NDArray[np.int32]
-    named: dict[int, tuple[int, ...]]
-
-    def of_light(self, light: int) -> slice:
-        """The places of a light's samples."""
-        first, end = np.searchsorted(self.light, [light, light + 1])
-        return slice(int(first), int(end))
-
-    @cached_property
-    def counts(self) -> Counter[Verdict]:
-        """How many rays each verdict has."""
-        return counted(self.verdict)
-
-
-def counted(verdicts: NDArray[np.uint8]) -> Counter[Verdict]:
-    """How many of them are which, in the order of `Verdict`, without those that none is."""
-    numbers = np.bincount(verdicts, minlength=len(VERDICTS))
-    return Counter({verdict: int(n) for verdict, n in zip(VERDICTS, numbers) if n})
-
-
-@dataclass(frozen=True)
-class PathRay:
-    """A primary, reflected or refracted ray.
-
-    `number` is its place in `RayTree.rays`, `parent` that of the ray that sent it, -1 for the primary ray. It starts at
-    `origin` (3,), goes in the unit `direction` (3,), and counts with `weight` (3,). It hits `primitive` at `t`, -1 and
-    inf for a miss; `point` (3,) is where, and `end` (3,) a little above it, where the shadow rays `shadows` end, None
-    for a miss. `light` (3,) is what it brings to the pixel by itself, without what it sends on. `steps` and `tests` are
-    what it costs, traced alone."""
-
-    number: int
-    parent: int
-    kind: RayKind
-    bounce: int
-    origin: Float32
-    direction: Float32
-    weight: Float32
-    t: float
-    primitive: int
-    point: Float32
-    end: Float32
-    light: Float64
-    steps: int
-    tests: int
-    shadows: ShadowRays | None
-
-
-@dataclass(frozen=True)
-class RayTree:
-    """The rays of pixel (x, y) of a frame, and `samples` (s, 3), where the lights' samples are."""
-
-    frame: Frame
-    x: int
-    y: int
-    rays: tuple[PathRay, ...]
-    samples: Float32
-
-    @cached_property
-    def children(self) -> dict[int, tuple[int, ...]]:
-        """The rays that each has sent, and under -1 the primary one."""
-        found: dict[int, list[int]] = {}
-        for ray in self.rays:
-            found.setdefault(ray.parent, []).append(ray.number)
-        return {parent: tuple(numbers) for parent, numbers in found.items()}
-
-    @cached_property
-    def counts(self) -> Counter[Verdict]:
-        """How many shadow rays each verdict has."""
-        return sum((ray.shadows.counts for ray in self.rays if ray.shadows is not None), Counter())
-
-    @property
-    def due(self) -> int:
-        """Shadow rays that had to be answered."""
-        return sum(number for verdict, number in self.counts.items() if verdict.due)
-
-    @property
-    def traced(self) -> int:
-        """Shadow rays that asked static geometry."""
-        return self.counts[Verdict.TRACED]
-
-    @property
-    def color(self) -> Float32:
-        """(3,) what all rays bring to the pixel."""
-        return np.sum([ray.light for ray in self.rays], axis=0).astype(np.float32)
-
-    def shadow_rays(self) -> Iterator[tuple[PathRay, int]]:
-        """Each ray with the places of its shadow rays that are due."""
-        for ray in self.rays:
-            if ray.shadows is not None:
-                for place in np.flatnonzero(ray.shadows.verdict != AWAY):
-                    yield ray, int(place)
 
 
 def ray_tree(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel = None) -> RayTree:
@@ -215,21 +72,17 @@ def ray_tree(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel
     if not (0 <= x < frame.width and 0 <= y < frame.height):
         raise IndexError(f"no pixel {x},{y}: the picture is {frame.width} x {frame.height}")
     work, world = renderer.work_on(frame), renderer.world
-    samples = work.shading.lamps.samples
-    told, count = _followed(work, x, y)
+    samples, stages = work.shading.lamps.samples, work.stages_now()
+    watchers = _watched(work, x, y, [stage for _, stage in stages], len(samples))
     _go_on(cancelled)
-    hit = np.flatnonzero(told.names[:count, told_as.PRIMITIVE] != MISS)
-    stages = work.stages_now()
-    noted, kept = _watched(work, x, y, told, hit, [stage for _, stage in stages], len(samples))
-    _go_on(cancelled)
-    shadows = _shadow_rays(work, world, told, hit, noted, kept, stages, cancelled)
-    lit = np.zeros((count, len(samples)), np.uint8)
-    for row, found in zip(hit, shadows, strict=True):
-        lit[row] = found.lit
-    light = _lit(work, x, y, lit, count)
-    rays = _path_rays(world, told, count, light)
-    of = dict(zip(hit.tolist(), shadows, strict=True))
-    return RayTree(frame, x, y, tuple(replace(ray, shadows=of.get(ray.number)) for ray in rays), samples)
+    shadows = _shadow_rays(work, world, watchers.seen, stages, cancelled)
+    if shadows:
+        watchers.give(np.array([found.lit for found in shadows]))
+        work.shade_again(x, y, watchers.between([stage for _, stage in stages]))
+    rays = _path_rays(work, x, y, watchers.seen, shadows)
+    _, costs = world.closest_hits_each(ray_batch([ray.origin for ray in rays], [ray.direction for ray in rays]))
+    counted_rays = (replace(ray, steps=int(n), tests=int(m)) for ray, (n, m) in zip(rays, costs, strict=True))
+    return RayTree(frame, x, y, tuple(counted_rays), samples)
 
 
 def visits_of(world: World, tree: RayTree, ray: int, place: int | None = None) -> list[Visit]:
@@ -265,90 +118,103 @@ def _go_on(cancelled: Cancel) -> None:
         raise Cancelled("cancelled")
 
 
-def _followed(work: FrameInProgress, x: int, y: int) -> tuple[PixelRays, int]:
-    """The pixel's rays, and how many there are."""
-    nothing, room = np.empty((0, 0), np.uint8), ROOM
+def _watched(work: FrameInProgress, x: int, y: int, stages: list[Stage], samples: int) -> Watchers:
+    """Watchers that have seen all of the pixel's rays that hit something."""
+    watchers = Watchers(y * work.settings.width + x, samples)
+    if work.buffers.primitive[y, x] == MISS:
+        return watchers
     while True:
-        told = pixel_rays(room)
-        count = work.follow_pixel(x, y, nothing, told)
-        if count <= room:
-            return told, count
-        room = max(2 * room, count)
+        work.shade_again(x, y, watchers.between(stages))
+        if watchers.wanted <= len(watchers.seen.lane):
+            return watchers
+        watchers = Watchers(y * work.settings.width + x, samples, watchers.wanted)
 
 
-def _lit(work: FrameInProgress, x: int, y: int, lit: NDArray[np.uint8], count: int) -> Float64:
-    """(count, 3) what each ray brings to the pixel where the lights get to its point as `lit` says."""
-    told = pixel_rays(count)
-    work.follow_pixel(x, y, lit, told)
-    return told.light.T.copy()
-
-
-def _path_rays(world: World, told: PixelRays, count: int, light: Float64) -> list[PathRay]:
-    """The rays, their steps and tests counted, without their shadow rays."""
-    numbers, names = told.numbers[:count], told.names[:count]
-
-    def three(row: int, column: int) -> Float32:
-        return numbers[row, column : column + 3]
-
-    every = ray_batch(numbers[:, told_as.RAY_ORIGIN :][:, :3], numbers[:, told_as.RAY_DIRECTION :][:, :3])
-    _, costs = world.closest_hits_each(every)
-    rays = []
-    for row in range(count):
-        parent = int(names[row, told_as.PARENT])
-        kind = RayKind.PRIMARY
-        if parent >= 0:
-            above = np.array_equal(three(row, told_as.RAY_ORIGIN), three(parent, told_as.LIFTED))
-            kind = RayKind.REFLECTED if above else RayKind.REFRACTED
-        rays.append(
-            PathRay(
-                number=row,
-                parent=parent,
-                kind=kind,
-                bounce=int(names[row, told_as.BOUNCE]),
-                origin=three(row, told_as.RAY_ORIGIN),
-                direction=three(row, told_as.RAY_DIRECTION),
-                weight=three(row, told_as.RAY_WEIGHT),
-                t=float(numbers[row, told_as.RAY_T]),
-                primitive=int(names[row, told_as.PRIMITIVE]),
-                point=three(row, told_as.POSITION),
-                end=three(row, told_as.LIFTED),
-                light=light[row],
-                steps=int(costs[row, 0]),
-                tests=int(costs[row, 1]),
-                shadows=None,
-            )
-        )
+def _path_rays(work: FrameInProgress, x: int, y: int, seen: Seen, shadows: list[ShadowRays]) -> list[PathRay]:
+    """All rays, each after the one that sent it: those that were seen, and those that have missed everything."""
+    rows: dict[tuple[int, bytes], list[int]] = {}
+    for known in range(len(seen.lane)):
+        rows.setdefault((int(seen.bounce[known]), seen.wave[known, : wave.WEIGHT].tobytes()), []).append(known)
+    first = work.rays
+    way = (first.corner + np.float32(x) * first.column + np.float32(y) * first.row).astype(np.float32)
+    origin, white = np.asarray(first.origin, np.float32), np.ones(3, np.float32)
+    primary = SentRay(False, origin, way / np.linalg.norm(way), white)
+    if len(seen.lane):
+        told = seen.wave[0]
+        primary = SentRay(False, told[wave.ORIGIN :][:3], told[wave.DIRECTION :][:3], white)
+    rays: list[PathRay] = []
+    waiting = deque([(-1, 0, RayKind.PRIMARY, primary)])
+    while waiting:
+        parent, bounce, kind, sent = waiting.popleft()
+        found = rows.get((bounce, sent.key), [])
+        row: int | None = found.pop(0) if found else None
+        number = len(rays)
+        rays.append(_path_ray(work, number, parent, bounce, kind, sent, seen, row, shadows))
+        if row is not None and bounce < work.settings.depth:
+            for child in sent_rays(seen, row):
+                waiting.append((number, bounce + 1, RayKind.REFRACTED if child.refracted else RayKind.REFLECTED, child))
+    assert not any(rows.values()), "every ray was sent by one that was seen"
     return rays
 
 
-def _watched(
-    work: FrameInProgress, x: int, y: int, told: PixelRays, hit: NDArray, stages: list[Stage], samples: int
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """What watchers have noted, and what stages keep, (hits, samples) each, in the order of the rays that hit."""
-    watchers = Watchers(y * work.settings.width + x, len(hit), samples)
-    if len(hit):
-        work.shade_again(x, y, watchers.between(stages))
-    seen = watchers.seen
-    rows: dict[bytes, list[int]] = {}
-    for row in range(seen.rows):
-        rows.setdefault(seen.ray[row].tobytes(), []).append(row)
-    order = [rows[told.numbers[number, : told_as.RAY_WEIGHT].tobytes()].pop(0) for number in hit]
-    return seen.noted[order], seen.kept[order]
+def _path_ray(
+    work: FrameInProgress,
+    number: int,
+    parent: int,
+    bounce: int,
+    kind: RayKind,
+    sent: SentRay,
+    seen: Seen,
+    row: int | None,
+    shadows: list[ShadowRays],
+) -> PathRay:
+    """A ray that was seen as a row, or else has missed."""
+    nowhere = np.full(3, np.nan, np.float32)
+    coming = work.shading.background if row is None else seen.light[row]
+    ray = PathRay(
+        number=number,
+        parent=parent,
+        kind=kind,
+        bounce=bounce,
+        origin=sent.origin,
+        direction=sent.direction,
+        weight=sent.weight,
+        t=np.inf,
+        primitive=MISS,
+        point=nowhere,
+        end=nowhere,
+        light=(sent.weight * coming).astype(np.float64),
+        steps=0,
+        tests=0,
+        shadows=None,
+    )
+    if row is None:
+        return ray
+    return replace(
+        ray,
+        t=float(seen.wave[row, wave.HIT_T]),
+        primitive=_primitive(seen, row),
+        point=seen.point[row, points.POSITION_ROW :][:3],
+        end=_end(seen, row),
+        shadows=shadows[row],
+    )
+
+
+def _primitive(seen: Seen, row: int) -> int:
+    return int(seen.wave.view(np.int32)[row, wave.HIT_PRIMITIVE])
+
+
+def _end(seen: Seen, row: int) -> Float32:
+    """Where the shadow rays of a ray's point end."""
+    return seen.point[row, points.LIFTED_ROW : points.LIFTED_ROW + 3]
 
 
 def _shadow_rays(
-    work: FrameInProgress,
-    world: World,
-    told: PixelRays,
-    hit: NDArray,
-    noted: NDArray[np.int32],
-    kept: NDArray[np.int32],
-    stages: list[tuple[ShadowMethod, Stage]],
-    cancelled: Cancel,
+    work: FrameInProgress, world: World, seen: Seen, stages: list[tuple[ShadowMethod, Stage]], cancelled: Cancel
 ) -> list[ShadowRays]:
-    """The shadow rays of each ray that hits."""
-    lamps, shape = work.shading.lamps, noted.shape
-    ends = told.numbers[hit, told_as.LIFTED : told_as.LIFTED + 3]
+    """The shadow rays of each ray that was seen."""
+    lamps, noted, shape = work.shading.lamps, seen.noted, seen.noted.shape
+    ends = seen.point[:, points.LIFTED_ROW : points.LIFTED_ROW + 3]
     due, answer = noted & DUE != 0, noted >> ANSWERED
     lit, settled = noted & LIT != 0, noted & SETTLED != 0
     traced, moving = due & (answer == 0), lit & ~settled & bool(world.placed.has_dynamic)
@@ -357,9 +223,9 @@ def _shadow_rays(
 
     def asked(those: NDArray[np.bool_], which: int) -> NDArray[np.int32]:
         """Trace some rays alone, write down what they cost, and return what blocks each."""
-        points, ones = np.nonzero(those)
+        at, ones = np.nonzero(those)
         starts = lamps.samples[ones]
-        rays = ray_batch(starts, ends[points] - starts, LIGHT_MARGIN, 1.0)
+        rays = ray_batch(starts, ends[at] - starts, LIGHT_MARGIN, 1.0)
         found, costs = world.occluders_each(rays, which, cancelled)
         steps[those], tests[those] = costs[:, 0], costs[:, 1]
         met[those] = found
@@ -369,17 +235,16 @@ def _shadow_rays(
     lit[moving] &= asked(moving, DYNAMIC_OBJECTS) == MISS
 
     # What is truly in the way, whatever culling has said.
-    points, ones = np.nonzero(due)
+    at, ones = np.nonzero(due)
     starts = lamps.samples[ones]
-    nearest = world.closest_hits(ray_batch(starts, ends[points] - starts, LIGHT_MARGIN, 1.0), threads=1)
+    nearest = world.closest_hits(ray_batch(starts, ends[at] - starts, LIGHT_MARGIN, 1.0), threads=1)
     blocker, blocked_at = np.full(shape, MISS, np.int32), np.full(shape, np.inf, np.float32)
     blocker[due], blocked_at[due] = nearest.primitive, nearest.t
     lights = np.repeat(np.arange(len(lamps.places), dtype=np.int32), np.diff(lamps.first))
     verdicts = np.where(traced, TRACED, AWAY).astype(np.uint8)
     found = []
-    for row, number in enumerate(hit):
-        primitive = int(told.names[number, told_as.PRIMITIVE])
-        whys = _reasons(stages, primitive, ends[row], lights, noted[row], kept[row])
+    for row in range(len(noted)):
+        whys = _reasons(stages, _primitive(seen, row), ends[row], lights, noted[row], seen.kept[row])
         named = {}
         for place, why in whys.items():
             verdicts[row, place] = NUMBER_OF[why.verdict]

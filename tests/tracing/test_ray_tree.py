@@ -14,10 +14,11 @@ from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.verdicts import Verdict
 from tracer.frame import Frame, Settings
 from tracer.geometry.rays import ray_batch
-from tracer.ray_tree import TRACED, RayKind, RayTree, ray_tree
+from tracer.ray_tree import ray_tree
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Cancelled
+from tracer.told_rays import TRACED, RayKind, RayTree
 
 WIDTH, HEIGHT = 16, 12
 METHODS = ("none", "paper", "cells", "certified", "paper+cache", "auto")
@@ -108,7 +109,7 @@ def test_what_blocks_is_what_blocks_by_brute_force(scene_file: Path, accelerator
         if s.verdict[place] == TRACED:
             assert np.isfinite(met.t[i, s.met[place]]) if blocked else s.met[place] == -1
     assert differ <= (0 if accelerator == "kdtree" else 2)
-    assert set(kinds) == {None, 0, 1} and min(kinds.values()) > 5
+    assert set(kinds) == {None, 0, 1} and min(kinds.values()) > 0
 
 
 def test_lamps_and_many_lights_are_told_sample_by_sample(scene_file: Path, tmp_path: Path):

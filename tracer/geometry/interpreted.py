@@ -31,6 +31,7 @@ _PLAIN: dict[int, Any] = {
     id(simd.minimum): np.minimum,
     id(simd.select): np.where,
     id(simd.fma): _fma,
+    id(simd.square_root): np.sqrt,
 }
 
 

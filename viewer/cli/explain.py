@@ -11,10 +11,11 @@ from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
 
-from tracer.ray_tree import RayTree, ray_tree
+from tracer.ray_tree import ray_tree
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
+from tracer.told_rays import RayTree
 from viewer.cli.console import working
 from viewer.cli.render import render_before
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from tracer.ray_tree import VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.scene.model import Scene
+from tracer.told_rays import VERDICTS, PathRay, RayTree, ShadowRays
 
 
 def ray_data(tree: RayTree, scene: Scene) -> dict[str, Any]:

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
-from tracer.ray_tree import AWAY, VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.scene.model import Scene
+from tracer.told_rays import AWAY, VERDICTS, PathRay, RayTree, ShadowRays
 from viewer.output.legend import light_in_words
 from viewer.state.picking import primitive_in_words
 from viewer.state.verdicts import MEANING, SAID, Filter, color_of, color_of_all

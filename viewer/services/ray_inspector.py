@@ -14,9 +14,10 @@ from tracer.frame import Frame
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.geometry.visits import Visit
 from tracer.geometry.world import World
-from tracer.ray_tree import RayTree, ray_tree, visits_of
+from tracer.ray_tree import ray_tree, visits_of
 from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled
+from tracer.told_rays import RayTree
 from viewer.output.ray_rows import Key, RayRows, Row, unfolded
 from viewer.services.render_thread import Question, Traced, Traces
 from viewer.services.selection import Selection

@@ -9,7 +9,7 @@ import numpy as np
 
 from tracer.frame import Frame
 from tracer.geometry.visits import Visit
-from tracer.ray_tree import AWAY, TRACED, RayTree
+from tracer.told_rays import AWAY, TRACED, RayTree
 from viewer.state.projection import Stroke, strokes
 from viewer.state.verdicts import Filter
 

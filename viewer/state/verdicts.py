@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
-from tracer.ray_tree import AWAY, TRACED, ShadowRays
+from tracer.told_rays import AWAY, TRACED, ShadowRays
 from viewer.state.views import Color
 
 SAID: dict[Verdict, str] = {

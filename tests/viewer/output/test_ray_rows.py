@@ -9,10 +9,11 @@ import pytest
 
 from tests.commands import ROOM
 from tracer.frame import Settings
-from tracer.ray_tree import AWAY, TRACED, RayTree, ray_tree
+from tracer.ray_tree import ray_tree
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Scene
+from tracer.told_rays import AWAY, TRACED, RayTree
 from viewer.output.ray_rows import MOST_LIGHTS, RayRows, Row, totals, unfolded
 from viewer.state.ray_lines import MOST_DRAWN, Part, ray_lines
 from viewer.state.verdicts import Filter, Shown

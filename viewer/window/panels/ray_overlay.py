@@ -12,8 +12,9 @@ from viewer.services.ray_inspector import RayInspector
 from viewer.state.projection import Stroke, place
 from viewer.state.ray_lines import Part, RayLine, box_strokes, shadow_lines, way_strokes
 from viewer.state.views import Color
+from viewer.window.panels import marks
+from viewer.window.panels.marks import SHADE, with_alpha
 from viewer.window.ui import Ui
-from viewer.window.widgets import em
 
 _COLORS: dict[Part, Color] = {
     Part.PATH: (0.36, 0.93, 0.72),
@@ -24,7 +25,7 @@ _COLORS: dict[Part, Color] = {
 _WIDTHS = {Part.PATH: 0.2, Part.ASKED: 0.15, Part.SAVED: 0.08, Part.DARK: 0.13}  # in ems
 _BEHIND = 0.4  # opacity of what lies behind something
 _FADED = 0.16  # of rays other than the one that is pointed at or selected
-_SHADE = ImVec4(0.05, 0.06, 0.08, 0.5)
+_BLOCKED = ImVec4(0.84, 0.37, 0.0, 1.0)
 _PALE = ImVec4(0.8, 0.86, 1.0, 0.35)  # around what is dark
 _BOX, _HIT_BOX, _WAY = (0.98, 0.55, 0.20), (0.90, 0.25, 0.30), (1.0, 1.0, 1.0)
 _MANY = 40  # lines, from which on they are thin
@@ -70,13 +71,11 @@ def _of_row(rays: RayInspector, frame: Frame, lines: Sequence[RayLine], row: Row
 
 
 def _line(draw: imgui.ImDrawList, on_screen: Callable, line: RayLine, alpha: float, width: float = 1.0) -> None:
-    around = _PALE if line.part is Part.DARK else _SHADE
+    around = _PALE if line.part is Part.DARK else SHADE
     for stroke in line.strokes:
         seen = alpha * (1.0 if stroke.seen else _BEHIND)
-        a, b, wide = on_screen(stroke.start), on_screen(stroke.end), em(width * _WIDTHS[line.part])
-        outer = ImVec4(around.x, around.y, around.z, around.w * seen)
-        draw.add_line(a, b, imgui.get_color_u32(outer), wide + em(0.12 * width))
-        draw.add_line(a, b, imgui.get_color_u32(ImVec4(*_COLORS[line.part], seen)), max(1.0, wide))
+        a, b, color = on_screen(stroke.start), on_screen(stroke.end), ImVec4(*_COLORS[line.part], seen)
+        marks.line(draw, a, b, color, width * _WIDTHS[line.part], with_alpha(around, seen))
 
 
 def _points(draw: imgui.ImDrawList, on_screen: Callable, rays: RayInspector, frame: Frame, chosen: Row | None) -> None:
@@ -84,12 +83,9 @@ def _points(draw: imgui.ImDrawList, on_screen: Callable, rays: RayInspector, fra
     assert rays.tree is not None
     for ray in rays.tree.rays:
         at = place(frame, ray.end) if ray.shadows is not None else None
-        if at is None:
-            continue
-        radius = em(0.4 if ray.parent < 0 else 0.26)
-        draw.add_circle(on_screen(at), radius, imgui.get_color_u32(_SHADE), 0, em(0.22))
-        alpha = 1.0 if chosen is None or chosen.ray == ray.number else 0.5
-        draw.add_circle(on_screen(at), radius, imgui.get_color_u32(ImVec4(1.0, 1.0, 1.0, alpha)), 0, em(0.1))
+        if at is not None:
+            alpha = 1.0 if chosen is None or chosen.ray == ray.number else 0.5
+            marks.ring(draw, on_screen(at), 0.4 if ray.parent < 0 else 0.26, alpha)
     if chosen is None or len(chosen.places) != 1:
         return
     ray, one = rays.tree.rays[chosen.ray], int(chosen.places[0])
@@ -98,11 +94,7 @@ def _points(draw: imgui.ImDrawList, on_screen: Callable, rays: RayInspector, fra
         start = rays.tree.samples[one]
         at = place(frame, start + s.blocked_at[one] * (ray.end - start))
         if at is not None:
-            x, y, arm = on_screen(at).x, on_screen(at).y, em(0.3)
-            for color, wide in ((_SHADE, 0.3), (ImVec4(0.84, 0.37, 0.0, 1.0), 0.16)):
-                shown = imgui.get_color_u32(color)
-                draw.add_line(ImVec2(x - arm, y - arm), ImVec2(x + arm, y + arm), shown, em(wide))
-                draw.add_line(ImVec2(x - arm, y + arm), ImVec2(x + arm, y - arm), shown, em(wide))
+            marks.cross(draw, on_screen(at), _BLOCKED)
 
 
 def _node(draw: imgui.ImDrawList, on_screen: Callable, rays: RayInspector, frame: Frame) -> None:
@@ -120,5 +112,4 @@ def _strokes(draw: imgui.ImDrawList, on_screen: Callable, pieces: Sequence[Strok
     for stroke in pieces:
         alpha = 1.0 if stroke.seen else 0.5
         a, b = on_screen(stroke.start), on_screen(stroke.end)
-        draw.add_line(a, b, imgui.get_color_u32(ImVec4(0.05, 0.06, 0.08, 0.6 * alpha)), em(width + 0.12))
-        draw.add_line(a, b, imgui.get_color_u32(ImVec4(*color, alpha)), max(1.0, em(width)))
+        marks.line(draw, a, b, ImVec4(*color, alpha), width, with_alpha(SHADE, alpha))
