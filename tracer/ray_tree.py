@@ -18,11 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.shadow_testing import LIGHT_MARGIN
-from tracer.culling.verdicts import Answered, Because, Verdict
 from tracer.geometry.queries import DYNAMIC_OBJECTS, EVERYTHING
 from tracer.geometry.rays import MISS, ray_batch
 from tracer.methods.watching import ANSWERED, DUE, LIT, SETTLED, Seen, Watchers
-from tracer.scene.arrays import Float32
+from tracer.ray_reasons import end_of, known_of, primitive_of, reasons_of
 from tracer.scene.model import Cancelled
 from tracer.sent_rays import SentRay, sent_rays
 from tracer.shading import points, wave
@@ -36,7 +35,6 @@ if TYPE_CHECKING:
     from tracer.methods.interface import ShadowMethod, Stage
     from tracer.renderer import Renderer
 
-MOST_NAMED = 64  # lights of a point that are passed over and whose blockers are looked for
 
 Cancel = Callable[[], bool] | None
 
@@ -193,20 +191,11 @@ def _path_ray(
     return replace(
         ray,
         t=float(seen.wave[row, wave.HIT_T]),
-        primitive=_primitive(seen, row),
+        primitive=primitive_of(seen, row),
         point=seen.point[row, points.POSITION_ROW :][:3],
-        end=_end(seen, row),
+        end=end_of(seen, row),
         shadows=shadows[row],
     )
-
-
-def _primitive(seen: Seen, row: int) -> int:
-    return int(seen.wave.view(np.int32)[row, wave.HIT_PRIMITIVE])
-
-
-def _end(seen: Seen, row: int) -> Float32:
-    """Where the shadow rays of a ray's point end."""
-    return seen.point[row, points.LIFTED_ROW : points.LIFTED_ROW + 3]
 
 
 def _shadow_rays(
@@ -244,44 +233,20 @@ def _shadow_rays(
     verdicts = np.where(traced, TRACED, AWAY).astype(np.uint8)
     found = []
     for row in range(len(noted)):
-        whys = _reasons(stages, _primitive(seen, row), ends[row], lights, noted[row], seen.kept[row])
-        named = {}
+        whys = reasons_of(stages, primitive_of(seen, row), ends[row], lights, noted[row], seen.kept[row])
+        named, known = {}, {}
         for place, why in whys.items():
             verdicts[row, place] = NUMBER_OF[why.verdict]
             if why.named:
                 named[place] = why.named
+        for place in np.flatnonzero(traced[row]).tolist():
+            if word := known_of(work, stages, seen, row, int(lights[place]), bool(lamps.radii[lights[place]] == 0)):
+                known[place] = word
         found.append(
             ShadowRays(
                 lights, verdicts[row], lit[row], due[row] & (lit[row] == (blocker[row] != MISS)), blocker[row],
-                blocked_at[row], met[row], moving[row], steps[row], tests[row], named,
+                blocked_at[row], met[row], moving[row], steps[row], tests[row], named, known,
             )
         )  # fmt: skip
         _go_on(cancelled)
     return found
-
-
-def _reasons(
-    stages: list[tuple[ShadowMethod, Stage]],
-    primitive: int,
-    end: Float32,
-    lights: NDArray[np.int32],
-    noted: NDArray[np.int32],
-    kept: NDArray[np.int32],
-) -> dict[int, Because]:
-    """Why each of a point's shadow rays that was culled was so, by its place."""
-    point = float(end[0]), float(end[1]), float(end[2])
-    selecting = next((method for method, stage in stages if stage.select is not None), None)
-    places = np.flatnonzero(noted >> ANSWERED)
-    passed_over, known, whys = int((noted >> ANSWERED == 1).sum()), {}, {}
-    for place in places.tolist():
-        number, lit = int(noted[place] >> ANSWERED) - 1, bool(noted[place] & LIT)
-        key = int(lights[place]), number, lit, int(kept[place])
-        if key not in known:
-            method = selecting if number == 0 else stages[number - 1][0]
-            if number == 0 and (method is None or passed_over > MOST_NAMED):
-                known[key] = Because(Verdict.PASSED_OVER)
-            else:
-                assert method is not None
-                known[key] = method.because(Answered(primitive, point, int(lights[place]), lit, int(kept[place])))
-        whys[place] = known[key]
-    return whys

@@ -58,6 +58,9 @@ class ShadowRays:
         asked.
     named : dict of int to tuple of int
         For rays that were culled: the primitives that this rests on, where it rests on some.
+    known : dict of int to str
+        For rays that were traced: what was known all the same, but did not do. That is a mode by its name: the
+        primitive's occlusion mode unless it was fully rendered, else its shadow mode; or "candidates".
     """
 
     light: NDArray[np.int32]
@@ -71,6 +74,7 @@ class ShadowRays:
     steps: NDArray[np.int32]
     tests: NDArray[np.int32]
     named: dict[int, tuple[int, ...]]
+    known: dict[int, str]
 
     def of_light(self, light: int) -> slice:
         """The places of a light's samples."""

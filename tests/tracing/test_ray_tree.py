@@ -62,6 +62,12 @@ def test_all_trees_together_are_the_frame(scene_file: Path, method: str, acceler
     assert counts[Verdict.CACHED] == shadow.cache_hits and counts[Verdict.CANDIDATES] == shadow.candidates_only
     assert counts[Verdict.FULL_SHADOW] + counts[Verdict.CERTIFIED_FULL] + counts[Verdict.BEAM] >= shadow.culled
     assert counts[Verdict.NON_SHADOW] + counts[Verdict.CERTIFIED_LIT] == shadow.dynamic_only
+    known = Counter(word for tree in trees for ray in tree.rays if ray.shadows for word in ray.shadows.known.values())
+    if method in ("paper", "cells", "paper+cache"):
+        assert sum(known.values()) == counts[Verdict.TRACED]
+        assert set(known) <= {"INIT", "PARTIALLY_OCCLUDED", "DYNAMIC", "PARTIAL_SHADOW"} and len(known) > 1
+    else:
+        assert set(known) <= {"candidates"}
     culled = sum(number for verdict, number in counts.items() if verdict.culled)
     assert culled == shadow.due - counts[Verdict.TRACED] and (culled > 0 or method in ("none", "auto"))
     if accelerator == "kdtree" and method in ("none", "paper", "cells"):

@@ -69,6 +69,7 @@ def _shadow_ray(tree: RayTree, s: ShadowRays, place: int, scene: Scene) -> dict[
         "traversal_steps": int(s.steps[place]),
         "intersection_tests": int(s.tests[place]),
         "names": list(s.named.get(place, ())),
+        "known": s.known.get(place),
     }
 
 

@@ -18,7 +18,7 @@ from tracer.scene.model import Scene
 from tracer.told_rays import AWAY, VERDICTS, PathRay, RayTree, ShadowRays
 from viewer.output.legend import light_in_words
 from viewer.state.picking import primitive_in_words
-from viewer.state.verdicts import MEANING, SAID, Filter, color_of, color_of_all
+from viewer.state.verdicts import MEANING, SAID, WHY_TRACED, Filter, color_of, color_of_all
 from viewer.state.views import Color
 from viewer.util.numbers import count
 
@@ -28,7 +28,7 @@ MOST_NAMED = 3  # primitives that are named in a row
 PATH_COLOR: Color = (0.86, 0.88, 0.92)
 
 Key = tuple[int | str, ...]
-Fate = tuple[int, int, str, int]  # verdict, lit, what blocks it, wrong
+Fate = tuple[int, int, str, int, str]  # verdict, lit, what blocks it, wrong, what was known
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,8 @@ class RayRows:
         fates: dict[Fate, list[int]] = {}
         for place in places.tolist():
             by = self._object(s, place) if one and s.verdict[place] != AWAY and not s.lit[place] else ""
-            fates.setdefault((int(s.verdict[place]), int(s.lit[place]), by, int(s.wrong[place])), []).append(place)
+            fate = int(s.verdict[place]), int(s.lit[place]), by, int(s.wrong[place]), s.known.get(place, "")
+            fates.setdefault(fate, []).append(place)
         return fates
 
     def _samples(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> list[Row]:
@@ -163,6 +164,7 @@ class RayRows:
         verdict, text = VERDICTS[s.verdict[place]], SAID[VERDICTS[s.verdict[place]]]
         if not verdict.due:
             return text
+        text += f" ({s.known[place]})" if place in s.known else ""
         text += ", lit" if s.lit[place] else f", {self._blocked(s, place)}"
         if s.wrong[place]:
             text += " (wrong)"
@@ -176,6 +178,7 @@ class RayRows:
         verdict, text = VERDICTS[s.verdict[place]], SAID[VERDICTS[s.verdict[place]]]
         if not verdict.due:
             return text
+        text += f" ({s.known[place]})" if place in s.known else ""
         text += ", lit" if s.lit[place] else f", blocked by {by}" if by else ", in shadow"
         if s.wrong[place]:
             text += " (wrong)"
@@ -191,7 +194,7 @@ class RayRows:
 
     def _tip(self, s: ShadowRays, place: int) -> str:
         verdict = VERDICTS[s.verdict[place]]
-        parts = [MEANING[verdict]]
+        parts = [WHY_TRACED.get(s.known.get(place, ""), MEANING[verdict])]
         if place in s.named:
             names = [self.name(number) for number in s.named[place][:MOST_NAMED]]
             more = len(s.named[place]) - len(names)

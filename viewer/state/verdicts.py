@@ -41,6 +41,16 @@ MEANING: dict[Verdict, str] = {
     Verdict.TRACED: "Nothing was known: the ray was traced through the scene.",
 }
 
+WHY_TRACED: dict[str, str] = {
+    "INIT": "Traced: nothing is known of the primitive yet, or not towards this light.",
+    "PARTIALLY_OCCLUDED": "Traced: something hides a part of the primitive, so that its shadow modes are not trusted.",
+    "DYNAMIC": "Traced: the primitive moves, so that it has no shadow modes.",
+    "PARTIAL_SHADOW": "Traced: some shadow rays from the primitive to this light were blocked, and others were not.",
+    "candidates": "Traced: only a few primitives can block the light here, but to trace the ray with its neighbours is "
+    "quicker than to test these.",
+}
+"""What tracing says where something was known all the same (`ShadowRays.known`)."""
+
 
 class Shown(StrEnum):
     """Which shadow rays are to be seen."""
