@@ -34,7 +34,8 @@ def show(ui: Ui) -> None:
         paragraph("This ray enters no node.", QUIET)
         return
     tests, leaves = sum(len(visit.tested) for visit in visits), sum(visit.leaf for visit in visits)
-    clipped(f"{count(len(visits))} nodes, {count(leaves)} of them leaves; {count(tests)} primitives tested", QUIET)
+    nodes = f"{count(len(visits))} {'node' if len(visits) == 1 else 'nodes'}, {count(leaves)} of them leaves"
+    clipped(f"{nodes}; {count(tests)} {'primitive' if tests == 1 else 'primitives'} tested", QUIET)
     _player(rays)
     _list(rays, rays.rows)
 
