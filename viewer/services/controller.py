@@ -92,11 +92,11 @@ class Controller:
         frame = self._take_frame()
         traced, motion, run = self.traced, self.motion, self.runs.current
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
+        self.rays.follow(traced if run is None else None)  # before the next frame is asked for
         self.tracing.ask(Conditions(size, motion.under_way, run, self.loader.ready, self.selection.hovered))
         if run is None:
             self.recorder.follow()
         self.inspector.follow(self.frame if run is None else None, not motion.lively)
-        self.rays.follow(self.traced if run is None else None)
         return frame
 
     def _take_scene(self) -> None:

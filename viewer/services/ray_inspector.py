@@ -121,6 +121,7 @@ class RayInspector:
         self._drop()
         self._asked: RayQuestion | None = None
         self.tree: RayTree | None = None
+        self._taken: RayTree | None = None
         self.rows: RayRows | None = None
         self._toggled: set[Key] = set()
         self._selected: Key | None = None
@@ -155,8 +156,10 @@ class RayInspector:
                 self._forget()
             return
         frame, at = traced.frame, pixel_of(picked, traced.frame)
-        if self._asked is not None and self._asked.found is not None and self._asked.found is not self.tree:
+        if self._asked is not None and self._asked.found is not self._taken:
             self._take(self._asked.found)
+        if self.tree is not None and _is_outdated(self.tree, frame):
+            self.tree = self.rows = None
         asked = self._asked
         if traced.whole and at is not None and (asked is None or not _is_about(asked, frame, at)):
             self._drop()
@@ -164,9 +167,11 @@ class RayInspector:
             self._renderer.ask(self._asked)
         self._follow_steps()
 
-    def _take(self, tree: RayTree) -> None:
-        self.tree = tree
-        self.refilter(self.shown)
+    def _take(self, tree: RayTree | None) -> None:
+        self._taken = tree
+        if tree is not None:
+            self.tree = tree
+            self.refilter(self.shown)
 
     def refilter(self, shown: Filter) -> None:
         """Show these shadow rays."""
@@ -262,6 +267,12 @@ class RayInspector:
         if self.playing and self.step + 1 >= len(self.visits):
             self.step = 0
         self._stepped = time.monotonic()
+
+
+def _is_outdated(tree: RayTree, frame: Frame) -> bool:
+    """Whether a tree is of another moment than a frame, or of what another method did."""
+    then = tree.frame
+    return then.time != frame.time or then.settings.method != frame.settings.method
 
 
 def _is_about(asked: RayQuestion, frame: Frame, at: tuple[int, int]) -> bool:

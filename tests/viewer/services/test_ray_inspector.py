@@ -83,6 +83,28 @@ def test_steps_lead_through_both_structures(desk: Desk) -> None:
     assert not rays.visits
 
 
+def test_frame_after_frame_is_looked_into(desk: Desk) -> None:
+    rays = looked_at(desk)
+    desk.c.selection.select(middle(desk))
+    desk.c.preferences.keep_tracing = True
+    desk.c.tracing.trace_again()
+    seen = []
+
+    def others() -> bool:
+        if rays.tree is not None and not any(rays.tree is tree for tree in seen):
+            seen.append(rays.tree)
+        return len(seen) > 3
+
+    desk.until(others)
+    desk.c.preferences.keep_tracing = False
+    desk.rest()
+    desk.c.motion.step(2)
+    desk.until(lambda: rays.tree is not None and rays.tree.frame.time == desk.c.frame.time > seen[-1].frame.time)
+    desk.c.settings.change(method="none")
+    desk.until(lambda: rays.tree is not None and rays.tree.frame.settings.method == "none")
+    assert rays.tree.traced == rays.tree.due
+
+
 def test_filters_and_folds(desk: Desk) -> None:
     rays = looked_at(desk)
     desk.c.selection.select(middle(desk))

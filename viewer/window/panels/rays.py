@@ -10,10 +10,11 @@ from viewer.state.ray_lines import MOST_DRAWN
 from viewer.state.verdicts import Shown
 from viewer.window.panels import lights, ray_steps
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, clipped, em, fitted, paragraph, swatch, tooltip
+from viewer.window.widgets import QUIET, clipped, em, fitted, paragraph, same_line_for, swatch, tooltip
 
 _SIDE_BY_SIDE = 38.0  # ems of width that leave room for both
 _TREE_SHARE = 0.52
+_LIGHT = 7.0  # ems of width, at least, for the name of a light
 _SHOWN_TIPS = {
     Shown.ALL: "every shadow ray, and those that were not asked",
     Shown.TRACED: "shadow rays that were traced through the scene",
@@ -72,13 +73,16 @@ def _tree(ui: Ui, rays: RayInspector) -> None:
 
 def _filters(ui: Ui, rays: RayInspector) -> None:
     """Which shadow rays are listed and drawn."""
-    for shown in Shown:
+    for number, shown in enumerate(Shown):
+        if number:
+            same_line_for(shown.value)
         if imgui.radio_button(shown.value, rays.shown.shown is shown):
             rays.refilter(rays.shown._replace(shown=shown))
         tooltip(_SHOWN_TIPS[shown])
+    light, edge = rays.shown.light, imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
+    if imgui.get_item_rect_max().x + em(_LIGHT) <= edge:
         imgui.same_line()
-    light = rays.shown.light
-    imgui.set_next_item_width(max(em(7.0), min(em(14.0), imgui.get_content_region_avail().x)))
+    imgui.set_next_item_width(min(em(2.0 * _LIGHT), imgui.get_content_region_avail().x))
     if imgui.begin_combo("##light", "all lights" if light is None else ui.light_name(light)):
         if imgui.is_window_appearing():
             ui.light_filters["rays"] = ""
