@@ -17,6 +17,8 @@ def close_newest(ui: Ui) -> bool:
         _close_list()
     elif ui.about_open:
         ui.about_open = False
+    elif ui.presets_open:
+        ui.presets_open = False
     elif ui.shortcuts_open:
         ui.shortcuts_open = False
     elif ui.fold.drawer:
