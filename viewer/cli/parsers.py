@@ -9,7 +9,19 @@ from pathlib import Path
 from typing import NoReturn
 
 from viewer.cli import examples
-from viewer.cli.argument_types import count, factors, lamp_samples, method, number, pixel, several, size, view
+from viewer.cli.argument_types import (
+    annotation_list,
+    count,
+    factors,
+    lamp_samples,
+    method,
+    number,
+    pixel,
+    place,
+    several,
+    size,
+    view,
+)
 from viewer.util import resources
 from viewer.util.messages import ERROR, say
 from viewer.util.version import program_version
@@ -81,13 +93,33 @@ def render() -> Parser:
     )
     add("--legend", action="store_true", help="draw the view's legend into the picture")
     add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
+    _add_style(parser)
     add("--camera", metavar="JSON", help=f"another camera: {_CAMERA}")
     add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
+    add("--repeat", type=count(0, 1000), default=0, metavar="N", help="then trace the frame itself N times")
+    add("--print-command", action="store_true", help="print the whole command for this picture, and trace nothing")
     add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
     _add_tracing_options(parser, "bvh8")
     _add_zoom_factor(parser)
     add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
     return parser
+
+
+def _add_style(parser: Parser) -> None:
+    """How `render` draws, beside the view."""
+    from viewer.state.views import BENEATH
+
+    add = parser.add_argument
+    add("--legend-at", type=place, metavar="X,Y", help="where the legend is: 0,0 is the upper left (default: 0,1)")
+    add("--caption", default="", metavar="TEXT", help="a line below the picture, like '{scene}, frame {frame}'")
+    add("--annotations", type=annotation_list, default=(), metavar="JSON", help="arrows, boxes and words; see below")
+    add("--outlines", action="store_true", help="draw the borders between primitives")
+    help_ = "how much of the light shows under flat colours, 0 to 1 (default: 0.35)"
+    add("--shading", type=number(0.0, 1.0), default=0.35, metavar="S", help=help_)
+    help_ = f"brightness of the picture beneath the difference, 0 to 1 (default: {BENEATH:g})"
+    add("--beneath", type=number(0.0, 1.0), default=BENEATH, metavar="B", help=help_)
+    help_ = "draw rings for a picture that is shown N times as large (default: 1)"
+    add("--magnified", type=count(1, 100), default=1, metavar="N", help=help_)
 
 
 def bench() -> Parser:

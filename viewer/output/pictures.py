@@ -46,6 +46,9 @@ from viewer.state.views import (
 SHADING = 0.35
 """How much of the picture's light and shade shows under flat colours, as in the window."""
 
+OUTLINE = 0.35
+"""Brightness of the borders between primitives, against what is there."""
+
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 
@@ -58,22 +61,25 @@ def picture(
     wipe: float = 0.5,
     shares: bool = False,
     beneath: float = BENEATH,
+    outlines: bool = False,
+    magnified: int = 1,
 ) -> NDArray[np.uint8]:
     """(height, width, 3) uint8, row 0 at the top: a frame in one of its views.
 
     `light` is the light that views of one light speak of, `marked` draws rings around wrong pixels, and `wipe` is the
     place of the wipe's line, 0 to 1 from the left.  Maps of work show counts of rays, or `shares`; `beneath` is the
-    brightness of the picture beneath the difference.  Raises ValueError where there is no such light, or where the
-    view is one of verified frames, or of what was recorded, and the frame is not.
+    brightness of the picture beneath the difference.  `outlines` draws the borders between primitives, and rings are
+    for a picture that is shown `magnified` times.  Raises ValueError where there is no such light, or where the view is
+    one of verified frames, or of what was recorded, and the frame is not.
     """
     if view.of_light and not 0 <= light < frame.lights:
         raise ValueError(f"no light {light}: {lights_in_words(frame.lights)}")
     if view is View.COLOR:
         colors = np.clip(frame.color, 0.0, 1.0)
     elif view is View.DIFFERENCE:
-        colors = _difference(frame, marked, beneath)
+        colors = _difference(frame, marked, beneath, magnified)
     elif view is View.WIPE:
-        colors = _wipe(frame, marked, wipe)
+        colors = _wipe(frame, marked, wipe, magnified)
     elif view.needs_work:
         colors = _on_background(frame, _work(frame, view, shares))
     elif view is View.CERTIFICATE:
@@ -91,6 +97,8 @@ def picture(
         entries = _shadow(frame, light) if view is View.SHADOW else table[view](frame)
         numbers = frame.primitive if view is View.PRIMITIVE else units_of(frame)
         colors = _on_background(frame, _shaded(frame, _per_pixel(numbers, entries), shading))
+    if outlines:
+        colors = _outlined(frame, view, colors, marked, wipe, magnified)
     return np.round(np.clip(colors, 0.0, 1.0) * 255.0).astype(np.uint8)
 
 
@@ -168,6 +176,17 @@ def _lights(frame: Frame) -> NDArray:
     return np.where((due >= 0)[..., None], _mapped(due / lights_top(due)), np.asarray(GREY, np.float32))
 
 
+def _outlined(frame: Frame, view: View, colors: NDArray, marked: bool, wipe: float, magnified: int) -> NDArray:
+    """Darker borders between primitives, beneath what lies over a picture; the difference has none."""
+    if view is View.DIFFERENCE:
+        return colors
+    border = _on_line(frame.primitive)
+    if view is View.WIPE:
+        border[:, wipe_column(frame.width, wipe) :][:, :1] = False
+        border &= ~(marked & (wrong_marks(frame, magnified) == Mark.RING))
+    return np.where(border[..., None], OUTLINE * colors, colors)
+
+
 def _on_line(cells: NDArray[np.int32]) -> NDArray[np.bool_]:
     """Pixels whose neighbour to the right, or below, lies in another cell."""
     line = np.zeros(cells.shape, np.bool_)
@@ -215,18 +234,18 @@ def _depth(frame: Frame) -> NDArray:
     return _mapped(1.0 - np.clip((depth - near) / (far - near), 0.0, 1.0))
 
 
-def _difference(frame: Frame, marked: bool, beneath: float) -> NDArray:
+def _difference(frame: Frame, marked: bool, beneath: float, magnified: int) -> NDArray:
     """Wrong pixels in their colour over the dimmed picture, and rings around them."""
-    marks, colors = wrong_marks(frame), beneath * np.clip(frame.color, 0.0, 1.0)
+    marks, colors = wrong_marks(frame, magnified), beneath * np.clip(frame.color, 0.0, 1.0)
     if marked:
         colors[marks == Mark.RING] = np.float32(RING_DIMMING) * np.asarray(WRONG, np.float32)
     colors[marks == Mark.WRONG] = WRONG
     return colors
 
 
-def _wipe(frame: Frame, marked: bool, wipe: float) -> NDArray:
+def _wipe(frame: Frame, marked: bool, wipe: float, magnified: int) -> NDArray:
     """Left of a line the traced picture, right of it the one in which every shadow answer is right."""
-    marks, column = wrong_marks(frame), wipe_column(frame.width, wipe)
+    marks, column = wrong_marks(frame, magnified), wipe_column(frame.width, wipe)
     assert frame.reference is not None
     colors = np.concatenate([frame.color[:, :column], frame.reference[:, column:]], axis=1)
     if marked:

@@ -20,6 +20,7 @@ from viewer.services.capture_service import CaptureService
 from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
 from viewer.services.questions import Questions
+from viewer.services.recipes import Recipes
 from viewer.services.render_thread import RenderThread, Traced
 from viewer.services.run_controller import RunController
 from viewer.services.scene_loader import SceneLoader
@@ -59,6 +60,7 @@ class Controller:
         self.recorder = LightRecorder(session, renderer, self.tracing)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
+        self.recipes = Recipes(session, preferences, self.tracing, self.loader, notices)
         self.info: dict[str, Any] = {}
         self.drawn_seconds = 0.0
 

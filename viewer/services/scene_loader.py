@@ -56,6 +56,11 @@ class SceneLoader:
         self._given: dict[str, Any] = {}  # settings from there, for what is opened first
 
     @property
+    def folders(self) -> tuple[Path, ...]:
+        """Folders besides a scene's own that it may read files from."""
+        return self._folders
+
+    @property
     def busy(self) -> bool:
         loading = self.load_job is not None or self._restored is not None
         return loading or self.warm_up_job is not None

@@ -179,7 +179,9 @@ class App:
             look = self._look(selected=-1)  # the mark is for the user, not for the picture
             self.ui.display.draw(look)
             described = legend.of_picture(self.ui) if c.preferences.legend_in_pictures else None
-            c.captures.capture(c.frame, self.ui.display.read() if self.ui.display.drawn(look) else None, described)
+            recipe = c.recipes.of(c.frame, look.view) if c.frame is not None else None
+            pixels = self.ui.display.read() if self.ui.display.drawn(look) else None
+            c.captures.capture(c.frame, pixels, described, recipe)
         if self.ui.capture_wanted is CaptureKind.WINDOW:
             self.ui.capture_wanted = None
             self._capture_this_frame = True  # when it is drawn, from here on, with all that was asked for before

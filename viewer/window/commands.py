@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from imgui_bundle import imgui
+
 from tracer.method import Kind, Method, additions, bases
 from viewer.state import navigation
 from viewer.state.methods import toggled, with_base
@@ -26,6 +28,11 @@ def _file(ui: Ui) -> list[Command]:
     def browse() -> None:
         ui.browser.open = True
 
+    def copy_command() -> None:
+        words = c.recipes.command()
+        if words is not None:
+            imgui.set_clipboard_text(words)
+
     def want(kind: CaptureKind) -> Callable[[], None]:
         def ask() -> None:
             ui.capture_wanted = kind
@@ -37,6 +44,14 @@ def _file(ui: Ui) -> list[Command]:
         Command("Reload", "File", c.loader.reload, "F5", enabled=lambda: c.session.scene is not None),
         Command("Save picture", "File", want(CaptureKind.PICTURE), "F12", separated=True),
         Command("Save picture with panels", "File", want(CaptureKind.WINDOW), "Shift+F12"),
+        Command(
+            "Copy as command",
+            "File",
+            copy_command,
+            "Ctrl+Shift+C",
+            enabled=lambda: c.frame is not None,
+            tip="the command that makes this picture, to the clipboard",
+        ),
         Command(
             "Start where I left off",
             "File",
