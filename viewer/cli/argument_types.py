@@ -71,6 +71,14 @@ def pixel(text: str) -> tuple[int, int]:
     return int(match[1]), int(match[2])
 
 
+def span(text: str) -> tuple[int, int]:
+    """The first and the last of some frames."""
+    match = re.fullmatch(r"(\d{1,9})-(\d{1,9})", text.strip(), re.ASCII)
+    if not match or int(match[1]) > int(match[2]):
+        raise argparse.ArgumentTypeError(f"{text!r} are not frames; give the first and the last, like 0-99")
+    return int(match[1]), int(match[2])
+
+
 def place(text: str) -> tuple[float, float]:
     """A place in a picture, in parts of its width and height."""
     x, comma, y = text.partition(",")

@@ -6,6 +6,7 @@ COMMANDS = """\
 commands:
   shadowcull [SCENE]       open the viewer
   shadowcull render SCENE  trace one frame into a picture, its buffers, or both; needs no display
+  shadowcull film SCENE    trace a path, or a flight through bookmarks, into pictures and a video
   shadowcull bench SCENE   measure, over a path of frames, what culling saves
   shadowcull zoom SCENE    move towards a primitive, and see whether its shadows stay right
   shadowcull info SCENE    say what a scene holds
@@ -49,6 +50,21 @@ wrong shadow answers of each pixel. A frame of the method certified has certific
 the second the traced picture left of a line, and the correct one right of it; wipe:0.3 puts the line at 30 % of
 the width. Rings show where wrong pixels are, unless --no-marks is given. --view saved and --view cost are maps of
 the shadow rays that culling saves at each pixel, and of all rays that are traced for it.
+"""
+
+FILM = """\
+examples:
+  shadowcull film kitchen.aff -o kitchen --size 1280x720 --samples 4
+  shadowcull film kitchen.aff -o kitchen.mp4 --frames 100-300 --method certified --size 1920x1080
+  shadowcull film default -o modes.mp4 --frames 0-49 --method paper --view occlusion --legend
+  shadowcull film kitchen.aff -o flight.mp4 --through door.png table.png window.png --seconds 10
+  shadowcull film kitchen.aff -o flight --bookmarks --fps 30
+
+Every frame is traced whole, and is a picture that says how it was made: `shadowcull check` tells whether it is still
+true. Modes are learnt from frame to frame. A flight moves evenly: each frame goes on as far as the others, where
+turning counts as well, and time goes on from picture to picture. The video needs PyAV: install shadowcull[video].
+An odd width or height of the video is made even by its last row or column once more. Ctrl-C keeps what is done, and
+the exit code is then 130.
 """
 
 BENCH = """\

@@ -2,6 +2,7 @@
 
     shadowcull [SCENE]          the viewer
     shadowcull render SCENE     one frame into files
+    shadowcull film SCENE       a path, or a flight, into pictures and a video
     shadowcull bench SCENE      the paper's table over a path of frames
     shadowcull zoom SCENE       towards a primitive, and whether its shadows keep up
     shadowcull info SCENE       what a scene holds
@@ -39,6 +40,7 @@ def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
     arguments = list(arguments)
     commands: dict[str, Callable[[list[str]], int]] = {
         "render": _render,
+        "film": _film,
         "bench": _bench,
         "zoom": _zoom,
         "info": _info,
@@ -133,6 +135,21 @@ def _render(arguments: list[str]) -> int:
     options.camera = saved_pictures.camera(options.camera)
     render.render(path, options)
     return 0
+
+
+def _film(arguments: list[str]) -> int:
+    parser = parsers.film()
+    options = parser.parse_args(arguments)
+
+    from viewer.cli import film, saved_pictures
+
+    path = resources.scene_path(options.scene)
+    if saved_pictures.is_capture(path):
+        path, kept = saved_pictures.defaults(path)
+        parser.set_defaults(**kept)
+        options = parser.parse_args(arguments)
+    options.camera = saved_pictures.camera(options.camera)
+    return 0 if film.film(path, options) else INTERRUPTED
 
 
 def _bench(arguments: list[str]) -> int:

@@ -20,6 +20,7 @@ from viewer.cli.argument_types import (
     place,
     several,
     size,
+    span,
     view,
 )
 from viewer.util import resources
@@ -73,6 +74,20 @@ def render() -> Parser:
     _add_scene(parser, ", or a saved picture, to render it again")
     add("-o", "--output", type=Path, metavar="FILE", help="the picture; a .png also remembers how it was made")
     _add_moment(parser)
+    _add_picture(parser)
+    add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
+    add("--repeat", type=count(0, 1000), default=0, metavar="N", help="then trace the frame itself N times")
+    add("--print-command", action="store_true", help="print the whole command for this picture, and trace nothing")
+    add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
+    _add_tracing_options(parser, "bvh8")
+    _add_zoom_factor(parser)
+    add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
+    return parser
+
+
+def _add_picture(parser: Parser) -> None:
+    """What one picture is to be like."""
+    add = parser.add_argument
     add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
     add("--samples", type=count(1, 4096), default=1, metavar="N", help="rays per pixel, averaged (default: 1)")
     add(
@@ -95,13 +110,32 @@ def render() -> Parser:
     add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
     _add_style(parser)
     add("--camera", metavar="JSON", help=f"another camera: {_CAMERA}")
-    add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
-    add("--repeat", type=count(0, 1000), default=0, metavar="N", help="then trace the frame itself N times")
-    add("--print-command", action="store_true", help="print the whole command for this picture, and trace nothing")
-    add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
+
+
+def film() -> Parser:
+    """Of `film`."""
+    parser = Parser(
+        prog="shadowcull film",
+        description="Trace the frames of a scene's path, or of a flight through bookmarks, into numbered pictures, and "
+        "into a video.",
+        epilog=examples.FILM + examples.methods(),
+    )
+    add = parser.add_argument
+    _add_scene(parser, ", or a saved picture, for its scene, settings and view")
+    help_ = "a folder for the pictures; or film.mp4, whose pictures go to film-frames"
+    add("-o", "--output", type=Path, metavar="DIR|FILE.mp4", help=help_)
+    add("--frames", type=span, metavar="A-B", help="the frames A to B of the path (default: all)")
+    help_ = "fly through where these saved pictures were taken, at an even speed, in place of the path"
+    add("--through", type=Path, nargs="+", metavar="PICTURE", help=help_)
+    add("--bookmarks", action="store_true", help="fly through the scene's bookmarks, which the window keeps")
+    help_ = "how long the film is (default: every frame of the path once; 2 seconds from bookmark to bookmark)"
+    add("--seconds", type=number(0.01, 86_400.0), metavar="S", help=help_)
+    add("--fps", type=number(1.0, 240.0), default=25.0, metavar="F", help="frames a second (default: 25)")
+    _add_picture(parser)
     _add_tracing_options(parser, "bvh8")
     _add_zoom_factor(parser)
     add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
+    parser.set_defaults(frame=None, time=None, warmup=0, repeat=0)
     return parser
 
 

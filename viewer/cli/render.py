@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
-from PIL import Image, PngImagePlugin
+from PIL import Image
 
 from tracer.culling import modes
 from tracer.frame import Frame, Settings
@@ -23,7 +23,7 @@ from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
 from viewer.cli.console import Work, print_table, statistics_table, working
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
-from viewer.output import capture, recipe
+from viewer.output import png, recipe
 from viewer.output.recipe import Recipe, Style
 from viewer.services import stills
 from viewer.state.methods import CERTIFIED, default_for
@@ -60,7 +60,7 @@ def render(path: Path, options: Namespace) -> None:
         scene = load_visible_scene(path, work.progress, options.folder)
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
-        wanted = recipe_of(path, scene, settings, options)
+        wanted = stills.with_caption_filled(recipe_of(path, scene, settings, options), scene)
         stills.check_light(wanted, scene)
         if options.print_command:
             words = recipe.arguments(wanted, scene, str(options.output or f"{path.stem}.png"))
@@ -85,7 +85,9 @@ def render(path: Path, options: Namespace) -> None:
 
 
 def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) -> Recipe:
-    """What the options ask for; raises ValueError, in one line, for a moment that the scene does not have."""
+    """What the options ask for, with a caption that may have fields.
+
+    Raises ValueError, in one line, for a moment that the scene does not have."""
     view, light, wipe, shares = options.view
     style = Style(
         shares=shares,
@@ -102,11 +104,10 @@ def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) 
     history = ""
     if recipe.by_chance(settings, view):
         history = f"what the method {settings.method} makes depends on the time that it has measured"
-    wanted = Recipe(
+    return Recipe(
         path, time, options.camera, settings, view, light, wipe, style, options.warmup, options.repeat, history,
         folders=tuple(options.folder),
     )  # fmt: skip
-    return stills.with_caption_filled(wanted, scene)
 
 
 def _traced(renderer: Renderer, wanted: Recipe, everything: bool, work: Work) -> Frame:
@@ -177,9 +178,7 @@ def write_picture(path: Path, scene: Scene, frame: Frame, wanted: Recipe) -> Non
     if missing:
         say(missing)
     image = Image.fromarray(pixels)
-    notes = PngImagePlugin.PngInfo()
-    notes.add_itxt(capture.CHUNK, stills.text(pixels, frame, scene, wanted))
-    notes.add_text("Software", "Shadowcull")
+    notes = png.notes(stills.text(pixels, frame, scene, wanted))
     kind = PICTURES[path.suffix.lower()]
     extras: dict[str, dict[str, Any]] = {"PNG": {"pnginfo": notes}, "JPEG": {"quality": 95}}
 

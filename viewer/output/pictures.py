@@ -77,9 +77,9 @@ def picture(
     if view is View.COLOR:
         colors = np.clip(frame.color, 0.0, 1.0)
     elif view is View.DIFFERENCE:
-        colors = _difference(frame, marked, beneath, magnified)
+        colors = _difference(frame, marked, beneath, outlines, magnified)
     elif view is View.WIPE:
-        colors = _wipe(frame, marked, wipe, magnified)
+        colors = _wipe(frame, marked, wipe, outlines, magnified)
     elif view.needs_work:
         colors = _on_background(frame, _work(frame, view, shares))
     elif view is View.CERTIFICATE:
@@ -97,8 +97,8 @@ def picture(
         entries = _shadow(frame, light) if view is View.SHADOW else table[view](frame)
         numbers = frame.primitive if view is View.PRIMITIVE else units_of(frame)
         colors = _on_background(frame, _shaded(frame, _per_pixel(numbers, entries), shading))
-    if outlines:
-        colors = _outlined(frame, view, colors, marked, wipe, magnified)
+    if outlines and not view.needs_verify:  # those draw over the borders
+        colors = _outlined(frame, colors)
     return np.round(np.clip(colors, 0.0, 1.0) * 255.0).astype(np.uint8)
 
 
@@ -176,15 +176,9 @@ def _lights(frame: Frame) -> NDArray:
     return np.where((due >= 0)[..., None], _mapped(due / lights_top(due)), np.asarray(GREY, np.float32))
 
 
-def _outlined(frame: Frame, view: View, colors: NDArray, marked: bool, wipe: float, magnified: int) -> NDArray:
-    """Darker borders between primitives, beneath what lies over a picture; the difference has none."""
-    if view is View.DIFFERENCE:
-        return colors
-    border = _on_line(frame.primitive)
-    if view is View.WIPE:
-        border[:, wipe_column(frame.width, wipe) :][:, :1] = False
-        border &= ~(marked & (wrong_marks(frame, magnified) == Mark.RING))
-    return np.where(border[..., None], OUTLINE * colors, colors)
+def _outlined(frame: Frame, colors: NDArray) -> NDArray:
+    """With darker borders between primitives."""
+    return np.where(_on_line(frame.primitive)[..., None], OUTLINE * colors, colors)
 
 
 def _on_line(cells: NDArray[np.int32]) -> NDArray[np.bool_]:
@@ -234,20 +228,24 @@ def _depth(frame: Frame) -> NDArray:
     return _mapped(1.0 - np.clip((depth - near) / (far - near), 0.0, 1.0))
 
 
-def _difference(frame: Frame, marked: bool, beneath: float, magnified: int) -> NDArray:
+def _difference(frame: Frame, marked: bool, beneath: float, outlines: bool, magnified: int) -> NDArray:
     """Wrong pixels in their colour over the dimmed picture, and rings around them."""
     marks, colors = wrong_marks(frame, magnified), beneath * np.clip(frame.color, 0.0, 1.0)
+    if outlines:
+        colors = _outlined(frame, colors)
     if marked:
         colors[marks == Mark.RING] = np.float32(RING_DIMMING) * np.asarray(WRONG, np.float32)
     colors[marks == Mark.WRONG] = WRONG
     return colors
 
 
-def _wipe(frame: Frame, marked: bool, wipe: float, magnified: int) -> NDArray:
+def _wipe(frame: Frame, marked: bool, wipe: float, outlines: bool, magnified: int) -> NDArray:
     """Left of a line the traced picture, right of it the one in which every shadow answer is right."""
     marks, column = wrong_marks(frame, magnified), wipe_column(frame.width, wipe)
     assert frame.reference is not None
-    colors = np.concatenate([frame.color[:, :column], frame.reference[:, column:]], axis=1)
+    colors = np.clip(np.concatenate([frame.color[:, :column], frame.reference[:, column:]], axis=1), 0.0, 1.0)
+    if outlines:
+        colors = _outlined(frame, colors)
     if marked:
         colors[marks == Mark.RING] = WRONG
     colors[:, column : column + 1] = WIPE_LINE

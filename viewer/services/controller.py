@@ -17,6 +17,7 @@ from tracer.scene.model import Scene
 from tracer.zoom import Step
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
+from viewer.services.film_controller import FilmController
 from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
 from viewer.services.questions import Questions
@@ -61,6 +62,8 @@ class Controller:
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
         self.recipes = Recipes(session, preferences, self.tracing, self.loader, notices)
+        films = FilmController(session, preferences, self.runs, self.recipes, self.bookmarks, notices, awaken)
+        self.films = films
         self.info: dict[str, Any] = {}
         self.drawn_seconds = 0.0
 

@@ -234,8 +234,10 @@ def _run(ui: Ui) -> list[Command]:
     return [
         Command("Experiment", "Run", start("Experiment", runner.start_experiment), enabled=idle),
         Command("Zoom test", "Run", start("Zoom test", runner.start_zoom_test), enabled=idle),
+        Command("Film", "Run", lambda: ui.show_panel("Film"), enabled=idle,
+                tip="a path, or a flight through bookmarks, as pictures and video"),
         Command("Stop, or clear the selection", "Run", stop, "Escape", enabled=busy, separated=True),
-    ]
+    ]  # fmt: skip
 
 
 def _help(ui: Ui) -> list[Command]:

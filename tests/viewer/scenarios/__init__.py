@@ -6,6 +6,7 @@ from tests.viewer.scenarios.drawing import difference, views, wiping
 from tests.viewer.scenarios.failing import failing
 from tests.viewer.scenarios.files import browsing, cancelling, capturing, dropping, reopening
 from tests.viewer.scenarios.film import filmstrip
+from tests.viewer.scenarios.filming import filming
 from tests.viewer.scenarios.fitting import fitting
 from tests.viewer.scenarios.lamps import lamps
 from tests.viewer.scenarios.legends import legends
@@ -18,8 +19,8 @@ SCENARIOS = {
     scenario.__name__: scenario
     for scenario in (
         views, difference, wiping, legends, lamps, culling, certifying, explaining, flying, orbiting, playing, resizing,
-        capturing, dropping, reopening, cancelling, browsing, experimenting, zooming, asking, filmstrip, failing,
-        panels, closing_panels, looks, hiding, folding, touring, fitting,
+        capturing, dropping, reopening, cancelling, browsing, experimenting, zooming, asking, filmstrip, filming,
+        failing, panels, closing_panels, looks, hiding, folding, touring, fitting,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip
