@@ -79,6 +79,17 @@ def span(text: str) -> tuple[int, int]:
     return int(match[1]), int(match[2])
 
 
+def crops(text: str) -> tuple[tuple[int, int, int, int], ...]:
+    """Rectangles of pixels with semicolons between them."""
+    found = []
+    for part in text.split(";"):
+        match = re.fullmatch(r" *(\d{1,6}) *, *(\d{1,6}) *, *(\d{1,6}) *, *(\d{1,6}) *", part, re.ASCII)
+        if not match:
+            raise argparse.ArgumentTypeError(f"{part!r} is not a crop; give x,y,width,height, with ; between several")
+        found.append((int(match[1]), int(match[2]), int(match[3]), int(match[4])))
+    return tuple(found)
+
+
 def place(text: str) -> tuple[float, float]:
     """A place in a picture, in parts of its width and height."""
     x, comma, y = text.partition(",")

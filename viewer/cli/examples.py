@@ -9,6 +9,8 @@ commands:
   shadowcull film SCENE    trace a path, or a flight through bookmarks, into pictures and a video
   shadowcull bench SCENE   measure, over a path of frames, what culling saves
   shadowcull zoom SCENE    move towards a primitive, and see whether its shadows stay right
+  shadowcull figure SCENE  draw a frame by several methods side by side
+  shadowcull check FILE    render saved pictures and figures again, and say whether they are still true
   shadowcull info SCENE    say what a scene holds
 
 examples:
@@ -65,6 +67,30 @@ true. Modes are learnt from frame to frame. A flight moves evenly: each frame go
 turning counts as well, and time goes on from picture to picture. The video needs PyAV: install shadowcull[video].
 An odd width or height of the video is made even by its last row or column once more. Ctrl-C keeps what is done, and
 the exit code is then 130.
+"""
+
+FIGURE = """\
+examples:
+  shadowcull figure default -o methods.pdf --frame 50 --warmup 20 --size 640x480
+  shadowcull figure kitchen.aff -o paper.png --frame 100 --warmup 20 --crops '40,60,80,60;200,90,80,60'
+  shadowcull figure kitchen.aff -o cost.pdf --frame 100 --warmup 20 --view cost --methods none,certified,certified+cache
+
+Each method has a column, with modes of its own: the picture with the crops marked in it, each crop enlarged without
+smoothing, how far it is from the picture of none, all in one range of colours, and the counters. Maps of work have
+one range of colours as well. The counters are those of the kd-tree, ray by ray, unless --accelerator says otherwise;
+the work that goes into certificates is among them. The figure carries how it was made, and `shadowcull check` draws
+it again.
+"""
+
+CHECK = """\
+examples:
+  shadowcull check figure.png
+  shadowcull check paper/*.png paper/methods.pdf
+
+A picture carries its scene, camera, time, settings, view and the frames that its modes came from. It is true if it
+is the same again, bit for bit; a view that a GPU has drawn may be off by rounding. Otherwise the line says how many
+pixels differ, and what has changed since: a part of the scene, the version, or the file itself. The exit code is 0
+only if all are true.
 """
 
 BENCH = """\

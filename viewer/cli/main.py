@@ -5,6 +5,8 @@
     shadowcull film SCENE       a path, or a flight, into pictures and a video
     shadowcull bench SCENE      the paper's table over a path of frames
     shadowcull zoom SCENE       towards a primitive, and whether its shadows keep up
+    shadowcull figure SCENE     a frame by several methods, side by side
+    shadowcull check FILE       whether saved pictures and figures are still true
     shadowcull info SCENE       what a scene holds
 
 The exit code is 0 only on success; every error is one line on standard error.  What needs GL is
@@ -41,6 +43,8 @@ def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
     commands: dict[str, Callable[[list[str]], int]] = {
         "render": _render,
         "film": _film,
+        "figure": _figure,
+        "check": _check,
         "bench": _bench,
         "zoom": _zoom,
         "info": _info,
@@ -138,18 +142,45 @@ def _render(arguments: list[str]) -> int:
 
 
 def _film(arguments: list[str]) -> int:
-    parser = parsers.film()
+    path, options = _with_saved(parsers.film(), arguments)
+
+    from viewer.cli import film
+
+    return 0 if film.film(path, options) else INTERRUPTED
+
+
+def _figure(arguments: list[str]) -> int:
+    path, options = _with_saved(parsers.figure(), arguments)
+
+    from viewer.cli import figure
+
+    figure.figure(path, options)
+    return 0
+
+
+def _with_saved(parser: parsers.Parser, arguments: list[str]) -> tuple[Path, Namespace]:
+    """The scene and the options, which begin with those of a saved picture if that stands for a scene."""
     options = parser.parse_args(arguments)
 
-    from viewer.cli import film, saved_pictures
+    from viewer.cli import saved_pictures
 
     path = resources.scene_path(options.scene)
     if saved_pictures.is_capture(path):
         path, kept = saved_pictures.defaults(path)
         parser.set_defaults(**kept)
         options = parser.parse_args(arguments)
+        if options.frame is None and options.time is None:
+            options.time = kept["moment"]
     options.camera = saved_pictures.camera(options.camera)
-    return 0 if film.film(path, options) else INTERRUPTED
+    return path, options
+
+
+def _check(arguments: list[str]) -> int:
+    options = parsers.check().parse_args(arguments)
+
+    from viewer.cli import check
+
+    return 0 if check.check(options) else FAILED
 
 
 def _bench(arguments: list[str]) -> int:

@@ -12,6 +12,7 @@ from viewer.cli import examples
 from viewer.cli.argument_types import (
     annotation_list,
     count,
+    crops,
     factors,
     lamp_samples,
     method,
@@ -136,6 +137,48 @@ def film() -> Parser:
     _add_zoom_factor(parser)
     add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
     parser.set_defaults(frame=None, time=None, warmup=0, repeat=0)
+    return parser
+
+
+def figure() -> Parser:
+    """Of `figure`."""
+    parser = Parser(
+        prog="shadowcull figure",
+        description="Draw one frame by several methods side by side: crops, what differs from none, and counts.",
+        epilog=examples.FIGURE + examples.methods(),
+    )
+    add = parser.add_argument
+    _add_scene(parser, ", or a saved picture, for its scene, settings and view")
+    add("-o", "--output", type=Path, metavar="FILE", help="the figure, a .png or .pdf, which says how it was made")
+    add(
+        "--methods",
+        type=several(method),
+        default=["none", "paper", "certified"],
+        metavar="M,...",
+        help="which methods, in the order of the columns (default: none,paper,certified)",
+    )
+    add("--crops", type=crops, default=(), metavar="X,Y,W,H;...", help="rectangles of pixels that are shown enlarged")
+    add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
+    _add_moment(parser)
+    _add_picture(parser)
+    _add_tracing_options(parser, "kdtree")  # whose steps are the paper's
+    _add_zoom_factor(parser)
+    parser.set_defaults(repeat=0, verify=False)
+    return parser
+
+
+def check() -> Parser:
+    """Of `check`."""
+    parser = Parser(
+        prog="shadowcull check",
+        description="Render saved pictures and figures again, and say of each whether it is still true.",
+        epilog=examples.CHECK,
+    )
+    add = parser.add_argument
+    add("pictures", nargs="+", type=Path, metavar="FILE", help="a .png that this program saved, or a .pdf of figure")
+    help_ = "another folder than its own that a scene may read files from; may be given several times"
+    add("--folder", type=Path, action="append", default=[], metavar="DIR", help=help_)
+    add("--threads", type=count(0, 1024), default=0, metavar="N", help="0, the default: one per core")
     return parser
 
 

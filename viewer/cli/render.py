@@ -103,7 +103,7 @@ def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) 
     time = moment(scene, options.frame, options.time)
     history = ""
     if recipe.by_chance(settings, view):
-        history = f"what the method {settings.method} makes depends on the time that it has measured"
+        history = f"what the method {settings.method} makes depends on time and threads"
     return Recipe(
         path, time, options.camera, settings, view, light, wipe, style, options.warmup, options.repeat, history,
         folders=tuple(options.folder),

@@ -137,7 +137,7 @@ def read_with_size(path: Path) -> tuple[Snapshot, tuple[int, int] | None]:
     """The same, and the frame's width and height if they are known; raises CaptureError."""
     data = read_data(path)
     try:
-        return Snapshot.from_json(data.get("state")), _size(data.get("size"))
+        return Snapshot.from_json(data.get("state")), size_of(data.get("size"))
     except (ValueError, AttributeError) as error:
         raise CaptureError(f"{path}: cannot be restored: {error}") from None
 
@@ -163,7 +163,8 @@ def read_data(path: Path) -> dict[str, Any]:
     return data
 
 
-def _size(value: Any) -> tuple[int, int] | None:
+def size_of(value: Any) -> tuple[int, int] | None:
+    """A size as JSON has it; None for anything else."""
     if isinstance(value, list) and len(value) == 2 and all(type(side) is int and 0 < side < 1 << 16 for side in value):
         return value[0], value[1]
     return None

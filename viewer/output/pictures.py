@@ -63,13 +63,15 @@ def picture(
     beneath: float = BENEATH,
     outlines: bool = False,
     magnified: int = 1,
+    top: float | None = None,
 ) -> NDArray[np.uint8]:
     """(height, width, 3) uint8, row 0 at the top: a frame in one of its views.
 
     `light` is the light that views of one light speak of, `marked` draws rings around wrong pixels, and `wipe` is the
     place of the wipe's line, 0 to 1 from the left.  Maps of work show counts of rays, or `shares`; `beneath` is the
     brightness of the picture beneath the difference.  `outlines` draws the borders between primitives, and rings are
-    for a picture that is shown `magnified` times.  Raises ValueError where there is no such light, or where the view is
+    for a picture that is shown `magnified` times.  `top` is what has a map of work's last colour, if not as many as the
+    frame says.  Raises ValueError where there is no such light, or where the view is
     one of verified frames, or of what was recorded, and the frame is not.
     """
     if view.of_light and not 0 <= light < frame.lights:
@@ -81,7 +83,7 @@ def picture(
     elif view is View.WIPE:
         colors = _wipe(frame, marked, wipe, outlines, magnified)
     elif view.needs_work:
-        colors = _on_background(frame, _work(frame, view, shares))
+        colors = _on_background(frame, _work(frame, view, shares, top))
     elif view is View.CERTIFICATE:
         colors = _on_background(frame, _certificate(frame, light, shading))
     elif view is View.PENUMBRA:
@@ -189,11 +191,11 @@ def _on_line(cells: NDArray[np.int32]) -> NDArray[np.bool_]:
     return line
 
 
-def _work(frame: Frame, view: View, shares: bool) -> NDArray:
+def _work(frame: Frame, view: View, shares: bool, top: float | None) -> NDArray:
     """Rays at each pixel, from none to the view's top, or which share they are; grey where they are a share of none."""
     work = work_of(frame, view)
     if not shares or work is None:
-        top = work_top(frame, view)
+        top = top or work_top(frame, view)
         assert work is not None
         return _mapped(work / top)
     whole = whole_of(frame, view)

@@ -76,6 +76,12 @@ class Recipe:
         """Whether frames before it show in the picture."""
         return needs_history(self.settings.method, self.view)
 
+    @property
+    def by_one_thread(self) -> bool:
+        """Whether it takes a single thread to make it again."""
+        certified = Method.parse(self.settings.method).has_certificates
+        return self.settings.threads == 1 and certified and self.needs_history
+
     def snapshot(self, scene: Scene) -> Snapshot:
         """The state that a capture carries."""
         camera = self.camera or scene.camera_at(self.time)
@@ -88,6 +94,7 @@ class Recipe:
         style = asdict(self.style) | {"annotations": [a.to_json() for a in self.style.annotations]}
         return {
             "accelerator": self.settings.accelerator,
+            "threads": self.settings.threads if self.by_one_thread else 0,
             "warmup": self.warmup,
             "repeats": self.repeats,
             "history": self.history,
@@ -104,9 +111,10 @@ def needs_history(method: str, view: View) -> bool:
 
 
 def by_chance(settings: Settings, view: View) -> bool:
-    """Whether chance has a part in it: what is certified within a limit of time, or what `auto` measures."""
+    """Whether chance has a part in it: what is certified within a limit of time, or by several threads, or what `auto`
+    measures."""
     method = Method.parse(settings.method)
-    limited = method.has_certificates and math.isfinite(settings.certificate_seconds)
+    limited = method.has_certificates and (math.isfinite(settings.certificate_seconds) or settings.threads != 1)
     return needs_history(settings.method, view) and method.exact and not view.of_modes and (limited or method.adaptive)
 
 
@@ -119,6 +127,7 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Re
         raise ValueError(f"its accelerator is not known: {accelerator}")
     width, height = size or (512, 512)
     settings = replace(Settings(), **snapshot.settings, width=width, height=height, accelerator=accelerator)
+    settings = replace(settings, threads=1 if data.get("threads") == 1 else 0)
     try:
         return Recipe(
             scene=Path(snapshot.scene),
@@ -186,6 +195,7 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         ("--lamp-radius", settings.lamp_radius, None),
         ("--lamp-samples", settings.lamp_samples, None),
         ("--accelerator", settings.accelerator, "bvh8"),
+        ("--threads", settings.threads if recipe.by_one_thread else 0, 0),
         ("--warmup", recipe.warmup, 0),
         ("--repeat", recipe.repeats, 0),
         ("--shading", style.shading, usual.shading),

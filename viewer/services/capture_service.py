@@ -91,7 +91,7 @@ class CaptureService:
             now, time=frame.time, camera=frame.camera, follow=follow, settings=settings_to_json(settings)
         )
         size = (frame.width, frame.height)
-        text = capture.metadata(snapshot, number, size, frame.statistics.to_dict())
+        text = capture.metadata(snapshot, number, size, frame.statistics.to_dict(), {"window": recipe is None})
         folder = preferences.picture_folder
         try:
             name = capture.file_name(preferences.screenshot_template, values)

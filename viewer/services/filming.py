@@ -86,6 +86,6 @@ def shoot(
 def _recipe(recipe: Recipe, take: Take) -> Recipe:
     """How to make a take again, alone: after as many frames of the scene's path, where these were before it."""
     taken = replace(recipe, time=take.time, camera=take.camera)
-    if not taken.needs_history or taken.history:
+    if not taken.needs_history or taken.history:  # where chance has a part in it, nothing brings it back
         return taken
     return replace(taken, history=FILMED) if take.warmup is None else replace(taken, warmup=take.warmup)

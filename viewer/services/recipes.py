@@ -17,7 +17,7 @@ from viewer.state.session import Session
 from viewer.state.views import View
 
 UNKNOWN = "its modes were learnt from other frames as well"
-CHANCE = "what is certified depends on the time that there was"
+CHANCE = "what is certified depends on time and threads"
 
 
 class Recipes:
