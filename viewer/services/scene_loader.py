@@ -97,6 +97,16 @@ class SceneLoader:
         arrival, self._restored = self._restored, None
         return arrival
 
+    def take(self, scene: Scene) -> None:
+        """Show a scene that a script has loaded, or made."""
+        settings = self._session.settings
+        self._given = {}
+        self.load_job = Job(
+            f"Opening {scene.path.name}",
+            lambda progress: scene_files.open_loaded(scene, settings, self._kernels_ready, progress),
+            self._wake,
+        )
+
     def open(self, path: Path) -> None:
         """Open a scene, or restore what a captured picture shows; anything else is one line."""
         self._from_shell = False
