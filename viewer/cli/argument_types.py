@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 from viewer.state.plans import parse_factors
 
 if TYPE_CHECKING:
-    from viewer.output.annotations import Annotation
+    from viewer.state.annotations import Annotation
     from viewer.state.views import View
 
 T = TypeVar("T")
@@ -90,6 +90,16 @@ def crops(text: str) -> tuple[tuple[int, int, int, int], ...]:
     return tuple(found)
 
 
+def tev_address(text: str) -> tuple[str, int]:
+    """Where tev listens."""
+    from viewer.output.tev import address
+
+    try:
+        return address(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
 def place(text: str) -> tuple[float, float]:
     """A place in a picture, in parts of its width and height."""
     x, comma, y = text.partition(",")
@@ -105,7 +115,7 @@ def place(text: str) -> tuple[float, float]:
 def annotation_list(text: str) -> tuple[Annotation, ...]:
     """Annotations as JSON, or a file that holds it."""
     from tracer.scene.files import read_regular
-    from viewer.output.annotations import from_json
+    from viewer.state.annotations import from_json
 
     try:
         if not text.lstrip().startswith("["):

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from tracer.frame import Frame
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.files import read_regular
@@ -22,7 +23,7 @@ from tracer.scene.load import load_visible_scene
 from tracer.scene.model import Cancelled, Scene, SceneError
 from viewer.cli.console import Work, working
 from viewer.cli.tracing_options import prepare_kernels
-from viewer.output import capture, comparison_figure, fingerprint, recipe
+from viewer.output import capture, comparison_figure, exr, fingerprint, recipe
 from viewer.output.recipe import Recipe
 from viewer.services import comparison, stills
 from viewer.services.scene_files import find_scene
@@ -55,7 +56,8 @@ class Checker:
     def check(self, path: Path) -> Verdict:
         """Raises Cancelled; every other failure is a verdict."""
         try:
-            return self._check_pdf(path) if path.suffix.lower() == ".pdf" else self._check_png(path)
+            kinds = {".pdf": self._check_pdf, exr.ENDING: self._check_exr}
+            return kinds.get(path.suffix.lower(), self._check_png)(path)
         except Cancelled:
             raise
         except (SceneError, ValueError, OSError) as error:
@@ -72,16 +74,40 @@ class Checker:
                 return self._compared(kept, np.asarray(image.convert("RGB")), data, {}, False)
         if data.get("window"):
             return Verdict(None, "it shows the window with its panels, which cannot be rendered again")
-        snapshot, size = capture.read_with_size(path)
+        frame, wanted = self._traced(path, data)
+        pixels, _ = stills.draw(frame, self._open_scene, wanted)
+        return self._compared(kept, pixels, data, frame.statistics.to_dict(), wanted.by_gpu)
+
+    def _traced(self, path: Path, data: Mapping[str, Any]) -> tuple[Frame, Recipe]:
+        """The frame of a picture, once more; raises ValueError, in one line, where that cannot be."""
+        snapshot, size = Snapshot.from_json(data.get("state")), capture.size_of(data.get("size"))
         wanted = recipe.from_json(snapshot, size, data.get("picture"))
         if wanted.history:
-            return Verdict(None, f"it cannot be made again: {wanted.history}")
+            raise ValueError(f"it cannot be made again: {wanted.history}")
         scene, wanted = self._prepared(path, snapshot, wanted, (wanted.settings.method,))
         stills.check_light(wanted, scene)
         renderer = Renderer(scene, wanted.settings, world=self._world_of(scene, wanted))
-        frame = stills.trace(renderer, wanted, cancelled=self._work.cancelled)
-        pixels, _ = stills.draw(frame, scene, wanted)
-        return self._compared(kept, pixels, data, frame.statistics.to_dict(), wanted.by_gpu)
+        return stills.trace(renderer, wanted, cancelled=self._work.cancelled), wanted
+
+    @property
+    def _open_scene(self) -> Scene:
+        assert self._scene is not None
+        return self._scene[1]
+
+    def _check_exr(self, path: Path) -> Verdict:
+        """By its linear colours, as they are kept: with 32 bits, or with 16."""
+        exr.check()
+        kept, data = exr.read(path)
+        frame, _ = self._traced(path, data)
+        color = frame.color.astype(kept.dtype)
+        size = f"{kept.shape[1]} × {kept.shape[0]}"
+        if kept.shape != color.shape:
+            return Verdict(False, f"it has {size} pixels; {self._since(data, None)}")
+        differ = int((kept != color).any(axis=-1).sum())
+        if not differ:
+            return Verdict(True, f"{size}, the colours bit for bit")
+        since = self._since(data, None) + _counted(data.get("statistics"), frame.statistics.to_dict())
+        return Verdict(False, f"the colours of {differ:,} of {color[..., 0].size:,} pixels differ; {since}")
 
     def _check_pdf(self, path: Path) -> Verdict:
         kept = read_regular(path)

@@ -31,6 +31,7 @@ examples:
   shadowcull render kitchen.aff -o wrong.png --frame 50 --warmup 20 --view difference
   shadowcull render kitchen.aff -o cells.png --frame 50 --warmup 20 --method certified --view certificate:0
   shadowcull render Robot.aff --frame 10 --warmup 10 --buffers robot.npz
+  shadowcull render Robot.aff -o robot.exr --frame 10 --warmup 10 --verify
   shadowcull render saved.png --samples 16 --size 1920x1080
   shadowcull render kitchen.aff -o same.png --camera saved.png
   shadowcull render bunny.ply -o bunny.png --camera '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
@@ -47,6 +48,13 @@ primitive and cell (H,W int32, -1 for a miss), occlusion_mode (H,W uint8, 255 fo
 reference (H,W,3 float32), the colour with every shadow answer right, and wrong (H,W int32), the number of
 wrong shadow answers of each pixel. A frame of the method certified has certificate (H,W,lights uint8: 0 none,
 1 in full shadow, 2 lit, 3 a few candidates), and the views saved and cost have arrays of their names (H,W int32).
+
+An .exr needs OpenEXR (install shadowcull[exr]). It holds the linear colours and the same buffers as channels, those of
+each light as lit.0, lit.1 and so on for up to 32 lights, and the scene, camera, settings and statistics as JSON in the
+attribute shadowcull.
+
+--annotations takes a list of {"kind": "arrow", "x0": 0.2, "y0": 0.3, "x1": 0.5, "y1": 0.6}, of the kind box with the
+same corners, and of {"kind": "text", "x0": 0.1, "y0": 0.1, "text": "here"}, in parts of the picture's width and height.
 
 --view difference and --view wipe verify by themselves: the first shows the pixels with wrong shadow answers,
 the second the traced picture left of a line, and the correct one right of it; wipe:0.3 puts the line at 30 % of

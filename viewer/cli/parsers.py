@@ -22,6 +22,7 @@ from viewer.cli.argument_types import (
     several,
     size,
     span,
+    tev_address,
     view,
 )
 from viewer.util import resources
@@ -73,12 +74,16 @@ def render() -> Parser:
     )
     add = parser.add_argument
     _add_scene(parser, ", or a saved picture, to render it again")
-    add("-o", "--output", type=Path, metavar="FILE", help="the picture; a .png also remembers how it was made")
+    help_ = "the picture; a .png also remembers how it was made, and an .exr has all buffers"
+    add("-o", "--output", type=Path, metavar="FILE", help=help_)
     _add_moment(parser)
     _add_picture(parser)
     add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
     add("--repeat", type=count(0, 1000), default=0, metavar="N", help="then trace the frame itself N times")
     add("--print-command", action="store_true", help="print the whole command for this picture, and trace nothing")
+    help_ = "show the frame and its buffers in tev or HDRView, which is open there"
+    add("--to-tev", type=tev_address, metavar="HOST:PORT", help=help_)
+    add("--half", action="store_true", help="colours and normals of an .exr with 16 bits, not 32")
     add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
     _add_tracing_options(parser, "bvh8")
     _add_zoom_factor(parser)

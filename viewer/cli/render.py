@@ -15,7 +15,6 @@ from typing import Any, BinaryIO
 import numpy as np
 from PIL import Image
 
-from tracer.culling import modes
 from tracer.frame import Frame, Settings
 from tracer.method import Method
 from tracer.renderer import Renderer
@@ -23,7 +22,8 @@ from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
 from viewer.cli.console import Work, print_table, statistics_table, working
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
-from viewer.output import png, recipe
+from viewer.output import exr, png, recipe, tev
+from viewer.output.buffers import buffers
 from viewer.output.recipe import Recipe, Style
 from viewer.services import stills
 from viewer.state.methods import CERTIFIED, default_for
@@ -40,6 +40,7 @@ PICTURES = {
     ".tiff": "TIFF",
     ".bmp": "BMP",
     ".ppm": "PPM",
+    exr.ENDING: "EXR",
 }
 BYTES_OF_A_LIGHT = 7  # of a pixel: samples asked and reached in 2 each, lit, due and shadow_mode in 1 each
 LEGEND_PLACE = 0.0, 1.0  # the lower left corner
@@ -48,10 +49,14 @@ LEGEND_PLACE = 0.0, 1.0  # the lower left corner
 def render(path: Path, options: Namespace) -> None:
     """Trace one frame and write it; raises SceneError, ValueError and OSError in one line, or Cancelled."""
     check_scene_file(path)
-    view, everything = options.view.view, options.buffers is not None
+    view = options.view.view
+    as_exr = options.output is not None and options.output.suffix.lower() == exr.ENDING
+    everything = options.buffers is not None or as_exr or options.to_tev is not None
     settings = replace(tracing_settings(options), method=options.method or default_for(view), samples=options.samples)
+    if as_exr:
+        exr.check()
     if not options.print_command:
-        _check_outputs(options.output, options.buffers)
+        _check_outputs(options.output, options.buffers, options.to_tev is not None)
     method = Method.parse(settings.method)
     if view is View.CERTIFICATE and (method.adaptive or not method.has_certificates):
         may = "may make" if method.adaptive else "makes"
@@ -72,11 +77,15 @@ def render(path: Path, options: Namespace) -> None:
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)
         frame = _traced(renderer, wanted, everything, work)
         work.progress("writing", 1.0)
-        if options.output is not None:
+        if as_exr:
+            exr.write(options.output, frame, stills.text(frame.pixels, frame, scene, wanted), options.half)
+        elif options.output is not None:
             write_picture(options.output, scene, frame, wanted)
         if options.buffers is not None:
             arrays: dict[str, Any] = buffers(frame)
             write_whole(options.buffers, lambda file: np.savez(file, **arrays))
+        if options.to_tev is not None:
+            tev.send(options.to_tev, f"{scene.path.stem} {wanted.time:g} s {settings.method}", frame)
     title = f"{path.name}, {wanted.time:.3f} s, {frame.width} × {frame.height}, method {settings.method}"
     print_table(statistics_table(frame.statistics, title, frame.settings.verify))
     for written in (options.output, options.buffers):
@@ -125,34 +134,12 @@ def _traced(renderer: Renderer, wanted: Recipe, everything: bool, work: Work) ->
     return stills.trace(renderer, wanted, everything, show, work.cancelled)
 
 
-def buffers(frame: Frame) -> dict[str, np.ndarray]:
-    """The arrays of `--buffers`, by name; the frame must have been rendered with `record_lights`.
-
-    A verified frame has `reference` and `wrong` as well, one with certificates `certificate`, and one that recorded
-    its work `saved`, `cost` and `due_rays`."""
-    assert frame.lit is not None and frame.due is not None
-    arrays: dict[str, np.ndarray] = {
-        "color": frame.color,
-        "depth": frame.depth,
-        "primitive": frame.primitive,
-        "cell": frame.cell,
-        "occlusion_mode": frame.occlusion_mode,
-        "shadow_mode": frame.shadow_mode,
-        "lit": frame.lit,
-        "due": frame.due,
-    }
-    if frame.reference is not None and frame.wrong is not None:
-        arrays |= {"reference": frame.reference, "wrong": frame.wrong}
-    if frame.certificates is not None:
-        planes = [modes.shadow_mode(frame.certificates, light) for light in range(frame.lights)]
-        arrays["certificate"] = np.stack(planes, axis=-1) if planes else np.empty((*frame.primitive.shape, 0), np.uint8)
-    work = {"saved": frame.saved, "cost": frame.cost, "due_rays": frame.due_rays}
-    arrays |= {name: array for name, array in work.items() if array is not None}
-    return arrays
-
-
 def _too_many_lights(options: Namespace, pixels: int, lights: int) -> str:
-    option = "--buffers" if options.buffers is not None else f"--view {options.view.view.value}"
+    option = (
+        "--buffers"
+        if options.buffers is not None or not options.view.view.needs_lights
+        else f"--view {options.view.view.value}"
+    )
     needed, most = (BYTES_OF_A_LIGHT * n / 1e9 for n in (pixels * lights, MOST_RECORDED))
     return (
         f"{option}: {lights:,} lights at {pixels:,} pixels take {needed:.1f} GB, {most:.1f} GB at most; "
@@ -160,8 +147,8 @@ def _too_many_lights(options: Namespace, pixels: int, lights: int) -> str:
     )
 
 
-def _check_outputs(output: Path | None, npz: Path | None) -> None:
-    if output is None and npz is None:
+def _check_outputs(output: Path | None, npz: Path | None, sent: bool) -> None:
+    if output is None and npz is None and not sent:
         raise ValueError("render: nothing to write; give -o out.png, --buffers out.npz, or both")
     if output is not None and output.suffix.lower() not in PICTURES:
         raise ValueError(f"{output}: unknown kind of picture; give one of {' '.join(PICTURES)}")

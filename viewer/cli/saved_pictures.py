@@ -61,7 +61,8 @@ def settle(options: Namespace, kept: dict[str, Any], picture: Path) -> None:
     """What options mean together: a frame or a time that was given wins over the picture's, as does a file's name."""
     if options.frame is None and options.time is None:
         options.time = kept["moment"]
-    if options.output is None and options.buffers is None and not options.print_command:
+    given = (options.output, options.buffers, options.to_tev)
+    if not any(given) and not options.print_command:
         options.output = _free_name(f"{picture.stem}-rendered")
 
 

@@ -18,9 +18,9 @@ from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
-from viewer.output.annotations import Annotation
-from viewer.output.annotations import from_json as annotations_from_json
 from viewer.output.pictures import SHADING
+from viewer.state.annotations import Annotation
+from viewer.state.annotations import from_json as annotations_from_json
 from viewer.state.marks import wipe_column
 from viewer.state.session import Snapshot, settings_to_json
 from viewer.state.views import BENEATH, View

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from tracer.scene.model import Progress
 from viewer.output import capture
+from viewer.output.annotations import annotated
 from viewer.output.legend import Legend
 from viewer.output.legend_picture import with_legend
 from viewer.output.recipe import Recipe
@@ -103,6 +104,7 @@ class CaptureService:
         def save() -> Path:
             described = with_legend(pixels, legend, place) if legend is not None else None
             saved = pixels if described is None else described
+            saved = saved if recipe is None else annotated(saved, recipe.style.annotations)
             if recipe is None:
                 return capture.save(saved, folder, name, text)
             kept = recipe if described is not None else replace(recipe, style=replace(recipe.style, legend=None))

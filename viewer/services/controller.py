@@ -20,6 +20,7 @@ from viewer.services.capture_service import CaptureService
 from viewer.services.film_controller import FilmController
 from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
+from viewer.services.picture_controller import PictureController
 from viewer.services.questions import Questions
 from viewer.services.recipes import Recipes
 from viewer.services.render_thread import RenderThread, Traced
@@ -64,6 +65,7 @@ class Controller:
         self.recipes = Recipes(session, preferences, self.tracing, self.loader, notices)
         films = FilmController(session, preferences, self.runs, self.recipes, self.bookmarks, notices, awaken)
         self.films = films
+        self.pictures = PictureController(session, preferences, self.runs, self.recipes, notices, awaken)
         self.info: dict[str, Any] = {}
         self.drawn_seconds = 0.0
 
@@ -81,6 +83,7 @@ class Controller:
     def active(self) -> bool:
         """Whether anything goes on."""
         working = self.renderer.busy or self.loader.busy or self.captures.busy or self.runs.current is not None
+        working = working or bool(self.pictures.jobs)
         return working or self.motion.lively
 
     # --- the frame -------------------------------------------------------------------------------
@@ -91,6 +94,7 @@ class Controller:
         Returns the frame that has just come, if one has."""
         self._take_scene()
         self.captures.follow()
+        self.pictures.follow()
         self.questions.follow()
         frame = self._take_frame()
         traced, motion, run = self.traced, self.motion, self.runs.current

@@ -61,6 +61,7 @@ class Recipes:
             beneath=p.beneath,
             outlines=p.outlines,
             legend=(p.legend_x, p.legend_y) if legend else None,
+            annotations=tuple(self._session.annotations),
         )
 
     def _with_history(self, found: Recipe, frame: Frame) -> Recipe:

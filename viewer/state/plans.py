@@ -48,6 +48,21 @@ class FilmPlan:
     video: bool = False
 
 
+MOST_MULTIPLE = 8
+
+
+@dataclass
+class PicturePlan:
+    """A picture to be traced and saved: so many times as wide and high as the window's, as a file of an `ending`; the
+    fields of the `caption` are those of names."""
+
+    multiple: int = 2
+    samples: int = 16
+    legend: bool = False
+    caption: str = ""
+    ending: str = ".png"
+
+
 def parse_factors(text: str) -> list[float]:
     """Zoom factors, from words like "4, 16", each once, MOST_FACTORS at most; raises ValueError in one line."""
     try:

@@ -196,14 +196,18 @@ class App:
         c = self.controller
         shown = c.tracing.drawn_view is c.session.view
         ready = shown and not c.tracing.becoming_finer  # else the picture is saved when it has come
-        if self.ui.capture_wanted is CaptureKind.PICTURE and self.ui.display is not None and ready:
+        wanted = self.ui.capture_wanted
+        if wanted in (CaptureKind.PICTURE, CaptureKind.CLIPBOARD) and self.ui.display is not None and ready:
             self.ui.capture_wanted = None
             look = self._look(selected=-1)  # the mark is for the user, not for the picture
             self.ui.display.draw(look)
-            described = legend.of_picture(self.ui) if c.preferences.legend_in_pictures else None
-            recipe = c.recipes.of(c.frame, look.view) if c.frame is not None else None
             pixels = self.ui.display.read() if self.ui.display.drawn(look) else None
-            c.captures.capture(c.frame, pixels, described, recipe)
+            if wanted is CaptureKind.CLIPBOARD:
+                c.pictures.copy(pixels, c.frame, look.view)
+            else:
+                described = legend.of_picture(self.ui) if c.preferences.legend_in_pictures else None
+                recipe = c.recipes.of(c.frame, look.view) if c.frame is not None else None
+                c.captures.capture(c.frame, pixels, described, recipe)
         if self.ui.capture_wanted is CaptureKind.WINDOW:
             self.ui.capture_wanted = None
             self._capture_this_frame = True  # when it is drawn, from here on, with all that was asked for before

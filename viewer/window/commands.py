@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from imgui_bundle import imgui
-
 from tracer.method import Kind, Method, additions, bases
 from viewer.state import navigation
 from viewer.state.methods import toggled, with_base
@@ -13,6 +11,7 @@ from viewer.state.picking import extent_at, point_at
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
 from viewer.window.command import Command
+from viewer.window.taking import drawing, taking
 from viewer.window.ui import CaptureKind, Ui
 
 
@@ -28,11 +27,6 @@ def _file(ui: Ui) -> list[Command]:
     def browse() -> None:
         ui.browser.open = True
 
-    def copy_command() -> None:
-        words = c.recipes.command()
-        if words is not None:
-            imgui.set_clipboard_text(words)
-
     def want(kind: CaptureKind) -> Callable[[], None]:
         def ask() -> None:
             ui.capture_wanted = kind
@@ -44,14 +38,7 @@ def _file(ui: Ui) -> list[Command]:
         Command("Reload", "File", c.loader.reload, "F5", enabled=lambda: c.session.scene is not None),
         Command("Save picture", "File", want(CaptureKind.PICTURE), "F12", separated=True),
         Command("Save picture with panels", "File", want(CaptureKind.WINDOW), "Shift+F12"),
-        Command(
-            "Copy as command",
-            "File",
-            copy_command,
-            "Ctrl+Shift+C",
-            enabled=lambda: c.frame is not None,
-            tip="the command that makes this picture, to the clipboard",
-        ),
+        *taking(ui),
         Command(
             "Start where I left off",
             "File",
@@ -95,6 +82,7 @@ def _view(ui: Ui) -> list[Command]:
         Command("Shares of rays", "View", toggle("work_shares"), "U", checked=lambda: p.work_shares),
         Command("Draw shadow rays", "View", toggle("draw_explanation"), "I", checked=lambda: p.draw_explanation),
         Command("Smooth upscaling", "View", toggle("smooth_upscaling"), checked=lambda: p.smooth_upscaling),
+        *drawing(ui),
         *_looks(ui),
         Command("Hide panels", "View", hide, "Tab", checked=lambda: ui.fold.hidden, separated=True),
         Command("Full screen", "View", ui.full_screen.toggle, "F11", checked=lambda: ui.full_screen.wanted),

@@ -13,6 +13,7 @@ from tests.viewer.scenarios.legends import legends
 from tests.viewer.scenarios.moving import flying, orbiting, playing, resizing
 from tests.viewer.scenarios.panels import closing_panels, folding, hiding, looks, panels
 from tests.viewer.scenarios.runs import asking, experimenting, zooming
+from tests.viewer.scenarios.taking import taking
 from tests.viewer.scenarios.touring import touring
 
 SCENARIOS = {
@@ -20,7 +21,7 @@ SCENARIOS = {
     for scenario in (
         views, difference, wiping, legends, lamps, culling, certifying, explaining, flying, orbiting, playing, resizing,
         capturing, dropping, reopening, cancelling, browsing, experimenting, zooming, asking, filmstrip, filming,
-        failing, panels, closing_panels, looks, hiding, folding, touring, fitting,
+        taking, failing, panels, closing_panels, looks, hiding, folding, touring, fitting,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from viewer.window.command import HELD_KEYS, MENUS, key_label
-from viewer.window.panels import browser, questions
+from viewer.window.panels import browser, questions, save_as
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, centred, em, paragraph
 
@@ -13,6 +13,7 @@ from viewer.window.widgets import QUIET, centred, em, paragraph
 def show(ui: Ui) -> None:
     """All of them; each shows itself only when it is wanted."""
     ui.guard.overlay(browser.NAME, lambda: browser.show(ui), lambda: setattr(ui.browser, "open", False))
+    ui.guard.overlay(save_as.NAME, lambda: save_as.show(ui), lambda: setattr(ui, "save_as_open", False))
     ui.guard.overlay("The question", lambda: questions.show(ui), ui.controller.questions.drop)
     ui.guard.overlay("The list of keys", lambda: _shortcuts(ui), lambda: setattr(ui, "shortcuts_open", False))
     ui.guard.overlay("The dialog about the program", lambda: _about(ui), lambda: setattr(ui, "about_open", False))

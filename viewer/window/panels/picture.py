@@ -14,7 +14,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from viewer.state import navigation
 from viewer.state.picking import point_at
 from viewer.window.palette import ON_PICTURE_ERROR
-from viewer.window.panels import explanation, film, legend, missing, timeline, tour, wipe
+from viewer.window.panels import annotating, explanation, film, legend, missing, timeline, tour, wipe
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, em, paragraph
 
@@ -68,6 +68,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     _pointer(ui, corner, size)
     wipe.show(ui, corner, end)
     _overlay(ui, corner, end)
+    annotating.show(ui, corner, end)
     legend.show(ui, corner, end)
     missing.show(ui, corner, end)
 
@@ -93,7 +94,7 @@ def _pointer(ui: Ui, corner: ImVec2, size: ImVec2) -> None:
     if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
         c.selection.hovered = (u, v)
         _wheel(ui, io.mouse_wheel)
-    if wipe.handle(ui, corner, size):
+    if annotating.handle(ui, corner, size) or wipe.handle(ui, corner, size):
         return
     if imgui.is_item_activated():
         ui.dragged = False
