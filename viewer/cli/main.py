@@ -23,7 +23,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from viewer.cli import parsers
+from viewer.cli import parsers, picture_parsers
 from viewer.cli.parsers import MISUSED
 from viewer.util import resources
 from viewer.util.messages import ERROR, say
@@ -124,7 +124,7 @@ def _picture_instead(options: Namespace) -> int:
 
 
 def _render(arguments: list[str]) -> int:
-    parser = parsers.render()
+    parser = picture_parsers.render()
     options = parser.parse_args(arguments)
 
     from viewer.cli import render, saved_pictures
@@ -142,7 +142,7 @@ def _render(arguments: list[str]) -> int:
 
 
 def _film(arguments: list[str]) -> int:
-    path, options = _with_saved(parsers.film(), arguments)
+    path, options = _with_saved(picture_parsers.film(), arguments)
 
     from viewer.cli import film
 
@@ -150,7 +150,7 @@ def _film(arguments: list[str]) -> int:
 
 
 def _figure(arguments: list[str]) -> int:
-    path, options = _with_saved(parsers.figure(), arguments)
+    path, options = _with_saved(picture_parsers.figure(), arguments)
 
     from viewer.cli import figure
 
@@ -176,7 +176,7 @@ def _with_saved(parser: parsers.Parser, arguments: list[str]) -> tuple[Path, Nam
 
 
 def _check(arguments: list[str]) -> int:
-    options = parsers.check().parse_args(arguments)
+    options = picture_parsers.check().parse_args(arguments)
 
     from viewer.cli import check
 

@@ -14,7 +14,7 @@ from viewer.state.annotations import Annotation, Kind
 
 INK, EDGE = (255, 214, 10), (16, 18, 22)
 """Bright on dark, so that they are seen on any picture."""
-LINE, LETTERS, HEAD = 1 / 220, 1 / 24, 5.0
+LINE, LETTERS, HEAD = 1 / 220, 1 / 24, 7.0
 """Widths of lines and heights of letters, in parts of the shorter side; an arrow's head, in widths of its line."""
 
 
