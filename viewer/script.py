@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from tracer.frame import Frame, Settings
-from tracer.scene.model import Scene
+if TYPE_CHECKING:
+    from tracer.frame import Frame
+    from tracer.scene.model import Scene
 
 
 def show(
@@ -39,6 +40,9 @@ def show(
     OSError
         If there is no display, or if a library that the window needs is missing.
     """
+    # Here, so that commands that need none of it start as quickly as they did.
+    from tracer.scene.model import Scene
+    from tracer.settings import Settings
     from viewer.util import resources
     from viewer.util.screen import has_display, no_display_reason
 

@@ -42,12 +42,12 @@ def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
     arguments = list(arguments)
     commands: dict[str, Callable[[list[str]], int]] = {
         "render": _render,
-        "film": _film,
-        "figure": _figure,
-        "check": _check,
         "bench": _bench,
         "zoom": _zoom,
         "info": _info,
+        "film": _film,
+        "figure": _figure,
+        "check": _check,
     }
     try:
         if arguments and arguments[0] in commands:
