@@ -7,10 +7,12 @@ import struct
 import threading
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.commands import ROOM, run
 from tests.viewer.fakes import make_frame
 from viewer.output import tev
 
@@ -91,6 +93,16 @@ def test_all_channels_arrive(server: Server, monkeypatch: pytest.MonkeyPatch) ->
     assert np.array_equal(image["primitive"], frame.primitive.astype(np.float32)), "-1 for a miss"
     assert not image["lit.0"].any() and image["lit.2"].all()
     assert not any(np.isnan(plane).any() for plane in image.values())
+
+
+def test_render_sends(server: Server, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "room.aff").write_text(ROOM)
+    options = ("--to-tev", f"127.0.0.1:{server.port}", "--size", "32x24", "--threads", 1)
+    assert run(capfd, "render", tmp_path / "room.aff", *options)[0] == 0
+    server.close()
+    assert list(server.images) == ["room 0 s auto"]
+    image = server.images["room 0 s auto"]
+    assert image["R"].shape == (24, 32) and image["due.1"].any() and image["occlusion_mode"].min() == -1.0
 
 
 def test_nobody_listens() -> None:
