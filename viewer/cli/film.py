@@ -15,7 +15,7 @@ from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli.console import working
-from viewer.cli.render import recipe_of
+from viewer.cli.render import check_certificates, recipe_of
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import capture, movie
 from viewer.services import filming, stills
@@ -36,6 +36,7 @@ def film(path: Path, options: Namespace) -> bool:
     check_scene_file(path)
     method = options.method or default_for(options.view.view)
     settings = replace(tracing_settings(options), method=method, samples=options.samples)
+    check_certificates(settings, options.view.view)
     if options.output is None:
         raise ValueError("film: nothing to write; give -o FOLDER, or -o film.mp4")
     folder, video = filming.places(options.output)

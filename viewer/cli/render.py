@@ -57,10 +57,7 @@ def render(path: Path, options: Namespace) -> None:
         exr.check()
     if not options.print_command:
         _check_outputs(options.output, options.buffers, options.to_tev is not None)
-    method = Method.parse(settings.method)
-    if view is View.CERTIFICATE and (method.adaptive or not method.has_certificates):
-        may = "may make" if method.adaptive else "makes"
-        raise ValueError(f"--view certificate: the method {settings.method} {may} none; give --method {CERTIFIED}")
+    check_certificates(settings, view)
     with working() as work:
         scene = load_visible_scene(path, work.progress, options.folder)
         for warning in scene.warnings:
@@ -91,6 +88,14 @@ def render(path: Path, options: Namespace) -> None:
     for written in (options.output, options.buffers):
         if written is not None:
             print(printable(written))
+
+
+def check_certificates(settings: Settings, view: View) -> None:
+    """Raise ValueError, in one line, where a view shows certificates, and the method makes none."""
+    method = Method.parse(settings.method)
+    if view is View.CERTIFICATE and (method.adaptive or not method.has_certificates):
+        may = "may make" if method.adaptive else "makes"
+        raise ValueError(f"--view certificate: the method {settings.method} {may} none; give --method {CERTIFIED}")
 
 
 def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) -> Recipe:

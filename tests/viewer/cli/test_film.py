@@ -102,6 +102,7 @@ def test_mistakes_are_one_line(capfd: pytest.CaptureFixture[str], monkeypatch: p
         (("-o", "file"), "no folder for the pictures"),
         (("-o", "d", "--caption", "{sceen}"), "the caption has no field {sceen}"),
         (("-o", "d", "--view", "shadow:7"), "the scene's lights are 0 to 1"),
+        (("-o", "d", "--view", "certificate:0", "--method", "paper"), "give --method certified"),
     ]
     for options, said in cases:
         assert said in complaint(run(capfd, "film", "room.aff", *options, *SIZE))
