@@ -24,6 +24,7 @@ from viewer.__main__ import main
 from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
 from viewer.window import commands
+from viewer.window.command import key_label
 from viewer.window.ui import Ui
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -157,10 +158,11 @@ def test_keys_of_the_window_are_told() -> None:
     """Each key of a command is in the table of keys."""
     table = "".join(re.findall(r"^\| (`.*?) \|", (DOCS / "viewer.md").read_text(), re.MULTILINE))
     told = set(re.findall(r"`([^`]+)`", table)) | set("1234567")  # shown as `1` … `7`
+    told |= {f"Alt+{n}" for n in range(2, 9)}
     shown = {"RightArrow": "→", "LeftArrow": "←", "Ctrl+Equal": "+", "Ctrl+Minus": "-", "Ctrl+0": "0"}
     ui = Ui(Controller(Preferences()))
     try:
-        keys = {shown.get(command.key, command.key) for command in commands.build(ui) if command.key}
+        keys = {shown.get(command.key) or key_label(command.key) for command in commands.build(ui) if command.key}
     finally:
         ui.controller.close()
     assert len(keys) > 30

@@ -83,6 +83,21 @@ def test_loading_can_be_cancelled(bart, calls):
     assert len(seen) == calls
 
 
+def test_putting_many_pieces_together_is_told_and_can_be_cancelled(write, monkeypatch):
+    monkeypatch.setattr("tracer.scene.aff.SECONDS_BETWEEN_REPORTS", 0.0)
+    monkeypatch.setattr("tracer.scene.assembly.PIECES_BETWEEN_REPORTS", 10)
+    path, told = write("v from 0 0 9 at 0 0 0 l 0 9 0 " + TRIANGLE * 50), []
+
+    def stop(what, fraction):
+        told.append(what)
+        if len([t for t in told if t.endswith("putting it together")]) == 3:
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        load_scene(path, stop)
+    assert told[0].startswith("Reading") and len(told) > 50
+
+
 def test_info(write):
     moving = "x a { p 3 0 0 0 1 0 0 0 0 1 s 0 0 0 1 } k a { transl 4 " + "0 5 0 0 0 0 0 " * 4 + "}"
     text = "a 0 2 60 l 0 9 0 v from 0 0 9 at 0 0 0 fm 0 0 0 1 1 1 0 0 0 1 0 0 c 0 0 0 1 0 2 0 .5 " + TRIANGLE + moving

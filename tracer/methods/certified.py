@@ -12,12 +12,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.lamp_answers import (
-    LAMP_ANSWER_ROWS,
-    answer_sample,
-    find_answers,
-    lamp_answers_in,
-)
+from tracer.culling.certified.find_lamp_answers import find_answers
+from tracer.culling.certified.lamp_answers import LAMP_ANSWER_ROWS, answer_sample, lamp_answers_in
 from tracer.culling.certified.lookup import (
     CELL_POINT_ROWS,
     cell_points_in,

@@ -150,6 +150,11 @@ class _Reader:
             self.reported = now
             self.progress(f"Reading {file.path.name}", min(fraction, 1.0))
 
+    def report_assembly(self) -> None:
+        if self.progress is not None and (now := perf_counter()) - self.reported > SECONDS_BETWEEN_REPORTS:
+            self.reported = now
+            self.progress(f"Reading {self.path.name}: putting it together", 1.0)
+
     def include(self, at: Cursor, low: float, high: float) -> None:
         level = at.count("detail levels", least=-(10**9))
         name = at.name("the name of a file")
@@ -280,7 +285,7 @@ class _Reader:
 
     def scene(self) -> Scene:
         lights, left_out = settled(self.lights, self.tracks)
-        objects, remarks = self.geometry.objects(self.tracks)
+        objects, remarks = self.geometry.objects(self.tracks, self.report_assembly)
         animation = Animation(self.tracks)
         camera = self.camera
         if camera is None:

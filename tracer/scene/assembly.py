@@ -9,8 +9,10 @@ geometry.
 
 from __future__ import annotations
 
-from collections.abc import Container, Hashable, Iterable, Sequence
+from collections.abc import Callable, Container, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import groupby
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +25,8 @@ from tracer.scene.limits import LARGEST, SMALLEST
 from tracer.scene.model import CONE, Quadrics, SceneObject, Triangles, empty_quadrics, empty_triangles
 from tracer.scene.normals import unit_normals
 from tracer.scene.pieces import Mesh, Morph, Piece, Place, Quadric
+
+PIECES_BETWEEN_REPORTS = 4096
 
 
 @dataclass
@@ -75,15 +79,18 @@ class Geometry:
     quadrics: list[Piece[Quadric]] = field(default_factory=list)
     morphs: list[Piece[Morph]] = field(default_factory=list)
 
-    def objects(self, moving: Container[str]) -> tuple[tuple[SceneObject, ...], list[str]]:
-        """The objects, of which the first is static, and what is to be warned of; `moving` holds the tracks' names."""
+    def objects(
+        self, moving: Container[str], report: Callable[[], None] = lambda: None
+    ) -> tuple[tuple[SceneObject, ...], list[str]]:
+        """The objects, of which the first is static, and what is to be warned of; `moving` holds the tracks' names.
+        `report` is called again and again on the way, and may raise Cancelled."""
         remarks = Remarks()
         rigid: list[SceneObject] = []
         deforming: list[SceneObject] = []
         with np.errstate(all="ignore"):  # numbers that overflow are found, and named, afterwards
             for group in self._groups(moving):
-                triangles, meshes = _triangles(group.meshes, remarks)
-                quadrics, others = _quadrics(group.quadrics, remarks)
+                triangles, meshes = _triangles(group.meshes, remarks, report)
+                quadrics, others = _quadrics(group.quadrics, remarks, report)
                 made = SceneObject(group.name, triangles, quadrics, group.chain)
                 if not group.chain:
                     rigid.append(_with_parts(made, [*meshes, *others]))
@@ -183,15 +190,34 @@ def _with_parts(static: SceneObject, counted: list[Counted]) -> SceneObject:
     return replace(static, parts=tuple(numbers), part_of=part_of)
 
 
-def _triangles(pieces: list[tuple[Piece[Mesh], Float64]], remarks: Remarks) -> tuple[Triangles, list[Counted]]:
+def _told(pieces: list[Any], report: Callable[[], None]) -> Iterator[Any]:
+    """The pieces; `report` is called now and then."""
+    for number, piece in enumerate(pieces):
+        if number % PIECES_BETWEEN_REPORTS == 0:
+            report()
+        yield piece
+
+
+def _placed_in_runs(pieces: Iterable[tuple[Piece[Mesh], Float64]]) -> Iterator[tuple[Float64, Float64]]:
+    """Corners and normals of all pieces in their order: at once of those in a row that have the same matrix, as a scene
+    may consist of a million polygons."""
+    for (_, bare), run in groupby(pieces, key=lambda piece: (id(piece[1]), piece[0].shape.normals is None)):
+        shapes, matrices = zip(*((piece.shape, baked) for piece, baked in run))
+        normals = None if bare else np.concatenate([shape.normals for shape in shapes])
+        yield _placed(np.concatenate([shape.corners for shape in shapes]), normals, matrices[0])
+
+
+def _triangles(
+    pieces: list[tuple[Piece[Mesh], Float64]], remarks: Remarks, report: Callable[[], None]
+) -> tuple[Triangles, list[Counted]]:
     """All triangles of an object.  Those without area stay, although no ray meets them: BART counts them."""
     if not pieces:
         return empty_triangles(), []
-    placed = [_placed(piece.shape.corners, piece.shape.normals, baked) for piece, baked in pieces]
-    lengths = [len(corners) for corners, _ in placed]
+    placed = list(_placed_in_runs(_told(pieces, report)))
+    lengths = [len(piece.shape.corners) for piece, _ in pieces]
     corners = np.concatenate([c for c, _ in placed])
     normals = np.concatenate([n for _, n in placed])
-    uvs = np.concatenate([_uvs(piece.shape, baked) for piece, baked in pieces])
+    uvs = np.concatenate([_uvs(piece.shape, baked) for piece, baked in _told(pieces, report)])
     material = np.repeat(np.array([piece.material for piece, _ in pieces], np.int32), lengths)
     texture = np.repeat(np.array([piece.texture for piece, _ in pieces], np.int32), lengths)
     origin = _Origin([piece.shape.place for piece, _ in pieces], lengths)
@@ -223,9 +249,11 @@ def _invertible(linear: Float64) -> bool:
         return False
 
 
-def _quadrics(pieces: list[tuple[Piece[Quadric], Float64]], remarks: Remarks) -> tuple[Quadrics, list[Counted]]:
+def _quadrics(
+    pieces: list[tuple[Piece[Quadric], Float64]], remarks: Remarks, report: Callable[[], None]
+) -> tuple[Quadrics, list[Counted]]:
     good: list[tuple[Piece[Quadric], Float64]] = []
-    for piece, baked in pieces:
+    for piece, baked in _told(pieces, report):
         placed, radii = baked @ piece.shape.placed, piece.shape.radii
         what = "a cone" if piece.shape.kind == CONE else "a sphere"
         if not np.isfinite(np.append(placed, radii)).all():

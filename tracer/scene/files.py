@@ -8,10 +8,45 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterable
+import threading
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from tracer.scene.limits import MOST_BYTES
+
+Stamp = tuple[int, int] | None
+"""When a file was changed last, in nanoseconds, and its bytes: another stamp is another file.  None: it is missing."""
+
+_noted = threading.local()
+
+
+@contextmanager
+def noting(files: dict[Path, Stamp]) -> Iterator[None]:
+    """Put all files that this thread reads for a scene meanwhile into `files`, with the stamps of what was read; those
+    that were missed as well."""
+    before = getattr(_noted, "files", None)
+    _noted.files = files
+    try:
+        yield
+    finally:
+        _noted.files = before
+
+
+def note(path: Path, found: os.stat_result | None) -> None:
+    """Say that a scene was read from this file, or that it was missed."""
+    files: dict[Path, Stamp] | None = getattr(_noted, "files", None)
+    if files is not None:
+        files[path.absolute()] = None if found is None else (found.st_mtime_ns, found.st_size)
+
+
+def stamp(path: Path) -> Stamp:
+    """That of a file as it is now."""
+    try:
+        found = path.stat()
+    except (OSError, ValueError):
+        return None
+    return found.st_mtime_ns, found.st_size
 
 
 def read_regular(path: Path, most: int = MOST_BYTES) -> bytes:
@@ -19,8 +54,14 @@ def read_regular(path: Path, most: int = MOST_BYTES) -> bytes:
     if path.is_dir():
         raise IsADirectoryError(0, "it is a folder, not a file")
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)  # opening a pipe would wait
-    with open(os.open(path, flags), "rb") as file:
+    try:
+        descriptor = os.open(path, flags)
+    except FileNotFoundError:
+        note(path, None)
+        raise
+    with open(descriptor, "rb") as file:
         found = os.fstat(file.fileno())
+        note(path, found)
         if not stat.S_ISREG(found.st_mode):
             raise OSError(0, "it is not a regular file")
         data = file.read(most + 1)

@@ -17,7 +17,7 @@ from typing import BinaryIO
 import numpy as np
 from PIL import Image, UnidentifiedImageError
 
-from tracer.scene.files import SceneFiles, read_regular
+from tracer.scene.files import SceneFiles, note, read_regular
 from tracer.scene.limits import MOST_PIXELS
 from tracer.scene.model import SceneError, Texture
 from tracer.scene.pieces import TextureName
@@ -57,6 +57,7 @@ def find_texture(name: str, beside: Path, scene: Path, files: SceneFiles | None 
                 return candidate
         except (OSError, ValueError, RuntimeError):  # a name too long, or with a zero byte, or a circle of links
             continue
+    note(beside.parent / wanted[-1], None)
     return None
 
 

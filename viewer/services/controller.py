@@ -20,16 +20,20 @@ from viewer.services.capture_service import CaptureService
 from viewer.services.film_controller import FilmController
 from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
+from viewer.services.pad_flight import PadFlight
 from viewer.services.picture_controller import PictureController
+from viewer.services.presets import Presets
 from viewer.services.questions import Questions
 from viewer.services.recipes import Recipes
 from viewer.services.render_thread import RenderThread, Traced
 from viewer.services.run_controller import RunController
-from viewer.services.scene_loader import SceneLoader
+from viewer.services.scene_loader import Arrival, SceneLoader
+from viewer.services.scene_watcher import SceneWatcher
 from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
 from viewer.services.shadow_inspector import ShadowInspector
 from viewer.services.tracing import Conditions, Tracing
+from viewer.services.undo import Undo
 from viewer.state.history import History
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
@@ -38,7 +42,8 @@ from viewer.state.session import Session, Snapshot
 
 class Controller:
     """See the module.  `wake` makes the window draw a frame soon, and may be called from any thread; `info` is what
-    `scene_info` says of the scene, `drawn_seconds` what the window's last frame took."""
+    `scene_info` says of the scene, `drawn_seconds` what the window's last frame took; `reloaded` says that the scene
+    has been read again, and no frame of it has come yet."""
 
     def __init__(self, preferences: Preferences, wake: Callable[[], None] = lambda: None) -> None:
         self.wake = wake
@@ -58,6 +63,11 @@ class Controller:
         self.settings = SettingsController(session, preferences, notices, self.runs.refuses)
         self.motion = Motion(session, preferences, notices, self.runs.refuses)
         self.bookmarks = Bookmarks(session, preferences, self.settings, notices)
+        self.undo = Undo(session, preferences, self.motion, notices, self.runs.refuses)
+        self.presets = Presets(
+            session, preferences, notices, self.runs.refuses, self.settings.save, self.undo.call_next
+        )
+        self.pads = PadFlight(session, preferences, self.motion, notices)
         self.inspector = ShadowInspector(self.selection, renderer)
         self.recorder = LightRecorder(session, renderer, self.tracing)
         self.questions = Questions(self.runs, self.captures, awaken)
@@ -66,6 +76,11 @@ class Controller:
         films = FilmController(session, preferences, self.runs, self.recipes, self.bookmarks, notices, awaken)
         self.films = films
         self.pictures = PictureController(session, preferences, self.runs, self.recipes, notices, awaken)
+        self.watcher = SceneWatcher(
+            preferences, lambda: self.loader.files, self._may_reload, self.loader.follow_change, awaken
+        )
+        self.reloaded = False
+        self._bookmark = -1  # the one that was gone to last
         self.info: dict[str, Any] = {}
         self.drawn_seconds = 0.0
 
@@ -93,15 +108,19 @@ class Controller:
 
         Returns the frame that has just come, if one has."""
         self._take_scene()
+        self.watcher.follow()
         self.captures.follow()
         self.pictures.follow()
         self.questions.follow()
         frame = self._take_frame()
         traced, motion, run = self.traced, self.motion, self.runs.current
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
+        self.undo.follow()
         self.tracing.ask(Conditions(size, motion.under_way, run, self.loader.ready, self.selection.hovered))
         if run is None:
             self.recorder.follow()
+            if self.traced is not None and self.traced.whole:
+                self.bookmarks.follow(self.traced.frame, self.traced.request.divisor == 1)
         self.inspector.follow(self.frame if run is None else None, not motion.lively)
         return frame
 
@@ -109,11 +128,29 @@ class Controller:
         arrival = self.loader.follow()
         if arrival is None:
             return
-        if arrival.opened is not None:
+        if arrival.again:
+            self._show_again(arrival)
+        elif arrival.opened is not None:
             self.show(arrival.opened.scene, arrival.opened.renderer, arrival.opened.info)
         if arrival.place is not None:
+            self.undo.call_next("the place of a saved picture")
             self.restore(arrival.place)
         self.notices.say(arrival.text)
+
+    def _show_again(self, arrival: Arrival) -> None:
+        """Show the scene that was open as it is now, from where we are."""
+        session, opened = self.session, arrival.opened
+        if opened is None or session.scene is None:
+            return
+        here, playing = session.snapshot(), session.playing
+        self.show(opened.scene, opened.renderer, opened.info)
+        session.restore(here)
+        session.playing = playing and session.animated
+        self.reloaded = True
+
+    def _may_reload(self) -> bool:
+        """Whether a scene that has changed may be read now: not while a run goes on, or another is being read."""
+        return self.runs.current is None and self.loader.load_job is None
 
     def _take_frame(self) -> Frame | None:
         """The newest frame, of a run that is under way or else as it was asked for."""
@@ -137,6 +174,7 @@ class Controller:
             if frame.settings.samples == 1:  # further samples count nothing
                 again = before is not None and before.request is traced.request
                 self.history.add(frame, self.drawn_seconds, again)
+        self.reloaded = False
         self.motion.look_around(frame)
         self.selection.refresh(frame)
         return frame
@@ -146,6 +184,8 @@ class Controller:
     def show(self, scene: Scene, renderer: Renderer, info: dict[str, Any]) -> None:
         """Show another scene: what was known and drawn of the old one is gone, settings and view stay."""
         self.runs.stop()
+        if self.session.scene is None or self.session.scene.path != scene.path:
+            self.undo.clear()
         self.session.open(scene)
         self.info = info
         self.renderer.use(renderer)
@@ -169,10 +209,22 @@ class Controller:
         if self.runs.refuses():
             return
         snapshot, start = self.bookmarks.find(index), self.session.camera
+        self._bookmark = index
         if snapshot is not None:
+            self.undo.call_next(f"going to {self.bookmarks.all[index].get('name', '?')}")
             self.restore(snapshot)
+            self.bookmarks.arrived(index)
             if not snapshot.follow:
-                self.motion.glide(snapshot.camera, start)
+                self.motion.fly_to(snapshot.camera, start)
+
+    def next_bookmark(self, step: int) -> None:
+        """Go to the next bookmark of the list, or with -1 to the one before; past the last comes the first."""
+        count = len(self.bookmarks.all)
+        if count:
+            self._bookmark = (self._bookmark + step) % count if self._bookmark < count else 0
+            self.go_to_bookmark(self._bookmark)
+        else:
+            self.notices.say("this scene has no bookmarks")
 
     def go_to_step(self, step: Step) -> None:
         """Glide to where a step of the zoom test stood, at the test's time."""
@@ -185,6 +237,7 @@ class Controller:
         deadline = time.monotonic() + timeout
         jobs = [*self.loader.cancel_all(), *self.captures.saving]
         self.runs.stop()
+        self.watcher.close()
         stopped = self.renderer.close(timeout)
         for job in jobs:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))

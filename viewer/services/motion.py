@@ -31,11 +31,12 @@ Corner = Sequence[float]
 
 @dataclass(frozen=True)
 class _Glide:
-    """A camera on its way to another place."""
+    """A camera on its way to another place, in so many seconds."""
 
     start: Camera
     end: Camera
     began: float
+    seconds: float = GLIDE_SECONDS
 
 
 class Motion:
@@ -67,7 +68,17 @@ class Motion:
     def under_way(self) -> bool:
         """Whether frames should come fast rather than fine."""
         real_time = self._session.playing and not self._preferences.every_frame
-        return real_time or self._glide is not None or time.monotonic() < self._moving_until
+        return real_time or self.handled
+
+    @property
+    def handled(self) -> bool:
+        """Whether the camera is being moved, by hand or to where it was sent; time that passes does not count."""
+        return self._glide is not None or time.monotonic() < self._moving_until
+
+    @property
+    def destination(self) -> Camera | None:
+        """Where the camera is on its way to; None unless it glides."""
+        return self._glide.end if self._glide is not None else None
 
     @property
     def lively(self) -> bool:
@@ -80,7 +91,7 @@ class Motion:
         step, self._last = min(now - self._last, LONGEST_STEP), now
         self._play(step, shown)
         if self._glide is not None:
-            t = (now - self._glide.began) / GLIDE_SECONDS
+            t = (now - self._glide.began) / self._glide.seconds
             self._session.move(navigation.blend(self._glide.start, self._glide.end, t))
             if t >= 1.0:
                 self._glide = None
@@ -120,6 +131,13 @@ class Motion:
         """Move the camera there in a moment's time, from where it is or from `start`."""
         if not self._locked():
             self._glide = _Glide(start or self._session.camera, camera, time.monotonic())
+
+    def fly_to(self, camera: Camera, start: Camera | None = None) -> None:
+        """The same, for as long as the way is: a flight that the eye can follow."""
+        start = start or self._session.camera
+        seconds = navigation.flight_seconds(start, camera, self.pace)
+        if not self._locked():
+            self._glide = _Glide(start, camera, time.monotonic(), seconds)
 
     def halt(self) -> None:
         """Leave the camera where it is."""

@@ -90,7 +90,11 @@ class Questions:
     def before_resetting(self, reset: Callable[[list[str]], None]) -> None:
         """Reset all settings when the user agrees, except the fields of the preferences that `reset` gets: what was
         collected is reset where that is ticked."""
-        fields = {"Forget bookmarks as well": "bookmarks", "Forget recent scenes as well": "recent"}
+        fields = {
+            "Forget bookmarks as well": "bookmarks",
+            "Forget presets as well": "presets",
+            "Forget recent scenes as well": "recent",
+        }
         ticked: set[str] = set()
 
         def agree() -> None:
@@ -99,7 +103,7 @@ class Questions:
 
         self.question = Question(
             "Reset all settings?",
-            "View, culling, quality, theme, sizes and the folder of pictures return to their defaults.",
+            "View, culling, quality, keys, theme, sizes and the folder of pictures return to their defaults.",
             (("Keep them", _nothing), ("Reset", agree)),
             tuple(fields),
             ticked,

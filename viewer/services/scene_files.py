@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import gc
+import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from tracer.compilation import can_draw, warm_up
 from tracer.renderer import Renderer, Settings
+from tracer.scene.files import Stamp, noting
 from tracer.scene.load import load_visible_scene, scene_info
 from tracer.scene.model import Progress, Scene
 from viewer.util import resources
@@ -48,13 +52,20 @@ def refusal(path: Path) -> str | None:
 
 
 def open_scene(
-    path: Path, settings: Settings, ready: Callable[[], bool], progress: Progress, folders: Sequence[Path] = ()
+    path: Path,
+    settings: Settings,
+    ready: Callable[[], bool],
+    progress: Progress,
+    folders: Sequence[Path] = (),
+    files: dict[Path, Stamp] | None = None,
 ) -> Opened:
-    """Read a scene and build its trees; waits for the tracer to be `ready` in between.
+    """Read a scene and build its trees; waits for the tracer to be `ready` in between.  What was read gets into
+    `files`, also where it cannot be shown.
 
     Raises SceneError or Cancelled; runs on a thread of its own."""
     started = time.perf_counter()
-    scene = load_visible_scene(path, progress, folders)
+    with noting({} if files is None else files), _no_collecting():
+        scene = load_visible_scene(path, progress, folders)
     return _opened(scene, settings, ready, progress, started)
 
 
@@ -72,6 +83,27 @@ def open_loaded(scene: Scene, settings: Settings, ready: Callable[[], bool], pro
     """The same with a scene that is there already, as scripts have one."""
     started = time.perf_counter()
     return _opened(scene, settings, ready, progress, started)
+
+
+@contextmanager
+def _no_collecting() -> Iterator[None]:
+    """Without Python's search for circles of objects: a scene of a million pieces has none, and the search stops the
+    window for up to a second each time."""
+    global _uncollected
+    with _lock:
+        _uncollected += 1
+        gc.disable()
+    try:
+        yield
+    finally:
+        with _lock:
+            _uncollected -= 1
+            if not _uncollected:
+                gc.enable()
+
+
+_lock = threading.Lock()
+_uncollected = 0  # scenes that are being read
 
 
 def find_scene(stored: str, picture: Path) -> Path | None:

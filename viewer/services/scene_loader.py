@@ -6,12 +6,14 @@ is cancelled.  A second request to open takes the place of the first.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from tracer.compilation import can_draw, compiled_before, warm_up
+from tracer.scene.files import Stamp
 from tracer.scene.model import Scene
 from viewer.output import capture
 from viewer.services import scene_files
@@ -21,15 +23,19 @@ from viewer.state.preferences import Preferences
 from viewer.state.session import Session, Snapshot
 from viewer.util.messages import ERROR, say
 
+PATIENCE = 0.5
+"""Seconds that a load which was cancelled may take to end."""
+
 
 @dataclass(frozen=True)
 class Arrival:
     """What has been opened: a scene, None where it is open already; the place in it to go to, if not where it begins;
-    and one line that says so."""
+    and one line that says so.  `again` says that it is the scene that was open, read again: the place stays."""
 
     opened: scene_files.Opened | None
     place: Snapshot | None
     text: str
+    again: bool = False
 
 
 class SceneLoader:
@@ -48,10 +54,15 @@ class SceneLoader:
         self._ask_first, self._wake = ask_first, wake
         self.warm_up_job: Job[None] | None = None
         self.load_job: Job[scene_files.Opened] | None = None
+        self._cancelled_at = 0.0
         self._folders: tuple[Path, ...] = ()
         self._abandoned: list[Job] = []
         self._place: Snapshot | None = None  # where to go once the scene is loaded
         self._restored: Arrival | None = None
+        self._again = False  # whether the scene that is open is being read again
+        self._changed = ""  # what of it had changed, where that is why
+        self.files: dict[Path, Stamp] = {}  # that the newest scene was read from, or that were missed
+        self._reading: dict[Path, Stamp] = {}
         self._from_shell = False  # whether what is being opened was named on the command line
         self._given: dict[str, Any] = {}  # settings from there, for what is opened first
 
@@ -93,6 +104,7 @@ class SceneLoader:
         if self.load_job is not None and self.load_job.done:
             load, self.load_job = self.load_job, None
             self._restored = self._loaded(load)
+        self._let_go()
         self._abandoned = [job for job in self._abandoned if not job.done]
         arrival, self._restored = self._restored, None
         return arrival
@@ -142,13 +154,34 @@ class SceneLoader:
         """Read the scene's file again and keep the place."""
         session = self._session
         if session.scene is not None:
-            path, here = Path(session.scene.path), session.snapshot()
-            self._ask_first(f"{path.name} again", lambda: self._load(path, here))
+            path = Path(session.scene.path)
+            self._ask_first(f"{path.name} again", lambda: self._load(path, None, again=True))
+
+    def follow_change(self, changed: str) -> None:
+        """The same for a scene that has changed on the disk, where nothing is to be asked first."""
+        if self._session.scene is not None:
+            self._from_shell = False
+            self._load(Path(self._session.scene.path), None, again=True)
+            self._changed = changed
 
     def cancel(self) -> None:
         """Give up the load that is under way; the scene that is open stays."""
-        if self.load_job is not None:
+        if self.load_job is not None and not self.load_job.stopping:
             self.load_job.cancel()
+            self._cancelled_at = time.monotonic()
+
+    def _let_go(self) -> None:
+        """Wait no longer for a load that was cancelled and cannot stop at once, as within a library that reads a mesh:
+        it ends by itself, and nothing comes of it."""
+        job = self.load_job
+        if job is not None and job.stopping and time.monotonic() - self._cancelled_at > PATIENCE:
+            self._abandoned.append(job)
+            self.load_job = self._place = None
+            self._say_cancelled()
+
+    def _say_cancelled(self) -> None:
+        stays = ": the scene that was open stays" if self._session.scene is not None else ""
+        self._notices.say(f"loading cancelled{stays}")
 
     def cancel_all(self) -> list[Job]:
         """Ask every job to stop; returns them, to be waited for."""
@@ -183,18 +216,21 @@ class SceneLoader:
         if self._from_shell:
             say(why, ERROR)
 
-    def _load(self, path: Path, then: Snapshot | None) -> None:
+    def _load(self, path: Path, then: Snapshot | None, again: bool = False) -> None:
         if self.load_job is not None:
             self.load_job.cancel()
             self._abandoned.append(self.load_job)
         if then is not None:
             then = replace(then, settings=then.settings | self._given)
         self._given = {}
-        self._place = then
+        self._place, self._again, self._changed = then, again, ""
+        files = self._reading = {}
         settings = self._session.settings
         self.load_job = Job(
             f"Loading {path.name}",
-            lambda progress: scene_files.open_scene(path, settings, self._kernels_ready, progress, self._folders),
+            lambda progress: scene_files.open_scene(
+                path, settings, self._kernels_ready, progress, self._folders, files
+            ),
             self._wake,
         )
 
@@ -204,17 +240,24 @@ class SceneLoader:
 
     def _loaded(self, job: Job[scene_files.Opened]) -> Arrival | None:
         place, self._place = self._place, None
+        again = self._again
+        if again and job.result is None and not job.cancelled:
+            self.files = self.files | self._reading  # what was not come to may be mended too
+        elif job.result is not None:
+            self.files = self._reading
         if job.cancelled:
-            stays = ": the scene that was open stays" if self._session.scene is not None else ""
-            self._notices.say(f"loading cancelled{stays}")
+            self._say_cancelled()
         elif job.failure is not None:
             self._tell_shell(job.failure.text)
-            self._notices.report(job.failure)
+            stays = " (the scene as it was stays)" if again else ""
+            self._notices.report(replace(job.failure, text=f"{job.failure.text}{stays}"))
         elif job.result is not None:
             opened = job.result
             count = len(opened.scene.warnings)
             warned = f", {count} warning{'s' * (count > 1)}" if count else ""
-            return Arrival(opened, place, f"{opened.scene.path.name} opened in {opened.seconds:.1f} s{warned}")
+            name = opened.scene.path.name
+            said = f"{name} {'reloaded' if again else 'opened'} in {opened.seconds:.1f} s{warned}"
+            return Arrival(opened, place, f"{said}: {self._changed} changed" if self._changed else said, again)
         return None
 
 

@@ -34,6 +34,11 @@ class Entry:
     at: datetime = datetime.min
 
     @property
+    def matters(self) -> bool:
+        """Whether it is to be read, and not merely a notice."""
+        return self.level is not Level.NOTICE
+
+    @property
     def as_text(self) -> str:
         """All of it as text, to be copied."""
         times = f" ({self.count} times)" if self.count > 1 else ""
@@ -47,6 +52,18 @@ class Log:
     def __init__(self) -> None:
         self._entries: deque[Entry] = deque(maxlen=MOST)
         self._lock = threading.Lock()
+        self._unread: list[Entry] = []
+
+    @property
+    def unread(self) -> list[Entry]:
+        """Errors and faults that came since the log was read, oldest first."""
+        with self._lock:
+            return list(self._unread)
+
+    def read(self) -> None:
+        """All of it has been seen."""
+        with self._lock:
+            self._unread = []
 
     def add(self, level: Level, text: str, details: str = "") -> Entry:
         """Note it, or count it where it was said before: anything just now, a fault a while ago too."""
@@ -60,6 +77,8 @@ class Log:
                 entry = Entry(level, text, details)
                 self._entries.append(entry)
             entry.at = datetime.now()
+            if entry.matters and not any(entry is other for other in self._unread):
+                self._unread.append(entry)
             return entry
 
     def entries(self) -> list[Entry]:
@@ -70,3 +89,4 @@ class Log:
     def clear(self) -> None:
         with self._lock:
             self._entries.clear()
+            self._unread = []

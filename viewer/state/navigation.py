@@ -22,6 +22,7 @@ Vector = NDArray[np.float64]
 STEEPEST = math.radians(89.0)
 RADIANS_PER_HEIGHT = math.radians(100.0)
 CROSSING_SECONDS = 8.0
+SHORTEST_FLIGHT, LONGEST_FLIGHT = 0.35, 1.8
 
 
 def pace(low: Sequence[float], high: Sequence[float], seen: float = math.inf) -> float:
@@ -101,6 +102,28 @@ def ray(camera: Camera, x: float, y: float, aspect: float) -> tuple[Vector, Vect
     return np.asarray(camera.position, np.float64), _unit(direction)
 
 
+def flight_seconds(start: Camera, end: Camera, pace: float) -> float:
+    """How long a flight from one place to another takes: longer for a long way or a wide turn, and never long.
+
+    `pace` is in world units per second."""
+    way = float(np.linalg.norm(np.subtract(end.position, start.position))) / max(pace, 1e-300)
+    turn = math.acos(min(max(float(start.basis()[2] @ end.basis()[2]), -1.0), 1.0))
+    return SHORTEST_FLIGHT + (LONGEST_FLIGHT - SHORTEST_FLIGHT) * (1.0 - math.exp(-0.35 * way - 0.6 * turn))
+
+
+def looking_from(side: Sequence[float], camera: Camera, pivot: Sequence[float], world: Vector) -> Camera:
+    """Look at a point from a side of the world, given as (right, up, towards us) with one of them 1 or -1, from as far
+    as now.  The front is the side of +z, and of -y where z is up."""
+    up = world
+    across = np.array([1.0, 0.0, 0.0]) if abs(up[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
+    right = _unit(across - (across @ up) * up)
+    front = np.cross(right, up)
+    way = side[0] * right + side[1] * up + side[2] * front
+    distance = float(np.linalg.norm(np.subtract(camera.position, pivot)))
+    head = up if not side[1] else -front * side[1]
+    return replace(camera, position=_triple(np.add(pivot, distance * way)), direction=_triple(-way), up=_triple(head))
+
+
 def blend(start: Camera, end: Camera, t: float) -> Camera:
     """The camera a fraction `t` (eased) of the way between two, for a glide that the eye can follow."""
     if t >= 1.0:
@@ -108,12 +131,22 @@ def blend(start: Camera, end: Camera, t: float) -> Camera:
     t = t * t * (3.0 - 2.0 * t)
     position = np.add(np.multiply(start.position, 1.0 - t), np.multiply(end.position, t))
     first, last = start.basis(), end.basis()
-    direction = (1.0 - t) * first[2] + t * last[2]
+    direction = _between(first[2], last[2], first[1], t)
     up = (1.0 - t) * first[1] + t * last[1]
-    if np.linalg.norm(direction) < 1e-3 or np.linalg.norm(np.cross(direction, up)) < 1e-3:
-        direction, up = last[2], last[1]  # the two look opposite ways: there is no way between
+    if np.linalg.norm(np.cross(direction, up)) < 1e-3:
+        up = last[1] if np.linalg.norm(np.cross(direction, last[1])) >= 1e-3 else first[1]
     angle = (1.0 - t) * start.angle + t * end.angle
     return Camera(_triple(position), _triple(_unit(direction)), _triple(_unit(up)), angle)
+
+
+def _between(first: Vector, last: Vector, axis: Vector, t: float) -> Vector:
+    """A unit vector a fraction of the turn from one to another; about `axis` where they are opposite."""
+    across = np.cross(first, last)
+    size = float(np.linalg.norm(across))
+    turn = math.atan2(size, float(first @ last))
+    if size < 1e-9:
+        return first if turn < 1.0 else _about(axis, turn * t) @ first
+    return _about(across / size, turn * t) @ first
 
 
 def _rotation(camera: Camera, right: float, up: float, world: Vector) -> Vector:

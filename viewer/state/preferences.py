@@ -26,6 +26,7 @@ from viewer.util.files import write_text
 
 SETTINGS_FILE = "settings.json"
 RECENT_SCENES = 10
+RECENT_COMMANDS = 30
 THEMES = ("dark", "light")
 SCALES = (0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0)
 """Sizes of the interface that are offered."""
@@ -51,6 +52,7 @@ _RANGES: dict[str, tuple[float, float]] = {
     "threads": (0, 1024),
     "shading": (0.0, 1.0),
     "beneath": (0.0, 0.6),
+    "pad_dead_zone": (0.0, 0.9),
     "legend_x": (0.0, 1.0),
     "legend_y": (0.0, 1.0),
 }
@@ -63,7 +65,9 @@ class Preferences:
     certificates; `samples` is how many a pixel gets at idle; `lamp_samples` how many each lamp has, 0 for as many as
     the scene says (the radius of lamps is measured in units of the scene, and not kept); `legend_x` and `legend_y` say
     where in the room that the picture leaves to its legend this lies, 0 to 1 from left and top; `tour` says that the
-    tour has not been shown yet, `last` is the snapshot, as JSON, to start from where that is asked for."""
+    tour has not been shown yet, `last` is the snapshot, as JSON, to start from where that is asked for;
+    `habits` names the program that the viewer is steered like, `keys` are those that the user has chosen, by the names
+    of commands, and `used` what the command palette ran last, newest first."""
 
     target_fps: float = 15.0
     dynamic_resolution: bool = True
@@ -106,6 +110,13 @@ class Preferences:
     ui_scale: float = 1.0
     start_where_left: bool = False
     last: dict = field(default_factory=dict)
+    watch_scene: bool = True
+    pads: bool = True
+    pad_dead_zone: float = 0.15
+    habits: str = "Shadowcull"
+    keys: dict[str, list[str]] = field(default_factory=dict)
+    used: list[str] = field(default_factory=list)
+    presets: list[dict] = field(default_factory=list)
     recent: list[str] = field(default_factory=list)
     bookmarks: dict[str, list[dict]] = field(default_factory=dict)
 
@@ -198,13 +209,13 @@ def _from_json(data: Mapping[str, Any]) -> Preferences:
     for item in fields(Preferences):
         if item.name in data:
             default = getattr(preferences, item.name)
-            value = _checked(item.name, data[item.name], default)
+            value = checked(item.name, data[item.name], default)
             setattr(preferences, item.name, value)
     return preferences
 
 
-def _checked(name: str, value: Any, default: Any) -> Any:
-    """The value if it is of the default's kind and in its range, else the default."""
+def checked(name: str, value: Any, default: Any) -> Any:
+    """The value of a field if it is of the default's kind and in its range, else the default."""
     if isinstance(default, bool) or isinstance(value, bool):
         return value if isinstance(value, bool) and isinstance(default, bool) else default
     if isinstance(default, int | float):
@@ -214,11 +225,26 @@ def _checked(name: str, value: Any, default: Any) -> Any:
         return type(default)(value)
     if name == "method":
         return value if isinstance(value, str) and is_method(value) and Method.parse(value).culls else default
+    listed = isinstance(value, list)
     if name == "theme":
         return value if value in THEMES else default
     if name == "recent":
-        return [v for v in value if isinstance(v, str)][:RECENT_SCENES] if isinstance(value, list) else default
+        return [v for v in value if isinstance(v, str)][:RECENT_SCENES] if listed else default
+    if name == "keys":
+        return _keys(value) if isinstance(value, dict) else default
+    if name == "used":
+        return [v for v in value if isinstance(v, str)][:RECENT_COMMANDS] if listed else default
+    if name == "presets":
+        return [v for v in value if isinstance(v, dict) and isinstance(v.get("name"), str)] if listed else default
     if name == "bookmarks":
-        ok = isinstance(value, dict) and all(isinstance(v, list) for v in value.values())
-        return value if ok else default
+        if not isinstance(value, dict) or not all(isinstance(v, list) for v in value.values()):
+            return default
+        return {scene: [mark for mark in marks if isinstance(mark, dict)] for scene, marks in value.items()}
     return value if isinstance(value, type(default)) else default
+
+
+def _keys(data: Mapping[str, Any]) -> dict[str, list[str]]:
+    """Lists of keys alone; which keys there are is the window's to know."""
+    return {
+        name: [key for key in keys if isinstance(key, str)] for name, keys in data.items() if isinstance(keys, list)
+    }

@@ -26,7 +26,7 @@ from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, menus, palette, style
+from viewer.window import commands, glfw_pads, menus, palette, style
 from viewer.window.display import Display, Look
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
@@ -34,6 +34,7 @@ from viewer.window.layout import Layout, LayoutFile
 from viewer.window.panels import dialogs, faults, legend, loading, picture, status, strip, tour
 from viewer.window.shots import Shots
 from viewer.window.ui import CaptureKind, Ui
+from viewer.window.widgets import tell_keys
 
 TITLE = "Shadowcull"
 OnFrame = Callable[[Frame], bool | None]
@@ -64,7 +65,9 @@ class App:
         self.controller = Controller(preferences)
         self.ui = Ui(self.controller)
         self.ui.guard = Guard(self.controller.notices, lambda name, fault: faults.instead(self.ui, name, fault))
-        self.ui.commands = commands.build(self.ui)
+        self.ui.take_commands(commands.build(self.ui))
+        tell_keys(self.ui.with_keys)
+        self.ui.paste_from, self.ui.copy_to = imgui.get_clipboard_text, imgui.set_clipboard_text
         self.scene_path, self.given_settings, self.folders = scene_path, settings or {}, folders
         self.scene, self.on_frame = scene, on_frame
         self._told: Frame | None = None  # what the script has seen
@@ -78,6 +81,7 @@ class App:
         self._frame_began = time.perf_counter()
         self._capture_this_frame = False
         self.drawn_by_processor = self.iconified = False
+        self.read_pads = glfw_pads.Pads().read
         if problem:
             self.controller.notices.say(problem, error=True)
 
@@ -123,6 +127,7 @@ class App:
         overlay("The strip of folded panels", lambda: strip.show(self.ui), lambda: setattr(self.ui.fold, "drawer", ""))
         step("Reading the keys", lambda: menus.handle_keys(self.ui))
         step("Flying", lambda: picture.fly(self.ui))
+        step("Game pads", self._follow_pads)
         overlay("The progress of loading", lambda: loading.show(self.ui))
         dialogs.show(self.ui)
         overlay("The tour", lambda: tour.show(self.ui), self.ui.tour.end)
@@ -131,7 +136,14 @@ class App:
     def after_widgets(self) -> None:
         """The window is drawn but not yet shown."""
         self.ui.guard.step("Saving the window", self._capture_window)
+        self.controller.undo.held = imgui.is_any_item_active()
         self.controller.drawn_seconds = time.perf_counter() - self._frame_began
+
+    def _follow_pads(self) -> None:
+        if not self.ui.key_wanted and not imgui.get_io().want_text_input:
+            found = self.read_pads()
+            runs = {c.name: c.run for c in self.ui.commands if c.enabled()} if found else {}
+            self.controller.pads.follow(found, runs)
 
     # --- the steps -------------------------------------------------------------------------------
 

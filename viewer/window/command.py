@@ -1,29 +1,31 @@
 """One action of the window: its name, its menu, its key, and what it does.
 
-Keys that are held down to fly are no commands; they are listed in `HELD_KEYS` for the help window, and
-`viewer.window.panels.picture` reads them.
+Keys that are held down to fly are no commands: `viewer.state.keymap` lists them, and `viewer.window.panels.picture`
+reads them.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
-MENUS = ("File", "View", "Camera", "Time", "Culling", "Run", "Help")
+from viewer.state.keymap import MODIFIERS
 
-HELD_KEYS = (
-    ("W  A  S  D", "fly forward, left, back, right"),
-    ("E  Q", "fly up, down"),
-    ("Shift", "fly faster"),
-    ("Left or right drag", "look around (fly); orbit around what was clicked, or pan (orbit)"),
-    ("Middle drag", "pan"),
-    ("Wheel", "set the speed (fly); go nearer or farther (orbit)"),
-    ("Drag the wipe's line", "compare the picture with the right one"),
-    ("Drag the legend", "put it elsewhere in the picture; it snaps to edges and corners"),
-    ("Click", "inspect a pixel, and draw its shadow rays; click the background to let go"),
-)
+MENUS = ("File", "Edit", "View", "Camera", "Time", "Culling", "Run", "Help")
+
+
+@dataclass(frozen=True)
+class Condition:
+    """When a command can be run, and why not where it cannot."""
+
+    holds: Callable[[], bool]
+    reason: str
+
+    def __call__(self) -> bool:
+        return self.holds()
 
 
 def _always() -> bool:
@@ -32,8 +34,10 @@ def _always() -> bool:
 
 @dataclass(frozen=True)
 class Command:
-    """An action.  `key` is written as it is shown, e.g. "Ctrl+O"; `other_keys` do the same on other keyboards, and
-    are not shown; `checked` makes it a tick in its menu, where `tip` says more about it."""
+    """An action.  `menu` may name a menu within another, as "Camera/Bookmarks".  `key` is the one that it has unless
+    the user gives it others, written as it is shown, e.g. "Ctrl+O"; `other_keys` do the same on other keyboards, and
+    are not shown; `checked` makes it a tick in its menu, where `tip` says more about it; `title` is what it is called
+    now, where that changes, and "" where it is not to be seen."""
 
     name: str
     menu: str
@@ -45,19 +49,22 @@ class Command:
     repeats: bool = False
     tip: str = ""
     other_keys: tuple[str, ...] = ()
+    title: Callable[[], str] | None = None
+
+    @property
+    def label(self) -> str:
+        """What it is called now; "" while it is not to be seen."""
+        return self.name if self.title is None else self.title()
+
+    @property
+    def why_not(self) -> str:
+        """Why it cannot be run now, as far as that is known; "" where it can."""
+        return "" if self.enabled() else getattr(self.enabled, "reason", "")
 
     @property
     def keys(self) -> tuple[str, ...]:
         """All that it has."""
         return (self.key, *self.other_keys) if self.key else ()
-
-
-_SPELLED = {
-    "RightArrow": "right_arrow",
-    "LeftArrow": "left_arrow",
-    "KeypadAdd": "keypad_add",
-    "KeypadSubtract": "keypad_subtract",
-}
 
 
 def chord(key: str) -> int:
@@ -66,15 +73,33 @@ def chord(key: str) -> int:
     number = 0
     for modifier in modifiers:
         number |= int(getattr(imgui.Key, f"mod_{modifier.lower()}"))
-    spelled = _SPELLED.get(name, name.lower())
+    spelled = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
     found = getattr(imgui.Key, f"_{name}" if name.isdigit() else spelled, None)
     if found is None:
         raise ValueError(f"no key is called {key!r}")
     return number | int(found)
 
 
+def is_key(key: str) -> bool:
+    """Whether a key of this name exists, with modifiers that exist."""
+    *modifiers, name = key.split("+")
+    try:
+        chord(name)
+    except (ValueError, AttributeError, TypeError):
+        return False
+    return set(modifiers) <= set(MODIFIERS)
+
+
 def key_label(key: str) -> str:
     """A key as the user reads it."""
-    for name, shown in (("RightArrow", "Right"), ("LeftArrow", "Left"), ("Equal", "+"), ("Minus", "-")):
-        key = key.replace(name, shown)
-    return key
+    *modifiers, name = key.split("+")
+    return "+".join([*modifiers, _SHOWN.get(name) or re.sub(r"^Keypad", "Keypad ", name)])
+
+
+_SHOWN = {
+    "RightArrow": "Right", "LeftArrow": "Left", "UpArrow": "Up", "DownArrow": "Down", "Equal": "+", "Minus": "-",
+    "Comma": ",", "Period": ".", "Slash": "/", "Semicolon": ";", "Apostrophe": "'", "LeftBracket": "[",
+    "RightBracket": "]", "Backslash": "\\", "GraveAccent": "`", "PageUp": "Page up", "PageDown": "Page down",
+    "KeypadAdd": "Keypad +", "KeypadSubtract": "Keypad -", "KeypadMultiply": "Keypad *", "KeypadDivide": "Keypad /",
+    "KeypadDecimal": "Keypad .", "KeypadEnter": "Keypad Enter", "Oem102": "<",
+}  # fmt: skip

@@ -10,14 +10,25 @@ from viewer.state.methods import toggled, with_base
 from viewer.state.picking import extent_at, point_at
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
-from viewer.window.command import Command
+from viewer.window import camera_commands, edit_commands
+from viewer.window.command import Command, Condition
 from viewer.window.taking import drawing, taking
 from viewer.window.ui import CaptureKind, Ui
 
 
 def build(ui: Ui) -> list[Command]:
     """All commands, in the order of the menus."""
-    return [*_file(ui), *_view(ui), *_camera(ui), *_time(ui), *_culling(ui), *_run(ui), *_help(ui)]
+    return [
+        *_file(ui),
+        *edit_commands.build(ui),
+        *drawing(ui),
+        *_view(ui),
+        *_camera(ui),
+        *_time(ui),
+        *_culling(ui),
+        *_run(ui),
+        *_help(ui),
+    ]
 
 
 def _file(ui: Ui) -> list[Command]:
@@ -35,7 +46,14 @@ def _file(ui: Ui) -> list[Command]:
 
     return [
         Command("Open...", "File", browse, "Ctrl+O"),
-        Command("Reload", "File", c.loader.reload, "F5", enabled=lambda: c.session.scene is not None),
+        Command("Reload", "File", c.loader.reload, "F5", enabled=_open_scene(ui)),
+        Command(
+            "Reload when files change",
+            "File",
+            lambda: setattr(p, "watch_scene", not p.watch_scene),
+            checked=lambda: p.watch_scene,
+            tip="the scene, and what it includes: textures, materials, meshes",
+        ),
         Command("Save picture", "File", want(CaptureKind.PICTURE), "F12", separated=True),
         Command("Save picture with panels", "File", want(CaptureKind.WINDOW), "Shift+F12"),
         *taking(ui),
@@ -69,9 +87,17 @@ def _view(ui: Ui) -> list[Command]:
     def hide() -> None:
         ui.fold.hidden = not ui.fold.hidden
 
-    lit = lambda: c.session.scene is not None and len(c.session.scene.lights) > 1  # noqa: E731
+    def another(step: int) -> Callable[[], None]:
+        views = list(View)
+        return lambda: c.settings.set_view(views[(views.index(c.session.view) + step) % len(views)])
+
+    lit = Condition(
+        lambda: c.session.scene is not None and len(c.session.scene.lights) > 1, "there are not several lights"
+    )
     return [
         *[show(view) for view in View],
+        Command("Next view", "View", another(1)),
+        Command("Previous view", "View", another(-1)),
         Command(
             "Next light", "View", lambda: c.settings.set_light(c.session.light + 1), "L", enabled=lit, separated=True
         ),
@@ -82,7 +108,6 @@ def _view(ui: Ui) -> list[Command]:
         Command("Shares of rays", "View", toggle("work_shares"), "U", checked=lambda: p.work_shares),
         Command("Draw shadow rays", "View", toggle("draw_explanation"), "I", checked=lambda: p.draw_explanation),
         Command("Smooth upscaling", "View", toggle("smooth_upscaling"), checked=lambda: p.smooth_upscaling),
-        *drawing(ui),
         *_looks(ui),
         Command("Hide panels", "View", hide, "Tab", checked=lambda: ui.fold.hidden, separated=True),
         Command("Full screen", "View", ui.full_screen.toggle, "F11", checked=lambda: ui.full_screen.wanted),
@@ -122,7 +147,7 @@ def _camera(ui: Ui) -> list[Command]:
     def mode(name: str) -> Callable[[], None]:
         return lambda: setattr(p, "navigation", name)
 
-    here = lambda: c.session.scene is not None  # noqa: E731
+    here = _open_scene(ui)
     return [
         Command("Fly", "Camera", mode("fly"), "G", checked=lambda: p.navigation == "fly"),
         Command("Orbit", "Camera", mode("orbit"), "O", checked=lambda: p.navigation == "orbit"),
@@ -136,14 +161,15 @@ def _camera(ui: Ui) -> list[Command]:
             checked=lambda: c.session.follow,
             enabled=here,
         ),
-        Command("Add bookmark", "Camera", c.bookmarks.add, "Ctrl+B", enabled=here, separated=True),
+        Command("Add bookmark", "Camera/Bookmarks", c.bookmarks.add, "Ctrl+B", enabled=here, separated=True),
+        *camera_commands.build(ui),
     ]
 
 
 def _time(ui: Ui) -> list[Command]:
     c = ui.controller
     p = c.preferences
-    moves = lambda: c.session.animated  # noqa: E731
+    moves = Condition(lambda: c.session.animated, "nothing moves in this scene")
 
     def toggle(name: str) -> Callable[[], None]:
         return lambda: setattr(p, name, not getattr(p, name))
@@ -217,8 +243,13 @@ def _run(ui: Ui) -> list[Command]:
         else:
             c.selection.picked = None
 
-    idle = lambda: c.session.scene is not None and runner.current is None  # noqa: E731
-    busy = lambda: c.loader.load_job is not None or runner.current is not None or c.selection.picked is not None  # noqa: E731
+    idle = Condition(
+        lambda: c.session.scene is not None and runner.current is None, "no scene is open, or a run is under way"
+    )
+    busy = Condition(
+        lambda: c.loader.load_job is not None or runner.current is not None or c.selection.picked is not None,
+        "nothing is under way, and nothing is selected",
+    )
     return [
         Command("Experiment", "Run", start("Experiment", runner.start_experiment), enabled=idle),
         Command("Zoom test", "Run", start("Zoom test", runner.start_zoom_test), enabled=idle),
@@ -243,6 +274,10 @@ def _help(ui: Ui) -> list[Command]:
         Command("Keyboard and mouse", "Help", shortcuts, "F1", checked=lambda: ui.shortcuts_open),
         Command("About Shadowcull", "Help", about, checked=lambda: ui.about_open),
     ]
+
+
+def _open_scene(ui: Ui) -> Condition:
+    return Condition(lambda: ui.controller.session.scene is not None, "no scene is open")
 
 
 def focus(ui: Ui) -> None:

@@ -19,6 +19,8 @@ def close_newest(ui: Ui) -> bool:
         ui.tool = ui.drawn = None
     elif ui.about_open:
         ui.about_open = False
+    elif ui.presets_open:
+        ui.presets_open = False
     elif ui.shortcuts_open:
         ui.shortcuts_open = False
     elif ui.fold.drawer:

@@ -47,6 +47,7 @@ class Layout:
         docking.docking_splits = _splits()
         docking.dockable_windows = [self._window(panel) for panel in PANELS.values()]
         ui.show_panel, ui.reset_layout = self.show, self.reset
+        ui.panel_labels = tuple(label for label in PANELS if label != PICTURE)
 
     # --- what the commands ask for ---------------------------------------------------------------
 

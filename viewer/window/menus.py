@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from imgui_bundle import imgui
 
 from viewer.window import escape
-from viewer.window.command import MENUS, Command, chord, key_label
+from viewer.window.command import MENUS, Command
 from viewer.window.ui import Ui
 from viewer.window.widgets import tooltip
 
@@ -14,42 +16,73 @@ def handle_keys(ui: Ui) -> None:
     """Run the commands whose keys were just pressed, unless the user is typing or a dialog is up."""
     # A chord that is quickly pressed and let go may be spread over two frames: first Ctrl goes down, then the
     # letter goes down and Ctrl up. So a modifier counts for one frame longer than it is held.
+    ui.keyboard.follow()
     held, before = int(imgui.get_io().key_mods), ui.modifiers
     ui.modifiers = held
-    if imgui.get_io().want_text_input:
+    if imgui.get_io().want_text_input or ui.key_wanted:
         return
     if imgui.is_key_pressed(imgui.Key.escape, repeat=False) and escape.close_newest(ui):
         return
     if imgui.is_popup_open("", escape.ANY_POPUP):
         return
     for command in ui.commands:
-        if any(_pressed(command, key, held or before) for key in command.keys) and command.enabled():
-            ui.guard.step(f"The command {command.name}", command.run)
+        keys = ui.keymap.of(command.name)
+        if any(_pressed(ui, command, key, held or before) for key in keys) and command.enabled():
+            run(ui, command)
+
+
+def run(ui: Ui, command: Command) -> None:
+    """Do what a command does; a mistake in it ends nothing."""
+    ui.guard.step(f"The command {command.name}", command.run)
 
 
 def show(ui: Ui) -> None:
     """All menus of the menu bar."""
     for name in MENUS:
         if imgui.begin_menu(name):
-            for command in ui.commands:
-                if command.menu == name:
-                    _menu_item(ui, command)
+            _menu(ui, name)
             imgui.end_menu()
 
 
-def _pressed(command: Command, key: str, modifiers: int) -> bool:
-    number = chord(key)
+def _menu(ui: Ui, path: str) -> None:
+    """The commands of a menu, and the menus within it where the first of their commands stands."""
+    inner: list[str] = []
+    first = True
+    for command in ui.commands:
+        if command.menu == path:
+            if command.label:
+                _menu_item(ui, command, command.separated and not first)
+                first = False
+        elif command.menu.startswith(f"{path}/") and command.menu not in inner:
+            inner.append(command.menu)
+            if command.separated and not first:
+                imgui.separator()
+            first = False
+            if imgui.begin_menu(command.menu.removeprefix(f"{path}/")):
+                _menu(ui, command.menu)
+                more: Callable[[], None] | None = ui.more_in_menus.get(command.menu)
+                if more is not None:
+                    more()
+                imgui.end_menu()
+
+
+def _pressed(ui: Ui, command: Command, key: str, modifiers: int) -> bool:
+    number = ui.keyboard.chord(key)
     if number & int(imgui.Key.mod_mask_) != modifiers:
         return False
-    return imgui.is_key_pressed(imgui.Key(number & ~int(imgui.Key.mod_mask_)), repeat=command.repeats)
+    pressed = imgui.is_key_pressed(imgui.Key(number & ~int(imgui.Key.mod_mask_)), repeat=command.repeats)
+    return pressed and ui.keyboard.is_meant(key)
 
 
-def _menu_item(ui: Ui, command: Command) -> None:
-    if command.separated:
+def _menu_item(ui: Ui, command: Command, separated: bool) -> None:
+    label = command.label
+    if separated:
         imgui.separator()
     checked = command.checked() if command.checked is not None else False
-    clicked, _ = imgui.menu_item(command.name, key_label(command.key), checked, command.enabled())
+    key = ui.keyboard.label(ui.keymap.shown(command.name))
+    clicked, _ = imgui.menu_item(label if label == command.name else f"{label}###{command.name}", key, checked,
+                                 command.enabled())  # fmt: skip
     if command.tip:
         tooltip(command.tip)
     if clicked:
-        ui.guard.step(f"The command {command.name}", command.run)
+        run(ui, command)

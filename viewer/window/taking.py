@@ -49,7 +49,7 @@ def taking(ui: Ui) -> list[Command]:
     return [
         Command("Save picture as...", "File", save_as, "Ctrl+S", enabled=there),
         Command("Copy picture", "File", copy_picture, "Ctrl+C", enabled=there, separated=True),
-        Command("Copy as command", "File", lambda: copy_command(ui), "Ctrl+Shift+C", enabled=there,
+        Command("Copy as command", "File", lambda: copy_command(ui), "Ctrl+Alt+C", enabled=there,
                 tip="the command that makes this picture, to the clipboard"),
         Command("Send to tev", "File", lambda: c.pictures.to_tev(c.frame), enabled=there,
                 tip="the frame and its buffers, to tev or HDRView; the panel Saving says where it listens"),
@@ -57,17 +57,16 @@ def taking(ui: Ui) -> list[Command]:
 
 
 def drawing(ui: Ui) -> list[Command]:
-    """What draws on the picture, in the menu View."""
+    """What draws on the picture, in the menu Edit."""
     c = ui.controller
     some = lambda: bool(c.session.annotations)  # noqa: E731
 
     def tool(kind: Kind) -> Command:
         chosen = lambda: ui.tool is kind  # noqa: E731
-        return Command(_NAMES[kind], "View", lambda: choose(ui, kind), checked=chosen,
-                       separated=kind is Kind.ARROW)  # fmt: skip
+        return Command(_NAMES[kind], "Edit/Drawings", lambda: choose(ui, kind), checked=chosen)
 
     return [
         *[tool(kind) for kind in Kind],
-        Command("Undo drawing", "View", lambda: undo(ui), "Ctrl+Z", enabled=some),
-        Command("Clear drawings", "View", lambda: clear(ui), enabled=some),
+        Command("Undo drawing", "Edit/Drawings", lambda: undo(ui), enabled=some),
+        Command("Clear drawings", "Edit/Drawings", lambda: clear(ui), enabled=some),
     ]

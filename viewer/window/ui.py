@@ -5,6 +5,7 @@ Panels and commands share it; what they do to the scene goes through the control
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
@@ -17,13 +18,18 @@ from viewer.services.controller import Controller
 from viewer.services.file_browser import Browser
 from viewer.services.tour import Tour
 from viewer.state.annotations import Annotation, Kind
+from viewer.state.keymap import Keymap
 from viewer.state.preferences import default_screenshot_folder
-from viewer.window.command import Command
+from viewer.window.command import Command, is_key, key_label
 from viewer.window.display import Display
+from viewer.window.finder import Finder
 from viewer.window.full_screen import FullScreen
 from viewer.window.guard import Guard
+from viewer.window.keyboard import Keyboard
 from viewer.window.screening import Screening
 from viewer.window.shots import Shots
+
+_KEY_AT_END = re.compile(r" \(([^()]+)\)$")
 
 
 class CaptureKind(Enum):
@@ -50,12 +56,14 @@ class Fold:
 
 @dataclass
 class Ui:
-    """See the module.  `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says that
+    """See the module. `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says that
     the pointer holds the line of the wipe, `tool` what it draws, `drawn` what is being drawn, and `drawn_text` the
     words that are typed there, `pointed_light` which light it is on in the inspector; `light_filters` is
     what is typed above each list of lights; `screening` is the recorded picture that is shown in the picture's place;
-    `legend_shown` says whether the picture shows its legend, `legend_held` where the pointer holds that; `tour_height`
-    is what the picture leaves free below it for the tour, `tour_place` where that is: left, top and width."""
+    `legend_shown` says whether the picture shows its legend, `legend_held` where the pointer holds that; `key_wanted`
+    names the command that waits for a key to be pressed; `editing` is the list and the place in it of a name that is
+    being edited, `edited` that name; `tour_height` is what the picture leaves free below it for the tour, `tour_place`
+    where that is: left, top and width."""
 
     controller: Controller
     display: Display | None = None
@@ -66,14 +74,28 @@ class Ui:
     capture_wanted: CaptureKind | None = None
     save_as_open: bool = False
     shortcuts_open: bool = False
+    keyboard: Keyboard = field(default_factory=Keyboard)
+    key_wanted: str = ""
+    finder: Finder = field(default_factory=Finder)
+    presets_open: bool = False
+    editing: tuple[str, int] | None = None
+    edited: str = ""
+    editing_fresh: bool = False
+    new_preset: str = ""
+    key_filter: str = ""
+    more_in_menus: dict[str, Callable[[], None]] = field(default_factory=dict)
+    paste_from: Callable[[], str] = lambda: ""
+    copy_to: Callable[[str], None] = lambda text: None
     about_open: bool = False
     per_pixel: bool = True
     picture_area: tuple[int, int] = (0, 0)
     picture_focused: bool = False
+    picture_shape: tuple[int, int] = (1, 1)
     pivot: tuple[float, float, float] | None = None
     pivot_scene: object = None
     modifiers: int = 0
     pressed: int = 0
+    pressed_with: str = ""
     pressed_at: tuple[float, float] = (0.0, 0.0)
     dragged: bool = False
     wiping: bool = False
@@ -86,6 +108,7 @@ class Ui:
     request_exit: Callable[[], None] = lambda: None
     reset_layout: Callable[[], None] = lambda: None
     show_panel: Callable[[str], Any] = lambda label: None
+    panel_labels: tuple[str, ...] = ()
     guard: Guard = field(init=False)
     log_errors_only: bool = False
     zoom_all_steps: bool = False
@@ -100,6 +123,7 @@ class Ui:
     _cache: dict[str, tuple[object, object, Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self.keymap = Keymap(self.controller.preferences, {})
         self.tour = Tour(self.controller, lambda label: self.show_panel(label))
 
     def cached(self, name: str, of: object, chosen: object, compute: Callable[[], Any]) -> Any:
@@ -115,6 +139,31 @@ class Ui:
         return light_in_words(
             light, scene.lights[light].name if scene is not None and light < len(scene.lights) else ""
         )
+
+    def take_commands(self, commands: list[Command]) -> None:
+        """Make these the commands, with the keys that the user has chosen for them."""
+        self.commands = commands
+        self.keymap = Keymap(self.controller.preferences, {command.name: command.keys for command in commands})
+        kept = self.controller.preferences.keys
+        for name, keys in list(kept.items()):
+            kept[name] = [key for key in keys if is_key(key)]  # a file may hold anything
+
+    def edit(self, place: tuple[str, int], name: str) -> None:
+        """Begin to edit a name in a list."""
+        self.editing, self.edited, self.editing_fresh = place, name, True
+
+    def key(self, name: str) -> str:
+        """The key of a command as the user reads it on the keyboard, in brackets after a blank; "" without one."""
+        shown = self.keyboard.label(self.keymap.shown(name))
+        return f" ({shown})" if shown else ""
+
+    def with_keys(self, text: str) -> str:
+        """A text that ends in the usual key of a command, in brackets, with the one that it has now."""
+        found = _KEY_AT_END.search(text)
+        for command in self.commands if found is not None else ():
+            if found is not None and command.key and key_label(command.key) == found[1]:
+                return text[: found.start()] + self.key(command.name)
+        return text
 
     @property
     def default_folder(self) -> Path:

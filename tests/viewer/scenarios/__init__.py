@@ -1,5 +1,6 @@
 """What a user does in the window, and what must come of it.  Each function is run by `tests.viewer.window`."""
 
+from tests.viewer.scenarios.at_home import at_home
 from tests.viewer.scenarios.closing import closing_while_experimenting, closing_while_loading, closing_while_tracing
 from tests.viewer.scenarios.culling import certifying, culling, explaining
 from tests.viewer.scenarios.drawing import difference, views, wiping
@@ -11,6 +12,7 @@ from tests.viewer.scenarios.fitting import fitting
 from tests.viewer.scenarios.lamps import lamps
 from tests.viewer.scenarios.legends import legends
 from tests.viewer.scenarios.moving import flying, orbiting, playing, resizing
+from tests.viewer.scenarios.navigating import navigating
 from tests.viewer.scenarios.panels import closing_panels, folding, hiding, looks, panels
 from tests.viewer.scenarios.runs import asking, experimenting, zooming
 from tests.viewer.scenarios.taking import taking
@@ -21,7 +23,7 @@ SCENARIOS = {
     for scenario in (
         views, difference, wiping, legends, lamps, culling, certifying, explaining, flying, orbiting, playing, resizing,
         capturing, dropping, reopening, cancelling, browsing, experimenting, zooming, asking, filmstrip, filming,
-        taking, failing, panels, closing_panels, looks, hiding, folding, touring, fitting,
+        taking, failing, panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -126,3 +127,22 @@ def test_settings_from_the_command_line_win_over_the_first_picture_alone(
     assert door.session.settings.lamp_radius == 0.5, "also where a scene is opened that says nothing of it"
     door.loader.open(picture)
     assert door.arrival().place.settings["lamp_radius"] is None
+
+
+def test_a_load_that_cannot_stop_is_left_to_itself_when_it_is_cancelled(
+    door: Door, tiny_scene_file: Path, monkeypatch: pytest.MonkeyPatch
+):
+    deaf, opened = threading.Event(), door_opened(door, tiny_scene_file)
+    monkeypatch.setattr("viewer.services.scene_files.open_scene", lambda *arguments: deaf.wait(60.0))
+    monkeypatch.setattr("viewer.services.scene_loader.PATIENCE", 0.05)
+    door.session.open(opened)
+    door.loader.open(tiny_scene_file)
+    door.loader.cancel()
+    assert door.loader.load_job is not None and door.arrival() is None
+    assert door.loader.load_job is None and door.said == "loading cancelled: the scene that was open stays"
+    monkeypatch.undo()
+    assert door_opened(door, tiny_scene_file).path == tiny_scene_file, "another is opened meanwhile"
+    deaf.set()
+    (job,) = door.loader._abandoned or [None]
+    assert job is None or job.join(20.0)
+    assert door.loader.follow() is None

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -109,3 +111,31 @@ def test_the_pace_follows_the_scenes_size():
     assert nav.pace((0, 0, 0), (0, 0, 0)) == 1.0
     room_in_a_plain = nav.pace((-1000, 0, -1000), (1000, 5, 1000), seen=4.0)
     assert room_in_a_plain == pytest.approx(1.0)
+
+
+def test_a_flight_turns_at_an_even_pace_even_to_the_opposite_side():
+    start = Camera((0.0, 0.0, 0.0), (0.0, 0.0, -1.0))
+    for end in (replace(start, direction=(1.0, 0.0, 0.0)), replace(start, direction=(0.0, 0.0, 1.0))):
+        ways = [nav.blend(start, end, t).basis()[2] for t in np.linspace(0.0, 1.0, 21)]
+        steps = [math.acos(min(1.0, float(a @ b))) for a, b in pairwise(ways)]
+        assert max(steps) < 0.15 * sum(steps) and sum(steps) == pytest.approx(math.acos(float(ways[0] @ ways[-1])))
+        assert all(abs(float(way[1])) < 1e-9 for way in ways), "the horizon stays level"
+
+
+def test_a_longer_way_takes_longer_and_none_takes_long():
+    start = Camera((0.0, 0.0, 0.0), (0.0, 0.0, -1.0))
+    times = [nav.flight_seconds(start, replace(start, position=(x, 0.0, 0.0)), 1.0) for x in (0.0, 1.0, 5.0, 1e9)]
+    assert times == sorted(times) and times[0] == nav.SHORTEST_FLIGHT and times[-1] == pytest.approx(nav.LONGEST_FLIGHT)
+    assert nav.flight_seconds(start, replace(start, direction=(0.0, 0.0, 1.0)), 1.0) > times[0]
+
+
+@pytest.mark.parametrize("up", [(0.0, 1.0, 0.0), (0.0, 0.0, 1.0)])
+def test_sides_are_looked_from_at_the_same_distance(up: tuple[float, float, float]):
+    camera, pivot, world = Camera((3.0, 4.0, 0.0), (0.0, 0.0, -1.0), up), (0.0, 0.0, 0.0), np.array(up)
+    front = (0.0, 0.0, -1.0) if up[1] else (0.0, 1.0, 0.0)
+    for side, view in (((0, 0, 1), front), ((1, 0, 0), (-1.0, 0.0, 0.0)), ((0, 1, 0), tuple(-world))):
+        there = nav.looking_from(side, camera, pivot, world)
+        assert there.basis()[2] == pytest.approx(np.array(view)) and math.dist(there.position, pivot) == pytest.approx(
+            5
+        )
+        assert there.basis()[0] == pytest.approx(np.array((1.0, 0.0, 0.0) if not side[0] else front))

@@ -162,6 +162,40 @@ def put_beam(beam, points, bits, first, last, light, radius, within):
     return True
 
 
+@subkernel
+def put_cone(beam, point, normal, light, radius, within):
+    """Put a beam around the rays from a lamp, a ball of a radius around light (3,) float32, to one point, which is on
+    a surface with this normal; all are tuples of float32.
+
+    False where nothing is known of such rays (`put_beam`)."""
+    inside, size, away = True, ZERO, ZERO
+    for axis in range(3):
+        inside &= point[axis] >= within[axis] and point[axis] <= within[3 + axis]
+        size = max(size, max(abs(light[axis]), abs(point[axis])))
+        away += abs(point[axis] - light[axis])
+    rounded = AROUND * (away + radius) + AT * size
+    way = point[0] - light[0], point[1] - light[1], point[2] - light[2]
+    far = square_root(dot(way, way))
+    if not inside or not far > TWO * radius + rounded:
+        return False
+    for axis in range(3):
+        beam.box[axis] = min(point[axis], light[axis] - radius) - rounded
+        beam.box[3 + axis] = max(point[axis], light[axis] + radius) + rounded
+    along = way[0] / far, way[1] / far, way[2] / far
+    right = _across(along)
+    top, slope = cross(along, right), -radius / far
+    scale = ONE / square_root(ONE + slope * slope)
+    for k in range(SIDES):
+        side, sign = (right if k < 2 else top), (ONE if k % 2 == 0 else -ONE)
+        for axis in range(3):
+            beam.planes[k, axis] = (sign * side[axis] - slope * along[axis]) * scale
+        _put_offset(beam, k, light, radius + rounded)
+    for axis in range(3):
+        beam.planes[SIDES, axis] = -normal[axis]
+    _put_offset(beam, SIDES, light, max(-dot(way, normal), radius) + rounded)
+    return True
+
+
 @inlined
 def _put_offset(beam, k, light, out):
     """Let the k-th plane be so far out from the light."""

@@ -37,7 +37,7 @@ def tools(ui: Ui) -> None:
     imgui.begin_disabled(not ui.controller.session.annotations)
     if imgui.button(icons.ICON_FA_ROTATE_LEFT):
         undo(ui)
-    tooltip("take back the last (Ctrl+Z)")
+    tooltip("take back the last")
     imgui.same_line()
     if imgui.button(icons.ICON_FA_TRASH):
         clear(ui)

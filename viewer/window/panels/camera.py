@@ -9,11 +9,11 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state import navigation
 from viewer.window.commands import focus
+from viewer.window.panels import bookmarks
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,
     checkbox,
-    em,
     heading,
     paragraph,
     properties,
@@ -30,9 +30,10 @@ def show(ui: Ui) -> None:
         paragraph("No scene is open.", QUIET)
         return
     _place(ui)
+    bookmarks.show(ui)
     _moving(ui)
     _path(ui)
-    _bookmarks(ui)
+    _pads(ui)
 
 
 def _place(ui: Ui) -> None:
@@ -100,29 +101,15 @@ def _path(ui: Ui) -> None:
                 _, p.playback_rate = imgui.slider_float("##rate", p.playback_rate, 0.1, 10.0, "%.2f x", flags)
 
 
-def _bookmarks(ui: Ui) -> None:
-    c = ui.controller
-    heading("Bookmarks")
-    button = f"{icons.ICON_FA_BOOKMARK}##add"
-    imgui.set_next_item_width(-em(2.6))
-    flags = int(imgui.InputTextFlags_.enter_returns_true)
-    entered, ui.new_bookmark = imgui.input_text_with_hint("##bookmark", "name", ui.new_bookmark, flags)
-    imgui.same_line()
-    if imgui.button(button, (-1.0, 0.0)) or entered:
-        c.bookmarks.add(ui.new_bookmark)
-        ui.new_bookmark = ""
-    tooltip("keep this view: camera, time and settings (Ctrl+B)")
-    gone = None
-    for index, bookmark in enumerate(c.bookmarks.all):
-        imgui.push_id(index)
-        width = imgui.get_content_region_avail().x - em(2.2)
-        if imgui.selectable(str(bookmark.get("name", "?")), False, 0, (width, 0.0))[0]:
-            c.go_to_bookmark(index)
-        tooltip("go there")
-        imgui.same_line()
-        if imgui.small_button(icons.ICON_FA_XMARK):
-            gone = index
-        tooltip("delete it")
-        imgui.pop_id()
-    if gone is not None:
-        c.bookmarks.forget(gone)
+def _pads(ui: Ui) -> None:
+    """What game pads and space mice there are."""
+    p, pads = ui.controller.preferences, ui.controller.pads
+    heading("Game pads and space mice")
+    checkbox("Fly by them", p.pads, lambda on: setattr(p, "pads", on), "by any that are plugged in, now or later")
+    if p.pads:
+        paragraph(", ".join(pads.names) or "None is plugged in.", QUIET)
+        with properties("pads", 5.0) as shown:
+            if shown:
+                row("Dead zone", "of a stick or a cap: how far it may stand from its middle and count as at rest")
+                changed, share = imgui.slider_float("##dead zone", 100.0 * p.pad_dead_zone, 0.0, 60.0, "%.0f %%")
+                p.pad_dead_zone = min(max(share / 100.0, 0.0), 0.9) if changed else p.pad_dead_zone

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from viewer.window.command import HELD_KEYS, MENUS, key_label
-from viewer.window.panels import browser, questions, save_as
+from viewer.window.panels import browser, command_palette, keys, presets, questions, save_as
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, centred, em, paragraph
 
@@ -15,42 +14,10 @@ def show(ui: Ui) -> None:
     ui.guard.overlay(browser.NAME, lambda: browser.show(ui), lambda: setattr(ui.browser, "open", False))
     ui.guard.overlay(save_as.NAME, lambda: save_as.show(ui), lambda: setattr(ui, "save_as_open", False))
     ui.guard.overlay("The question", lambda: questions.show(ui), ui.controller.questions.drop)
-    ui.guard.overlay("The list of keys", lambda: _shortcuts(ui), lambda: setattr(ui, "shortcuts_open", False))
+    ui.guard.overlay("The command palette", lambda: command_palette.show(ui), command_palette.close)
+    ui.guard.overlay("The list of keys", lambda: keys.show(ui), lambda: setattr(ui, "shortcuts_open", False))
+    ui.guard.overlay("The presets", lambda: presets.show(ui), lambda: setattr(ui, "presets_open", False))
     ui.guard.overlay("The dialog about the program", lambda: _about(ui), lambda: setattr(ui, "about_open", False))
-
-
-def _shortcuts(ui: Ui) -> None:
-    if not ui.shortcuts_open:
-        return
-    centred(em(46.0))
-    flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_resize
-    shown, open_ = imgui.begin("Keyboard and mouse", True, int(flags))
-    ui.shortcuts_open = bool(open_)
-    if shown:
-        if imgui.begin_table("keys", 2, int(imgui.TableFlags_.sizing_stretch_same)):
-            imgui.table_next_column()
-            for menu in MENUS[:2]:
-                _keys(menu, [(key_label(c.key), c.name) for c in ui.commands if c.menu == menu and c.key])
-            imgui.table_next_column()
-            for menu in MENUS[2:]:
-                _keys(menu, [(key_label(c.key), c.name) for c in ui.commands if c.menu == menu and c.key])
-            imgui.end_table()
-        _keys("On the picture", list(HELD_KEYS), wide=True)
-    imgui.end()
-
-
-def _keys(title: str, lines: list[tuple[str, str]], wide: bool = False) -> None:
-    imgui.separator_text(title)
-    if not imgui.begin_table(f"keys of {title}", 2):
-        return
-    imgui.table_setup_column("key", int(imgui.TableColumnFlags_.width_fixed), em(8.5 if wide else 5.5))
-    imgui.table_setup_column("meaning", int(imgui.TableColumnFlags_.width_stretch))
-    for key, meaning in lines:
-        imgui.table_next_column()
-        imgui.text_unformatted(key)
-        imgui.table_next_column()
-        paragraph(meaning, QUIET)
-    imgui.end_table()
 
 
 def _about(ui: Ui) -> None:

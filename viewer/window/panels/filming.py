@@ -10,7 +10,7 @@ from viewer.window.panels.runs import start_or_progress
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, row, size_field, tooltip
 
-_WIDE = 36.0  # ems of a panel that has room for its three parts side by side
+_WIDE = 46.0  # ems of a panel that has room for its three parts side by side
 _HIGH = int(imgui.ChildFlags_.auto_resize_y)
 
 

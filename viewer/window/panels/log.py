@@ -20,6 +20,7 @@ _COLORS = {Level.NOTICE: QUIET, Level.ERROR: WARNING, Level.FAULT: ERROR}
 def show(ui: Ui) -> None:
     """The panel."""
     log = ui.controller.notices.log
+    log.read()
     entries = [e for e in log.entries() if not (ui.log_errors_only and e.level is Level.NOTICE)]
     _, ui.log_errors_only = imgui.checkbox("errors only", ui.log_errors_only)
     imgui.same_line()

@@ -11,8 +11,9 @@ import math
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from viewer.state import navigation
+from viewer.state import navigation, pads
 from viewer.state.picking import point_at
+from viewer.window.camera_commands import pivot_of
 from viewer.window.palette import ON_PICTURE_ERROR
 from viewer.window.panels import annotating, explanation, film, legend, missing, timeline, tour, wipe
 from viewer.window.ui import Ui
@@ -25,7 +26,9 @@ _ALL_BUTTONS = int(
     | imgui.ButtonFlags_.mouse_button_right
     | imgui.ButtonFlags_.mouse_button_middle
 )
+_NAMES = dict(zip(BUTTONS, ("left", "right", "middle"), strict=True))
 FASTER = 4.0
+NOTCHES_PER_HEIGHT = 20.0
 
 
 def show(ui: Ui) -> None:
@@ -51,10 +54,14 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     c.selection.hovered = None
     frame = c.frame
     texture = ui.display.texture_id if ui.display is not None else None
+    if texture is not None and frame is None and c.reloaded:
+        _last_picture(ui, room, texture)
+        return
     if frame is None or texture is None:
         _placeholder(ui, room)
         return
     width, height = c.traced.full_size if c.traced is not None else (1, 1)
+    ui.picture_shape = width, height
     factor = min(room.x / width, room.y / height)
     size = ImVec2(max(1.0, width * factor), max(1.0, height * factor))
     at = imgui.get_cursor_pos()
@@ -71,6 +78,16 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     annotating.show(ui, corner, end)
     legend.show(ui, corner, end)
     missing.show(ui, corner, end)
+
+
+def _last_picture(ui: Ui, room: ImVec2, texture: int) -> None:
+    """What was shown before the scene was read again, until it is traced: else each change would flash."""
+    width, height = ui.picture_shape
+    factor = min(room.x / width, room.y / height)
+    size = ImVec2(max(1.0, width * factor), max(1.0, height * factor))
+    at = imgui.get_cursor_pos()
+    imgui.set_cursor_pos(ImVec2(at.x + (room.x - size.x) / 2.0, at.y + (room.y - size.y) / 2.0))
+    imgui.image(imgui.ImTextureRef(texture), size)
 
 
 def _placeholder(ui: Ui, room: ImVec2) -> None:
@@ -100,6 +117,7 @@ def _pointer(ui: Ui, corner: ImVec2, size: ImVec2) -> None:
         ui.dragged = False
         ui.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
         ui.pressed = next((b for b in BUTTONS if imgui.is_mouse_clicked(b)), BUTTONS[0])
+        ui.pressed_with = "Ctrl" if io.key_ctrl else "Alt" if io.key_alt else "Shift" if io.key_shift else ""
         point = point_at(c.frame, u, v) if c.frame is not None else None
         if point is not None:
             ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
@@ -119,14 +137,19 @@ def _drag(ui: Ui, button: int, dx: float, dy: float) -> None:
     c = ui.controller
     camera, world = c.session.camera, c.motion.world_up
     pivot = ui.pivot
-    orbiting = c.preferences.navigation == "orbit" and pivot is not None
-    if button == BUTTONS[2] or (orbiting and button == BUTTONS[1]):
+    what = ui.keymap.drag(_NAMES[button], ui.pressed_with)
+    if what.endswith("by mode"):
+        orbiting = c.preferences.navigation == "orbit" and pivot is not None
+        what = "look" if not orbiting else "pan" if what == "pan by mode" else "orbit"
+    if what == "pan":
         distance = math.dist(pivot, camera.position) if pivot is not None else 4.0 * c.motion.pace
         c.motion.move(navigation.pan(camera, dx, -dy, distance))
-    elif orbiting and pivot is not None:
+    elif what == "orbit":
         turn = 2.0 * navigation.RADIANS_PER_HEIGHT
-        c.motion.move(navigation.orbit(camera, pivot, dx * turn, -dy * turn, world))
-    else:
+        c.motion.move(navigation.orbit(camera, pivot or pivot_of(ui), dx * turn, -dy * turn, world))
+    elif what == "dolly":
+        c.motion.move(navigation.dolly(camera, pivot or pivot_of(ui), -NOTCHES_PER_HEIGHT * dy))
+    elif what == "look":
         turn = navigation.RADIANS_PER_HEIGHT
         c.motion.move(navigation.look(camera, dx * turn, -dy * turn, world))
 
@@ -135,7 +158,8 @@ def _wheel(ui: Ui, notches: float) -> None:
     if notches == 0.0:
         return
     c = ui.controller
-    if c.preferences.navigation == "orbit":
+    wheel = ui.keymap.habits.wheel
+    if wheel == "dolly" or (wheel == "by mode" and c.preferences.navigation == "orbit"):
         at = c.selection.hovered
         point = point_at(c.frame, *at) if c.frame is not None and at is not None else None
         if point is not None:
@@ -150,19 +174,24 @@ def _wheel(ui: Ui, notches: float) -> None:
 def fly(ui: Ui) -> None:
     """Move by the keys that are held down; called once per frame, for every window but those being typed in."""
     c, io = ui.controller, imgui.get_io()
-    if io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or c.session.scene is None:
+    if ui.key_wanted or io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or c.session.scene is None:
         return
     if imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup_id | imgui.PopupFlags_.any_popup_level)):
         return
 
-    def axis(plus: imgui.Key, minus: imgui.Key) -> float:
-        return float(imgui.is_key_down(plus)) - float(imgui.is_key_down(minus))
+    def axis(plus: str, minus: str) -> float:
+        down, of = ui.keyboard.is_down, ui.keymap.of
+        return float(down(of(plus))) - float(down(of(minus)))
 
-    right, up, forward = axis(imgui.Key.d, imgui.Key.a), axis(imgui.Key.e, imgui.Key.q), axis(imgui.Key.w, imgui.Key.s)
-    if right == up == forward == 0.0:
+    wanted = pads.Push(
+        axis("Fly right", "Fly left"), axis("Fly up", "Fly down"), axis("Fly forward", "Fly back"),
+        axis("Turn right", "Turn left"), axis("Turn up", "Turn down"),
+    )  # fmt: skip
+    if not wanted:
         return
-    way = c.motion.pace * c.preferences.speed * min(io.delta_time, 0.1) * (FASTER if io.key_shift else 1.0)
-    c.motion.move(navigation.fly(c.session.camera, right * way, up * way, forward * way, c.motion.world_up))
+    seconds = min(io.delta_time, 0.1)
+    way = c.motion.pace * c.preferences.speed * seconds * (FASTER if io.key_shift else 1.0)
+    c.motion.move(pads.moved(c.session.camera, wanted, way, seconds, c.motion.world_up))
 
 
 def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> None:

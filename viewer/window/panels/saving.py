@@ -22,7 +22,7 @@ def show(ui: Ui) -> None:
     if wide_button(f"{icons.ICON_FA_FLOPPY_DISK}  Save as", "larger, with a caption, or as EXR (Ctrl+S)", 2):
         ui.save_as_open = True
     imgui.same_line()
-    if wide_button(f"{icons.ICON_FA_TERMINAL}  Copy command", "the command that makes this picture (Ctrl+Shift+C)"):
+    if wide_button(f"{icons.ICON_FA_TERMINAL}  Copy command", "the command that makes this picture (Ctrl+Alt+C)"):
         commands_of.copy_command(ui)
     annotating.tools(ui)
     with properties("pictures", 5.0) as shown:

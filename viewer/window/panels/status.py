@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from imgui_bundle import hello_imgui, imgui
+from imgui_bundle import ImVec2, hello_imgui, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.controller import Controller
+from viewer.state.log import Level
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, clipped, count, em
+from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, tooltip
+
+IDLE = "idle"
 
 
 def show(ui: Ui) -> None:
     """The bar."""
     c = ui.controller
     message = c.notices.current
+    _badge(ui)
     right = _summary(ui)
     width = imgui.calc_text_size(right).x + em(1.0)
     room = imgui.get_content_region_avail().x
@@ -27,11 +31,35 @@ def show(ui: Ui) -> None:
             if message.error and imgui.is_item_clicked():
                 c.notices.message = None
         else:
-            clipped(doing(c), QUIET)
+            text = doing(c)
+            clipped(text if text != IDLE else f"{text}   {_hints(ui)}", QUIET)
     imgui.end_child()
     if right:
         imgui.same_line(left + max(0.0, room - width + em(0.5)))
         imgui.text_colored(QUIET, right)
+
+
+def _hints(ui: Ui) -> str:
+    """Where to go on from, by the keys as they are."""
+    hints = [(ui.key("Keyboard and mouse"), "keys"), (ui.key("Command palette"), "find anything")]
+    told = [f"{key.strip(' ()')}: {what}" for key, what in hints if key]
+    return f"({', '.join(told)})" if told else ""
+
+
+def _badge(ui: Ui) -> None:
+    """How many errors and faults nobody has read yet; a click shows them."""
+    unread = ui.controller.notices.log.unread
+    if not unread:
+        return
+    fault = any(entry.level is Level.FAULT for entry in unread)
+    imgui.push_style_color(imgui.Col_.text, ERROR if fault else WARNING)
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(em(0.25), 0.0))
+    if imgui.small_button(f"{icons.ICON_FA_TRIANGLE_EXCLAMATION} {len(unread)}###unread"):
+        ui.show_panel("Log")
+    imgui.pop_style_var()
+    imgui.pop_style_color()
+    tooltip(f"{unread[-1].text}\nClick to read the log.")
+    imgui.same_line()
 
 
 def doing(c: Controller) -> str:
@@ -59,7 +87,7 @@ def doing(c: Controller) -> str:
         return "refining the picture" if c.tracing.becoming_finer or _learns(c) else "tracing"
     if c.tracing.adds_samples:
         return f"adding samples: {c.tracing.samples_shown} of {c.tracing.samples_wanted}"
-    return "idle   (F1: keyboard and mouse)"
+    return IDLE
 
 
 def _learns(c: Controller) -> bool:

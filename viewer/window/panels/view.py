@@ -37,7 +37,8 @@ def show(ui: Ui) -> None:
                 p.beneath = min(max(percents / 100.0, 0.0), 0.6) if changed else p.beneath
             if c.session.view in _FLAT:
                 row("Shading", "how much of the picture's light and shade shows under the colours")
-                _, c.preferences.shading = imgui.slider_float("##shading", c.preferences.shading, 0.0, 1.0, "%.2f")
+                changed, shading = imgui.slider_float("##shading", p.shading, 0.0, 1.0, "%.2f")
+                p.shading = min(max(shading, 0.0), 1.0) if changed else p.shading
     checkbox("Legend", p.legend, lambda on: setattr(p, "legend", on), "in the picture (N); drag it where you like")
     imgui.same_line(0.0, em(1.0))
     checkbox("Outlines", p.outlines, lambda on: setattr(p, "outlines", on), "borders between primitives (B)")

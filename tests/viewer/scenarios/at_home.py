@@ -1,0 +1,163 @@
+"""What makes the window a place to work in: the command palette, undo, presets, the log, scenes that change."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+from imgui_bundle import imgui
+
+from tests.viewer.driver import Driver
+from viewer.state.views import View
+from viewer.window.escape import ANY_POPUP
+
+KEY = imgui.Key
+SMALL = (1000, 640)  # still with docked panels, and soon drawn
+CTRL, SHIFT = int(KEY.mod_ctrl), int(KEY.mod_shift)
+
+
+def at_home(d: Driver) -> None:
+    """One thing after another, as somebody would who settles in."""
+    d.resize(*SMALL)
+    d.settle()
+    _palette(d)
+    _undo(d)
+    _presets(d)
+    _log(d)
+    _reloading(d)
+
+
+def _palette(d: Driver) -> None:
+    find(d, "occlusion m")
+    assert imgui.is_popup_open("", ANY_POPUP)
+    before = d.c.session.camera
+    d.press(KEY.enter)
+    assert d.c.session.view is View.OCCLUSION and not imgui.is_popup_open("", ANY_POPUP)
+    assert d.c.session.camera == before, "letters that were typed flew"
+    find(d, "bounces")
+    d.press(KEY.enter)
+    for typed, depth in (("500", 10), ("7", 7)):
+        d.context.key_chars(typed)
+        d.press(KEY.enter)
+        assert d.c.session.settings.depth == depth
+        assert imgui.is_popup_open("", ANY_POPUP) == (typed == "500")
+    find(d, "redo")
+    d.press(KEY.enter)
+    assert imgui.is_popup_open("", ANY_POPUP) and "nothing to redo" in d.ui.finder.problem
+    d.press(KEY.escape)
+    assert not imgui.is_popup_open("", ANY_POPUP)
+    d.press(CTRL | SHIFT | int(KEY.p))
+    assert [found.item.name for found in d.ui.finder.found[:2]] == ["setting Bounces", "Occlusion mode"]
+    d.press(KEY.down_arrow)
+    d.press(KEY.up_arrow)
+    d.press(KEY.down_arrow)
+    assert d.ui.finder.aimed.name == "Occlusion mode"
+    d.press(KEY.escape)
+
+
+def find(d: Driver, typed: str) -> None:
+    """Open the palette and type."""
+    d.press(CTRL | SHIFT | int(KEY.p))
+    d.context.key_chars(typed)
+    d.frames(2)
+
+
+def _undo(d: Driver) -> None:
+    home = d.c.session.camera
+    d.hold(KEY.d, 0.1)
+    d.drag(d.picture_centre(), (60.0, 10.0))
+    d.settle()
+    slider = d.context.item_info("//View/view/##shading").rect_full
+    middle, shading = (0.5 * (slider.min.x + slider.max.x), 0.5 * (slider.min.y + slider.max.y)), 0.35
+    d.drag(middle, (40.0, 0.0))
+    assert d.c.preferences.shading != shading and d.c.undo.undoes.startswith("shading")
+    d.context.menu_click("//##MainMenuBar/Edit/###Undo")
+    d.frames(2)
+    assert d.c.preferences.shading == shading, "a drag is one step"
+    assert d.c.notices.message.text.startswith("undone: shading") and d.c.undo.undoes == "camera"
+    flights = 0
+    while d.c.undo.undoes == "camera":  # several where the machine is slow: the camera rests between them
+        d.press(CTRL | int(KEY.z))
+        flights += 1
+    d.settle()
+    assert d.c.session.camera == home
+    d.press(CTRL | int(KEY.y))
+    assert d.c.undo.undoes == "camera" and d.c.motion.under_way
+    for _ in range(3):
+        d.press(CTRL | int(KEY.z))
+    d.settle()
+    assert d.c.session.settings.depth == 10 and d.c.session.view is View.COLOR and not d.c.undo.undoes
+    d.press(CTRL | SHIFT | int(KEY.z))
+    assert d.c.session.view is View.OCCLUSION
+    d.settle()
+
+
+def _presets(d: Driver) -> None:
+    d.context.menu_click("//##MainMenuBar/Edit/Presets/Presets...")
+    d.frames(3)
+    d.context.item_click("//Presets/##new preset")
+    d.context.key_chars("mine")
+    d.press(KEY.enter)
+    assert [preset["name"] for preset in d.c.presets.own] == ["mine"]
+    kept = d.c.session.settings
+    d.context.item_click("//Presets/As in the paper/As in the paper")
+    d.settle()
+    assert d.c.session.settings.method == "paper" and (d.c.frame.width, d.c.frame.height) == (512, 512)
+    d.context.item_click("//Presets/$$0/" + _PEN)
+    d.frames(2)
+    d.context.key_chars("ours")
+    d.press(KEY.enter)
+    assert d.c.presets.own[0]["name"] == "ours" and d.ui.editing is None
+    d.press(KEY.escape)
+    assert not d.ui.presets_open
+    d.context.menu_click("//##MainMenuBar/Edit/Presets/ours##preset 5")
+    d.settle()
+    assert d.c.session.settings == kept and d.c.undo.undoes == "preset ours"
+
+
+_PEN = "\uf304"
+
+
+def _log(d: Driver) -> None:
+    d.ui.show_panel("Plots")
+    d.frames(3)
+    d.c.notices.log.read()
+    d.c.notices.say("this could not be done", error=True)
+    d.frames(2)
+    assert len(d.c.notices.log.unread) == 1
+    bar = imgui.internal.find_window_by_name("##MainStatusBar_8")
+    assert bar is None or bar.active
+    d.ui.show_panel("Log")
+    d.frames(4)
+    assert not d.c.notices.log.unread, "seen"
+
+
+def _reloading(d: Driver) -> None:
+    scene, path = d.c.session.scene, Path(d.c.session.scene.path)
+    d.hold(KEY.d, 0.1)
+    d.settle()
+    here, picture = d.c.session.snapshot(), d.shown()
+    good = path.read_text()
+    _write(path, good.replace("l 3 5 4", "l -6 5 4"))
+    d.wait(lambda: d.c.session.scene is not scene, "the scene that has changed", 30.0)
+    assert d.ui.display.texture_id is not None
+    d.settle()
+    assert d.c.session.snapshot() == here and d.c.notices.message.text.endswith("tiny.aff changed")
+    assert np.abs(d.shown().astype(int) - picture).max() > 20, "another picture"
+    scene = d.c.session.scene
+    _write(path, good + "\np 3\n0 0\n")
+    d.wait(lambda: _failed(d), "the broken scene to be told of", 30.0)
+    d.frames(2)
+    assert "tiny.aff:" in d.c.notices.message.text and d.c.session.scene is scene
+
+
+def _failed(d: Driver) -> bool:
+    return d.c.notices.message is not None and d.c.notices.message.error
+
+
+def _write(path: Path, text: str) -> None:
+    """Another time as well, however coarse the disk's clock is."""
+    before = path.stat().st_mtime_ns
+    path.write_text(text)
+    os.utime(path, ns=(before + 10**9, before + 10**9))

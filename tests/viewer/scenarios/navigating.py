@@ -1,0 +1,156 @@
+"""Ways to get about: bookmarks, cameras of other programs, other programs' habits, keys of one's own, game pads."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+from imgui_bundle import imgui
+
+from tests.viewer.driver import Driver
+from viewer.output.thumbnail import from_text
+from viewer.state.pads import Kind, Pad
+
+KEY = imgui.Key
+SMALL = (1000, 640)  # still with docked panels, and soon drawn
+CTRL, SHIFT, ALT = int(KEY.mod_ctrl), int(KEY.mod_shift), int(KEY.mod_alt)
+
+
+def navigating(d: Driver) -> None:
+    """All of them in turn."""
+    d.resize(*SMALL)
+    d.settle()
+    _bookmarks(d)
+    _texts(d)
+    _sides(d)
+    _habits(d)
+    _keys(d)
+    _pads(d)
+
+
+def _bookmarks(d: Driver) -> None:
+    places = []
+    for key in (KEY.d, KEY.w):
+        d.hold(key, 0.1)
+        d.settle()
+        d.press(CTRL | int(KEY.b))
+        d.settle()
+        places.append(d.c.session.camera)
+    marks = d.c.bookmarks.all
+    pictures = [from_text(mark.get("picture")) for mark in marks]
+    assert all(picture is not None for picture in pictures) and marks[0]["picture"] != marks[1]["picture"]
+    d.press(ALT | int(KEY._1))
+    assert d.c.motion.under_way
+    d.wait(lambda: d.c.session.camera == places[0], "the flight to the first bookmark", 30.0)
+    d.press(KEY.page_down)
+    d.wait(lambda: d.c.session.camera == places[1], "the flight to the next one", 30.0)
+    d.ui.show_panel("Camera")
+    d.frames(3)
+    d.context.item_click("//Camera/$$1/\uf304")
+    d.frames(2)
+    d.context.key_chars("near the sphere")
+    d.press(KEY.enter)
+    assert marks[1]["name"] == "near the sphere"
+    d.context.item_drag_and_drop("//Camera/$$1/##go", "//Camera/$$0/##go")
+    d.frames(3)
+    assert [mark["name"] for mark in d.c.bookmarks.all] == ["near the sphere", "frame 0"]
+    d.context.item_click("//Camera/$$1/\uf00d")
+    d.frames(2)
+    assert [mark["name"] for mark in d.c.bookmarks.all] == ["near the sphere"]
+    d.settle()
+
+
+def _texts(d: Driver) -> None:
+    clipboard: list[str] = []
+    d.ui.copy_to, d.ui.paste_from = clipboard.append, lambda: clipboard[-1]
+    camera = d.c.session.camera
+    d.press(CTRL | SHIFT | int(KEY.c))
+    assert json.loads(clipboard[-1]) == camera.to_json()
+    d.context.menu_click("//##MainMenuBar/Camera/Copy and paste/Copy camera for pbrt")
+    d.frames(2)
+    assert clipboard[-1].startswith("Scale -1 1 1")
+    d.press(KEY.r)
+    d.press(CTRL | SHIFT | int(KEY.v))
+    d.wait(lambda: not d.c.motion.under_way, "the flight to what was pasted", 30.0)
+    now = d.c.session.camera
+    assert math.dist(now.position, camera.position) < 1e-6 and abs(now.angle - camera.angle) < 1e-6
+    assert np.allclose(now.basis(), camera.basis(), atol=1e-6)
+    clipboard.append("no camera")
+    d.press(CTRL | SHIFT | int(KEY.v))
+    assert d.c.notices.message.error and d.c.session.camera == now
+    d.settle()
+
+
+def _sides(d: Driver) -> None:
+    d.press(KEY.keypad7)
+    d.wait(lambda: not d.c.motion.under_way, "the view from the top", 30.0)
+    assert np.allclose(d.c.session.camera.basis()[2], (0.0, -1.0, 0.0), atol=1e-9)
+    d.press(KEY.r)
+    d.settle()
+
+
+def _habits(d: Driver) -> None:
+    d.ui.keymap.use("Blender")
+    before = d.c.session.camera
+    d.drag(d.picture_centre(), (80.0, 0.0))
+    assert d.c.session.camera == before, "the left button moves nothing"
+    d.drag(d.picture_centre(), (80.0, 0.0), 2)
+    pivot, after = d.ui.pivot, d.c.session.camera
+    assert math.isclose(math.dist(after.position, pivot), math.dist(before.position, pivot), rel_tol=1e-6)
+    assert math.dist(after.position, before.position) > 0.1, "the middle one orbits"
+    d.context.key_down(KEY.mod_shift)
+    d.drag(d.picture_centre(), (40.0, 0.0), 2)
+    d.context.key_up(KEY.mod_shift)
+    assert np.allclose(d.c.session.camera.direction, after.direction) and d.c.session.camera != after, "pans"
+    near = math.dist(d.c.session.camera.position, d.ui.pivot)
+    d.context.mouse_wheel_y(2.0)
+    d.frames(3)
+    assert math.dist(d.c.session.camera.position, d.ui.pivot) < near
+    d.ui.keymap.use("pbrt")
+    heading = d.c.session.camera.basis()
+    d.hold(KEY.right_arrow, 0.1)
+    assert d.c.session.camera.basis()[2] @ heading[0] > 0.01 and d.c.session.frame == 0, "an arrow turns"
+    d.ui.keymap.use("Shadowcull")
+    d.settle()
+
+
+def _keys(d: Driver) -> None:
+    d.press(KEY.f1)
+    d.frames(3)
+    d.context.item_click("//Keyboard and mouse/**/Fly forward/W##key")
+    d.frames(2)
+    assert d.ui.key_wanted == "Fly forward"
+    before = d.c.session.camera
+    d.press(KEY.x)
+    d.frames(2)
+    assert d.ui.keymap.of("Fly forward") == ("X",) and d.c.session.camera == before
+    d.context.item_click("//Keyboard and mouse/**/Fly back/S##key")
+    d.press(KEY.o)
+    d.frames(2)
+    assert d.ui.keymap.conflicts("Fly back") == ["Orbit"] and "also Orbit" in d.c.notices.message.text
+    assert d.c.preferences.navigation == "fly", "a key that was chosen did what it does"
+    d.ui.keymap.reset("Fly back")
+    d.press(KEY.f1)
+    d.hold(KEY.w, 0.1)
+    assert d.c.session.camera == before
+    d.hold(KEY.x, 0.1)
+    assert (np.subtract(d.c.session.camera.position, before.position) @ before.basis()[2]) > 0.0
+    d.ui.keymap.reset()
+    d.settle()
+
+
+def _pads(d: Driver) -> None:
+    read = d.app.read_pads
+    there = [Pad("Test pad", Kind.GAMEPAD, (0.0, -1.0, 0.0, 0.0, -1.0, -1.0))]
+    before = d.c.session.camera
+    d.app.read_pads = lambda: there
+    d.pause(0.2)
+    assert (np.subtract(d.c.session.camera.position, before.position) @ before.basis()[2]) > 0.0
+    there[0] = Pad("Test pad", Kind.GAMEPAD, (0.0, 0.0, 0.0, 0.0, -1.0, -1.0), frozenset({"pad down"}))
+    d.frames(3)
+    there.clear()
+    d.frames(2)
+    assert d.c.session.view.value == "occlusion" and d.c.notices.message.text == "game pad gone: Test pad"
+    d.app.read_pads = read
+    d.settle()

@@ -1,0 +1,189 @@
+"""Undo and redo: what is a step, what it is called, and what comes back."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import pytest
+
+from tests.viewer.fakes import make_scene
+from tracer.scene.model import Camera
+from viewer.services.motion import GLIDE_SECONDS, IDLE_AFTER, Motion
+from viewer.services.settings_controller import SettingsController
+from viewer.services.undo import MOST, Undo
+from viewer.state.notices import Notices
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session
+from viewer.state.views import View
+
+AWAY = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
+
+
+class Desk:
+    """Everything that undo looks at, and a clock."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now = 100.0
+        monkeypatch.setattr(time, "monotonic", lambda: self.now)
+        self.preferences, self.notices = Preferences(), Notices()
+        self.session = Session(settings=self.preferences.settings())
+        self.session.open(make_scene(lights=3))
+        self.locked = False
+        lock = lambda: self.locked  # noqa: E731
+        self.settings = SettingsController(self.session, self.preferences, self.notices, lock)
+        self.motion = Motion(self.session, self.preferences, self.notices, lock)
+        self.undo = Undo(self.session, self.preferences, self.motion, self.notices, lock)
+        self.frame()
+
+    def frame(self, seconds: float = 0.02) -> None:
+        """One of the window's frames."""
+        self.now += seconds
+        self.motion.follow(None)
+        self.undo.follow()
+
+    def rest(self) -> None:
+        self.frame(IDLE_AFTER + GLIDE_SECONDS)
+        self.frame()
+
+    @property
+    def said(self) -> str:
+        return self.notices.message.text
+
+
+@pytest.fixture
+def desk(monkeypatch: pytest.MonkeyPatch) -> Desk:
+    return Desk(monkeypatch)
+
+
+def test_each_change_is_a_step_with_a_name(desk: Desk):
+    desk.settings.change(method="paper")
+    desk.frame()
+    desk.settings.set_view(View.DEPTH)
+    desk.frame()
+    assert desk.undo.undoes == "view Depth" and desk.undo.redoes == ""
+    desk.undo.undo()
+    assert desk.said == "undone: view Depth" and desk.session.view is View.COLOR
+    assert desk.session.settings.method == "paper" and desk.preferences.view == "color"
+    desk.undo.undo()
+    assert desk.session.settings.method == desk.preferences.method == "auto" and desk.undo.undoes == ""
+    desk.undo.redo()
+    assert desk.said == "redone: method paper" and desk.session.settings.method == "paper"
+    assert desk.undo.redoes == "view Depth"
+    desk.settings.change(depth=3)
+    desk.frame()
+    assert desk.undo.redoes == "", "another way was taken"
+    desk.undo.redo()
+    assert desk.said == "there is nothing to redo"
+
+
+def test_a_drag_is_one_step_whatever_it_passes(desk: Desk):
+    desk.undo.held = True
+    for depth in (9, 8, 4, 2):
+        desk.settings.change(depth=depth)
+        desk.frame(1.0)
+    desk.undo.held = False
+    desk.frame()
+    assert desk.undo.undoes == "bounces 2"
+    desk.undo.undo()
+    assert desk.session.settings.depth == 10 and desk.undo.undoes == ""
+
+
+def test_a_drag_that_comes_back_is_none(desk: Desk):
+    desk.undo.held = True
+    for depth in (9, 10):
+        desk.settings.change(depth=depth)
+        desk.frame()
+    desk.undo.held = False
+    desk.frame()
+    assert desk.undo.undoes == ""
+
+
+def test_a_flight_is_one_step_and_glides_back(desk: Desk):
+    home = desk.session.camera
+    for x in range(1, 9):
+        desk.motion.move(replace(AWAY, position=(float(x), 0.0, 0.0)))
+        desk.frame(0.1)
+    far = desk.session.camera
+    desk.rest()
+    assert desk.undo.undoes == "camera" and desk.session.free_camera == far
+    desk.undo.undo()
+    assert desk.session.follow and desk.session.camera == home and desk.undo.undoes == ""
+    desk.undo.redo()
+    desk.frame(0.5 * GLIDE_SECONDS)
+    assert desk.session.camera not in (home, far)
+    desk.rest()
+    assert desk.session.camera == far and desk.undo.redoes == "" and desk.undo.undoes == "camera"
+    desk.undo.undo()
+    desk.rest()
+    assert desk.undo.undoes == "", "the way back is no step"
+
+
+def test_a_view_chosen_in_flight_is_a_step_of_its_own(desk: Desk):
+    desk.motion.move(AWAY)
+    desk.frame()
+    desk.settings.set_view(View.NORMAL)
+    desk.frame()
+    desk.rest()
+    assert desk.undo.undoes == "view Normals"
+    desk.undo.undo()
+    assert desk.undo.undoes == "camera"
+
+
+def test_a_step_is_undone_while_it_goes_on(desk: Desk):
+    desk.motion.move(AWAY)
+    desk.undo.undo()
+    assert desk.session.follow and desk.undo.redoes == "camera"
+
+
+def test_time_is_no_step_and_stays(desk: Desk):
+    desk.settings.set_light(1)
+    desk.frame()
+    desk.session.time = 5.0
+    desk.frame()
+    assert desk.undo.undoes == "light 1"
+    desk.undo.undo()
+    assert desk.session.time == 5.0
+
+
+def test_what_is_named_is_one_step_with_that_name(desk: Desk):
+    desk.undo.call_next("preset mine")
+    desk.settings.change(method="paper", depth=2)
+    desk.settings.set_view(View.DEPTH)
+    desk.frame()
+    assert desk.undo.undoes == "preset mine"
+    desk.undo.undo()
+    assert (desk.session.settings.method, desk.session.settings.depth) == ("auto", 10)
+
+
+def test_a_name_for_nothing_names_nothing_else(desk: Desk):
+    desk.undo.call_next("preset mine")
+    desk.frame()
+    desk.settings.change(depth=2)
+    desk.frame()
+    assert desk.undo.undoes == "bounces 2"
+
+
+def test_nothing_is_undone_while_it_is_locked_and_another_scene_forgets_all(desk: Desk):
+    desk.settings.change(depth=2)
+    desk.frame()
+    desk.locked = True
+    desk.undo.undo()
+    assert desk.session.settings.depth == 2
+    desk.locked = False
+    desk.undo.clear()
+    desk.session.open(make_scene(path="other.aff"))
+    desk.frame()
+    assert desk.undo.undoes == ""
+    desk.undo.undo()
+    assert desk.said == "there is nothing to undo" and desk.session.settings.depth == 2
+
+
+def test_memory_is_bounded(desk: Desk):
+    for number in range(MOST + 20):
+        desk.settings.change(depth=number % 50)
+        desk.frame()
+    for _ in range(MOST):
+        assert desk.undo.undoes
+        desk.undo.undo()
+    assert desk.undo.undoes == ""

@@ -1,0 +1,94 @@
+"""The command palette without a window: what it finds, and what Enter does."""
+
+from __future__ import annotations
+
+import pytest
+
+from viewer.services.controller import Controller
+from viewer.state.preferences import Preferences
+from viewer.window import commands, findable
+from viewer.window.finder import Finder, Item, Kind, find
+from viewer.window.guard import Guard
+from viewer.window.ui import Ui
+
+
+@pytest.fixture
+def ui():
+    ui = Ui(Controller(Preferences()))
+    ui.guard = Guard(ui.controller.notices, lambda name, fault: None)
+    ui.take_commands(commands.build(ui))
+    yield ui
+    ui.controller.close()
+
+
+def look_for(ui: Ui, typed: str) -> list[Item]:
+    return [found.item for found in find(typed, findable.items(ui), ui.controller.preferences.used)]
+
+
+def test_every_item_has_a_name_of_its_own(ui):
+    names = [item.name for item in findable.items(ui)]
+    assert len(set(names)) == len(names) > 100
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        ("undo", "Undo"), ("nl", "Next light"), ("occl", "Occlusion mode"), ("bounces", "setting Bounces"),
+        ("paper as", "preset As in the paper"), ("figure4", None), ("reload", "Reload"),
+        ("embree", "Copy camera for Embree"), ("occulsion", "Occlusion mode"),
+        ("theme", "Light theme"), ("dead zone", "setting Dead zone of sticks"),
+    ],
+)  # fmt: skip
+def test_what_is_meant_is_found_first(ui, typed: str, meant: str | None):
+    first = look_for(ui, typed)[0]
+    assert first.name == meant if meant else first.kind is Kind.SCENE
+
+
+def test_what_was_used_last_comes_first(ui):
+    ui.controller.preferences.used = ["Zoom test", "Depth"]
+    assert [item.name for item in look_for(ui, "")[:2]] == ["Zoom test", "Depth"]
+    assert look_for(ui, "next")[0].name == "Next view"
+    ui.controller.preferences.used = ["Next light"]
+    assert look_for(ui, "next")[0].name == "Next light"
+
+
+def test_what_cannot_be_run_says_why_and_stays_open(ui):
+    finder = Finder()
+    (play,) = (item for item in findable.items(ui) if item.name == "Play")
+    assert not play.enabled and play.why_not == "nothing moves in this scene" and play.key == "Space"
+    assert finder.enter(play) is None and "nothing moves" in finder.problem
+
+
+def test_ticks_are_those_of_the_commands(ui):
+    by_name = {item.name: item for item in findable.items(ui)}
+    assert by_name["Colour"].checked and by_name["Depth"].checked is False and by_name["Open..."].checked is None
+    by_name["Depth"].run()
+    assert {item.name: item for item in findable.items(ui)}["Depth"].checked
+
+
+def test_a_setting_is_typed(ui):
+    finder, c = Finder(), ui.controller
+    finder.begin()
+    finder.type("bounces")
+    finder.follow(findable.items(ui), [])
+    assert finder.enter(finder.aimed) is None and finder.setting.label == "Bounces" and finder.typed == "10"
+    for wrong in ("many", "200", "-1", "", "1.5"):
+        finder.type(wrong)
+        assert finder.enter(None) is None and "0 to 100" in finder.problem and c.session.settings.depth == 10
+    finder.type("3")
+    assert finder.enter(None) is not None and c.session.settings.depth == 3
+
+
+def test_lines_are_stepped_through_around_the_end(ui):
+    finder = Finder()
+    finder.begin()
+    finder.type("light")
+    finder.follow(findable.items(ui), [])
+    first = finder.aimed
+    finder.step(-1)
+    assert finder.aimed is finder.found[-1].item
+    finder.step(1)
+    assert finder.aimed is first
+    finder.type("zzzz")
+    finder.follow(findable.items(ui), [])
+    assert finder.found == [] and finder.aimed is None and finder.enter(None) is None

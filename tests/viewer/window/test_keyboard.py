@@ -1,0 +1,115 @@
+"""Keys on keyboards of several countries."""
+
+from __future__ import annotations
+
+import glfw
+import pytest
+from imgui_bundle import imgui
+
+from viewer.services.controller import Controller
+from viewer.state.keymap import HABITS, Keymap
+from viewer.state.preferences import Preferences
+from viewer.window import commands
+from viewer.window.keyboard import PLACES, Keyboard
+from viewer.window.ui import Ui
+
+KEY = imgui.Key
+US = dict(zip(PLACES.values(), "abcdefghijklmnopqrstuvwxyz0123456789`-=[]\\,;'./", strict=True))
+FRENCH = US | {
+    glfw.KEY_Q: "a", glfw.KEY_A: "q", glfw.KEY_W: "z", glfw.KEY_Z: "w", glfw.KEY_SEMICOLON: "m", glfw.KEY_M: ",",
+    **dict(zip(range(glfw.KEY_0, glfw.KEY_9 + 1), "à&é\"'(-è_ç", strict=True)),
+}  # fmt: skip
+_PLACES = "qwertyuiop[]asdfghjkl;'zxcvbnm,./-="
+_DVORAK = "',.pyfgcrl/=aoeuidhtns-;qjkxbmwvz[]"
+DVORAK = {key: dict(zip(_PLACES, _DVORAK, strict=True)).get(letter, letter) for key, letter in US.items()}
+
+
+def keyboard(printed: dict[int, str]) -> Keyboard:
+    made = Keyboard(printed.get)
+    made.follow()
+    return made
+
+
+def test_a_place_is_asked_for_by_what_is_printed_there():
+    french = keyboard(FRENCH)
+    assert [french.chord(key) for key in "WASD"] == [int(KEY.z), int(KEY.q), int(KEY.s), int(KEY.d)]
+    assert [french.label(key) for key in ("W", "Shift+A", "M")] == ["Z", "Shift+Q", ","]
+    assert french.chord("M") == int(KEY.comma)
+    assert [keyboard(US).chord(key) for key in "WA"] == [int(KEY.w), int(KEY.a)]
+
+
+def test_letters_with_ctrl_are_those_that_are_printed():
+    french = keyboard(FRENCH)
+    assert french.chord("Ctrl+Z") == int(KEY.mod_ctrl) | int(KEY.z) and french.label("Ctrl+Z") == "Ctrl+Z"
+
+
+def test_digits_are_places_whatever_else_is_printed_there():
+    french = keyboard(FRENCH)
+    assert (french.chord("1"), french.label("1")) == (int(KEY._1), "1")
+
+
+def test_keys_that_nothing_is_printed_on_are_everywhere_the_same():
+    french = keyboard(FRENCH)
+    assert french.chord("F5") == int(KEY.f5) and french.label("LeftArrow") == "Left"
+    assert french.label("Keypad7") == "Keypad 7" and french.chord("Keypad7") == int(KEY.keypad7)
+
+
+def test_a_place_that_imgui_takes_for_another_is_told_from_it_by_glfw():
+    """On French keyboards the 6 has a minus, and what is a minus elsewhere is one for ImGui as well."""
+    down: set[int] = set()
+    made = Keyboard((FRENCH | {glfw.KEY_MINUS: ")"}).get, down.__contains__)
+    made.follow()
+    assert made.chord("6") == made.chord("Minus") == int(KEY.minus)
+    for key, other in (("6", "Minus"), ("Minus", "6")):
+        down.clear()
+        down.add(PLACES[key])
+        assert made.is_meant(key) and not made.is_meant(other) and made.is_meant("W")
+    down.clear()
+    assert made.is_meant("6") and not made.is_meant("Minus"), "of a tap that is over the sign is what is known"
+
+
+def test_another_layout_is_noticed(monkeypatch: pytest.MonkeyPatch):
+    printed = dict(US)
+    made = keyboard(printed)
+    assert made.chord("W") == int(KEY.w)
+    printed.update(FRENCH)
+    made._looked = float("-inf")
+    made.follow()
+    assert made.chord("W") == int(KEY.z)
+
+
+@pytest.fixture
+def ui():
+    ui = Ui(Controller(Preferences()))
+    ui.take_commands(commands.build(ui))
+    yield ui
+    ui.controller.close()
+
+
+@pytest.mark.parametrize("printed", [US, FRENCH, DVORAK], ids=["us", "french", "dvorak"])
+@pytest.mark.parametrize("habits", HABITS)
+def test_no_key_does_two_things(ui, habits: str, printed: dict[int, str]):
+    ui.keymap.use(habits)
+    assert [name for name in ui.keymap.names if ui.keymap.conflicts(name)] == []
+    made = keyboard(printed)
+    keys = [key for name in ui.keymap.names for key in ui.keymap.of(name)]
+    unclear = [key for key in keys if key in PLACES and made.chord(key) in made._shared]
+    assert len({made.chord(key) for key in keys if key not in unclear}) == len(keys) - len(unclear)
+    assert set(HABITS[habits].keys) <= set(ui.keymap.names), "habits give keys to what there is"
+
+
+def test_keys_that_a_file_cannot_mean_are_dropped():
+    preferences = Preferences(keys={"Focus": ["Hyper+X", "Ctrl+J", "Nonsense", ""], "No such command": ["X"]})
+    ui = Ui(Controller(preferences))
+    ui.take_commands(commands.build(ui))
+    assert ui.keymap.of("Focus") == ("Ctrl+J",)
+    ui.controller.close()
+
+
+def test_tooltips_name_the_key_that_is_chosen(ui):
+    assert ui.with_keys("go near it (F)") == "go near it (F)"
+    ui.keymap.choose("Focus", ["Ctrl+J"])
+    assert ui.with_keys("go near it (F)") == "go near it (Ctrl+J)"
+    ui.keymap.choose("Focus", [])
+    assert ui.with_keys("go near it (F)") == "go near it" and ui.with_keys("a (b) c") == "a (b) c"
+    assert isinstance(ui.keymap, Keymap)

@@ -1,0 +1,191 @@
+"""Undo and redo of settings, view, light and camera.
+
+Nobody has to announce a change: what holds is compared from one of the window's frames to the next.  Changes that
+belong together are one step: all of a drag, all of a flight until the camera rests.  Time, and what a run does, are no
+steps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from tracer.scene.model import Camera
+from viewer.services.motion import Motion
+from viewer.state.choices import Choices, differences
+from viewer.state.notices import Notices
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session
+
+MOST = 200
+"""Steps that are kept."""
+_CAMERA = "camera"
+
+
+@dataclass(frozen=True)
+class Place:
+    """All that a step can bring back; `camera` is None while it follows the scene's own path."""
+
+    choices: Choices
+    camera: Camera | None
+
+
+@dataclass(frozen=True)
+class Step:
+    """What was done, in a few words, and what held before and after."""
+
+    name: str
+    before: Place
+    after: Place
+
+
+@dataclass
+class _Open:
+    """A step that may go on."""
+
+    before: Place
+    fields: dict[str, str] = field(default_factory=dict)
+
+
+class Undo:
+    """See the module.  `held` is to be set while the user holds something, as in a drag."""
+
+    def __init__(
+        self,
+        session: Session,
+        preferences: Preferences,
+        motion: Motion,
+        notices: Notices,
+        locked: Callable[[], bool],
+    ) -> None:
+        """Nothing is brought back while `locked()`, which says so itself."""
+        self._session, self._preferences, self._motion = session, preferences, motion
+        self._notices, self._locked = notices, locked
+        self.held = False
+        self._done: list[Step] = []
+        self._undone: list[Step] = []
+        self._open: _Open | None = None
+        self._last: Place | None = None
+        self._name = ""
+
+    @property
+    def undoes(self) -> str:
+        """What would be undone; "" where there is nothing."""
+        if self._open is not None:
+            return _name_of(self._open.fields)
+        return self._done[-1].name if self._done else ""
+
+    @property
+    def redoes(self) -> str:
+        """What would be done again; "" where there is nothing."""
+        return self._undone[-1].name if self._undone and self._open is None else ""
+
+    def call_next(self, name: str) -> None:
+        """Give a name to what is about to change, which is a step of its own."""
+        self.follow()
+        self._close()
+        self._name = name
+
+    def clear(self) -> None:
+        """Forget all steps, as another scene is open."""
+        self._done, self._undone, self._open, self._last, self._name = [], [], None, None, ""
+
+    def follow(self) -> None:
+        """Take up what has changed since the last time."""
+        now = self._place()
+        if now is None:
+            return
+        if self._last is None:
+            self._last = now
+            return
+        changed = _changes(self._last, now)
+        name, self._name = self._name, ""
+        if name and changed:
+            self._close()
+            self._add(Step(name, self._last, now))
+        elif changed:
+            if self._open is not None and not changed.keys() <= self._open.fields.keys():
+                self._close()
+            self._open = self._open or _Open(self._last)
+            self._open.fields |= changed
+        self._last = now
+        if not self._goes_on:
+            self._close()
+
+    def undo(self) -> None:
+        """Bring back what held before the newest step."""
+        if self._locked():
+            return
+        self.follow()
+        self._close()
+        if not self._done:
+            self._notices.say("there is nothing to undo")
+            return
+        step = self._done.pop()
+        self._undone.append(step)
+        self._bring(step.before, f"undone: {step.name}")
+
+    def redo(self) -> None:
+        """Do again what was undone last."""
+        if self._locked():
+            return
+        self.follow()
+        self._close()
+        if not self._undone:
+            self._notices.say("there is nothing to redo")
+            return
+        step = self._undone.pop()
+        self._done.append(step)
+        self._bring(step.after, f"redone: {step.name}")
+
+    # --- inside ----------------------------------------------------------------------------------
+
+    @property
+    def _goes_on(self) -> bool:
+        """Whether more may come of the step that is open."""
+        return self._open is not None and (self.held or (_CAMERA in self._open.fields and self._motion.handled))
+
+    def _close(self) -> None:
+        """End the step that is open; what has come back to where it was is none."""
+        opened, self._open = self._open, None
+        if opened is None or self._last is None:
+            return
+        fields = _changes(opened.before, self._last)
+        if fields:
+            self._add(Step(_name_of(fields), opened.before, self._last))
+
+    def _add(self, step: Step) -> None:
+        self._done = [*self._done, step][-MOST:]
+        self._undone = []
+
+    def _bring(self, place: Place, said: str) -> None:
+        session = self._session
+        place.choices.put_into(session, self._preferences)
+        if place.camera != session.free_camera:
+            start = session.camera
+            self._motion.halt()
+            session.free_camera = place.camera
+            if place.camera is not None:
+                self._motion.glide(place.camera, start)
+        self._last = Place(place.choices, place.camera)
+        self._notices.say(said)
+
+    def _place(self) -> Place | None:
+        session = self._session
+        if session.scene is None:
+            return None
+        # On its way the camera is where it goes: a glide is one step, and one that undo began is none.
+        camera = self._motion.destination or session.free_camera
+        return Place(Choices.of(session, self._preferences), camera)
+
+
+def _changes(before: Place, after: Place) -> dict[str, str]:
+    changed = differences(before.choices, after.choices)
+    if before.camera != after.camera:
+        onto = "camera onto the scene's path" if after.camera is None else "camera"
+        changed[_CAMERA] = onto
+    return changed
+
+
+def _name_of(fields: dict[str, str]) -> str:
+    first, *others = fields.values()
+    return f"{first} and {len(others)} more" if len(others) > 1 else " and ".join([first, *others])

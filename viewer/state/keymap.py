@@ -1,0 +1,173 @@
+"""Which keys do what: those that commands have by themselves, those of a habit, and those that the user has chosen.
+
+A key is written as "Ctrl+Shift+P", "W" or "Keypad7".  Without Ctrl, Alt or Super it is a *place* on the keyboard,
+called by the letter that a US keyboard has there, so that W A S D lie together on every keyboard."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from viewer.state.preferences import Preferences
+
+MODIFIERS = ("Ctrl", "Alt", "Super", "Shift")
+
+HELD = {
+    "Fly forward": "W",
+    "Fly back": "S",
+    "Fly left": "A",
+    "Fly right": "D",
+    "Fly up": "E",
+    "Fly down": "Q",
+    "Turn left": "",
+    "Turn right": "",
+    "Turn up": "",
+    "Turn down": "",
+}
+"""What is done for as long as a key is held, and its key; Shift makes it faster."""
+
+
+@dataclass(frozen=True)
+class Habits:
+    """How another program is steered.  `keys` are those of commands, and of HELD, that differ from ours; `drags` says
+    what a drag on the picture does, by button and modifier; `wheel` and `says` what the wheel does."""
+
+    name: str
+    tip: str
+    keys: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    drags: Mapping[tuple[str, str], str] = field(default_factory=dict)
+    wheel: str = "by mode"
+
+
+# What drags do: "by mode" looks around (fly) or turns around what was clicked (orbit), "pan by mode" looks or pans.
+HABITS = {
+    habits.name: habits
+    for habits in (
+        Habits(
+            "Shadowcull",
+            "drag to look around, or to orbit around what was clicked; the wheel sets the speed, or comes nearer",
+            drags={("left", ""): "by mode", ("right", ""): "pan by mode", ("middle", ""): "pan"},
+        ),
+        Habits(
+            "pbrt",
+            "as pbrt's own window: any drag and the arrow keys turn, W A S D Q E move, + and - set the speed, R "
+            "resets, and Shift+C copies the camera as pbrt's statements",
+            keys={
+                "Turn left": ("LeftArrow",),
+                "Turn right": ("RightArrow",),
+                "Turn up": ("UpArrow",),
+                "Turn down": ("DownArrow",),
+                "Step forward": ("Ctrl+RightArrow",),
+                "Step back": ("Ctrl+LeftArrow",),
+                "Fly faster": ("Equal", "KeypadAdd"),
+                "Fly slower": ("Minus", "KeypadSubtract"),
+                "Copy camera for pbrt": ("Shift+C",),
+            },
+            drags={("left", ""): "look", ("right", ""): "look", ("middle", ""): "look"},
+            wheel="speed",
+        ),
+        Habits(
+            "Blender",
+            "the middle button orbits, with Shift it pans, with Ctrl it comes nearer, as the wheel does; the left one "
+            "selects; keypad 1, 3 and 7 look from the front, the right and the top, 0 is the scene's own camera",
+            keys={
+                "Focus": ("KeypadDecimal", "F"),
+                "Reset camera": ("Keypad0", "R"),
+                "Orbit left": ("Keypad4",),
+                "Orbit right": ("Keypad6",),
+                "Orbit up": ("Keypad8",),
+                "Orbit down": ("Keypad2",),
+                "Nearer": ("KeypadAdd",),
+                "Farther": ("KeypadSubtract",),
+                "Command palette": ("F3", "Ctrl+Shift+P"),
+            },
+            drags={
+                ("middle", ""): "orbit",
+                ("middle", "Shift"): "pan",
+                ("middle", "Ctrl"): "dolly",
+                ("left", ""): "none",
+                ("left", "Alt"): "orbit",
+                ("right", ""): "look",
+            },
+            wheel="dolly",
+        ),
+    )
+}
+DEFAULT_HABITS = "Shadowcull"
+
+
+class Keymap:
+    """`defaults` maps names of commands, and of HELD, to their keys, first the one to be shown."""
+
+    def __init__(self, preferences: Preferences, defaults: Mapping[str, tuple[str, ...]]) -> None:
+        self._preferences = preferences
+        self._defaults = {**{name: (key,) if key else () for name, key in HELD.items()}, **defaults}
+
+    @property
+    def habits(self) -> Habits:
+        return HABITS.get(self._preferences.habits, HABITS[DEFAULT_HABITS])
+
+    def use(self, name: str) -> None:
+        """Steer as in another program; keys that the user has chosen stay."""
+        self._preferences.habits = name
+
+    @property
+    def names(self) -> Iterable[str]:
+        """All that can have keys."""
+        return self._defaults.keys()
+
+    def of(self, name: str) -> tuple[str, ...]:
+        """The keys of a command, or of one of HELD; the first is to be shown."""
+        own = self._preferences.keys.get(name)
+        return tuple(own) if own is not None else self.usual(name)
+
+    def usual(self, name: str) -> tuple[str, ...]:
+        """Its keys unless the user chooses others."""
+        return self.habits.keys.get(name, self._defaults.get(name, ()))
+
+    def shown(self, name: str) -> str:
+        """Its first key, "" where it has none."""
+        return next(iter(self.of(name)), "")
+
+    def changed(self, name: str) -> bool:
+        """Whether the user has chosen its keys."""
+        return name in self._preferences.keys
+
+    def choose(self, name: str, keys: Iterable[str]) -> None:
+        """Give it these keys; its usual ones are not remembered as chosen."""
+        chosen = [tidy(key) for key in keys]
+        if tuple(chosen) == self.usual(name):
+            self._preferences.keys.pop(name, None)
+        else:
+            self._preferences.keys[name] = list(dict.fromkeys(chosen))
+
+    def reset(self, name: str | None = None) -> None:
+        """Give it its usual keys again, or everything."""
+        if name is None:
+            self._preferences.keys.clear()
+        else:
+            self._preferences.keys.pop(name, None)
+
+    def sharing(self, key: str, but: str = "") -> list[str]:
+        """What else has this key."""
+        return [name for name in self._defaults if name != but and key in self.of(name)]
+
+    def conflicts(self, name: str) -> list[str]:
+        """What has a key that this has too."""
+        return list(dict.fromkeys(other for key in self.of(name) for other in self.sharing(key, name)))
+
+    def drag(self, button: str, modifiers: str) -> str:
+        """What a drag does; a modifier that means nothing in a habit is as none."""
+        drags = self.habits.drags
+        return drags.get((button, modifiers), drags.get((button, ""), "none"))
+
+
+def tidy(key: str) -> str:
+    """A key with its modifiers in their usual order."""
+    *modifiers, name = key.split("+")
+    return "+".join([*sorted(modifiers, key=MODIFIERS.index), name])
+
+
+def is_place(key: str) -> bool:
+    """Whether a key is a place on the keyboard, and not a letter."""
+    return not any(modifier in ("Ctrl", "Alt", "Super") for modifier in key.split("+")[:-1])

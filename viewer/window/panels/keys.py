@@ -1,0 +1,211 @@
+"""All keys as they are now, and what the pointer does: read as help, and changed by a click."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from viewer.state.fuzzy import match
+from viewer.state.keymap import HABITS, HELD
+from viewer.window.command import MENUS
+from viewer.window.ui import Ui
+from viewer.window.widgets import ERROR, QUIET, clipped, em, paragraph, tooltip
+
+TITLE = "Keyboard and mouse"
+_FLYING = "Flying, while held"
+_KEY = 7.6  # width of a key in ems
+_BY_MODE = "look around (fly); orbit around what was clicked (orbit)"
+_DRAGS = {
+    "by mode": _BY_MODE,
+    "pan by mode": "look around (fly); pan (orbit)",
+    "look": "look around",
+    "orbit": "orbit around what was clicked",
+    "pan": "pan",
+    "dolly": "come nearer or go farther",
+}
+_WHEELS = {
+    "by mode": "set the speed (fly); come nearer or go farther (orbit)",
+    "speed": "set the speed",
+    "dolly": "come nearer or go farther",
+}
+
+
+def show(ui: Ui) -> None:
+    """The dialog, while it is open."""
+    if not ui.shortcuts_open:
+        ui.key_wanted = ""
+        return
+    viewport = imgui.get_main_viewport()
+    size = ImVec2(min(em(58.0), 0.96 * viewport.work_size.x), min(em(46.0), 0.92 * viewport.work_size.y))
+    imgui.set_next_window_pos(viewport.get_work_center(), int(imgui.Cond_.appearing), ImVec2(0.5, 0.5))
+    imgui.set_next_window_size(size, int(imgui.Cond_.appearing))
+    flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_collapse
+    shown, open_ = imgui.begin(TITLE, True, int(flags))
+    ui.shortcuts_open = bool(open_)
+    if shown:
+        _capture(ui)
+        _head(ui)
+        if imgui.begin_child("all keys"):
+            wide = imgui.get_content_region_avail().x > em(40.0)
+            if imgui.begin_table("keys", 2 if wide else 1, int(imgui.TableFlags_.sizing_stretch_same)):
+                groups = list(_groups(ui))
+                half = _half(groups) if wide else len(groups)
+                for number, (title, names) in enumerate(groups):
+                    if number in (0, half):
+                        imgui.table_next_column()
+                    _group(ui, title, names)
+                imgui.end_table()
+            _pointer(ui)
+        imgui.end_child()
+    imgui.end()
+
+
+def _head(ui: Ui) -> None:
+    keymap = ui.keymap
+    imgui.align_text_to_frame_padding()
+    imgui.text_unformatted("Steer as in")
+    imgui.same_line()
+    imgui.set_next_item_width(em(8.0))
+    if imgui.begin_combo("##habits", keymap.habits.name):
+        for name, habits in HABITS.items():
+            if imgui.selectable(name, name == keymap.habits.name)[0]:
+                keymap.use(name)
+            tooltip(habits.tip)
+        imgui.end_combo()
+    tooltip(keymap.habits.tip)
+    imgui.same_line(0.0, em(1.0))
+    imgui.set_next_item_width(em(11.0))
+    _, ui.key_filter = imgui.input_text_with_hint("##filter", "find a command or a key", ui.key_filter)
+    imgui.same_line(0.0, em(1.0))
+    imgui.begin_disabled(not ui.controller.preferences.keys)
+    if imgui.button("Reset all keys"):
+        keymap.reset()
+    imgui.end_disabled()
+    tooltip("back to the usual keys of these habits")
+    at_odds = sum(bool(keymap.conflicts(name)) for name in keymap.names)
+    if at_odds:
+        imgui.same_line(0.0, em(1.0))
+        imgui.text_colored(ERROR, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {at_odds} share keys")
+    paragraph(
+        f"Press a key for {ui.key_wanted}, or Escape to leave it." if ui.key_wanted else
+        "Click a key to choose another; the right button offers more. Keys without Ctrl or Alt are places on the "
+        "keyboard, shown by what is printed there.",
+        None if ui.key_wanted else QUIET,
+    )  # fmt: skip
+
+
+def _capture(ui: Ui) -> None:
+    """Take the key that is pressed for the command that waits for one."""
+    if not ui.key_wanted:
+        return
+    if imgui.is_key_pressed(imgui.Key.escape, repeat=False):
+        ui.key_wanted = ""
+        return
+    key = ui.keyboard.pressed()
+    if key is None:
+        return
+    name, ui.key_wanted = ui.key_wanted, ""
+    if name in HELD:
+        key = key.split("+")[-1]  # it is held with any modifier: Shift flies faster
+    ui.keymap.choose(name, [key, *ui.keymap.of(name)[1:]])
+    others = ui.keymap.conflicts(name)
+    label = ui.keyboard.label(key)
+    also = f", and also {', '.join(others)}; give one of them another key" if others else ""
+    ui.controller.notices.say(f"{label}: {name}{also}", error=bool(others))
+
+
+def _groups(ui: Ui) -> Iterator[tuple[str, list[str]]]:
+    """Titles, and the names below them; only what is looked for."""
+    typed = ui.key_filter.strip()
+
+    def wanted(name: str, menu: str) -> bool:
+        keys = " ".join(ui.keyboard.label(key) for key in ui.keymap.of(name))
+        return not typed or match(typed, f"{name} {keys}", menu) is not None
+
+    flying = [name for name in HELD if wanted(name, _FLYING) and (typed or ui.keymap.of(name))]
+    if flying:
+        yield _FLYING, flying
+    for menu in MENUS:
+        names = [c.name for c in ui.commands if c.menu.split("/")[0] == menu and wanted(c.name, c.menu)]
+        if names:
+            yield menu, names
+
+
+def _half(groups: list[tuple[str, list[str]]]) -> int:
+    """How many groups go into the first column, so that both are about as long."""
+    lines = [len(names) + 2 for _, names in groups]
+    return min(range(1, len(groups) + 1), key=lambda n: abs(sum(lines[:n]) - sum(lines[n:]))) if groups else 0
+
+
+def _group(ui: Ui, title: str, names: list[str]) -> None:
+    imgui.separator_text(title)
+    for name in names:
+        imgui.push_id(name)
+        _line(ui, name)
+        imgui.pop_id()
+
+
+def _line(ui: Ui, name: str) -> None:
+    keymap = ui.keymap
+    conflicts, waiting = keymap.conflicts(name), ui.key_wanted == name
+    label = "press a key" if waiting else ui.keyboard.label(keymap.shown(name)) or "-"
+    left = imgui.get_cursor_pos_x()
+    color = ERROR if conflicts else imgui.get_style_color_vec4(imgui.Col_.text)
+    imgui.push_style_color(imgui.Col_.text, color)
+    if imgui.selectable(f"{label}##key", waiting, 0, ImVec2(em(_KEY - 0.6), 0.0))[0]:
+        ui.key_wanted = "" if waiting else name
+    imgui.pop_style_color()
+    others = ", ".join(ui.keyboard.label(key) for key in keymap.of(name)[1:])
+    if conflicts:
+        tooltip(f"also: {', '.join(conflicts)}")
+    elif others:
+        tooltip(f"also {others}")
+    if imgui.begin_popup_context_item("more"):
+        _more(ui, name)
+        imgui.end_popup()
+    imgui.same_line()
+    imgui.set_cursor_pos_x(left + em(_KEY))
+    changed = keymap.changed(name)
+    clipped(f"{name}{'  (changed)' if changed else ''}", ERROR if conflicts else None if changed else QUIET)
+
+
+def _more(ui: Ui, name: str) -> None:
+    keymap = ui.keymap
+    if imgui.menu_item("No key", "", False, bool(keymap.of(name)))[0]:
+        keymap.choose(name, [])
+    usual = ", ".join(ui.keyboard.label(key) for key in keymap.usual(name)) or "no key"
+    if imgui.menu_item(f"The usual key: {usual}", "", False, keymap.changed(name))[0]:
+        keymap.reset(name)
+    for other in keymap.conflicts(name):
+        if imgui.menu_item(f"Take it from {other}", "", False, True)[0]:
+            keymap.choose(other, [key for key in keymap.of(other) if key not in keymap.of(name)])
+
+
+def _pointer(ui: Ui) -> None:
+    """What the pointer does on the picture."""
+    imgui.separator_text("On the picture")
+    habits = ui.keymap.habits
+    lines = [
+        (f"{with_ + ' + ' if with_ else ''}{button} drag", _DRAGS[what])
+        for (button, with_), what in habits.drags.items()
+        if what in _DRAGS
+    ]
+    lines += [
+        ("wheel", _WHEELS[habits.wheel]),
+        ("Shift", "while flying: faster"),
+        ("drag the wipe's line", "compare the picture with the right one"),
+        ("drag the legend", "put it elsewhere in the picture; it snaps to edges and corners"),
+        ("click", "inspect a pixel, and draw its shadow rays; click the background to let go"),
+    ]
+    if not imgui.begin_table("pointer", 2):
+        return
+    imgui.table_setup_column("gesture", int(imgui.TableColumnFlags_.width_fixed), em(10.0))
+    imgui.table_setup_column("meaning", int(imgui.TableColumnFlags_.width_stretch))
+    for gesture, meaning in lines:
+        imgui.table_next_column()
+        imgui.text_unformatted(gesture[0].upper() + gesture[1:])
+        imgui.table_next_column()
+        paragraph(meaning, QUIET)
+    imgui.end_table()
