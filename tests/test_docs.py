@@ -125,7 +125,7 @@ def test_commands_are_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_options_in_the_text_exist(capsys: pytest.CaptureFixture[str]) -> None:
     """Options that the text names, as in `--verify`, are options of some command."""
     known = {"--help", "--version"}
-    for command in ("render", "bench", "zoom", "explain", "info"):
+    for command in ("render", "film", "figure", "check", "bench", "zoom", "explain", "info"):
         with pytest.raises(SystemExit):
             main([command, "--help"])
         known |= set(re.findall(r"--[a-z-]+", capsys.readouterr().out))
@@ -197,8 +197,17 @@ def test_links_lead_somewhere(page: Path) -> None:
 
 def test_every_page_is_reachable() -> None:
     """From the README or from a table of contents, and those from each other."""
-    trees = [index.parent / f"{entry}.md" for index in DOCS.rglob("index.md") for entry in _entries(index)]
-    assert sorted(trees) == sorted(page for page in DOCS.rglob("*.md") if page != DOCS / "index.md")
+    trees = [index.parent / entry for index in DOCS.rglob("index.md") for entry in _entries(index)]
+    pages = {page for kind in ("md", "ipynb") for page in DOCS.rglob(f"*.{kind}")} - {DOCS / "index.md"}
+    assert sorted(trees) == sorted(page.with_suffix("") for page in pages)
+
+
+@pytest.mark.slow
+def test_notebooks_say_what_they_keep() -> None:
+    """Each runs, and prints and shows what the documentation shows of it, up to figures that differ from run to run."""
+    command = [sys.executable, ROOT / "tools" / "notebooks.py", "--check"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 def _entries(index: Path) -> list[str]:

@@ -17,7 +17,7 @@ from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
 from tracer.told_rays import RayTree
 from viewer.cli.console import working
-from viewer.cli.render import render_before
+from viewer.cli.render import times_before
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
 from viewer.output.legend import light_in_words
 from viewer.output.pictures import lights_in_words
@@ -43,8 +43,11 @@ def explain(path: Path, options: Namespace) -> None:
         time = moment(scene, options.frame, options.time)
         prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
         renderer = Renderer(scene, settings, work.progress)
-        before = render_before(renderer, time, options, work)
-        work.count("tracing", before, before + 1)
+        before = times_before(scene, time, options.warmup, work)
+        for done, earlier in enumerate(before):
+            work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
+            renderer.render(earlier, options.camera, work.cancelled)
+        work.count("tracing", len(before), len(before) + 1)
         frame = renderer.render(time, options.camera, work.cancelled)
         tree = ray_tree(renderer, frame, x, y, work.cancelled)
     if options.json:

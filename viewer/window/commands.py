@@ -12,6 +12,7 @@ from viewer.state.preferences import SCALES
 from viewer.state.views import View
 from viewer.window import camera_commands, edit_commands
 from viewer.window.command import Command, Condition
+from viewer.window.taking import drawing, taking
 from viewer.window.ui import CaptureKind, Ui
 
 
@@ -20,6 +21,7 @@ def build(ui: Ui) -> list[Command]:
     return [
         *_file(ui),
         *edit_commands.build(ui),
+        *drawing(ui),
         *_view(ui),
         *_camera(ui),
         *_time(ui),
@@ -54,6 +56,7 @@ def _file(ui: Ui) -> list[Command]:
         ),
         Command("Save picture", "File", want(CaptureKind.PICTURE), "F12", separated=True),
         Command("Save picture with panels", "File", want(CaptureKind.WINDOW), "Shift+F12"),
+        *taking(ui),
         Command(
             "Start where I left off",
             "File",
@@ -264,8 +267,10 @@ def _run(ui: Ui) -> list[Command]:
     return [
         Command("Experiment", "Run", start("Experiment", runner.start_experiment), enabled=idle),
         Command("Zoom test", "Run", start("Zoom test", runner.start_zoom_test), enabled=idle),
+        Command("Film", "Run", lambda: ui.show_panel("Film"), enabled=idle,
+                tip="a path, or a flight through bookmarks, as pictures and video"),
         Command("Stop, or clear the selection", "Run", stop, "Escape", enabled=busy, separated=True),
-    ]
+    ]  # fmt: skip
 
 
 def _help(ui: Ui) -> list[Command]:
