@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import json
 from argparse import Namespace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from tracer.scene.files import read_regular
 from tracer.scene.model import Camera
 from viewer.cli.argument_types import ChosenView
-from viewer.output import capture
+from viewer.output import capture, recipe
+from viewer.output.recipe import Recipe
 from viewer.services.scene_files import find_scene, is_capture
 from viewer.state.tone import Curve
 
 _A_CAMERA = '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
 _LARGEST_CAMERA = 1 << 20  # bytes
-_SETTINGS = ("method", "samples", "depth", "symmetric", "zoom_factor", "verify", "lamp_radius", "lamp_samples")
-
-
+_SETTINGS = (
+    "method", "samples", "depth", "symmetric", "zoom_factor", "verify", "lamp_radius", "lamp_samples", "accelerator"
+)  # fmt: skip
+_STYLE = ("magnified", "shading", "beneath", "outlines", "annotations")
 _TONE = ("exposure", "white", "tone")
 
 
@@ -26,34 +29,56 @@ def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
     """The scene of a saved picture, and what it carries, by the names of the options of `render`.
 
     Raises CaptureError, in one line, for any other picture, and where the scene is gone."""
+    saved, size = read(path)
+    kept: dict[str, Any] = {name: getattr(saved.settings, name) for name in _SETTINGS}
+    kept |= {name: getattr(saved.style, name) for name in _STYLE}
+    kept |= {"warmup": saved.warmup, "repeat": saved.repeats, "no_marks": not saved.style.marked}
+    kept |= {"legend": saved.style.legend is not None, "legend_at": saved.style.legend}
+    kept |= {"exposure": saved.style.tone.exposure, "white": saved.style.tone.white, "tone": saved.style.tone.curve}
+    kept |= {"mark_clipped": saved.style.clipping, "range": saved.style.span}
+    kept["caption"] = saved.style.caption.replace("{", "{{").replace("}", "}}")
+    if size is not None:
+        kept["size"] = size
+    if saved.camera is not None:
+        kept["camera"] = saved.camera
+    kept["view"] = ChosenView(saved.view, saved.light, saved.wipe, saved.style.shares)
+    kept["moment"] = saved.time
+    return saved.scene, kept
+
+
+def read(path: Path) -> tuple[Recipe, tuple[int, int] | None]:
+    """The recipe of a saved picture with its scene where that is now, and its size if that is known.
+
+    Raises CaptureError, in one line, for any other picture, and where the scene is gone."""
     snapshot, size = capture.read_with_size(path)
+    try:
+        saved = recipe.from_json(snapshot, size, capture.read_data(path).get("picture"))
+    except ValueError as error:
+        raise capture.CaptureError(f"{path}: cannot be restored: {error}") from None
     scene = find_scene(snapshot.scene, path)
     if scene is None:
         raise capture.CaptureError(f"{path}: its scene is gone: {snapshot.scene}")
-    kept: dict[str, Any] = {name: snapshot.settings[name] for name in _SETTINGS if name in snapshot.settings}
-    if size is not None:
-        kept["size"] = size
-    if not snapshot.follow:
-        kept["camera"] = snapshot.camera
-    kept["view"] = ChosenView(snapshot.view, snapshot.light, snapshot.wipe)
-    kept["exposure"], kept["white"], kept["tone"] = snapshot.tone.exposure, snapshot.tone.white, snapshot.tone.curve
-    if snapshot.span is not None:
-        kept["range"] = snapshot.span
-    kept["moment"] = snapshot.time
-    return scene, kept
+    return replace(saved, scene=scene), size
 
 
-def settle(options: Namespace, kept: dict[str, Any], picture: Path) -> None:
-    """What options mean together: a frame or a time that was given wins over the picture's, as does a file's name, and
-    in another view its tone and its range go."""
+def settle(options: Namespace, kept: dict[str, Any]) -> None:
+    """What options mean together: a frame or a time that was given wins over the picture's, and in a view that has no
+    use for its tone, its stripes or its range, these go."""
     view = options.view.view
     if not view.shows_picture and all(getattr(options, name) == kept[name] for name in _TONE):
         options.exposure, options.white, options.tone = 0.0, 1.0, Curve.NONE
-    if options.range == kept.get("range") and view is not kept["view"].view:
+    if kept["mark_clipped"] and not view.shows_clipped:
+        options.mark_clipped = False
+    if options.range == kept["range"] and (view is not kept["view"].view or options.view.shares):
         options.range = None
     if options.frame is None and options.time is None:
         options.time = kept["moment"]
-    if options.output is None and options.buffers is None:
+
+
+def name_output(options: Namespace, picture: Path) -> None:
+    """A file's name that was given wins over one after the saved picture's."""
+    given = (options.output, options.buffers, options.to_tev)
+    if not any(given) and not options.print_command:
         options.output = _free_name(f"{picture.stem}-rendered")
 
 

@@ -48,6 +48,9 @@ from viewer.state.views import (
 SHADING = 0.35
 """How much of the picture's light and shade shows under flat colours, as in the window."""
 
+OUTLINE = 0.35
+"""Brightness of the borders between primitives, against what is there."""
+
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 
@@ -60,6 +63,8 @@ def picture(
     wipe: float = 0.5,
     shares: bool = False,
     beneath: float = BENEATH,
+    outlines: bool = False,
+    magnified: int = 1,
     tone: Tone = NEUTRAL,
     clipping: bool = False,
     span: tuple[float, float] | None = None,
@@ -68,8 +73,9 @@ def picture(
 
     `light` is the light that views of one light speak of, `marked` draws rings around wrong pixels, and `wipe` is the
     place of the wipe's line, 0 to 1 from the left.  Maps of work show counts of rays, or `shares`; `beneath` is the
-    brightness of the picture beneath the difference.  Pictures have a `tone`, and stripes where the screen cuts them
-    off if `clipping`; maps of numbers go over `span`, by default over what the frame has.
+    brightness of the picture beneath the difference.  `outlines` draws the borders between primitives, and rings are
+    for a picture that is shown `magnified` times.  Pictures have a `tone`, and stripes where the screen cuts them off
+    if `clipping`; maps of numbers go over `span`, by default over what the frame has.
 
     Raises ValueError where there is no such light, or where the view is one of verified frames, or of what was
     recorded, and the frame is not.
@@ -79,9 +85,9 @@ def picture(
     if view is View.COLOR:
         colors = _displayed(frame.color, tone, clipping)
     elif view is View.DIFFERENCE:
-        colors = _difference(frame, marked, beneath, tone)
+        colors = _difference(frame, marked, beneath, outlines, magnified, tone)
     elif view is View.WIPE:
-        colors = _wipe(frame, marked, wipe, tone, clipping)
+        colors = _wipe(frame, marked, wipe, outlines, magnified, tone, clipping)
     elif view.needs_work:
         colors = _on_background(frame, _work(frame, view, shares, span))
     elif view is View.CERTIFICATE:
@@ -99,6 +105,8 @@ def picture(
         entries = _shadow(frame, light) if view is View.SHADOW else table[view](frame)
         numbers = frame.primitive if view is View.PRIMITIVE else units_of(frame)
         colors = _on_background(frame, _shaded(frame, _per_pixel(numbers, entries), shading))
+    if outlines and not view.needs_verify:  # those draw over the borders
+        colors = _outlined(frame, colors)
     return np.round(np.clip(colors, 0.0, 1.0) * 255.0).astype(np.uint8)
 
 
@@ -188,6 +196,11 @@ def _lights(frame: Frame, span: tuple[float, float] | None) -> NDArray:
     return np.where((due >= 0)[..., None], mapped, np.asarray(GREY, np.float32))
 
 
+def _outlined(frame: Frame, colors: NDArray) -> NDArray:
+    """With darker borders between primitives."""
+    return np.where(_on_line(frame.primitive)[..., None], OUTLINE * colors, colors)
+
+
 def _on_line(cells: NDArray[np.int32]) -> NDArray[np.bool_]:
     """Pixels whose neighbour to the right, or below, lies in another cell."""
     line = np.zeros(cells.shape, np.bool_)
@@ -240,21 +253,27 @@ def _depth(frame: Frame, span: tuple[float, float] | None) -> NDArray:
     return _mapped(1.0 - np.clip(_in_range(depth, (near, far)), 0.0, 1.0))
 
 
-def _difference(frame: Frame, marked: bool, beneath: float, tone: Tone) -> NDArray:
+def _difference(frame: Frame, marked: bool, beneath: float, outlines: bool, magnified: int, tone: Tone) -> NDArray:
     """Wrong pixels in their colour over the dimmed picture, and rings around them."""
-    marks, colors = wrong_marks(frame), beneath * np.clip(toned(frame.color, tone), 0.0, 1.0)
+    marks, colors = wrong_marks(frame, magnified), beneath * np.clip(toned(frame.color, tone), 0.0, 1.0)
+    if outlines:
+        colors = _outlined(frame, colors)
     if marked:
         colors[marks == Mark.RING] = np.float32(RING_DIMMING) * np.asarray(WRONG, np.float32)
     colors[marks == Mark.WRONG] = WRONG
     return colors
 
 
-def _wipe(frame: Frame, marked: bool, wipe: float, tone: Tone, clipping: bool) -> NDArray:
+def _wipe(
+    frame: Frame, marked: bool, wipe: float, outlines: bool, magnified: int, tone: Tone, clipping: bool
+) -> NDArray:
     """Left of a line the traced picture, right of it the one in which every shadow answer is right."""
-    marks, column = wrong_marks(frame), wipe_column(frame.width, wipe)
+    marks, column = wrong_marks(frame, magnified), wipe_column(frame.width, wipe)
     assert frame.reference is not None
     traced = np.concatenate([frame.color[:, :column], frame.reference[:, column:]], axis=1)
     colors = _displayed(traced, tone, clipping)
+    if outlines:
+        colors = _outlined(frame, colors)
     if marked:
         colors[marks == Mark.RING] = WRONG
     colors[:, column : column + 1] = WIPE_LINE

@@ -15,6 +15,7 @@ from typing import Any
 
 from tracer.renderer import Settings
 from tracer.scene.model import Camera, Scene
+from viewer.state.annotations import Annotation
 from viewer.state.methods import DEFAULT
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
@@ -123,6 +124,7 @@ class Session:
     clipping: bool = False
     spans: dict[View, tuple[float, float]] = field(default_factory=dict)
     selected: tuple[float, float] | None = None
+    annotations: list[Annotation] = field(default_factory=list)
 
     @property
     def follow(self) -> bool:
@@ -149,6 +151,7 @@ class Session:
         self.free_camera = None
         self.playing = False
         self.selected = None
+        self.annotations = []
         self.light = min(self.light, max(len(scene.lights) - 1, 0))
 
     @property

@@ -80,6 +80,11 @@ class View(StrEnum):
         return self in (View.COLOR, View.DIFFERENCE, View.WIPE)
 
     @property
+    def shows_clipped(self) -> bool:
+        """Whether it can mark what the screen cuts off of its colours."""
+        return self in (View.COLOR, View.WIPE)
+
+    @property
     def is_smooth(self) -> bool:
         """Whether it may be smoothed where it is enlarged."""
         return self in (View.COLOR, View.WIPE)

@@ -12,6 +12,12 @@ def zoom_by(ui: Ui, factor: float, at: Point = (0.5, 0.5)) -> None:
     ui.zoom = zoomed(ui.zoom, factor, at)
 
 
+def offer(ui: Ui, panel: str) -> None:
+    """Bring a panel to the eye, unless panels are hidden or it would cover the picture that is looked at."""
+    if not ui.fold.away:
+        ui.show_panel(panel)
+
+
 def pin(ui: Ui, point: Point | None) -> None:
     """Watch the pixel at a point, or no longer; says so."""
     c = ui.controller
@@ -20,7 +26,7 @@ def pin(ui: Ui, point: Point | None) -> None:
         return
     c.notices.say(ui.pixels.pin(c.frame, point))
     if ui.pixels.watched:
-        ui.show_panel("Pixels")
+        offer(ui, "Pixels")
 
 
 def pin_what_is_pointed_at(ui: Ui) -> None:

@@ -29,7 +29,7 @@ def comparing(ui: Ui) -> list[Command]:
 
     def keep() -> None:
         comparing.keep()
-        ui.show_panel("Compare")
+        closer.offer(ui, "Compare")
 
     def by(way: Way) -> Command:
         return Command(

@@ -11,7 +11,7 @@ from viewer.state.views import View
 
 KEY = imgui.Key
 CTRL, SHIFT = int(KEY.mod_ctrl), int(KEY.mod_shift)
-SMALL = 1024, 620  # a window that is quickly drawn
+SMALL = 1024, 620  # a window that is quickly drawn, and just does not fold its panels
 
 
 def closeup(d: Driver) -> None:

@@ -18,7 +18,7 @@ from viewer.window import comparing as seen
 
 KEY = imgui.Key
 CTRL, SHIFT = int(KEY.mod_ctrl), int(KEY.mod_shift)
-SMALL = 1024, 620  # a window that is quickly drawn
+SMALL = 1024, 620  # a window that is quickly drawn, and just does not fold its panels
 
 
 def comparing(d: Driver) -> None:

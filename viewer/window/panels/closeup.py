@@ -61,7 +61,7 @@ def drag(ui: Ui, area: Area) -> bool:
         ui.pixels.region = region_between(start, here) if moved and max(moved) >= 0.5 else None
     if released:
         if ui.gesture == "region" and ui.pixels.region is not None:
-            ui.show_panel("Pixels")
+            closer.offer(ui, "Pixels")
         ui.gesture = ""
     return True
 

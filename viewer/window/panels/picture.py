@@ -20,7 +20,20 @@ from viewer.state.zooming import FIT
 from viewer.window import comparing
 from viewer.window.camera_commands import pivot_of
 from viewer.window.palette import ON_PICTURE_ERROR
-from viewer.window.panels import closeup, explanation, film, layers, legend, missing, sides, timeline, tour, wipe
+from viewer.window.panels import (
+    annotating,
+    closeup,
+    explanation,
+    film,
+    layers,
+    legend,
+    missing,
+    ray_overlay,
+    sides,
+    timeline,
+    tour,
+    wipe,
+)
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, em, paragraph
@@ -79,7 +92,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     if beside and seen is not None and ui.compared is not None:
         area = _area(ui, "picture of A", left, top, size)
         layers.draw(ui, comparing.OF_A, ui.compared.a_texture or 0, area)
-        _pointer(ui, area)
+        _pointer(ui, area, takes_drawings=False)
         closeup.show(ui, area, seen[0])
         left += size.x + gap
     area = _area(ui, "picture", left, top, size)
@@ -87,11 +100,16 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     if seen is not None:
         sides.draw_a(ui, area, seen)
     with _inside(area):
-        explanation.show(ui, area.whole, area.whole_end)
+        if c.rays.visible:  # it shows the same rays, and more
+            ray_overlay.show(ui, area.whole, area.whole_end)
+        else:
+            explanation.show(ui, area.whole, area.whole_end)
     _pointer(ui, area)
     closeup.show(ui, area)
     wipe.show(ui, area)
     lower = _overlay(ui, area.corner, area.end)
+    with _inside(area):
+        annotating.show(ui, area.whole, area.whole_end)
     if seen is not None:
         sides.show_names(ui, area, seen, lower)
     legend.show(ui, area.corner, area.end)
@@ -143,8 +161,8 @@ def _placeholder(ui: Ui, room: ImVec2) -> None:
     paragraph(text, QUIET)
 
 
-def _pointer(ui: Ui, area: Area) -> None:
-    """Hovering, clicking and dragging on the picture, which is ImGui's last item."""
+def _pointer(ui: Ui, area: Area, takes_drawings: bool = True) -> None:
+    """Hovering, clicking and dragging on the picture, which is ImGui's last item, and drawing if it takes any."""
     c, io = ui.controller, imgui.get_io()
     if ui.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
         ui.pivot, ui.pivot_scene, ui.zoom = None, c.session.scene, FIT
@@ -153,6 +171,8 @@ def _pointer(ui: Ui, area: Area) -> None:
         c.selection.hovered = (u, v)
         if not closeup.wheel(ui, area):
             _wheel(ui, io.mouse_wheel)
+    if takes_drawings and annotating.handle(ui, area.whole, area.whole_size):
+        return
     if wipe.handle(ui, area) or closeup.drag(ui, area):
         return
     if imgui.is_item_activated():
