@@ -94,5 +94,5 @@ def setup(app: Sphinx) -> None:
     app.connect("source-read", read_notebook)
 
 
-# numpy's pages are on the network, where a build has no business: its names are not looked up.
-nitpick_ignore_regex = [("py:.*", r"numpy\..*")]
+# Their pages are on the network, where a build has no business: these names are not looked up.
+nitpick_ignore_regex = [("py:.*", r"numpy\..*"), ("py:class", r"collections\.Counter")]

@@ -152,8 +152,9 @@ class CertifiedCells(ShadowMethod):
             return
 
         def request(numbers: NDArray[np.int64], requests: Requests) -> None:
-            view = pack(store.view(len(tiles), requests))
-            request_in_tiles(view.ctypes.data, frame.rays, tiles, numbers, frame.lights, frame.buffers)
+            view = store.view(len(tiles), requests)  # the block holds addresses of arrays that only this keeps
+            block = pack(view)
+            request_in_tiles(block.ctypes.data, frame.rays, tiles, numbers, frame.lights, frame.buffers)
 
         budget = Budget(frame.settings.certificates, seconds)
         self._counts = self.scheduler.run(len(tiles), request, budget, frame.cancel)
