@@ -16,7 +16,6 @@ from viewer.services.settings_controller import SettingsController
 from viewer.services.tracing import Tracing
 from viewer.state.comparison import (
     Apart,
-    Comparison,
     Side,
     Source,
     Way,
@@ -47,7 +46,7 @@ class Comparing:
 
     def __init__(self, session: Session, tracing: Tracing, settings: SettingsController, notices: Notices) -> None:
         self._session, self._tracing, self._settings, self._notices = session, tracing, settings, notices
-        self.state = Comparison()
+        self.state = session.comparison
         self._difference: tuple[Side, Side, Difference | None] | None = None
         self._span: tuple[Frame, Frame, dict[View, tuple[float, float]]] | None = None
 

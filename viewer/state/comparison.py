@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import StrEnum
 
 import numpy as np
@@ -167,6 +167,36 @@ def apart(difference: NDArray[np.float32]) -> Apart:
     )
 
 
+@dataclass(frozen=True)
+class Chosen:
+    """What undo brings back of a comparison: whether and how there is one.  What was kept is no part of it."""
+
+    on: bool
+    way: Way
+    source: Source
+    second: str
+    same_view: bool
+    rate: float
+    limit: float | None
+
+    def changes(self, after: Chosen) -> dict[str, str]:
+        """What has changed since, in a few words for each."""
+        changed: dict[str, str] = {}
+        if (self.on, self.way) != (after.on, after.way):
+            changed["way"] = f"comparison: {after.way.label.lower()}" if after.on else "comparison off"
+        if self.source is not after.source:
+            changed["source"] = "A by a second method" if after.source is Source.METHOD else "A as it was kept"
+        if self.second and self.second != after.second:
+            changed["second"] = f"second method {after.second}"
+        if self.same_view != after.same_view:
+            changed["same_view"] = "A in the view of B" if after.same_view else "A in its own view"
+        if self.rate != after.rate:
+            changed["rate"] = f"blinking at {after.rate:.2f} Hz"
+        if self.limit != after.limit:
+            changed["limit"] = "range of the difference"
+        return changed
+
+
 @dataclass
 class Comparison:
     """What is compared, and how: `kept` is A as it was kept; with `same_view` it is shown in the view of B; `limit` is
@@ -181,6 +211,16 @@ class Comparison:
     limit: float | None = None
     held: bool = False
     second: str = ""
+
+    @property
+    def chosen(self) -> Chosen:
+        """What undo brings back."""
+        return Chosen(**{name.name: getattr(self, name.name) for name in fields(Chosen)})
+
+    def choose(self, chosen: Chosen) -> None:
+        """Bring it back."""
+        for name in fields(Chosen):
+            setattr(self, name.name, getattr(chosen, name.name))
 
     def shows_a(self, seconds: float) -> bool:
         """Whether, of the ways that show one picture at a time, it is A's turn at this time in seconds."""

@@ -16,9 +16,11 @@ from typing import Any
 from tracer.renderer import Settings
 from tracer.scene.model import Camera, Scene
 from viewer.state.annotations import Annotation
+from viewer.state.comparison import Comparison
 from viewer.state.methods import DEFAULT
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
+from viewer.state.zooming import FIT, Zoom
 
 # Settings that say how a frame was asked for, not what the user chose; those of this machine and of the open scene.
 _NOT_RESTORED = {
@@ -110,7 +112,8 @@ def settings_from_json(data: Any) -> dict[str, Any]:
 class Session:
     """The state behind the window; plain data and what it implies, no threads and no widgets.
 
-    `spans` are the ranges that were chosen for views of numbers; `clipping` marks what the screen cuts off."""
+    `spans` are the ranges that were chosen for views of numbers; `clipping` marks what the screen cuts off; `zoom` is
+    how closely the picture itself is looked at, `comparison` what is compared with it."""
 
     scene: Scene | None = None
     time: float = 0.0
@@ -123,6 +126,8 @@ class Session:
     tone: Tone = NEUTRAL
     clipping: bool = False
     spans: dict[View, tuple[float, float]] = field(default_factory=dict)
+    zoom: Zoom = FIT
+    comparison: Comparison = field(default_factory=Comparison)
     selected: tuple[float, float] | None = None
     annotations: list[Annotation] = field(default_factory=list)
 
@@ -146,6 +151,7 @@ class Session:
         is measured in units of the scene that was open."""
         if self.scene is not None and scene.path != self.scene.path:
             self.settings = replace(self.settings, lamp_radius=None)
+            self.zoom = FIT
         self.scene = scene
         self.time = scene.time_range[0]
         self.free_camera = None

@@ -201,7 +201,7 @@ class App:
             shading=p.shading,
             outlines=p.outlines,
             selected=selected,
-            smooth=p.smooth_upscaling and self.ui.zoom.fits,
+            smooth=p.smooth_upscaling and c.session.zoom.fits,
             marked=p.mark_wrong,
             magnified=c.tracing.magnified,
             wipe=c.session.wipe,

@@ -8,7 +8,7 @@ from viewer.state.comparison import Way
 from viewer.state.tone import NEUTRAL, brighter
 from viewer.state.zooming import MOST, STEP
 from viewer.window import closer
-from viewer.window.command import Command
+from viewer.window.command import Command, Condition
 from viewer.window.ui import Ui
 
 _STOPS = 0.5  # of exposure by a key
@@ -25,7 +25,8 @@ def comparing(ui: Ui) -> list[Command]:
     """The menu Compare."""
     c = ui.controller
     comparing, state = c.comparing, c.comparing.state
-    there = lambda: comparing.b is not None  # noqa: E731
+    there = Condition(lambda: comparing.b is not None, "there is no picture yet")
+    kept = Condition(lambda: state.kept is not None, "nothing is kept as A")
 
     def keep() -> None:
         comparing.keep()
@@ -43,7 +44,7 @@ def comparing(ui: Ui) -> list[Command]:
 
     return [
         Command("Keep as A", "Compare", keep, "Ctrl+A", enabled=there),
-        Command("Let go of A", "Compare", comparing.forget, enabled=lambda: state.kept is not None),
+        Command("Let go of A", "Compare", comparing.forget, enabled=kept),
         Command(
             "Two methods live",
             "Compare",
@@ -76,20 +77,25 @@ def looking(ui: Ui) -> list[Command]:
     def clear_region() -> None:
         ui.pixels.region = None
 
+    larger = Condition(lambda: session.zoom.scale < MOST, f"it is enlarged {MOST:.0f} times, which is the most")
+    zoomed = Condition(lambda: not session.zoom.fits, "the whole picture is shown")
+    watching = Condition(lambda: bool(watched), "no pixel is watched")
+    chosen = Condition(lambda: ui.pixels.region is not None, "no region is chosen")
+    toned = Condition(lambda: not session.tone.neutral, "colours are shown as traced")
     return [
         Command("Zoom in", "Picture", lambda: closer.zoom_by(ui, STEP, _at(ui)), "Equal", repeats=True,
-                enabled=lambda: ui.zoom.scale < MOST, other_keys=("Shift+Equal", "KeypadAdd")),
+                enabled=larger, other_keys=("Shift+Equal", "KeypadAdd")),
         Command("Zoom out", "Picture", lambda: closer.zoom_by(ui, 1.0 / STEP, _at(ui)), "Minus", repeats=True,
-                enabled=lambda: not ui.zoom.fits, other_keys=("KeypadSubtract",)),
-        Command("Fit picture", "Picture", lambda: closer.fit(ui), "Shift+F", enabled=lambda: not ui.zoom.fits),
+                enabled=zoomed, other_keys=("KeypadSubtract",)),
+        Command("Fit picture", "Picture", lambda: closer.fit(ui), "Shift+F", enabled=zoomed),
         Command("Values in pixels", "Picture", toggle_values, checked=lambda: p.pixel_values, separated=True),
         Command("Watch pixel", "Picture", lambda: closer.pin_what_is_pointed_at(ui), "Shift+P"),
-        Command("Let go of watched pixels", "Picture", watched.clear, enabled=lambda: bool(watched)),
-        Command("Clear the region", "Picture", clear_region, enabled=lambda: ui.pixels.region is not None),
+        Command("Let go of watched pixels", "Picture", watched.clear, enabled=watching),
+        Command("Clear the region", "Picture", clear_region, enabled=chosen),
         Command("Brighter", "Picture", expose(_STOPS), "RightBracket", repeats=True, separated=True),
         Command("Darker", "Picture", expose(-_STOPS), "LeftBracket", repeats=True),
         Command("Colours as traced", "Picture", lambda: setattr(session, "tone", NEUTRAL),
-                enabled=lambda: not session.tone.neutral),
+                enabled=toned),
         Command("Mark clipped pixels", "Picture", lambda: setattr(session, "clipping", not session.clipping), "Shift+M",
                 checked=lambda: session.clipping),
     ]  # fmt: skip
@@ -97,7 +103,7 @@ def looking(ui: Ui) -> list[Command]:
 
 def _at(ui: Ui) -> tuple[float, float]:
     """Where the pointer is in the picture's room, else its middle."""
-    hovered, zoom = ui.controller.selection.hovered, ui.zoom
+    hovered, zoom = ui.controller.selection.hovered, ui.controller.session.zoom
     if hovered is None:
         return 0.5, 0.5
     return (hovered[0] - zoom.left) * zoom.scale, (hovered[1] - zoom.top) * zoom.scale

@@ -113,7 +113,7 @@ def _view(ui: Ui) -> list[Command]:
 def _rays(ui: Ui) -> list[Command]:
     """The tree of the clicked pixel's rays, and the steps of one of them."""
     rays = ui.controller.rays
-    walked = lambda: bool(rays.visits)  # noqa: E731
+    walked = Condition(lambda: bool(rays.visits), "no ray is followed: click a row in the panel Rays")
     return [
         Command("Rays of the clicked pixel", "View", lambda: ui.show_panel("Rays"), "X", separated=True),
         Command("Next step of the ray", "View", lambda: rays.go(1), "Period", enabled=walked, repeats=True),
@@ -135,14 +135,17 @@ def _looks(ui: Ui) -> list[Command]:
 
         return change
 
+    largest = Condition(lambda: p.ui_scale < SCALES[-1], "it is as large as it can be")
+    smallest = Condition(lambda: p.ui_scale > SCALES[0], "it is as small as it can be")
+
     def other_theme() -> None:
         p.theme = "dark" if p.theme == "light" else "light"
 
     return [
         Command("Light theme", "View", other_theme, checked=lambda: p.theme == "light", separated=True),
-        Command("Larger interface", "View", sized(1), "Ctrl+Equal", enabled=lambda: p.ui_scale < SCALES[-1],
+        Command("Larger interface", "View", sized(1), "Ctrl+Equal", enabled=largest,
                 other_keys=("Ctrl+Shift+Equal", "Ctrl+KeypadAdd")),
-        Command("Smaller interface", "View", sized(-1), "Ctrl+Minus", enabled=lambda: p.ui_scale > SCALES[0],
+        Command("Smaller interface", "View", sized(-1), "Ctrl+Minus", enabled=smallest,
                 other_keys=("Ctrl+KeypadSubtract",)),
         Command("Interface at 100 %", "View", sized(0), "Ctrl+0", other_keys=("Ctrl+Keypad0",)),
     ]  # fmt: skip

@@ -103,9 +103,9 @@ def magnify(ui: Ui, look: Look) -> None:
         of_a = seen is not None and ui.compared is not None and drawn is ui.compared.a
         view = seen[0].view if seen is not None and of_a else look.view
         smooth = look.smooth and view.is_smooth and not isinstance(drawn, SignedDifference)
-        enlarged = picture is not None and (size[0] > picture.size[0] or not ui.zoom.fits)
+        enlarged = picture is not None and (size[0] > picture.size[0] or not ui.controller.session.zoom.fits)
         if drawn is not None and enlarged and not smooth:
-            magnifier.draw(name, picture, drawn.version, ui.zoom, size)
+            magnifier.draw(name, picture, drawn.version, ui.controller.session.zoom, size)
         else:
             magnifier.drop(name)
 

@@ -21,7 +21,6 @@ from viewer.state.annotations import Annotation, Kind
 from viewer.state.keymap import Keymap
 from viewer.state.pixels import Pixels, Point
 from viewer.state.preferences import default_screenshot_folder
-from viewer.state.zooming import FIT, Zoom
 from viewer.window.command import Command, is_key, key_label
 from viewer.window.compared import Compared
 from viewer.window.display import Display
@@ -67,9 +66,8 @@ class Ui:
     the picture's place; `legend_shown` says whether the picture shows its legend, `legend_held` where the pointer holds
     that; `key_wanted` names the command that waits for a key to be pressed; `editing` is the list and the place in it
     of a name that is being edited, `edited` that name; `tour_height` is what the picture leaves free below it for the
-    tour, `tour_place` where that is: left, top and width. `zoom` is how closely the picture itself is looked at;
-    `gesture` is what a drag does that moves no camera, from `gesture_at` on, a point of the picture; `menu_at` is the
-    point that the menu over the picture is about."""
+    tour, `tour_place` where that is: left, top and width. `gesture` is what a drag does that moves no camera, from
+    `gesture_at` on, a point of the picture; `menu_at` is the point that the menu over the picture is about."""
 
     controller: Controller
     display: Display | None = None
@@ -125,7 +123,6 @@ class Ui:
     compared: Compared | None = None
     magnifier: Magnifier | None = None
     picture_size: tuple[int, int] = (0, 0)
-    zoom: Zoom = FIT
     pixels: Pixels = field(default_factory=Pixels)
     gesture: str = ""
     gesture_at: Point = (0.0, 0.0)

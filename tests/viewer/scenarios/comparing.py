@@ -129,12 +129,12 @@ def _line(d: Driver, a: np.ndarray, b: np.ndarray) -> None:
     assert np.array_equal(saved[:, :column], a[:, :column]) and np.array_equal(
         saved[:, column + 1 :], b[:, column + 1 :]
     )
-    d.ui.zoom = type(d.ui.zoom)(4.0, 0.2, 0.5)
+    d.c.session.zoom = type(d.c.session.zoom)(4.0, 0.2, 0.5)
     d.frames(3)
     d.drag((right - 1.0, middle), (-0.5 * (right - left), 0.0))
     assert abs(d.c.session.wipe - 0.2) < 0.02 and d.c.session.camera == camera
     d.press(int(KEY.f) | SHIFT)
-    assert d.ui.zoom.fits
+    assert d.c.session.zoom.fits
 
 
 def _two_methods(d: Driver) -> None:
@@ -145,6 +145,12 @@ def _two_methods(d: Driver) -> None:
     d.settle()
     state = d.c.comparing.state
     assert state.on and state.source is Source.METHOD and state.way is Way.SIDE and state.second == "none"
+    d.press(int(KEY.z) | CTRL)
+    d.settle()
+    assert not state.on and d.c.traced.second is None, "a comparison can be undone"
+    d.press(int(KEY.z) | CTRL | SHIFT)
+    d.settle()
+    assert state.on and d.c.traced.second.settings.method == "none"
     d.press(KEY.t)
     d.settle()
     frame, second = d.c.frame, d.c.traced.second

@@ -16,7 +16,6 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from viewer.state import navigation, pads
 from viewer.state.comparison import Way
 from viewer.state.picking import point_at
-from viewer.state.zooming import FIT
 from viewer.window import comparing
 from viewer.window.camera_commands import pivot_of
 from viewer.window.palette import ON_PICTURE_ERROR
@@ -125,7 +124,7 @@ def _area(ui: Ui, name: str, left: float, top: float, size: ImVec2) -> Area:
     imgui.invisible_button(name, size, _ALL_BUTTONS)
     scale = imgui.get_io().display_framebuffer_scale
     ui.picture_size = max(1, round(size.x * scale.x)), max(1, round(size.y * scale.y))
-    return Area(corner, size, ui.zoom)
+    return Area(corner, size, ui.controller.session.zoom)
 
 
 @contextmanager
@@ -165,7 +164,7 @@ def _pointer(ui: Ui, area: Area, takes_drawings: bool = True) -> None:
     """Hovering, clicking and dragging on the picture, which is ImGui's last item, and drawing if it takes any."""
     c, io = ui.controller, imgui.get_io()
     if ui.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
-        ui.pivot, ui.pivot_scene, ui.zoom = None, c.session.scene, FIT
+        ui.pivot, ui.pivot_scene = None, c.session.scene
     u, v = area.to_picture(io.mouse_pos.x, io.mouse_pos.y)
     if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
         c.selection.hovered = (u, v)
@@ -271,8 +270,8 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
         text += f"   {frame.statistics.part:.0%} shaded"
     elif request.samples > 1:
         text += f"   {c.tracing.samples_shown} of {request.samples} samples"
-    if not ui.zoom.fits:
-        text += f"   {ui.zoom.scale:.3g} x"
+    if not c.session.zoom.fits:
+        text += f"   {c.session.zoom.scale:.3g} x"
     tone = c.session.tone.in_words()
     text += f"   {tone}" if tone and c.tracing.drawn_view.shows_picture else ""
     shadow, counter = frame.statistics.shadow, ""
@@ -283,7 +282,7 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
         return corner.y
     pad = em(0.35)
     lower = ImVec2(corner.x + size.x + 3.0 * pad, corner.y + size.y + 2.0 * pad)
-    opacity = 0.72 if ui.zoom.fits else 0.94  # there may be numbers beneath
+    opacity = 0.72 if c.session.zoom.fits else 0.94  # there may be numbers beneath
     colors = ((0.05, 0.06, 0.08, opacity), (0.93, 0.94, 0.96, 1.0))
     back, front = (imgui.get_color_u32(ImVec4(*color)) for color in colors)
     draw = imgui.get_window_draw_list()

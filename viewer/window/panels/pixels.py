@@ -45,11 +45,11 @@ def _watched(ui: Ui) -> None:
     tip = "numbers in the pixels, and a grid, where the picture is enlarged enough"
     checkbox("Values in pixels", p.pixel_values, lambda on: setattr(p, "pixel_values", on), tip)
     imgui.same_line(0.0, em(1.0))
-    if not ui.zoom.fits:
+    if not c.session.zoom.fits:
         if imgui.small_button("Fit"):
             closer.fit(ui)
         imgui.same_line()
-    clipped("all of the picture" if ui.zoom.fits else f"enlarged {ui.zoom.scale:.3g} times", QUIET)
+    clipped("all of the picture" if c.session.zoom.fits else f"enlarged {c.session.zoom.scale:.3g} times", QUIET)
     frame = c.frame
     if frame is None or not ui.pixels.watched:
         paragraph(

@@ -86,7 +86,7 @@ def show(ui: Ui, area: Area) -> None:
         start = x + 2.0 * pad if side > 0.0 else x - 2.0 * pad - width
         if corner.x <= start and start + width <= end.x:
             lower = ImVec2(start + width, top + text + 2.0 * pad)
-            draw.add_rect_filled(ImVec2(start, top), lower, dark if ui.zoom.fits else ground, em(0.3))
+            draw.add_rect_filled(ImVec2(start, top), lower, dark if c.session.zoom.fits else ground, em(0.3))
             draw.add_text(ImVec2(start + pad, top + pad), light, name)
     draw.pop_clip_rect()
 
