@@ -28,8 +28,8 @@ from viewer.window.widgets import (
 )
 
 _WIDE = 44.0  # ems of a panel that has room for controls and columns beside each other
-_CONTROLS = 19.0  # ems of the controls there
-_NAMES = 8.5  # ems of the names of figures
+_CONTROLS = 15.5  # ems of the controls there
+_NAMES = 8.0  # ems of the names of figures
 
 
 def show(ui: Ui) -> None:
@@ -62,7 +62,7 @@ def _controls(ui: Ui) -> None:
     with properties("comparison", 5.0) as shown:
         if shown:
             row("A is", "what the live picture, B, is compared with")
-            names = {Source.KEPT: "the picture that was kept", Source.METHOD: "the same by a second method"}
+            names = {Source.KEPT: "the kept picture", Source.METHOD: "by a second method"}
             sources = list(Source)
             changed, index = imgui.combo("##source", sources.index(state.source), [names[one] for one in sources])
             if changed:
@@ -169,8 +169,8 @@ def _columns(ui: Ui) -> None:
         return
     imgui.table_setup_scroll_freeze(0, 2)
     imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_fixed), em(_NAMES))
-    for name in ("A", "B", "difference", "per cent"):
-        imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch))
+    for name, width in (("A", 1.0), ("B", 1.0), ("difference", 1.0), ("per cent", 0.75)):
+        imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch), width)
     _heads(a, b, comparing.names(a, b))
     for one in found:
         _row(one)

@@ -18,7 +18,7 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right, tooltip
 
 _WIDE = 44.0  # ems of a panel that has room for the list and the histogram beside each other
-_PLOT = 7.5  # ems, the least height of the histogram
+_PLOT = 5.4  # ems, the least height of the histogram
 _OF_CHANNELS = (ImVec4(0.92, 0.33, 0.31, 1.0), ImVec4(0.25, 0.70, 0.35, 1.0), ImVec4(0.35, 0.58, 0.96, 1.0))
 _OF_VALUES = (ImVec4(0.42, 0.65, 0.93, 1.0),)
 
