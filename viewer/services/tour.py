@@ -140,7 +140,7 @@ def _toggle_culling(c: Controller, show_panel: Callable[[str], None]) -> Iterato
     for culls in (False, True):
         yield SECONDS
         c.settings.toggle_culling()
-        yield from _until(lambda culls=culls: _culls(c) is culls)
+        yield from _until((lambda: _culls(c)) if culls else (lambda: not _culls(c)))
     yield SECONDS
     if Method.parse(before).culls:
         c.settings.change(method=before)
