@@ -12,7 +12,7 @@ from viewer.state.keymap import HELD
 from viewer.state.methods import DEFAULT
 from viewer.state.preferences import SCALES, Preferences
 from viewer.state.views import View
-from viewer.window import command, commands
+from viewer.window import closer, command, commands
 from viewer.window.ui import Ui
 
 
@@ -65,6 +65,18 @@ def test_what_cannot_be_run_says_why(ui):
     assert any(not c.enabled() for c in ui.commands) and silent == []
     ui.controller.preferences.ui_scale = SCALES[-1]
     assert next(c for c in ui.commands if c.name == "Larger interface").why_not == "it is as large as it can be"
+
+
+def test_no_panel_opens_by_itself_where_it_would_cover_the_picture(ui):
+    shown = []
+    ui.show_panel = shown.append
+    for name in ("folded", "hidden"):
+        setattr(ui.fold, name, True)
+        closer.offer(ui, "Pixels")
+        setattr(ui.fold, name, False)
+    assert shown == []
+    closer.offer(ui, "Pixels")
+    assert shown == ["Pixels"]
 
 
 def test_views_are_chosen_and_ticked(ui):
