@@ -23,6 +23,7 @@ from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
 from viewer.cli.console import Work, print_table, statistics_table, working
+from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
 from viewer.output import capture
 from viewer.output.legend import Chosen, legend_of
@@ -60,7 +61,7 @@ def render(path: Path, options: Namespace) -> None:
         may = "may make" if method.adaptive else "makes"
         raise ValueError(f"--view certificate: the method {settings.method} {may} none; give --method {CERTIFIED}")
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder)
+        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
         if view.of_light and light >= len(scene.lights):
