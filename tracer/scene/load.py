@@ -12,8 +12,8 @@ import numpy as np
 
 from tracer.scene.aff import load_aff
 from tracer.scene.framing import bounds
-from tracer.scene.meshes import MESH_EXTENSIONS, load_mesh
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
+from tracer.scene.meshes import MESH_EXTENSIONS, load_mesh
 from tracer.scene.model import CONE, SPHERE, Progress, Scene, SceneError
 
 AFF_EXTENSIONS = (".aff", ".nff")

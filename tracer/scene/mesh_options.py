@@ -41,3 +41,5 @@ class MeshOptions:
 
 AS_IN_FILE = MeshOptions()
 """Nothing is added."""
+IN_STUDIO = MeshOptions(studio=True)
+"""As the commands and the window read meshes."""

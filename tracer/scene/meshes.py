@@ -217,9 +217,7 @@ def _check(mesh: Any, path: Path) -> None:
         raise SceneError(f"{path}: a triangle refers to a vertex that is not there; repair the file")
 
 
-def _shapes(
-    mesh: Any, place: _MeshPlace, table: MaterialTable, crease: float
-) -> Iterator[tuple[Mesh, int, int]]:
+def _shapes(mesh: Any, place: _MeshPlace, table: MaterialTable, crease: float) -> Iterator[tuple[Mesh, int, int]]:
     """Parts of one material each, with its number and that of the texture; `crease` is the angle in degrees up to which
     edges are rounded where there are no normals."""
     faces = np.asarray(mesh.faces, np.int64)

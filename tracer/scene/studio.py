@@ -45,6 +45,8 @@ _UPRIGHT = {
     "-x": ((0, 1, 0), (-1, 0, 0), (0, 0, 1)),
 }
 """Right, up and front of a model, as seen from its front, by the axis that points up: turned about one axis each."""
+TURNS = ("y", "z", "x", "-y", "-z", "-x")
+"""The axes that may point up, the likeliest first."""
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,13 @@ def model_bounds(scene: Scene) -> Float64 | None:
     return np.stack([model.min(axis=(0, 1)), model.max(axis=(0, 1))]).astype(np.float64) if len(model) else None
 
 
+def up_in_studio(scene: Scene) -> str | None:
+    """The axis that points up in a studio, such as "-z"; None where there is no studio."""
+    if FLOOR not in scene.objects[0].parts:
+        return None
+    return next(up for up, frame in _UPRIGHT.items() if frame[1] == scene.camera.up)
+
+
 def _towards_camera(size: Float64) -> Float64:
     """The unit vector from a model of this width, height and depth to its camera.
 
@@ -130,9 +139,7 @@ def _framing(points: Float64, away: Float64, frame: Float64) -> Camera:
     size = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0))) or 1.0
     back = min(-(right + left) / (2 * slope), -(upper + lower) / (2 * slope), float(z.min()) - 0.05 * size)
     position = (right - left) / 2 * across + (upper - lower) / 2 * top + back * forward
-    return Camera(
-        tuple((position @ frame).tolist()), tuple((-away @ frame).tolist()), tuple(frame[1].tolist()), ANGLE
-    )
+    return Camera(tuple((position @ frame).tolist()), tuple((-away @ frame).tolist()), tuple(frame[1].tolist()), ANGLE)
 
 
 def _two_triangles(quad: Float32, up: Float64, material: int) -> Triangles:

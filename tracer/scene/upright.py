@@ -75,5 +75,7 @@ def _mass(corners: Float64) -> tuple[Float64, Float64]:
     away = corners - middle
     means = centers - middle
     # The exact second moments of triangles, of equal weight per area.
-    spread = (np.einsum("n,nki,nkj->ij", weights, away, away) + 9.0 * np.einsum("n,ni,nj->ij", weights, means, means)) / 12
+    spread = (
+        np.einsum("n,nki,nkj->ij", weights, away, away) + 9.0 * np.einsum("n,ni,nj->ij", weights, means, means)
+    ) / 12
     return middle, spread

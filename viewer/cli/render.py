@@ -185,6 +185,7 @@ def _write_picture(path: Path, scene: Scene, frame: Frame, options: Namespace) -
     image = Image.fromarray(pixels)
     settings = replace(frame.settings, verify=options.verify)  # what was chosen; a view verifies by itself
     session = Session(scene, frame.time, options.camera, settings=settings, view=view, light=light, wipe=wipe)
+    session.meshes = mesh_options(options)
     notes = PngImagePlugin.PngInfo()
     size = (frame.width, frame.height)
     text = capture.metadata(session.snapshot(), session.frame, size, frame.statistics.to_dict())

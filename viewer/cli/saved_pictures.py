@@ -33,6 +33,7 @@ def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
         kept["camera"] = snapshot.camera
     kept["view"] = ChosenView(snapshot.view, snapshot.light, snapshot.wipe)
     kept["moment"] = snapshot.time
+    kept |= {"no_studio": not snapshot.meshes.studio, "up": snapshot.meshes.up, "crease": snapshot.meshes.crease}
     return scene, kept
 
 
