@@ -22,7 +22,7 @@ export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
 export MPLCONFIGDIR := $(CURDIR)/.cache/matplotlib
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz golden bench frames quickest lamps counters window motion memory growth docs linkcheck pictures lint format lock clean distclean help
+.PHONY: run kernels test quick test-all fuzz golden bench frames quickest lamps counters window motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -89,6 +89,10 @@ growth:  ## measure how the cost of a ray grows from 10,000 to 2,000,000 triangl
 docs:  ## build the documentation in build/docs; every warning is an error
 	@tools/environment.sh dev
 	$(RUN) -m sphinx -W --keep-going -n -q -d .cache/docs -b html docs build/docs
+
+notebooks:  ## run the notebooks of the documentation, and keep what their cells show
+	@tools/environment.sh dev
+	@$(RUN) tools/notebooks.py $(ARGS)
 
 linkcheck:  ## check the documentation's links to other sites, which needs the network
 	@tools/environment.sh dev

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 
 from sphinx.application import Sphinx
@@ -21,6 +23,7 @@ copyright = author
 
 extensions = ["myst_parser", "numpydoc", "sphinx.ext.autodoc"]
 exclude_patterns = ["_build"]
+source_suffix = {".md": "markdown", ".ipynb": "markdown"}  # as `read_notebook` writes it
 default_role = "code"  # `name` in docstrings means code
 
 html_theme = "furo"
@@ -61,9 +64,35 @@ def read_shared(app: Sphinx, page: str, source: list[str]) -> None:
         source[0] = re.sub(r"\]\((?:docs/)?([\w/.-]+)", lambda link: f"]({pages.get(link[1], link[1])}", text)
 
 
+def read_notebook(app: Sphinx, page: str, source: list[str]) -> None:
+    """Write a notebook as Markdown, with what its cells printed and showed when they were last run."""
+    if app.env.doc2path(page).suffix == ".ipynb":
+        source[0] = "\n\n".join(part for cell in json.loads(source[0])["cells"] for part in _parts(cell))
+
+
+def _parts(cell: dict) -> Iterator[str]:
+    text = "".join(cell["source"])
+    if cell["cell_type"] == "markdown":
+        yield text
+        return
+    yield f"```python\n{text}\n```"
+    for output in cell["outputs"]:
+        data = output.get("data", {})
+        if "text/html" in data:
+            html = "".join(data["text/html"])
+            yield f"```{{raw}} html\n{html}\n```"
+        elif "image/png" in data:
+            image = f'<img alt="What the cell draws" src="data:image/png;base64,{data["image/png"]}">'
+            yield f"```{{raw}} html\n{image}\n```"
+        else:
+            printed = "".join(output.get("text", data.get("text/plain", ())))
+            yield f"```text\n{printed}\n```"
+
+
 def setup(app: Sphinx) -> None:
     app.connect("source-read", read_shared)
+    app.connect("source-read", read_notebook)
 
 
-# numpy's pages are on the network, where a build has no business: its names are not looked up.
-nitpick_ignore_regex = [("py:.*", r"numpy\..*")]
+# Their pages are on the network, where a build has no business: these names are not looked up.
+nitpick_ignore_regex = [("py:.*", r"numpy\..*"), ("py:class", r"collections\.Counter")]

@@ -116,7 +116,7 @@ def test_commands_are_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(argparse.ArgumentParser, "parse_args", parse_only)
     shown = {line for page in PAGES for line in shell_lines(page) if line.startswith("shadowcull")}
-    assert {"render", "bench", "zoom", "info"} <= {word for line in shown for word in line.split()[1:2]}
+    assert {"render", "bench", "zoom", "explain", "info"} <= {word for line in shown for word in line.split()[1:2]}
     for line in sorted(shown):
         with pytest.raises(Accepted):
             main(shlex.split(line)[1:])
@@ -125,7 +125,7 @@ def test_commands_are_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_options_in_the_text_exist(capsys: pytest.CaptureFixture[str]) -> None:
     """Options that the text names, as in `--verify`, are options of some command."""
     known = {"--help", "--version"}
-    for command in ("render", "bench", "zoom", "info"):
+    for command in ("render", "film", "figure", "check", "bench", "zoom", "explain", "info"):
         with pytest.raises(SystemExit):
             main([command, "--help"])
         known |= set(re.findall(r"--[a-z-]+", capsys.readouterr().out))
@@ -160,6 +160,7 @@ def test_keys_of_the_window_are_told() -> None:
     told = set(re.findall(r"`([^`]+)`", table)) | set("1234567")  # shown as `1` … `7`
     told |= {f"Alt+{n}" for n in range(2, 9)}
     shown = {"RightArrow": "→", "LeftArrow": "←", "Ctrl+Equal": "+", "Ctrl+Minus": "-", "Ctrl+0": "0"}
+    shown |= {"Period": ".", "Comma": ",", "Shift+Period": "Shift+."}
     ui = Ui(Controller(Preferences()))
     try:
         keys = {shown.get(command.key) or key_label(command.key) for command in commands.build(ui) if command.key}
@@ -196,8 +197,17 @@ def test_links_lead_somewhere(page: Path) -> None:
 
 def test_every_page_is_reachable() -> None:
     """From the README or from a table of contents, and those from each other."""
-    trees = [index.parent / f"{entry}.md" for index in DOCS.rglob("index.md") for entry in _entries(index)]
-    assert sorted(trees) == sorted(page for page in DOCS.rglob("*.md") if page != DOCS / "index.md")
+    trees = [index.parent / entry for index in DOCS.rglob("index.md") for entry in _entries(index)]
+    pages = {page for kind in ("md", "ipynb") for page in DOCS.rglob(f"*.{kind}")} - {DOCS / "index.md"}
+    assert sorted(trees) == sorted(page.with_suffix("") for page in pages)
+
+
+@pytest.mark.slow
+def test_notebooks_say_what_they_keep() -> None:
+    """Each runs, and prints and shows what the documentation shows of it, up to figures that differ from run to run."""
+    command = [sys.executable, ROOT / "tools" / "notebooks.py", "--check"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 def _entries(index: Path) -> list[str]:

@@ -24,6 +24,7 @@ from tracer.geometry.queries import HIT_PRIMITIVE, HIT_T, Placed
 from tracer.geometry.rays import INFINITY, MISS
 from tracer.geometry.world import STRUCTURES
 from tracer.kernels import entry
+from tracer.methods import watching
 from tracer.methods.certified import CertifiedCells
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import StageTable
@@ -120,8 +121,10 @@ def _see_and_find(frame: FrameInProgress) -> None:
 
 
 def certificate_steps(lights: int, accelerator: str) -> Iterator[str]:
-    """All that is certified, and dropped again."""
+    """All that is certified, and dropped again; and what tells what became of a pixel's rays."""
     yield "certificates"
+    for kernel in (watching.find, watching.choose, watching.finish):
+        kernel.compile()
     renderer = _renderer(lights, accelerator, "certified+cache+rest")
     frame = renderer.begin(0.0)
     frame.place_objects_and_lights()  # an object has come to rest: what that darkens is looked for

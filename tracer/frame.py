@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer import notebook
 from tracer.culling import modes
 from tracer.scene.model import Camera
 from tracer.settings import Settings
@@ -102,6 +103,18 @@ class Frame:
     @property
     def height(self) -> int:
         return self.primitive.shape[0]
+
+    @property
+    def pixels(self) -> NDArray[np.uint8]:
+        """(h, w, 3) uint8, row 0 at the top: the picture as a screen shows it."""
+        return notebook.pixels_of(self.color)
+
+    def _repr_png_(self) -> bytes:
+        return notebook.png_of(self.color)
+
+    def _repr_html_(self) -> str:
+        title = f"{self.time:.3f} s, {self.width} × {self.height}, method {self.settings.method}"
+        return notebook.html_of(self.color, title, self.statistics)
 
     @property
     def due(self) -> NDArray[np.bool_] | None:

@@ -14,13 +14,13 @@ from tracer.culling.counters import COUNTERS
 from tracer.culling.occlusion import count_pixels, occlusion_testing
 from tracer.frame import Frame
 from tracer.geometry.camera import Pinhole, pinhole
-from tracer.methods.interface import Stage, StageTable
+from tracer.methods.interface import ShadowMethod, Stage, StageTable
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.progressive import Parts
 from tracer.scene.lamps import Lamps
 from tracer.scene.model import Camera
 from tracer.settings import Settings
-from tracer.shading.blocks import NO_PLANES, TURNS, all_blocks
+from tracer.shading.blocks import NO_PLANES, TURNS, all_blocks, pixels_of
 from tracer.shading.buffers import Buffers, empty_buffers
 from tracer.shading.surfaces import see_surfaces
 from tracer.shading.whitted import find_in_tile, shade_tile, trace_primary
@@ -73,6 +73,7 @@ class FrameInProgress:
         self._counts = np.zeros((self.workers, COUNTERS), np.int64)
         self._occlusion_tests = np.zeros(self.workers, np.int64)
         self._begun = False  # shading
+        self._passes: list[NDArray[np.int32]] = []  # the pixels that each pass over the tiles has shaded
         self._records = settings.record_lights or settings.record_work
         self._parts: Parts | None = None
         for method in self.methods:
@@ -170,7 +171,9 @@ class FrameInProgress:
     def shade(self, lanes: NDArray[np.int32] | None = None) -> None:
         """§2.4, §2.5: Whitted shading, with shadow testing and shadow-mode setting; of these pixels of each block
         (`tracer.shading.primary`), or of all."""
-        self._shade(self.rays, self.buffers, self._counts, self._everywhere if lanes is None else lanes)
+        lanes = self._everywhere if lanes is None else lanes
+        self._shade(self.rays, self.buffers, self._counts, lanes)
+        self._passes.append(lanes)
         self._begun = True
         for sample in range(1, self.settings.samples):
             self.add_sample(sample)
@@ -207,10 +210,18 @@ class FrameInProgress:
 
     def rehearse(self, stages: list[Stage]) -> None:
         """Shade the whole picture with these stages alone; nothing is shown or counted."""
+        shade, uncounted = self._reshader(stages, self._everywhere), np.zeros_like(self._counts)
+        self._for_each_tile(lambda tile, worker: shade(tile, worker, uncounted[worker]))
+
+    def _reshader(
+        self, stages: list[Stage], lanes: NDArray[np.int32]
+    ) -> Callable[[Tile, int, NDArray[np.int64]], None]:
+        """What shades a tile once more, with these stages alone, in buffers of its own."""
         seen = {name: getattr(self.buffers, name) for name in ("depth", "primitive", "u", "v")}
-        table, buffers = StageTable(stages, verify=False), self._empty_buffers(records=False)._replace(**seen)
-        shade, uncounted = self._tile_shader(self.rays, self._everywhere, buffers, [table]), np.zeros_like(self._counts)
-        self._for_each_tile(lambda tile, worker: shade(tile, worker, table, uncounted[worker]))
+        table = StageTable(stages, verify=False, records=True)
+        buffers = self._empty_buffers(records=False)._replace(**seen)
+        shade = self._tile_shader(self.rays, lanes, buffers, [table])
+        return lambda tile, worker, counts: shade(tile, worker, table, counts)
 
     def _stage_tables(self, learns: bool) -> dict[bool, list[StageTable]]:
         """The stages of each worker, with those of the base and without."""
@@ -222,12 +233,11 @@ class FrameInProgress:
             tables[False].append(StageTable(others, self.settings.verify, self._records))
         return tables
 
-    def set_modes(self, samples_follow: bool = False) -> None:
+    def set_modes(self) -> None:
         """§2.5, §2.6: keep what was learnt, and say what has been seen whole."""
-        if samples_follow:  # which are shaded by what was known before
-            self.words = self.words.copy()
         count_pixels(self.units, self.history.pixel_count)
         if self.settings.keeps_modes:
+            self.words = self.words.copy()  # further samples, and whoever asks, go by what was known before
             self.history.keep_frame(self.settings.zoom_factor)
         for method in self.methods:
             method.keep(self)
@@ -331,6 +341,21 @@ class FrameInProgress:
                 reference=None if whole.reference is None else self.buffers.reference.reshape(whole.color.shape),
                 wrong=None if whole.wrong is None else self.buffers.wrong.reshape(whole.wrong.shape),
             )
+
+    # --- what became of one pixel's rays (`tracer.ray_tree`) --------------------------------------------
+
+    def stages_now(self) -> list[tuple[ShadowMethod, Stage]]:
+        """The stages that shaded this frame, with the methods that they are of; they learn nothing any more."""
+        chosen = self._others if not self._base.takes_part else self.methods
+        return [(method, stage) for method in chosen for stage in method.stages(self, 0, learns=False)]
+
+    def shade_again(self, x: int, y: int, stages: list[Stage]) -> None:
+        """Shade the tile of a pixel once more, with these stages, in the company in which it was shaded."""
+        width, height = self.settings.width, self.settings.height
+        lanes = next((one for one in self._passes if pixels_of(one, width, height)[y, x]), self._everywhere)
+        tiles = tiles_to_shade(width, height, lanes, self.workers)
+        tile = next(tile for tile in tiles if tile[0] <= x < tile[2] and tile[1] <= y < tile[3])
+        self._reshader(stages, lanes)(tile, 0, np.zeros_like(self._counts[0]))
 
     # --- the result --------------------------------------------------------------------------------------
 

@@ -74,6 +74,7 @@ class Renderer:
         self._turn = 0
         self._last: Sequence[ShadowMethod] = ()
         self._unfinished: FrameInProgress | None = None
+        self._done: FrameInProgress | None = None
 
     @property
     def scene(self) -> Scene:
@@ -190,7 +191,7 @@ class Renderer:
             with frame.phase("occlusion testing"):
                 frame.test_occlusion()
             with frame.phase("mode setting"):
-                frame.set_modes(samples_follow=samples > 1)
+                frame.set_modes()
         whole = self._finished(frame)
         yield whole
         yield from frame.sampled(whole, samples)
@@ -209,13 +210,25 @@ class Renderer:
         if self._unfinished is not None:
             self._unfinished.discard()  # somebody has left it half done
         self._unfinished = frame = FrameInProgress(self.state, settings, camera, time, cancel, progressive)
-        self._last = frame.methods
+        self._last, self._done = frame.methods, None
         return frame
 
     def _finished(self, frame: FrameInProgress) -> Frame:
         """The frame, all phases of which are done."""
-        self._unfinished = None
+        self._unfinished, self._done = None, frame
         return frame.finished()
+
+    def work_on(self, frame: Frame) -> FrameInProgress:
+        """How the last frame was made, as long as no other has begun.
+
+        Raises
+        ------
+        LookupError
+            If this is not the last frame, or not all of it.
+        """
+        if self._done is None or frame.primitive is not self._done.buffers.primitive:
+            raise LookupError("another frame has begun: what became of the rays of this one is no longer known")
+        return self._done
 
     def _fitted(self, settings: Settings) -> Settings:
         """Let world and settings have the same accelerator."""

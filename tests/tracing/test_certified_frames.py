@@ -105,6 +105,20 @@ def test_settings_of_another_structure_change_nothing_of_a_world_that_is_there()
             assert frame.statistics.shadow.candidates_only == 0
 
 
+def test_a_picture_of_many_tiles_requests_and_certifies_the_same_with_any_number_of_threads():
+    """Several threads look at its tiles at once, which they do not in small pictures."""
+
+    def counted(threads: int) -> list[tuple[int, ...]]:
+        settings = tracer.Settings(width=480, height=360, depth=1, method="certified", threads=threads)
+        renderer = tracer.Renderer(loaded(SCENES / "default.aff"), settings)
+        frames = [renderer.render(0.0).statistics for _ in range(2)]
+        return [(one.certificates, one.certificate_steps, one.certificate_tests, one.shadow.rays) for one in frames]
+
+    alone = counted(1)
+    assert alone[0][0] > 1000
+    assert [counted(4) for _ in range(4)] == [alone] * 4
+
+
 def _everything(walk: NastyWalk, threads: int, accelerator: str) -> list[dict]:
     """All that a walk leaves behind, frame by frame."""
     settings = tracer.Settings(

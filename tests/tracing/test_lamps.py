@@ -9,7 +9,7 @@ import pytest
 
 from tests.tracing.same import assert_same
 from tests.tracing.shades import BEHIND, floor, going, kite, roof
-from tests.tracing.worlds import scene
+from tests.tracing.worlds import random_corners, scene
 from tracer.culling.modes import FULLY_RENDERED, ShadowMode
 from tracer.explanation import explain
 from tracer.geometry.world import ACCELERATORS
@@ -17,7 +17,7 @@ from tracer.one_light import with_light
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation
 from tracer.scene.lights import Light
-from tracer.scene.model import Scene
+from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 
 LAMP = Light("lamp", (0.0, 0.0, 20.0), (0.9, 0.8, 0.7), kind="sphere", radius=3.0, samples=16)
@@ -152,6 +152,20 @@ def test_nearly_all_rays_of_lamps_are_answered_untraced(accelerator: str, kind: 
     assert penumbra > 0.005 * shadow.due and min(shadow.culled, shadow.dynamic_only) > 1000
     assert shadow.wrong == 0 and shadow.rays < 0.02 * shadow.due
     assert shadow.culled + shadow.dynamic_only + shadow.rays == shadow.due
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_points_that_lie_far_apart_are_answered_each_by_its_own_beam(accelerator: str):
+    """Neighbours in a cloud of small triangles see the lamp by other ways, with too much between them for one beam."""
+    rng = np.random.default_rng(5)
+    cloud = random_corners(rng, 20000, 0.05) * 6.0 - np.array([3.0, 3.0, 0.0])
+    lamp = replace(LAMP, position=(1.0, 2.0, 14.0), radius=0.05, samples=64)
+    camera = Camera((0.0, -9.0, 8.0), (0.0, 9.0, -6.0))
+    made = replace(scene(floor() + cloud.tolist(), camera=camera), lights=(lamp,))
+    settings = replace(SETTINGS, method="certified", accelerator=accelerator, verify=True)
+    shadow = Renderer(made, settings).render(0.0).statistics.shadow
+    assert shadow.wrong == 0 and min(shadow.culled, shadow.dynamic_only) > 1000
+    assert shadow.rays < 0.3 * shadow.due, "beams of vectors alone answer half of them"
 
 
 def test_modes_are_kept_for_the_lamp_and_speak_for_all_its_samples():

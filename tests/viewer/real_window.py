@@ -24,7 +24,6 @@ from PIL import Image
 from tests.viewer.driver import PATIENCE, Driver
 from tests.viewer.scenarios import SCENARIOS
 from viewer.window import app as viewer_app
-from viewer.window import style
 from viewer.window.app import App
 
 DOZING = ("explaining",)  # there the window rests when nothing moves: what threads find out must wake it
@@ -33,7 +32,6 @@ DOZING = ("explaining",)  # there the window rests when nothing moves: what thre
 def run(name: str, size: list[int], scene: str, folder: str) -> int:
     """The exit code of the window that the scenario was played in."""
     viewer_app.WINDOW_SIZE = tuple(size)
-    style._applied = (0.0, "")  # a new window has no style yet
     app = App(Path(scene))
     if name != "touring":
         app.ui.tour.end()  # it comes by itself on the first start

@@ -87,7 +87,8 @@ class OccluderSlots:
             self.found = np.full((workers, SLOTS), MISS, np.int32)
 
     def keep_found(self) -> None:
-        """Put what has been found into its slots, for the next frame."""
+        """Put what has been found into its slots, for the next frame; what this frame has read stays as it was."""
+        self.occluders = self.occluders.copy()
         merge_occluders(self.occluders, self.found)
 
     def discard_found(self) -> None:

@@ -6,6 +6,7 @@ paper).  After that batches of rays ask two questions: `closest_hits` and `any_h
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -17,15 +18,17 @@ from tracer.geometry.bvh8.structure import Bvh8
 from tracer.geometry.kdtree.structure import KdTree
 from tracer.geometry.poses import Poses, poses_at
 from tracer.geometry.primitives import Outlines, Primitives, WorldTriangles
-from tracer.geometry.queries import batch_of
-from tracer.geometry.rays import Hits, Rays
+from tracer.geometry.queries import EVERYTHING, batch_of
+from tracer.geometry.rays import Hits, Ray, Rays
 from tracer.geometry.structure import Structure
+from tracer.geometry.visits import Visit
 from tracer.kernels import Entry
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.chains import Chains
-from tracer.scene.model import Progress, Scene
+from tracer.scene.model import Cancelled, Progress, Scene
 
 CHUNK = 8192  # rays a thread takes at a time
+EACH = 1024  # rays, traced alone, after which somebody may cancel
 
 STRUCTURES: dict[str, Any] = {KD_TREE: KdTree, BVH8: Bvh8}
 
@@ -196,6 +199,87 @@ class World:
         blocked, found = np.empty(n, np.uint8), np.empty(n, np.int32)
         self._ask(self.structure.any_hit, batch_of(rays, blocked=blocked, occluders=found), n, threads)
         return found
+
+    def closest_hits_each(self, rays: Rays) -> tuple[Hits, NDArray[np.int64]]:
+        """Find the nearest hits with what each ray costs by itself.
+
+        Parameters
+        ----------
+        rays : Rays
+            n rays, made by `RayBatch`.
+
+        Returns
+        -------
+        tuple of Hits and (n, 2) int64
+            The hits, and the traversal steps and intersection tests of each ray, traced alone.
+        """
+        n = len(rays.t_min)
+        hits = Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
+        return hits, self._ask_each(self.structure.closest, batch_of(rays, hits), n, None)
+
+    def occluders_each(
+        self, rays: Rays, which: int = EVERYTHING, cancelled: Callable[[], bool] | None = None
+    ) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+        """Find for each ray a primitive that blocks it, with what that costs.
+
+        Parameters
+        ----------
+        rays : Rays
+            n rays, made by `RayBatch`.
+        which : int
+            What is asked: static geometry (1), dynamic objects (2) or both (3).
+        cancelled : callable, optional
+            Asked now and then.
+
+        Returns
+        -------
+        tuple of (n,) int32 and (n, 2) int64
+            The primitives, -1 for a ray that nothing blocks, and the traversal steps and intersection tests of each
+            ray, traced alone.
+
+        Raises
+        ------
+        Cancelled
+            Once `cancelled()` is true.
+        """
+        n = len(rays.t_min)
+        blocked, found = np.empty(n, np.uint8), np.empty(n, np.int32)
+        batch = batch_of(rays, blocked=blocked, which=which, occluders=found)
+        return found, self._ask_each(self.structure.any_hit, batch, n, cancelled)
+
+    def visits(self, rays: Rays, i: int, which: int = EVERYTHING, nearest: bool = False) -> list[Visit]:
+        """Follow a ray through the trees.
+
+        Parameters
+        ----------
+        rays : Rays
+            Rays, made by `RayBatch`.
+        i : int
+            Which of them is followed.
+        which : int
+            What is asked, as for `occluders_each`.
+        nearest : bool
+            Whether its nearest hit is looked for, among everything, or anything that blocks it.
+
+        Returns
+        -------
+        list of Visit
+            The nodes that it enters, in their order. In the kd-tree these are its traversal steps. In the 8-wide trees
+            a packet of rays may enter more.
+        """
+        ray = Ray._make([*rays.origin[:, i], *rays.direction[:, i], rays.t_min[i], rays.t_max[i]])
+        return self.structure.visits(ray, which, nearest, self._poses)
+
+    def _ask_each(
+        self, query: Entry, batch: NDArray[np.int64], n: int, cancelled: Callable[[], bool] | None
+    ) -> NDArray[np.int64]:
+        counts = np.zeros((n, 2), np.int64)
+        data, described, counted = self.placed.data, batch.ctypes.data, counts.ctypes.data
+        for i in range(n):
+            if i % EACH == 0 and cancelled is not None and cancelled():
+                raise Cancelled("cancelled")
+            query.call(data, described, i, i + 1, counted + 16 * i)
+        return counts
 
     def _ask(self, query: Entry, batch: NDArray[np.int64], n: int, threads: int) -> None:
         counts = np.zeros((thread_count(threads), 2), np.int64)

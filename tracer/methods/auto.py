@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.counters import SHADOW
+from tracer.culling.verdicts import Answered, Because
 from tracer.methods.certified import CertifiedCells, CertifiedLights
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.methods.payoff import Payoff, Plan, Trial
@@ -100,6 +101,10 @@ class Auto(ShadowMethod):
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
         return self._certified.stages(frame, worker, learns) if self._plan.needs_certificates else []
 
+    @property
+    def takes_part(self) -> bool:
+        return self._plan.looks_up
+
     def shade(self, shade: Callable[[bool, NDArray[np.int64]], None], tile: int, counts: NDArray[np.int64]) -> None:
         """Shade a tile with certificates or without; both ways where it is to be tried, one after the other.
 
@@ -154,3 +159,6 @@ class Auto(ShadowMethod):
 
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
         return self._certified.explain(primitive, point, light) if self._plan.needs_certificates else None
+
+    def because(self, answered: Answered) -> Because:
+        return self._certified.because(answered)

@@ -9,6 +9,7 @@ import numpy as np
 from tracer.culling.occluder_cache import OccluderSlots, remember, test_slots
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
+from tracer.culling.verdicts import Answered, Because, Verdict
 from tracer.kernels import entry
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.shading.points import points_in
@@ -53,12 +54,16 @@ class OccluderCache(ShadowMethod):
         super().__init__(services)
         triangles = services.world.placed.triangles
         self._slots = OccluderSlots(triangles, int((services.world.object_of[: len(triangles)] == 0).sum()))
+        self._read = self._slots.occluders
+
+    def begin(self, frame: FrameView) -> None:
+        self._read = self._slots.occluders
 
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
         slots = self._slots
         slots.make_room(frame.workers)
         triangles = self.services.world.placed.triangles
-        cache = Cache(slots.occluders, slots.found[worker], triangles, slots.static, slots.padding)
+        cache = Cache(self._read, slots.found[worker], triangles, slots.static, slots.padding)
         return [Stage(cache, choose=choose, learn=learn if learns else None, rows=SLOT_ROWS, occluders=learns)]
 
     def keep(self, frame: FrameView) -> None:
@@ -66,6 +71,9 @@ class OccluderCache(ShadowMethod):
 
     def discard(self, frame: FrameView, begun: bool) -> None:
         self._slots.discard_found()
+
+    def because(self, answered: Answered) -> Because:
+        return Because(Verdict.CACHED, (int(self._read[answered.kept]),) if answered.kept >= 0 else ())
 
     def forget(self) -> None:
         triangles = self.services.world.placed.triangles

@@ -34,6 +34,7 @@ from tracer.culling.certified.view import view_at
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
+from tracer.culling.verdicts import Answered, Because, Verdict
 from tracer.geometry.memory import borrowed
 from tracer.kernels import entry, kernel
 from tracer.methods.certified_lights import CertifiedLights
@@ -151,8 +152,9 @@ class CertifiedCells(ShadowMethod):
             return
 
         def request(numbers: NDArray[np.int64], requests: Requests) -> None:
-            view = pack(store.view(len(tiles), requests))
-            request_in_tiles(view.ctypes.data, frame.rays, tiles, numbers, frame.lights, frame.buffers)
+            view = store.view(len(tiles), requests)  # the block holds addresses of arrays that only this keeps
+            block = pack(view)
+            request_in_tiles(block.ctypes.data, frame.rays, tiles, numbers, frame.lights, frame.buffers)
 
         budget = Budget(frame.settings.certificates, seconds)
         self._counts = self.scheduler.run(len(tiles), request, budget, frame.cancel)
@@ -205,6 +207,15 @@ class CertifiedCells(ShadowMethod):
 
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
         return None if self.store is None else self.store.describe(primitive, point, light)
+
+    def because(self, answered: Answered) -> Because:
+        known = self.explain(answered.primitive, np.array(answered.point, np.float32), answered.light)
+        state, named = known or ("none", ())
+        if state == "candidates":
+            return Because(Verdict.CANDIDATES, named)
+        if state == ("lit" if answered.lit else "full"):
+            return Because(Verdict.CERTIFIED_LIT if answered.lit else Verdict.CERTIFIED_FULL, named)
+        return Because(Verdict.BEAM)  # of a lamp, or where a point lies between two cells
 
     def forget(self) -> None:
         self.store = self.scheduler = None

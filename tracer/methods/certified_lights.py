@@ -16,6 +16,7 @@ from tracer.culling.certified.scheduler import Budget, Counts
 from tracer.culling.regions.lookup import look, want_around
 from tracer.culling.regions.store import RegionStore, RegionView
 from tracer.culling.stages import call_at
+from tracer.culling.verdicts import Answered, Because, Verdict
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import borrowed
 from tracer.geometry.offsets import RAY_OFFSET
@@ -130,6 +131,10 @@ class CertifiedLights(ShadowMethod):
             return None
         hider = self.store.hidden_by(point, light)
         return ("full", (hider,)) if hider >= 0 else ("none", ())
+
+    def because(self, answered: Answered) -> Because:
+        _, named = self.explain(answered.primitive, np.array(answered.point, np.float32), answered.light) or ("", ())
+        return Because(Verdict.PASSED_OVER, named)
 
     def forget(self) -> None:
         self.store = None

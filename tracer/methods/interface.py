@@ -27,6 +27,7 @@ from tracer.culling.mode_history import ModeHistory
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.rest import Resting
 from tracer.culling.stages import COLUMNS, Stages
+from tracer.culling.verdicts import Answered, Because, Verdict
 from tracer.geometry.camera import Pinhole
 from tracer.geometry.world import World
 from tracer.kernels import Entry
@@ -139,6 +140,11 @@ class ShadowMethod:
         """What one worker's kernels are given; `learns` is false for further samples, which teach nothing."""
         return []
 
+    @property
+    def takes_part(self) -> bool:
+        """Whether tiles are shaded with the stages of this method in this frame."""
+        return True
+
     def shade(self, shade: Callable[[bool, NDArray[np.int64]], None], tile: int, counts: NDArray[np.int64]) -> None:
         """Shade a tile, in any thread, by calling shade(whether with the stages of this method, counters)."""
         shade(True, counts)
@@ -163,6 +169,10 @@ class ShadowMethod:
         """What is known of a light at a point (3,) above a primitive, in a word, and the primitives that this rests on;
         None where this method knows nothing of single points."""
         return None
+
+    def because(self, answered: Answered) -> Because:
+        """Why a stage of this method could answer a shadow ray of the last frame."""
+        return Because(Verdict.ANSWERED)
 
     def forget(self) -> None:
         """Forget everything that earlier frames have taught."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 
 UPS = ("x", "y", "z", "-x", "-y", "-z")
 """Axes that may point up."""
@@ -37,6 +38,10 @@ class MeshOptions:
             raise ValueError(f"the axis that points up is one of {', '.join(UPS)}, not {self.up}")
         if self.crease is not None and not (math.isfinite(self.crease) and 0.0 <= self.crease <= MOST_CREASE):
             raise ValueError(f"a crease angle lies between 0 and {MOST_CREASE:g} degrees, not {self.crease:g}")
+
+    def of_file(self, path: Path) -> MeshOptions:
+        """These, where the file is a mesh; the usual ones where it says all of it itself."""
+        return AS_IN_FILE if path.suffix.lower() in (".aff", ".nff") else self
 
 
 AS_IN_FILE = MeshOptions()

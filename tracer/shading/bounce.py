@@ -38,14 +38,14 @@ def _dot(a, b):
 
 
 @inlined
-def _reflected(d, n):
+def reflected(d, n):
     """Directions d mirrored at surfaces of unit normals n."""
     s = np.float32(-2) * _dot(d, n)
     return d[0] + s * n[0], d[1] + s * n[1], d[2] + s * n[2]
 
 
 @inlined
-def _refracted(d, n, eta):
+def refracted(d, n, eta):
     """(whether, direction) of Snell's law, n against d; not so under total internal reflection."""
     cosine = -_dot(d, n)
     k = ONE - eta * eta * (ONE - cosine * cosine)
@@ -98,7 +98,7 @@ def _refract(points, wave, out, splits):
             continue
         ior = load_f32x16(row_of(points.memory, IOR_ROW) + 64 * v)
         eta = select(mask16(np.int64(points.entering[v])), ONE / ior, ior)
-        passes, direction = _refracted(load_three(wave.direction, v), load_three(points.normal, v), eta)
+        passes, direction = refracted(load_three(wave.direction, v), load_three(points.normal, v), eta)
         going, share = transmits & passes, select(transmits, select(passes, ZERO, through), ZERO)
         if not splits:
             red, green, blue = load_three(points.specular, v)
@@ -115,7 +115,7 @@ def _refract(points, wave, out, splits):
 def _reflect(points, wave, out, n):
     """Reflected rays, scaled by the specular colour, after the n that there are; how many there are then."""
     for v in range((wave.size + 15) // 16):
-        direction = _reflected(load_three(wave.direction, v), load_three(points.normal, v))
+        direction = reflected(load_three(wave.direction, v), load_three(points.normal, v))
         there = mask16(lanes_below(wave.size, v))
         n = _send(wave, v, out, n, there, load_three(points.lifted, v), direction, load_three(points.specular, v))
     return n

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import argparse
+import json
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from viewer.state.plans import parse_factors
 
 if TYPE_CHECKING:
+    from viewer.state.annotations import Annotation
     from viewer.state.views import View
 
 T = TypeVar("T")
@@ -66,6 +69,62 @@ def pixel(text: str) -> tuple[int, int]:
     if not match:
         raise argparse.ArgumentTypeError(f"{text!r} is not a pixel; give one like 320,200, counted from the upper left")
     return int(match[1]), int(match[2])
+
+
+def span(text: str) -> tuple[int, int]:
+    """The first and the last of some frames."""
+    match = re.fullmatch(r"(\d{1,9})-(\d{1,9})", text.strip(), re.ASCII)
+    if not match or int(match[1]) > int(match[2]):
+        raise argparse.ArgumentTypeError(f"{text!r} are not frames; give the first and the last, like 0-99")
+    return int(match[1]), int(match[2])
+
+
+def crops(text: str) -> tuple[tuple[int, int, int, int], ...]:
+    """Rectangles of pixels with semicolons between them."""
+    found = []
+    for part in text.split(";"):
+        match = re.fullmatch(r" *(\d{1,6}) *, *(\d{1,6}) *, *(\d{1,6}) *, *(\d{1,6}) *", part, re.ASCII)
+        if not match:
+            raise argparse.ArgumentTypeError(f"{part!r} is not a crop; give x,y,width,height, with ; between several")
+        found.append((int(match[1]), int(match[2]), int(match[3]), int(match[4])))
+    return tuple(found)
+
+
+def tev_address(text: str) -> tuple[str, int]:
+    """Where tev listens."""
+    from viewer.output.tev import address
+
+    try:
+        return address(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def place(text: str) -> tuple[float, float]:
+    """A place in a picture, in parts of its width and height."""
+    x, comma, y = text.partition(",")
+    try:
+        at = float(x), float(y)
+    except ValueError:
+        at = -1.0, -1.0
+    if not comma or not all(0.0 <= part <= 1.0 for part in at):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a place; give one like 0,1, in parts of the picture")
+    return at
+
+
+def annotation_list(text: str) -> tuple[Annotation, ...]:
+    """Annotations as JSON, or a file that holds it."""
+    from tracer.scene.files import read_regular
+    from viewer.state.annotations import from_json
+
+    try:
+        if not text.lstrip().startswith("["):
+            text = read_regular(Path(text), 1 << 20).decode("utf-8")
+        return from_json(json.loads(text))
+    except OSError as error:
+        raise argparse.ArgumentTypeError(f"{text[:60]!r}: {error.strerror or error}") from None
+    except (ValueError, RecursionError) as error:
+        raise argparse.ArgumentTypeError(f"not understood: {error}") from None
 
 
 def factors(text: str) -> list[float]:

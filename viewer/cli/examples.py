@@ -6,8 +6,12 @@ COMMANDS = """\
 commands:
   shadowcull [SCENE]       open the viewer
   shadowcull render SCENE  trace one frame into a picture, its buffers, or both; needs no display
+  shadowcull film SCENE    trace a path, or a flight through bookmarks, into pictures and a video
   shadowcull bench SCENE   measure, over a path of frames, what culling saves
   shadowcull zoom SCENE    move towards a primitive, and see whether its shadows stay right
+  shadowcull explain SCENE say what became of each ray of one pixel
+  shadowcull figure SCENE  draw a frame by several methods side by side
+  shadowcull check FILE    render saved pictures and figures again, and say whether they are still true
   shadowcull info SCENE    say what a scene holds
 
 examples:
@@ -28,6 +32,7 @@ examples:
   shadowcull render kitchen.aff -o wrong.png --frame 50 --warmup 20 --view difference
   shadowcull render kitchen.aff -o cells.png --frame 50 --warmup 20 --method certified --view certificate:0
   shadowcull render Robot.aff --frame 10 --warmup 10 --buffers robot.npz
+  shadowcull render Robot.aff -o robot.exr --frame 10 --warmup 10 --verify
   shadowcull render saved.png --samples 16 --size 1920x1080
   shadowcull render kitchen.aff -o same.png --camera saved.png
   shadowcull render bunny.ply -o bunny.png --camera '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
@@ -45,10 +50,56 @@ reference (H,W,3 float32), the colour with every shadow answer right, and wrong 
 wrong shadow answers of each pixel. A frame of the method certified has certificate (H,W,lights uint8: 0 none,
 1 in full shadow, 2 lit, 3 a few candidates), and the views saved and cost have arrays of their names (H,W int32).
 
+An .exr needs OpenEXR (install shadowcull[exr]). It holds the linear colours and the same buffers as channels, those of
+each light as lit.0, lit.1 and so on for up to 32 lights, and the scene, camera, settings and statistics as JSON in the
+attribute shadowcull.
+
+--annotations takes a list of {"kind": "arrow", "x0": 0.2, "y0": 0.3, "x1": 0.5, "y1": 0.6}, of the kind box with the
+same corners, and of {"kind": "text", "x0": 0.1, "y0": 0.1, "text": "here"}, in parts of the picture's width and height.
+
 --view difference and --view wipe verify by themselves: the first shows the pixels with wrong shadow answers,
 the second the traced picture left of a line, and the correct one right of it; wipe:0.3 puts the line at 30 % of
 the width. Rings show where wrong pixels are, unless --no-marks is given. --view saved and --view cost are maps of
 the shadow rays that culling saves at each pixel, and of all rays that are traced for it.
+"""
+
+FILM = """\
+examples:
+  shadowcull film kitchen.aff -o kitchen --size 1280x720 --samples 4
+  shadowcull film kitchen.aff -o kitchen.mp4 --frames 100-300 --method certified --size 1920x1080
+  shadowcull film default -o modes.mp4 --frames 0-49 --method paper --view occlusion --legend
+  shadowcull film kitchen.aff -o flight.mp4 --through door.png table.png window.png --seconds 10
+  shadowcull film kitchen.aff -o flight --bookmarks --fps 30
+
+Every frame is traced whole, and is a picture that says how it was made: `shadowcull check` tells whether it is still
+true. Modes are learnt from frame to frame. A flight moves evenly: each frame goes on as far as the others, where
+turning counts as well, and time goes on from picture to picture. The video needs PyAV: install shadowcull[video].
+An odd width or height of the video is made even by its last row or column once more. Ctrl-C keeps what is done, and
+the exit code is then 130.
+"""
+
+FIGURE = """\
+examples:
+  shadowcull figure default -o methods.pdf --frame 50 --warmup 20 --size 640x480
+  shadowcull figure kitchen.aff -o paper.png --frame 100 --warmup 20 --crops '40,60,80,60;200,90,80,60'
+  shadowcull figure kitchen.aff -o cost.pdf --frame 100 --warmup 20 --view cost --methods none,certified,certified+cache
+
+Each method has a column, with modes of its own: the picture with the crops marked in it, each crop enlarged without
+smoothing, how far it is from the picture of none, all in one range of colours, and the counters. Maps of work have
+one range of colours as well. The counters are those of the kd-tree, ray by ray, unless --accelerator says otherwise;
+the work that goes into certificates is among them. The figure carries how it was made, and `shadowcull check` draws
+it again.
+"""
+
+CHECK = """\
+examples:
+  shadowcull check figure.png
+  shadowcull check paper/*.png paper/methods.pdf
+
+A picture carries its scene, camera, time, settings, view and the frames that its modes came from. It is true if it
+is the same again, bit for bit; a view that a GPU has drawn may be off by rounding. Otherwise the line says how many
+pixels differ, and what has changed since: a part of the scene, the version, or the file itself. The exit code is 0
+only if all are true.
 """
 
 BENCH = """\
@@ -90,6 +141,23 @@ finished frames; the exit code is then 130.
 The tables show the steps where something changes, and a summary of each factor; the JSON and the CSV hold every
 step, and the plot draws them. In these, wrong_of_primitive counts the wrong pixels of this primitive, wrong those
 of the whole picture. A primitive that is never fully rendered is never culled, so nothing is tested.
+"""
+
+EXPLAIN = """\
+examples:
+  shadowcull explain default --pixel 300,200
+  shadowcull explain kitchen.aff --frame 50 --warmup 10 --pixel 256,400 --method paper
+  shadowcull explain kitchen.aff --frame 50 --warmup 10 --pixel 256,400 --method paper --only wrong
+  shadowcull explain default --pixel 300,200 --accelerator kdtree --json
+
+The tree has the pixel's primary, reflected and refracted rays, and below each the shadow rays from where it ends.
+Each shadow ray was not asked, as the surface faces away from its light; culled, by a mode of the paper, a certificate
+or a cached occluder; passed over, as its light is hidden from the region; or traced, with so many traversal steps and
+intersection tests, counted for the ray alone. It says what blocks a ray first, seen from the light; a culled answer
+that is not true is said to be wrong. Where a point has more than 12 lights, those with the same fate have one line.
+
+Modes are set and certificates made from frame to frame, so culling acts only after some frames: --warmup N first
+traces the N frames before the one that is explained.
 """
 
 INFO = """\

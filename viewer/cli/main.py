@@ -2,8 +2,12 @@
 
     shadowcull [SCENE]          the viewer
     shadowcull render SCENE     one frame into files
+    shadowcull film SCENE       a path, or a flight, into pictures and a video
     shadowcull bench SCENE      the paper's table over a path of frames
     shadowcull zoom SCENE       towards a primitive, and whether its shadows keep up
+    shadowcull explain SCENE    what became of the rays of one pixel
+    shadowcull figure SCENE     a frame by several methods, side by side
+    shadowcull check FILE       whether saved pictures and figures are still true
     shadowcull info SCENE       what a scene holds
 
 The exit code is 0 only on success; every error is one line on standard error.  What needs GL is
@@ -20,7 +24,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from viewer.cli import parsers
+from viewer.cli import parsers, picture_parsers
 from viewer.cli.mesh_arguments import as_arguments, mesh_options
 from viewer.cli.parsers import MISUSED
 from viewer.util import resources
@@ -45,7 +49,11 @@ def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
         "render": _render,
         "bench": _bench,
         "zoom": _zoom,
+        "explain": _explain,
         "info": _info,
+        "film": _film,
+        "figure": _figure,
+        "check": _check,
     }
     try:
         if arguments and arguments[0] in commands:
@@ -123,7 +131,7 @@ def _picture_instead(options: Namespace) -> int:
 
 
 def _render(arguments: list[str]) -> int:
-    parser = parsers.render()
+    parser = picture_parsers.render()
     options = parser.parse_args(arguments)
 
     from viewer.cli import render, saved_pictures
@@ -138,6 +146,48 @@ def _render(arguments: list[str]) -> int:
     options.camera = saved_pictures.camera(options.camera)
     render.render(path, options)
     return 0
+
+
+def _film(arguments: list[str]) -> int:
+    path, options = _with_saved(picture_parsers.film(), arguments)
+
+    from viewer.cli import film
+
+    return 0 if film.film(path, options) else INTERRUPTED
+
+
+def _figure(arguments: list[str]) -> int:
+    path, options = _with_saved(picture_parsers.figure(), arguments)
+
+    from viewer.cli import figure
+
+    figure.figure(path, options)
+    return 0
+
+
+def _with_saved(parser: parsers.Parser, arguments: list[str]) -> tuple[Path, Namespace]:
+    """The scene and the options, which begin with those of a saved picture if that stands for a scene."""
+    options = parser.parse_args(arguments)
+
+    from viewer.cli import saved_pictures
+
+    path = resources.scene_path(options.scene)
+    if saved_pictures.is_capture(path):
+        path, kept = saved_pictures.defaults(path)
+        parser.set_defaults(**kept)
+        options = parser.parse_args(arguments)
+        if options.frame is None and options.time is None:
+            options.time = kept["moment"]
+    options.camera = saved_pictures.camera(options.camera)
+    return path, options
+
+
+def _check(arguments: list[str]) -> int:
+    options = picture_parsers.check().parse_args(arguments)
+
+    from viewer.cli import check
+
+    return 0 if check.check(options) else FAILED
 
 
 def _bench(arguments: list[str]) -> int:
@@ -155,6 +205,16 @@ def _zoom(arguments: list[str]) -> int:
 
     options.camera = saved_pictures.camera(options.camera)
     return 0 if zoom.run(resources.scene_path(options.scene), options) else INTERRUPTED
+
+
+def _explain(arguments: list[str]) -> int:
+    options = parsers.explain().parse_args(arguments)
+
+    from viewer.cli import explain, saved_pictures
+
+    options.camera = saved_pictures.camera(options.camera)
+    explain.explain(resources.scene_path(options.scene), options)
+    return 0
 
 
 def _info(arguments: list[str]) -> int:

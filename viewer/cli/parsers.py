@@ -9,7 +9,16 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from viewer.cli import examples
-from viewer.cli.argument_types import count, factors, lamp_samples, method, number, pixel, several, size, view
+from viewer.cli.argument_types import (
+    count,
+    factors,
+    lamp_samples,
+    method,
+    number,
+    pixel,
+    several,
+    size,
+)
 from viewer.cli.mesh_arguments import add_mesh_options, joined
 from viewer.util import resources
 from viewer.util.messages import ERROR, say
@@ -17,7 +26,7 @@ from viewer.util.version import program_version
 
 MISUSED = 2
 """Exit code where a command line is wrong."""
-_CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
+CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
 
 
 class Parser(argparse.ArgumentParser):
@@ -47,51 +56,11 @@ def viewer() -> Parser:
         description="An interactive ray tracer that shows shadow culling at work.",
         epilog=examples.COMMANDS,
     )
-    _add_scene(parser)
+    add_scene(parser)
     _add_lamps(parser)
     add_mesh_options(parser)
     parser.add_argument("--version", action="version", version=f"shadowcull {program_version()}")
     parser.add_argument("--or-picture", action="store_true", help=argparse.SUPPRESS)
-    return parser
-
-
-def render() -> Parser:
-    """Of `render`."""
-    parser = Parser(
-        prog="shadowcull render",
-        description="Trace one frame of a scene, print its statistics, and write a picture, its buffers, or both.",
-        epilog=examples.RENDER + examples.methods(),
-    )
-    add = parser.add_argument
-    _add_scene(parser, ", or a saved picture, to render it again")
-    add("-o", "--output", type=Path, metavar="FILE", help="the picture; a .png also remembers how it was made")
-    _add_moment(parser)
-    add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
-    add("--samples", type=count(1, 4096), default=1, metavar="N", help="rays per pixel, averaged (default: 1)")
-    add(
-        "--method",
-        type=method,
-        metavar="M",
-        help=f"how shadow rays are culled: {_methods()} (default: auto, or paper or certified for views that show "
-        "what these do)",
-    )
-    add(
-        "--view",
-        type=view,
-        default="color",
-        metavar="V",
-        help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference, "
-        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, lights, saved or cost, as counts of rays or as shares like "
-        "saved:share (default: color)",
-    )
-    add("--legend", action="store_true", help="draw the view's legend into the picture")
-    add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
-    add("--camera", metavar="JSON", help=f"another camera: {_CAMERA}")
-    add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
-    add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
-    _add_tracing_options(parser, "bvh8")
-    _add_zoom_factor(parser)
-    add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
     return parser
 
 
@@ -103,13 +72,13 @@ def bench() -> Parser:
         epilog=examples.BENCH + examples.methods(),
     )
     add = parser.add_argument
-    _add_scene(parser)
+    add_scene(parser)
     add(
         "--methods",
         type=lambda text: [name.strip() for name in text.split(",")],
         default=["paper"],
         metavar="M,...",
-        help=f"which methods: {_methods()}; none is always measured too (default: paper)",
+        help=f"which methods: {methods()}; none is always measured too (default: paper)",
     )
     add("--path-frames", type=count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
     add("--frames", metavar="A:B", help="only the frames A to B - 1 of the path")
@@ -118,8 +87,8 @@ def bench() -> Parser:
     add("--json", type=Path, metavar="FILE", help="every figure of every frame")
     add("--csv", type=Path, metavar="FILE", help="the table")
     add("--plot", type=Path, metavar="FILE", help="savings per frame, drawn for a slide: a .png, .svg or .pdf")
-    _add_tracing_options(parser, "kdtree", many_lamps=True)  # whose steps are the paper's
-    _add_zoom_factor(parser)
+    add_tracing_options(parser, "kdtree", many_lamps=True)  # whose steps are the paper's
+    add_zoom_factor(parser)
     return parser
 
 
@@ -131,12 +100,12 @@ def zoom() -> Parser:
         epilog=examples.ZOOM,
     )
     add = parser.add_argument
-    _add_scene(parser)
+    add_scene(parser)
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--primitive", type=count(0, 2**31 - 1), metavar="N", help="towards this primitive")
     which.add_argument("--pixel", type=pixel, metavar="X,Y", help="towards what this pixel of the first frame shows")
-    _add_moment(parser)
-    add("--camera", metavar="JSON", help=f"where to start from: {_CAMERA}")
+    add_moment(parser)
+    add("--camera", metavar="JSON", help=f"where to start from: {CAMERA}")
     add("--steps", type=count(1, 10_000), default=30, metavar="N", help="how many (default: 30)")
     add(
         "--ratio",
@@ -150,8 +119,33 @@ def zoom() -> Parser:
     add("--json", type=Path, metavar="FILE", help="every figure of every step")
     add("--csv", type=Path, metavar="FILE", help="a line for each step")
     add("--plot", type=Path, metavar="FILE", help="counts, modes and wrong pixels over the steps: a .png, .svg or .pdf")
-    _add_tracing_options(parser, "bvh8")
+    add_tracing_options(parser, "bvh8")
     parser.set_defaults(zoom_factor=4.0, verify=True)  # each test has its own, and verifies
+    return parser
+
+
+def explain() -> Parser:
+    """Of `explain`."""
+    parser = Parser(
+        prog="shadowcull explain",
+        description="Say what became of each ray of a pixel: which shadow rays were asked, culled or traced, and why.",
+        epilog=examples.EXPLAIN + examples.methods(),
+    )
+    add = parser.add_argument
+    add_scene(parser)
+    add("--pixel", type=pixel, required=True, metavar="X,Y", help="column and row, counted from the upper left")
+    add_moment(parser)
+    add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
+    add("--method", type=method, metavar="M", help=f"how shadow rays are culled: {methods()} (default: auto)")
+    only = ("all", "traced", "culled", "blocked", "wrong")
+    add("--only", choices=only, default="all", help="which shadow rays are listed (default: all)")
+    add("--light", type=count(0, 2**31 - 1), metavar="N", help="only shadow rays to this light")
+    add("--json", action="store_true", help="all rays as JSON on standard output")
+    add("--camera", metavar="JSON", help=f"another camera: {CAMERA}")
+    add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
+    add_tracing_options(parser, "bvh8")
+    add_zoom_factor(parser)
+    parser.set_defaults(verify=False, samples=1)
     return parser
 
 
@@ -163,12 +157,12 @@ def info() -> Parser:
         "bounds, and warnings.",
         epilog=examples.INFO,
     )
-    _add_scene(parser)
+    add_scene(parser)
     parser.add_argument("--json", action="store_true", help="as JSON on standard output")
     return parser
 
 
-def _add_scene(parser: Parser, more: str = "") -> None:
+def add_scene(parser: Parser, more: str = "") -> None:
     """The scene, and where its files may be."""
     add = parser.add_argument
     add("scene", nargs="?", metavar="SCENE", help=_scene_help() + more)
@@ -176,14 +170,14 @@ def _add_scene(parser: Parser, more: str = "") -> None:
     add("--folder", type=Path, action="append", default=[], metavar="DIR", help=help_)
 
 
-def _add_moment(parser: Parser) -> None:
+def add_moment(parser: Parser) -> None:
     """Either of two ways to name a moment of the animation."""
     moment = parser.add_mutually_exclusive_group()
     moment.add_argument("--frame", type=int, metavar="N", help="number of the frame in the animation (default: 0)")
     moment.add_argument("--time", type=float, metavar="T", help="time in seconds, instead of a frame")
 
 
-def _add_tracing_options(parser: Parser, accelerator: str, many_lamps: bool = False) -> None:
+def add_tracing_options(parser: Parser, accelerator: str, many_lamps: bool = False) -> None:
     """What all commands that trace have in common, with the structure that is theirs by default; `many_lamps`: they
     take several kinds of lamps."""
     add = parser.add_argument
@@ -210,12 +204,12 @@ def _add_lamps(parser: Parser, many: bool = False) -> None:
     add("--lamp-samples", type=samples, metavar="N,..." if many else "N", help=help_ + more)
 
 
-def _add_zoom_factor(parser: Parser) -> None:
+def add_zoom_factor(parser: Parser) -> None:
     help_ = "a primitive that covers this many times its highest pixel count is examined again (default: 4)"
     parser.add_argument("--zoom-factor", type=number(1.0, 1e9), default=4.0, metavar="F", help=help_)
 
 
-def _methods() -> str:
+def methods() -> str:
     """The bases, and what can be added to them."""
     from tracer.method import additions, bases
 

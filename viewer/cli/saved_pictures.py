@@ -4,44 +4,66 @@ from __future__ import annotations
 
 import json
 from argparse import Namespace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from tracer.scene.files import read_regular
 from tracer.scene.model import Camera
 from viewer.cli.argument_types import ChosenView
-from viewer.output import capture
+from viewer.output import capture, recipe
+from viewer.output.recipe import Recipe
 from viewer.services.scene_files import find_scene, is_capture
 
 _A_CAMERA = '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
 _LARGEST_CAMERA = 1 << 20  # bytes
-_SETTINGS = ("method", "samples", "depth", "symmetric", "zoom_factor", "verify", "lamp_radius", "lamp_samples")
+_SETTINGS = (
+    "method", "samples", "depth", "symmetric", "zoom_factor", "verify", "lamp_radius", "lamp_samples", "accelerator"
+)  # fmt: skip
+_STYLE = ("magnified", "shading", "beneath", "outlines", "annotations")
 
 
 def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
     """The scene of a saved picture, and what it carries, by the names of the options of `render`.
 
     Raises CaptureError, in one line, for any other picture, and where the scene is gone."""
+    saved, size = read(path)
+    kept: dict[str, Any] = {name: getattr(saved.settings, name) for name in _SETTINGS}
+    kept |= {name: getattr(saved.style, name) for name in _STYLE}
+    kept |= {"warmup": saved.warmup, "repeat": saved.repeats, "no_marks": not saved.style.marked}
+    kept |= {"legend": saved.style.legend is not None, "legend_at": saved.style.legend}
+    kept["caption"] = saved.style.caption.replace("{", "{{").replace("}", "}}")
+    if size is not None:
+        kept["size"] = size
+    if saved.camera is not None:
+        kept["camera"] = saved.camera
+    kept["view"] = ChosenView(saved.view, saved.light, saved.wipe, saved.style.shares)
+    kept["moment"] = saved.time
+    kept |= {"no_studio": not saved.meshes.studio, "up": saved.meshes.up, "crease": saved.meshes.crease}
+    return saved.scene, kept
+
+
+def read(path: Path) -> tuple[Recipe, tuple[int, int] | None]:
+    """The recipe of a saved picture with its scene where that is now, and its size if that is known.
+
+    Raises CaptureError, in one line, for any other picture, and where the scene is gone."""
     snapshot, size = capture.read_with_size(path)
+    try:
+        saved = recipe.from_json(snapshot, size, capture.read_data(path).get("picture"))
+    except ValueError as error:
+        raise capture.CaptureError(f"{path}: cannot be restored: {error}") from None
     scene = find_scene(snapshot.scene, path)
     if scene is None:
         raise capture.CaptureError(f"{path}: its scene is gone: {snapshot.scene}")
-    kept: dict[str, Any] = {name: snapshot.settings[name] for name in _SETTINGS if name in snapshot.settings}
-    if size is not None:
-        kept["size"] = size
-    if not snapshot.follow:
-        kept["camera"] = snapshot.camera
-    kept["view"] = ChosenView(snapshot.view, snapshot.light, snapshot.wipe)
-    kept["moment"] = snapshot.time
-    kept |= {"no_studio": not snapshot.meshes.studio, "up": snapshot.meshes.up, "crease": snapshot.meshes.crease}
-    return scene, kept
+    return replace(saved, scene=scene), size
 
 
 def settle(options: Namespace, kept: dict[str, Any], picture: Path) -> None:
     """What options mean together: a frame or a time that was given wins over the picture's, as does a file's name."""
     if options.frame is None and options.time is None:
         options.time = kept["moment"]
-    if options.output is None and options.buffers is None:
+    given = (options.output, options.buffers, options.to_tev)
+    if not any(given) and not options.print_command:
         options.output = _free_name(f"{picture.stem}-rendered")
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import string
 import struct
+from collections.abc import Mapping
 from datetime import datetime
 from io import BytesIO
 from pathlib import Path
@@ -47,19 +48,24 @@ class CaptureError(ValueError):
     """A picture cannot be saved or restored; the message is one line."""
 
 
-def file_name(template: str, values: dict[str, Any], now: datetime | None = None) -> str:
-    """The template filled in; raises CaptureError, naming what is wrong with it."""
+def filled(template: str, values: dict[str, Any], now: datetime | None = None, what: str = "name template") -> str:
+    """The template with its fields filled in; raises CaptureError, naming what is wrong with it."""
     now = now or datetime.now()
     known = values | {"date": now.strftime("%Y-%m-%d"), "time": now.strftime("%H-%M-%S")}
     try:
         for _, name, layout, _ in string.Formatter().parse(template):
             if name is not None and name not in FIELDS:
-                raise CaptureError(f"the name template has no field {{{name}}}; it knows {', '.join(FIELDS)}")
+                raise CaptureError(f"the {what} has no field {{{name}}}; it knows {', '.join(FIELDS)}")
             if len(layout or "") > 6 or "{" in (layout or ""):
-                raise CaptureError(f"the name template lays {{{name}}} out too wide")
-        name = template.format(**known).strip()
+                raise CaptureError(f"the {what} lays {{{name}}} out too wide")
+        return template.format(**known).strip()
     except (ValueError, IndexError, KeyError, AttributeError, TypeError) as error:
-        raise CaptureError(f"the name template {template!r} is wrong: {error}") from None
+        raise CaptureError(f"the {what} {template!r} is wrong: {error}") from None
+
+
+def file_name(template: str, values: dict[str, Any], now: datetime | None = None) -> str:
+    """A file's name of the template filled in; raises CaptureError, naming what is wrong with it."""
+    name = filled(template, values, now)
     name = "".join("-" if c in _FORBIDDEN or ord(c) < 32 else c for c in name)
     stem = name[:-4] if name.lower().endswith(".png") else name
     if not stem.strip(" ."):
@@ -67,14 +73,21 @@ def file_name(template: str, values: dict[str, Any], now: datetime | None = None
     return stem[:_LONGEST_NAME] + ".png"
 
 
-def metadata(snapshot: Snapshot, frame_number: int, size: tuple[int, int], statistics: dict[str, Any]) -> str:
-    """The JSON text that a capture carries."""
+def metadata(
+    snapshot: Snapshot,
+    frame_number: int,
+    size: tuple[int, int],
+    statistics: dict[str, Any],
+    more: Mapping[str, Any] | None = None,
+) -> str:
+    """The JSON text that a capture carries; `more` says how it was drawn, and of what (`recipe`, `stills`)."""
     data = {
         "format": FORMAT,
         "state": snapshot.to_json(),
         "frame": frame_number,
         "size": list(size),
         "statistics": statistics,
+        **(more or {}),
     }
     return json.dumps(data, default=_plain)
 
@@ -122,6 +135,15 @@ def read(path: Path) -> Snapshot:
 
 def read_with_size(path: Path) -> tuple[Snapshot, tuple[int, int] | None]:
     """The same, and the frame's width and height if they are known; raises CaptureError."""
+    data = read_data(path)
+    try:
+        return Snapshot.from_json(data.get("state")), size_of(data.get("size"))
+    except (ValueError, AttributeError) as error:
+        raise CaptureError(f"{path}: cannot be restored: {error}") from None
+
+
+def read_data(path: Path) -> dict[str, Any]:
+    """All that a capture carries, as JSON has it; raises CaptureError."""
     try:
         with open_image(BytesIO(read_regular(path)), ("PNG",)) as image:
             image.load()  # text chunks may follow the pixels
@@ -134,12 +156,15 @@ def read_with_size(path: Path) -> tuple[Snapshot, tuple[int, int] | None]:
         raise CaptureError(f"{path}: a picture, but not one captured by Shadowcull")
     try:
         data = json.loads(text)
-        return Snapshot.from_json(data.get("state")), _size(data.get("size"))
-    except (ValueError, AttributeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise CaptureError(f"{path}: cannot be restored: {error}") from None
+    if not isinstance(data, dict):
+        raise CaptureError(f"{path}: cannot be restored: no saved state in it")
+    return data
 
 
-def _size(value: Any) -> tuple[int, int] | None:
+def size_of(value: Any) -> tuple[int, int] | None:
+    """A size as JSON has it; None for anything else."""
     if isinstance(value, list) and len(value) == 2 and all(type(side) is int and 0 < side < 1 << 16 for side in value):
         return value[0], value[1]
     return None

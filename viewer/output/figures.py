@@ -6,7 +6,7 @@ of a user's own matplotlib settings shows, and the same data give the same file.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -57,13 +57,14 @@ def check_ending(path: Path) -> None:
 
 
 @styled
-def save(figure: Figure, path: Path) -> None:
-    """Write a figure as its ending says, one of ENDINGS, whole or not at all; raises OSError in one line."""
+def save(figure: Figure, path: Path, kept: Mapping[str, str] | None = None) -> None:
+    """Write a figure as its ending says, one of ENDINGS, whole or not at all, with texts to be kept in it; raises
+    OSError in one line."""
     kind = path.suffix.lower()[1:]
     no_date: dict[str, dict[str, Any]] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
     def write(file: BinaryIO) -> None:
-        figure.savefig(file, format=kind, dpi=_DPI, metadata=no_date.get(kind))
+        figure.savefig(file, format=kind, dpi=_DPI, metadata={**no_date.get(kind, {}), **(kept or {})})
 
     write_whole(path, write)
 

@@ -18,7 +18,8 @@ SMALLEST, LINES = 11, 42
 
 
 @cache
-def _font(size: int) -> ImageFont.FreeTypeFont:
+def font(size: int) -> ImageFont.FreeTypeFont:
+    """Letters for pictures, so many pixels high."""
     import matplotlib  # brings a font that knows the letters of many scripts
 
     return ImageFont.truetype(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf", size)
@@ -30,9 +31,9 @@ def with_legend(pixels: NDArray[np.uint8], legend: Legend, place: tuple[float, f
     `place` says where in the room that is left: 0, 0 is the upper left corner, 1, 1 the lower right."""
     height, width = pixels.shape[:2]
     size = max(SMALLEST, round(min(width, height) / LINES))
-    font, margin = _font(size), round(0.5 * size)
+    letters, margin = font(size), round(0.5 * size)
     room = width - 2 * margin, height - 2 * margin
-    layout = fitting(legend, font.getlength, 1.2 * size, *room)
+    layout = fitting(legend, letters.getlength, 1.2 * size, *room)
     if layout is None:
         return None
     left, top = (round(margin + part * (free - taken)) for part, free, taken in zip(place, room, _size_of(layout)))
@@ -44,7 +45,7 @@ def with_legend(pixels: NDArray[np.uint8], legend: Legend, place: tuple[float, f
     for swatch in layout.swatches:
         _fill(area, draw, swatch, left, top)
     for words in layout.words:
-        draw.text((left + words.x, top + words.y), words.text, _bytes(words.color), font)
+        draw.text((left + words.x, top + words.y), words.text, _bytes(words.color), letters)
     return np.asarray(area)
 
 

@@ -46,6 +46,9 @@ from viewer.state.views import (
 SHADING = 0.35
 """How much of the picture's light and shade shows under flat colours, as in the window."""
 
+OUTLINE = 0.35
+"""Brightness of the borders between primitives, against what is there."""
+
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 
@@ -58,24 +61,29 @@ def picture(
     wipe: float = 0.5,
     shares: bool = False,
     beneath: float = BENEATH,
+    outlines: bool = False,
+    magnified: int = 1,
+    top: float | None = None,
 ) -> NDArray[np.uint8]:
     """(height, width, 3) uint8, row 0 at the top: a frame in one of its views.
 
     `light` is the light that views of one light speak of, `marked` draws rings around wrong pixels, and `wipe` is the
     place of the wipe's line, 0 to 1 from the left.  Maps of work show counts of rays, or `shares`; `beneath` is the
-    brightness of the picture beneath the difference.  Raises ValueError where there is no such light, or where the
-    view is one of verified frames, or of what was recorded, and the frame is not.
+    brightness of the picture beneath the difference.  `outlines` draws the borders between primitives, and rings are
+    for a picture that is shown `magnified` times.  `top` is what has a map of work's last colour, if not as many as the
+    frame says.  Raises ValueError where there is no such light, or where the view is
+    one of verified frames, or of what was recorded, and the frame is not.
     """
     if view.of_light and not 0 <= light < frame.lights:
         raise ValueError(f"no light {light}: {lights_in_words(frame.lights)}")
     if view is View.COLOR:
         colors = np.clip(frame.color, 0.0, 1.0)
     elif view is View.DIFFERENCE:
-        colors = _difference(frame, marked, beneath)
+        colors = _difference(frame, marked, beneath, outlines, magnified)
     elif view is View.WIPE:
-        colors = _wipe(frame, marked, wipe)
+        colors = _wipe(frame, marked, wipe, outlines, magnified)
     elif view.needs_work:
-        colors = _on_background(frame, _work(frame, view, shares))
+        colors = _on_background(frame, _work(frame, view, shares, top))
     elif view is View.CERTIFICATE:
         colors = _on_background(frame, _certificate(frame, light, shading))
     elif view is View.PENUMBRA:
@@ -91,6 +99,8 @@ def picture(
         entries = _shadow(frame, light) if view is View.SHADOW else table[view](frame)
         numbers = frame.primitive if view is View.PRIMITIVE else units_of(frame)
         colors = _on_background(frame, _shaded(frame, _per_pixel(numbers, entries), shading))
+    if outlines and not view.needs_verify:  # those draw over the borders
+        colors = _outlined(frame, colors)
     return np.round(np.clip(colors, 0.0, 1.0) * 255.0).astype(np.uint8)
 
 
@@ -168,6 +178,11 @@ def _lights(frame: Frame) -> NDArray:
     return np.where((due >= 0)[..., None], _mapped(due / lights_top(due)), np.asarray(GREY, np.float32))
 
 
+def _outlined(frame: Frame, colors: NDArray) -> NDArray:
+    """With darker borders between primitives."""
+    return np.where(_on_line(frame.primitive)[..., None], OUTLINE * colors, colors)
+
+
 def _on_line(cells: NDArray[np.int32]) -> NDArray[np.bool_]:
     """Pixels whose neighbour to the right, or below, lies in another cell."""
     line = np.zeros(cells.shape, np.bool_)
@@ -176,11 +191,11 @@ def _on_line(cells: NDArray[np.int32]) -> NDArray[np.bool_]:
     return line
 
 
-def _work(frame: Frame, view: View, shares: bool) -> NDArray:
+def _work(frame: Frame, view: View, shares: bool, top: float | None) -> NDArray:
     """Rays at each pixel, from none to the view's top, or which share they are; grey where they are a share of none."""
     work = work_of(frame, view)
     if not shares or work is None:
-        top = work_top(frame, view)
+        top = top or work_top(frame, view)
         assert work is not None
         return _mapped(work / top)
     whole = whole_of(frame, view)
@@ -215,20 +230,24 @@ def _depth(frame: Frame) -> NDArray:
     return _mapped(1.0 - np.clip((depth - near) / (far - near), 0.0, 1.0))
 
 
-def _difference(frame: Frame, marked: bool, beneath: float) -> NDArray:
+def _difference(frame: Frame, marked: bool, beneath: float, outlines: bool, magnified: int) -> NDArray:
     """Wrong pixels in their colour over the dimmed picture, and rings around them."""
-    marks, colors = wrong_marks(frame), beneath * np.clip(frame.color, 0.0, 1.0)
+    marks, colors = wrong_marks(frame, magnified), beneath * np.clip(frame.color, 0.0, 1.0)
+    if outlines:
+        colors = _outlined(frame, colors)
     if marked:
         colors[marks == Mark.RING] = np.float32(RING_DIMMING) * np.asarray(WRONG, np.float32)
     colors[marks == Mark.WRONG] = WRONG
     return colors
 
 
-def _wipe(frame: Frame, marked: bool, wipe: float) -> NDArray:
+def _wipe(frame: Frame, marked: bool, wipe: float, outlines: bool, magnified: int) -> NDArray:
     """Left of a line the traced picture, right of it the one in which every shadow answer is right."""
-    marks, column = wrong_marks(frame), wipe_column(frame.width, wipe)
+    marks, column = wrong_marks(frame, magnified), wipe_column(frame.width, wipe)
     assert frame.reference is not None
-    colors = np.concatenate([frame.color[:, :column], frame.reference[:, column:]], axis=1)
+    colors = np.clip(np.concatenate([frame.color[:, :column], frame.reference[:, column:]], axis=1), 0.0, 1.0)
+    if outlines:
+        colors = _outlined(frame, colors)
     if marked:
         colors[marks == Mark.RING] = WRONG
     colors[:, column : column + 1] = WIPE_LINE

@@ -15,8 +15,11 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from tracer.scene.model import Progress
 from viewer.output import capture
+from viewer.output.annotations import annotated
 from viewer.output.legend import Legend
 from viewer.output.legend_picture import with_legend
+from viewer.output.recipe import Recipe
+from viewer.services import stills
 from viewer.services.jobs import Job
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
@@ -55,18 +58,26 @@ class CaptureService:
         self.saving.append(job)
         return job
 
-    def capture(self, frame: Frame | None, pixels: NDArray[np.uint8] | None, legend: Legend | None = None) -> None:
-        """Save a picture, (h, w, 3) uint8, of a frame, with its legend, named by the user's template."""
-        session, preferences = self._session, self._preferences
-        if frame is None or pixels is None or session.scene is None:
+    def capture(
+        self,
+        frame: Frame | None,
+        pixels: NDArray[np.uint8] | None,
+        legend: Legend | None = None,
+        recipe: Recipe | None = None,
+    ) -> None:
+        """Save a picture, (h, w, 3) uint8, of a frame, with its legend, named by the user's template.
+
+        With the recipe that makes it again; without one it shows more than a picture, as the window."""
+        session, preferences, scene = self._session, self._preferences, self._session.scene
+        if frame is None or pixels is None or scene is None:
             self._notices.say("there is no picture to save yet", error=True)
             return
         # What the picture shows: another moment than the session's where a run goes on, or a finer frame is to come.
         number = session.frame_at(frame.time)
-        follow = session.follow and frame.camera == session.scene.camera_at(frame.time)
+        follow = session.follow and frame.camera == scene.camera_at(frame.time)
         height, width = pixels.shape[:2]
         values = {
-            "scene": session.scene.path.stem,
+            "scene": scene.path.stem,
             "view": session.view.value,
             "frame": number,
             "seconds": frame.time,
@@ -81,7 +92,7 @@ class CaptureService:
             now, time=frame.time, camera=frame.camera, follow=follow, settings=settings_to_json(settings)
         )
         size = (frame.width, frame.height)
-        text = capture.metadata(snapshot, number, size, frame.statistics.to_dict())
+        text = capture.metadata(snapshot, number, size, frame.statistics.to_dict(), {"window": recipe is None})
         folder = preferences.picture_folder
         try:
             name = capture.file_name(preferences.screenshot_template, values)
@@ -92,6 +103,11 @@ class CaptureService:
 
         def save() -> Path:
             described = with_legend(pixels, legend, place) if legend is not None else None
-            return capture.save(pixels if described is None else described, folder, name, text)
+            saved = pixels if described is None else described
+            saved = saved if recipe is None else annotated(saved, recipe.style.annotations)
+            if recipe is None:
+                return capture.save(saved, folder, name, text)
+            kept = recipe if described is not None else replace(recipe, style=replace(recipe.style, legend=None))
+            return capture.save(saved, folder, name, stills.text(saved, frame, scene, kept))
 
         self.write(save)

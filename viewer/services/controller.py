@@ -17,11 +17,15 @@ from tracer.scene.model import Scene
 from tracer.zoom import Step
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
+from viewer.services.film_controller import FilmController
 from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
 from viewer.services.pad_flight import PadFlight
+from viewer.services.picture_controller import PictureController
 from viewer.services.presets import Presets
 from viewer.services.questions import Questions
+from viewer.services.ray_inspector import RayInspector
+from viewer.services.recipes import Recipes
 from viewer.services.render_thread import RenderThread, Traced
 from viewer.services.run_controller import RunController
 from viewer.services.scene_loader import Arrival, SceneLoader
@@ -66,9 +70,14 @@ class Controller:
         )
         self.pads = PadFlight(session, preferences, self.motion, notices)
         self.inspector = ShadowInspector(self.selection, renderer)
+        self.rays = RayInspector(session, self.selection, renderer)
         self.recorder = LightRecorder(session, renderer, self.tracing)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
+        self.recipes = Recipes(session, preferences, self.tracing, self.loader, notices)
+        films = FilmController(session, preferences, self.runs, self.recipes, self.bookmarks, notices, awaken)
+        self.films = films
+        self.pictures = PictureController(session, preferences, self.runs, self.recipes, notices, awaken)
         self.watcher = SceneWatcher(
             preferences, lambda: self.loader.files, self._may_reload, self.loader.follow_change, awaken
         )
@@ -91,6 +100,7 @@ class Controller:
     def active(self) -> bool:
         """Whether anything goes on."""
         working = self.renderer.busy or self.loader.busy or self.captures.busy or self.runs.current is not None
+        working = working or bool(self.pictures.jobs)
         return working or self.motion.lively
 
     # --- the frame -------------------------------------------------------------------------------
@@ -102,11 +112,13 @@ class Controller:
         self._take_scene()
         self.watcher.follow()
         self.captures.follow()
+        self.pictures.follow()
         self.questions.follow()
         frame = self._take_frame()
         traced, motion, run = self.traced, self.motion, self.runs.current
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
         self.undo.follow()
+        self.rays.follow(traced if run is None else None)  # before the next frame is asked for
         self.tracing.ask(Conditions(size, motion.under_way, run, self.loader.ready, self.selection.hovered))
         if run is None:
             self.recorder.follow()

@@ -14,6 +14,10 @@ from viewer.services.jobs import Job
 from viewer.services.run_controller import RunController
 from viewer.services.runs import Run
 
+_KEPT = "These are kept, and can still be saved from its panel."
+_SAVED = "Their figures, table and plot can be saved beside the pictures."
+_WRITTEN = "These are written, and stay."
+
 
 @dataclass(frozen=True)
 class Question:
@@ -60,7 +64,7 @@ class Questions:
 
         self.question = Question(
             f"Stop the {run.name} and open {name}?",
-            f"{_so_far(run)} These are kept, and can still be saved from its panel.",
+            f"{_so_far(run)} {_KEPT if run.endings else _WRITTEN}",
             (("Keep running", _nothing), ("Stop and open", stop)),
         )
         self._wake()
@@ -78,8 +82,8 @@ class Questions:
 
         self.question = Question(
             f"Stop the {run.name} and quit?",
-            f"{_so_far(run)} Their figures, table and plot can be saved beside the pictures.",
-            (("Keep running", _nothing), ("Save and quit", save), ("Quit", leave)),
+            f"{_so_far(run)} {_SAVED if run.endings else _WRITTEN}",
+            (("Keep running", _nothing), *((("Save and quit", save),) if run.endings else ()), ("Quit", leave)),
         )
         self._wake()
 

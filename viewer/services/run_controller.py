@@ -119,6 +119,13 @@ class RunController:
         run = self.current
         self._notices.say(f"the {run.name} is still under way" if run is not None else "open a scene first")
 
+    def begin(self, run: Run) -> None:
+        """Begin a run that was made elsewhere; refused, in one line, where another is under way."""
+        if self.current is not None:
+            self._refuse_start()
+        else:
+            self._start(run)
+
     def _start(self, run: Run) -> None:
         self.current = run
         self._session.playing = False
@@ -149,9 +156,10 @@ class RunController:
             self._notices.report(run.failure)
         elif run.whole:
             frames = run.done_of[1]
-            self._notices.say(f"{run.name} done: {frames} frame{'s' * (frames != 1)} in {duration(run.seconds)}")
+            took = f"{frames} frame{'s' * (frames != 1)} in {duration(run.seconds)}"
+            self._notices.say(f"{run.name} done: {took}{run.where}")
         else:
-            kept = "" if run.results is None else "; what was done is kept"
+            kept = "" if run.results is None else f"; what was done is kept{run.where}"
             done, frames = run.done_of
             self._notices.say(f"{run.name} stopped after {done} of {frames} frames{kept}")
 

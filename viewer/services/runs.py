@@ -48,6 +48,8 @@ class Run(ABC, Generic[Results]):
     """
 
     name = "run"
+    endings: tuple[str, ...] = tuple(exports.ENDINGS)
+    """Of the files that its results can be saved as."""
 
     def __init__(self, scene: Scene, frames: int, wake: Callable[[], None] = lambda: None) -> None:
         self.scene_path = scene.path
@@ -97,6 +99,11 @@ class Run(ABC, Generic[Results]):
     def done_of(self) -> tuple[int, int]:
         """Frames that the results are of, and how many they are to be of."""
         return self.traced, self.frames
+
+    @property
+    def where(self) -> str:
+        """Where it has written what it has made, in words; nothing where that is saved when asked for."""
+        return ""
 
     @property
     def fraction(self) -> float:

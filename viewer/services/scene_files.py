@@ -69,8 +69,12 @@ def open_scene(
     started = time.perf_counter()
     with noting({} if files is None else files), _no_collecting():
         scene = load_visible_scene(path, progress, folders, meshes)
+    return _opened(scene, settings, ready, progress, started)
+
+
+def _opened(scene: Scene, settings: Settings, ready: Callable[[], bool], progress: Progress, started: float) -> Opened:
     while not ready():
-        progress(f"{path.name} is read; waiting for the tracer", 1.0)
+        progress(f"{scene.path.name} is read; waiting for the tracer", 1.0)
         time.sleep(0.02)
     if not can_draw(len(scene.lights), settings.accelerator):  # many lights need wider words, and kernels for them
         warm_up(progress, len(scene.lights), settings.accelerator)
@@ -80,6 +84,12 @@ def open_scene(
     if model is not None:  # what the camera goes around is the model, not the floor
         info["bounds"] = model.tolist()
     return Opened(scene, renderer, info, time.perf_counter() - started)
+
+
+def open_loaded(scene: Scene, settings: Settings, ready: Callable[[], bool], progress: Progress) -> Opened:
+    """The same with a scene that is there already, as scripts have one."""
+    started = time.perf_counter()
+    return _opened(scene, settings, ready, progress, started)
 
 
 @contextmanager

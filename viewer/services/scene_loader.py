@@ -71,6 +71,11 @@ class SceneLoader:
         self._given: dict[str, Any] = {}  # settings from there, for what is opened first
 
     @property
+    def folders(self) -> tuple[Path, ...]:
+        """Folders besides a scene's own that it may read files from."""
+        return self._folders
+
+    @property
     def busy(self) -> bool:
         loading = self.load_job is not None or self._restored is not None
         return loading or self.warm_up_job is not None
@@ -113,6 +118,16 @@ class SceneLoader:
         self._abandoned = [job for job in self._abandoned if not job.done]
         arrival, self._restored = self._restored, None
         return arrival
+
+    def take(self, scene: Scene) -> None:
+        """Show a scene that a script has loaded, or made."""
+        settings = self._session.settings
+        self._given = {}
+        self.load_job = Job(
+            f"Opening {scene.path.name}",
+            lambda progress: scene_files.open_loaded(scene, settings, self._kernels_ready, progress),
+            self._wake,
+        )
 
     def open(self, path: Path) -> None:
         """Open a scene, or restore what a captured picture shows; anything else is one line."""
@@ -237,7 +252,7 @@ class SceneLoader:
             meshes = self._session.meshes
         elif meshes is None:
             meshes, self.meshes = self.meshes, replace(self.meshes, up=None)
-        self._reading_meshes = meshes
+        meshes = self._reading_meshes = meshes.of_file(path)
         settings = self._session.settings
         self.load_job = Job(
             f"Loading {path.name}",

@@ -19,6 +19,7 @@ from viewer.services.refinement import Refinement
 from viewer.services.render_thread import Pictures, RenderRequest, Traced
 from viewer.services.requests import as_asked, fulfils, lacks, settings_for
 from viewer.services.runs import Run
+from viewer.state.learnt import Learnt
 from viewer.state.preferences import Preferences
 from viewer.state.readings import can_draw, records_lights
 from viewer.state.session import Session
@@ -59,6 +60,7 @@ class Tracing:
         self.governor = governor or Governor()
         self.refinement = Refinement()
         self.lamps = LampSteps(session)
+        self.learnt = Learnt()
         self._serial = 0
         self._refines = False  # whether the last picture was asked for to refine what is known
         self._asked: RenderRequest | None = None
@@ -75,6 +77,7 @@ class Tracing:
         """Begin with another scene: it has no frame yet, and its pixels cost something else."""
         self.traced = self._known = self._asked = None
         self._new = True
+        self.learnt.forget()
         self.refinement.forget()
         self.governor.forget()
 
@@ -91,6 +94,7 @@ class Tracing:
         """Forget all that is known about shadows, and look again."""
         if not self._locked():
             self._renderer.reset_modes()
+            self.learnt.forget()
             self._known = None
             self.refinement.forget()
             self.again()
@@ -114,6 +118,8 @@ class Tracing:
             if not traced.request.refinement_seconds:  # else it took its time for certificates, not for its pixels
                 pixels = traced.frame.width * traced.frame.height
                 self.governor.observe(traced.first, pixels, self.lamps.most(traced.request.settings))
+        if traced.whole and traced.frame.settings.samples == 1:
+            self.learnt.add(traced.frame)
         self.traced = self._with_modes(traced)
         return self.traced
 

@@ -30,6 +30,39 @@ class ZoomPlan:
     same_start: bool = False
 
 
+@dataclass
+class FilmPlan:
+    """What to film: the frames `first` to `last` of the path, to its end where that is None, with the scene's camera or
+    `from_here`, or a flight `through_bookmarks`; `seconds` long, 0 for every frame once."""
+
+    through_bookmarks: bool = False
+    first: int = 0
+    last: int | None = None
+    from_here: bool = False
+    seconds: float = 0.0
+    fps: float = 25.0
+    size: tuple[int, int] = (640, 480)
+    samples: int = 1
+    caption: str = ""
+    legend: bool = False
+    video: bool = False
+
+
+MOST_MULTIPLE = 8
+
+
+@dataclass
+class PicturePlan:
+    """A picture to be traced and saved: so many times as wide and high as the window's, as a file of an `ending`; the
+    fields of the `caption` are those of names."""
+
+    multiple: int = 2
+    samples: int = 16
+    legend: bool = False
+    caption: str = ""
+    ending: str = ".png"
+
+
 def parse_factors(text: str) -> list[float]:
     """Zoom factors, from words like "4, 16", each once, MOST_FACTORS at most; raises ValueError in one line."""
     try:

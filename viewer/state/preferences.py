@@ -104,6 +104,7 @@ class Preferences:
     draw_explanation: bool = True
     screenshot_folder: str = ""
     screenshot_template: str = DEFAULT_TEMPLATE
+    tev: str = "127.0.0.1:14158"
     tour: bool = True
     theme: str = "dark"
     ui_scale: float = 1.0

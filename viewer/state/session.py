@@ -16,6 +16,7 @@ from typing import Any
 from tracer.renderer import Settings
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
+from viewer.state.annotations import Annotation
 from viewer.state.methods import DEFAULT
 from viewer.state.views import View
 
@@ -113,6 +114,7 @@ class Session:
     wipe: float = 0.5
     selected: tuple[float, float] | None = None
     meshes: MeshOptions = AS_IN_FILE  # how the scene was read
+    annotations: list[Annotation] = field(default_factory=list)
 
     @property
     def follow(self) -> bool:
@@ -139,6 +141,7 @@ class Session:
         self.free_camera = None
         self.playing = False
         self.selected = None
+        self.annotations = []
         self.light = min(self.light, max(len(scene.lights) - 1, 0))
 
     @property

@@ -20,7 +20,9 @@ from imgui_bundle import glfw_utils, hello_imgui, imgui, immapp
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
+from tracer.frame import Frame
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
+from tracer.scene.model import Scene
 from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
@@ -36,6 +38,7 @@ from viewer.window.ui import CaptureKind, Ui
 from viewer.window.widgets import tell_keys
 
 TITLE = "Shadowcull"
+OnFrame = Callable[[Frame], bool | None]
 WINDOW_SIZE = (1440, 900)
 FASTEST = 60.0  # frames a second of the window's own
 # Where a processor draws the window, each frame takes time from tracing: one is drawn for each picture and each of the
@@ -55,7 +58,11 @@ class App:
         settings: dict[str, Any] | None = None,
         folders: Sequence[Path] = (),
         meshes: MeshOptions = IN_STUDIO,
+        scene: Scene | None = None,
+        on_frame: OnFrame | None = None,
     ) -> None:
+        """A `scene` that is given takes the place of a path; `on_frame` is told of each whole picture."""
+        style.forget()
         preferences, problem = load_preferences()
         self.controller = Controller(preferences)
         self.ui = Ui(self.controller)
@@ -65,6 +72,8 @@ class App:
         self.ui.paste_from, self.ui.copy_to = imgui.get_clipboard_text, imgui.set_clipboard_text
         self.scene_path, self.given_settings, self.folders = scene_path, settings or {}, folders
         self.meshes = meshes
+        self.scene, self.on_frame = scene, on_frame
+        self._told: Frame | None = None  # what the script has seen
         self.layout_file = LayoutFile(config_folder())
         self.params = self._params()
         self.layout = Layout(self.ui, self.params)
@@ -107,6 +116,7 @@ class App:
         step("Full screen", self.ui.full_screen.follow)
         step("Opening dropped files", self._open_dropped)
         step("Following the scene", lambda: self.controller.tick(self._room_for_picture()))
+        step("The script's function", self._tell)
         step("Drawing the picture", self._draw)
         step("Drawing recorded pictures", self._bring_shots)
         step("Saving the picture", self._capture_picture)
@@ -166,6 +176,15 @@ class App:
         display.show(c.frame)
         display.draw(self._look(c.selection.picked.primitive if c.selection.picked is not None else -1))
 
+    def _tell(self) -> None:
+        """Hand a whole picture to the script that opened the window, once; it closes the window by returning False."""
+        traced = self.controller.traced
+        if self.on_frame is None or traced is None or not traced.whole or traced.frame is self._told:
+            return
+        self._told = traced.frame
+        if self.on_frame(traced.frame) is False:
+            self._exit()
+
     def _bring_shots(self) -> None:
         if self.ui.shots is not None:
             self.ui.shots.bring()
@@ -192,12 +211,18 @@ class App:
         c = self.controller
         shown = c.tracing.drawn_view is c.session.view
         ready = shown and not c.tracing.becoming_finer  # else the picture is saved when it has come
-        if self.ui.capture_wanted is CaptureKind.PICTURE and self.ui.display is not None and ready:
+        wanted = self.ui.capture_wanted
+        if wanted in (CaptureKind.PICTURE, CaptureKind.CLIPBOARD) and self.ui.display is not None and ready:
             self.ui.capture_wanted = None
             look = self._look(selected=-1)  # the mark is for the user, not for the picture
             self.ui.display.draw(look)
-            described = legend.of_picture(self.ui) if c.preferences.legend_in_pictures else None
-            c.captures.capture(c.frame, self.ui.display.read() if self.ui.display.drawn(look) else None, described)
+            pixels = self.ui.display.read() if self.ui.display.drawn(look) else None
+            if wanted is CaptureKind.CLIPBOARD:
+                c.pictures.copy(pixels, c.frame, look.view)
+            else:
+                described = legend.of_picture(self.ui) if c.preferences.legend_in_pictures else None
+                recipe = c.recipes.of(c.frame, look.view) if c.frame is not None else None
+                c.captures.capture(c.frame, pixels, described, recipe)
         if self.ui.capture_wanted is CaptureKind.WINDOW:
             self.ui.capture_wanted = None
             self._capture_this_frame = True  # when it is drawn, from here on, with all that was asked for before
@@ -269,7 +294,9 @@ class App:
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
         opener = self.controller.loader
         opener.start(self.scene_path, self.given_settings, self.folders, self.meshes)
-        if self.scene_path is None and not (self.controller.preferences.start_where_left and opener.go_on()):
+        if self.scene is not None:
+            opener.take(self.scene)
+        elif self.scene_path is None and not (self.controller.preferences.start_where_left and opener.go_on()):
             opener.open(default_scene())
 
     def _close_wanted(self, window: Any) -> None:

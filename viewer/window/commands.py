@@ -12,6 +12,7 @@ from viewer.state.preferences import SCALES
 from viewer.state.views import View
 from viewer.window import camera_commands, edit_commands, mesh_commands
 from viewer.window.command import Command, Condition
+from viewer.window.taking import drawing, taking
 from viewer.window.ui import CaptureKind, Ui
 
 
@@ -20,6 +21,7 @@ def build(ui: Ui) -> list[Command]:
     return [
         *_file(ui),
         *edit_commands.build(ui),
+        *drawing(ui),
         *_view(ui),
         *_camera(ui),
         *_time(ui),
@@ -55,6 +57,7 @@ def _file(ui: Ui) -> list[Command]:
         *mesh_commands.build(ui),
         Command("Save picture", "File", want(CaptureKind.PICTURE), "F12", separated=True),
         Command("Save picture with panels", "File", want(CaptureKind.WINDOW), "Shift+F12"),
+        *taking(ui),
         Command(
             "Start where I left off",
             "File",
@@ -104,6 +107,7 @@ def _view(ui: Ui) -> list[Command]:
         Command("Outlines", "View", toggle("outlines"), "B", checked=lambda: p.outlines),
         Command("Mark wrong pixels", "View", toggle("mark_wrong"), "M", checked=lambda: p.mark_wrong),
         Command("Shares of rays", "View", toggle("work_shares"), "U", checked=lambda: p.work_shares),
+        *_rays(ui),
         Command("Draw shadow rays", "View", toggle("draw_explanation"), "I", checked=lambda: p.draw_explanation),
         Command("Smooth upscaling", "View", toggle("smooth_upscaling"), checked=lambda: p.smooth_upscaling),
         *_looks(ui),
@@ -111,6 +115,19 @@ def _view(ui: Ui) -> list[Command]:
         Command("Full screen", "View", ui.full_screen.toggle, "F11", checked=lambda: ui.full_screen.wanted),
         Command("Default layout", "View", lambda: ui.reset_layout()),
     ]
+
+
+def _rays(ui: Ui) -> list[Command]:
+    """The tree of the clicked pixel's rays, and the steps of one of them."""
+    rays = ui.controller.rays
+    walked = lambda: bool(rays.visits)  # noqa: E731
+    return [
+        Command("Rays of the clicked pixel", "View", lambda: ui.show_panel("Rays"), "X", separated=True),
+        Command("Next step of the ray", "View", lambda: rays.go(1), "Period", enabled=walked, repeats=True),
+        Command("Previous step of the ray", "View", lambda: rays.go(-1), "Comma", enabled=walked, repeats=True),
+        Command("Play the steps of the ray", "View", rays.play, "Shift+Period", checked=lambda: rays.playing,
+                enabled=walked),
+    ]  # fmt: skip
 
 
 def _looks(ui: Ui) -> list[Command]:
@@ -251,8 +268,10 @@ def _run(ui: Ui) -> list[Command]:
     return [
         Command("Experiment", "Run", start("Experiment", runner.start_experiment), enabled=idle),
         Command("Zoom test", "Run", start("Zoom test", runner.start_zoom_test), enabled=idle),
+        Command("Film", "Run", lambda: ui.show_panel("Film"), enabled=idle,
+                tip="a path, or a flight through bookmarks, as pictures and video"),
         Command("Stop, or clear the selection", "Run", stop, "Escape", enabled=busy, separated=True),
-    ]
+    ]  # fmt: skip
 
 
 def _help(ui: Ui) -> list[Command]:

@@ -37,6 +37,12 @@ def follow(theme: str, scale: float) -> bool:
     return True
 
 
+def forget() -> None:
+    """A new window has no style yet."""
+    global _applied
+    _applied = (0.0, "")
+
+
 def fill_windows(filled: bool) -> None:
     """Whether windows that begin from here on have a background: what is drawn over the cleared screen needs none."""
     none = ImVec4(0.0, 0.0, 0.0, 0.0)

@@ -17,6 +17,7 @@ from viewer.output.legend import light_in_words
 from viewer.services.controller import Controller
 from viewer.services.file_browser import Browser
 from viewer.services.tour import Tour
+from viewer.state.annotations import Annotation, Kind
 from viewer.state.keymap import Keymap
 from viewer.state.preferences import default_screenshot_folder
 from viewer.window.command import Command, is_key, key_label
@@ -36,6 +37,7 @@ class CaptureKind(Enum):
 
     PICTURE = "the picture alone"
     WINDOW = "the window with its panels"
+    CLIPBOARD = "the picture alone, to the clipboard"
 
 
 @dataclass
@@ -55,7 +57,8 @@ class Fold:
 @dataclass
 class Ui:
     """See the module. `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says that
-    the pointer holds the line of the wipe, `pointed_light` which light it is on in the inspector; `light_filters` is
+    the pointer holds the line of the wipe, `tool` what it draws, `drawn` what is being drawn, and `drawn_text` the
+    words that are typed there, `pointed_light` which light it is on in the inspector; `light_filters` is
     what is typed above each list of lights; `screening` is the recorded picture that is shown in the picture's place;
     `legend_shown` says whether the picture shows its legend, `legend_held` where the pointer holds that; `key_wanted`
     names the command that waits for a key to be pressed; `editing` is the list and the place in it of a name that is
@@ -69,6 +72,7 @@ class Ui:
     fold: Fold = field(default_factory=Fold)
     full_screen: FullScreen = field(default_factory=FullScreen)
     capture_wanted: CaptureKind | None = None
+    save_as_open: bool = False
     shortcuts_open: bool = False
     keyboard: Keyboard = field(default_factory=Keyboard)
     key_wanted: str = ""
@@ -95,6 +99,9 @@ class Ui:
     pressed_at: tuple[float, float] = (0.0, 0.0)
     dragged: bool = False
     wiping: bool = False
+    tool: Kind | None = None
+    drawn: Annotation | None = None
+    drawn_text: str | None = None
     new_bookmark: str = ""
     dropped: list[Path] = field(default_factory=list)
     renderer_name: str = ""

@@ -397,7 +397,7 @@ def test_an_output_that_cannot_be_written_is_known_before_tracing(
     [
         (["rendr", "x.aff"], "did you mean 'render'?"),
         (["inof"], "did you mean 'info'?"),
-        (["frobnicate"], "the commands are render, bench, zoom, info"),
+        (["frobnicate"], "the commands are render, bench, zoom, explain, info"),
         (["--frame", "3"], "unrecognized arguments"),
     ],
 )

@@ -330,9 +330,12 @@ def test_shaders_draw_the_same(certified_frame: Frame, view: View, marked: bool,
     with context:
         display = Display()
         display.show(shown)
-        display.draw(Look(view=view, light=1, shading=SHADING, marked=marked, wipe=0.4, shares=marked, beneath=0.4))
+        display.draw(Look(view=view, light=1, shading=SHADING, marked=marked, wipe=0.4, shares=marked, beneath=0.4,
+                          outlines=cells, magnified=2))  # fmt: skip
         on_gpu = display.read()[..., :3].astype(int)
         display.release()
     context.release()
-    here = picture(shown, view, 1, marked=marked, wipe=0.4, shares=marked, beneath=0.4).astype(int)
+    here = picture(
+        shown, view, 1, marked=marked, wipe=0.4, shares=marked, beneath=0.4, outlines=cells, magnified=2
+    ).astype(int)
     assert np.abs(on_gpu - here).max() <= 1

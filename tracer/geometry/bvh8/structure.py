@@ -16,10 +16,13 @@ from tracer.geometry.bvh8 import traverse
 from tracer.geometry.bvh8.build import build_tree
 from tracer.geometry.bvh8.layout import BOX, CHILDREN, PRIMITIVES, Tree
 from tracer.geometry.bvh8.object_trees import blocks_of, build_object_trees, build_top_level, load_corners, move_objects
-from tracer.geometry.bvh8.placed import MOVING_TREE, RESTING_TREE, STATIC_TREE
+from tracer.geometry.bvh8.placed import DYNAMIC_TREES, MOVING_TREE, RESTING_TREE, STATIC_TREE, STATIC_TREES
+from tracer.geometry.bvh8.walk import TreeAt, Walk
 from tracer.geometry.poses import Poses, products
 from tracer.geometry.primitives import Primitives, WorldTriangles, triangle_rows
-from tracer.geometry.queries import Placed
+from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, Placed
+from tracer.geometry.rays import Ray
+from tracer.geometry.visits import Visit
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import WIDTH, Topology
 from tracer.parallel import thread_count
@@ -107,6 +110,7 @@ class Bvh8:
         roots = ((self.static, 0), (self.dynamic, self.resting_root), (self.dynamic, 0))
         trees = [word for tree, root in roots for word in (tree.nodes.ctypes.data, tree.blocks.ctypes.data, root)]
         there = 1 << STATIC_TREE | bool(resting.any()) << RESTING_TREE | bool(moving.any()) << MOVING_TREE
+        self._there = there
         triangles, quadrics = len(primitives.triangles), self.world_quadrics.ctypes.data
         self._data = np.array([*trees, quadrics, triangles, there], np.int64)
         return Placed(
@@ -143,6 +147,17 @@ class Bvh8:
         rows[where] = blocks[:, : 9 * WIDTH].reshape(-1, 9, WIDTH)[block, :, lane]
         boxes[where] = blocks[block, BOX : BOX + 6]
         return WorldTriangles(rows, np.zeros(count, np.float32), boxes)
+
+    def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
+        """The nodes that a ray itself enters, whatever its packet does."""
+        asked = STATIC_TREES * bool(which & STATIC_GEOMETRY) | DYNAMIC_TREES * bool(which & DYNAMIC_OBJECTS)
+        every = (
+            TreeAt("static", self.static, 0),
+            TreeAt("resting objects", self.dynamic, self.resting_root),
+            TreeAt("moving objects", self.dynamic, 0),
+        )
+        trees = [tree for number, tree in enumerate(every) if self._there & asked & 1 << number]
+        return Walk(self.world_quadrics, len(self._primitives.triangles), nearest).go(ray, trees)
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""

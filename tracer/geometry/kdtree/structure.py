@@ -17,9 +17,12 @@ from tracer.geometry.building import watched
 from tracer.geometry.kdtree import traverse
 from tracer.geometry.kdtree.build import bounds_of, build_tree
 from tracer.geometry.kdtree.tree import LEAF, Parts, Trees
+from tracer.geometry.kdtree.walk import Walk
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives, WorldTriangles
 from tracer.geometry.queries import Placed
+from tracer.geometry.rays import Ray
+from tracer.geometry.visits import Visit
 from tracer.scene.arrays import Float32, Float64
 from tracer.scene.model import Progress
 
@@ -146,6 +149,10 @@ class KdTree:
             boxes = transform_boxes(near, np.broadcast_to(to_world, (len(local), 3, 4)))
             boxes = boxes + TRANSFORMED * reach * OUTWARDS
         return WorldTriangles(world.reshape(-1, 9).astype(np.float32), blurs, boxes.astype(np.float32))
+
+    def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
+        """The nodes that a ray enters, as `traverse` counts them."""
+        return Walk(self.parts, poses.to_world, nearest).go(ray, which)
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""

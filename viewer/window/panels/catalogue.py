@@ -11,10 +11,12 @@ from viewer.window.panels import (
     camera,
     culling,
     experiment,
+    filming,
     inspector,
     log,
     picture,
     plots,
+    rays,
     rendering,
     saving,
     scene,
@@ -51,8 +53,10 @@ PANELS = {
         Panel("Culling", "RightMiddle", icons.ICON_FA_SCISSORS, culling.show),
         Panel("Inspector", "RightBottom", icons.ICON_FA_MAGNIFYING_GLASS, inspector.show),
         Panel("Plots", "Bottom", icons.ICON_FA_CHART_LINE, plots.show, wide=True),
+        Panel("Rays", "Bottom", icons.ICON_FA_CODE_BRANCH, rays.show, wide=True),
         Panel("Experiment", "Bottom", icons.ICON_FA_FLASK, experiment.show, wide=True),
         Panel("Zoom test", "Bottom", icons.ICON_FA_MAGNIFYING_GLASS_PLUS, zoom.show, wide=True),
+        Panel("Film", "Bottom", icons.ICON_FA_FILM, filming.show, wide=True),
         Panel("Log", "Bottom", icons.ICON_FA_LIST, log.show, wide=True),
     )
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from viewer.window.panels import browser, command_palette, keys, presets, questions
+from viewer.window.panels import browser, command_palette, keys, presets, questions, save_as
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, centred, em, paragraph
 
@@ -12,6 +12,7 @@ from viewer.window.widgets import QUIET, centred, em, paragraph
 def show(ui: Ui) -> None:
     """All of them; each shows itself only when it is wanted."""
     ui.guard.overlay(browser.NAME, lambda: browser.show(ui), lambda: setattr(ui.browser, "open", False))
+    ui.guard.overlay(save_as.NAME, lambda: save_as.show(ui), lambda: setattr(ui, "save_as_open", False))
     ui.guard.overlay("The question", lambda: questions.show(ui), ui.controller.questions.drop)
     ui.guard.overlay("The command palette", lambda: command_palette.show(ui), command_palette.close)
     ui.guard.overlay("The list of keys", lambda: keys.show(ui), lambda: setattr(ui, "shortcuts_open", False))

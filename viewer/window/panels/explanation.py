@@ -10,7 +10,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from tracer.explanation import Explanation
 from tracer.frame import Frame
 from viewer.services.shadow_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, Part, nearest_first, others_named
-from viewer.state.picking import kind_of
+from viewer.state.picking import kind_of, primitive_in_words
 from viewer.state.projection import place
 from viewer.state.views import (
     ARRIVAL_COLORS,
@@ -21,7 +21,8 @@ from viewer.state.views import (
     Certificate,
     ShadowMode,
 )
-from viewer.window.panels import lights
+from viewer.window.panels import lights, marks
+from viewer.window.panels.marks import SHADE, with_alpha
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, count, em, heading, paragraph, swatch, tooltip
 
@@ -34,7 +35,6 @@ _RESTS_ON = {  # and what is said where the blocker is among them
     Certificate.CANDIDATES.name: ("can only be blocked by", "other candidates:"),
 }
 _UNSEEN = 0.6  # of the width of what is seen
-_SHADE = ImVec4(0.05, 0.06, 0.08, 0.6)
 _FADED = 0.18  # opacity of other lights than the one that is pointed at
 
 
@@ -166,11 +166,7 @@ def _own(ui: Ui, receiver: int) -> str:
 def _named(ui: Ui, primitive: int) -> str:
     """A primitive as people find it again: its kind and number, its object and its material."""
     scene = ui.controller.session.scene
-    if scene is None or primitive >= scene.primitive_count:
-        return f"primitive {primitive}"
-    return (
-        f"{kind_of(scene, primitive)} {primitive} of {scene.name_of(primitive)} ({scene.material_of(primitive).name})"
-    )
+    return f"primitive {primitive}" if scene is None else primitive_in_words(scene, primitive)
 
 
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
@@ -191,7 +187,7 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     for shade in (True, False):
         for part, light, strokes in lines:
             alpha = _FADED if pointed not in (None, light) else 1.0
-            color = imgui.get_color_u32(_with_alpha(_SHADE, alpha) if shade else ImVec4(*_COLORS[part], alpha))
+            color = imgui.get_color_u32(with_alpha(SHADE, alpha) if shade else ImVec4(*_COLORS[part], alpha))
             for stroke in strokes:
                 wide = em(_WIDTHS[part]) * (1.0 if stroke.seen else _UNSEEN) + (em(0.12) if shade else 0.0)
                 draw.add_line(on_screen(stroke.start), on_screen(stroke.end), color, max(1.0, wide))
@@ -211,19 +207,11 @@ def _ends(
         alpha = _FADED if pointed not in (None, one.light) else 1.0
         at = place(frame, one.light_position)
         if at is not None:
-            draw.add_circle_filled(on_screen(at), em(0.42), imgui.get_color_u32(_with_alpha(_SHADE, alpha)))
+            draw.add_circle_filled(on_screen(at), em(0.42), imgui.get_color_u32(with_alpha(SHADE, alpha)))
             draw.add_circle_filled(on_screen(at), em(0.3), imgui.get_color_u32(ImVec4(*_LIT, alpha)))
         stop = place(frame, one.blocked_at) if one.blocked_at is not None else None
         if stop is not None:
-            x, y, arm = on_screen(stop).x, on_screen(stop).y, em(0.28)
-            color = imgui.get_color_u32(ImVec4(*_BLOCKER, alpha))
-            draw.add_line(ImVec2(x - arm, y - arm), ImVec2(x + arm, y + arm), color, em(0.14))
-            draw.add_line(ImVec2(x - arm, y + arm), ImVec2(x + arm, y - arm), color, em(0.14))
+            marks.cross(draw, on_screen(stop), ImVec4(*_BLOCKER, alpha))
     point = place(frame, answer.lights[0].point) if answer.lights else None
     if point is not None:
-        draw.add_circle(on_screen(point), em(0.4), imgui.get_color_u32(_SHADE), 0, em(0.22))
-        draw.add_circle(on_screen(point), em(0.4), imgui.get_color_u32(ImVec4(1.0, 1.0, 1.0, 1.0)), 0, em(0.1))
-
-
-def _with_alpha(color: ImVec4, alpha: float) -> ImVec4:
-    return ImVec4(color.x, color.y, color.z, color.w * alpha)
+        marks.ring(draw, on_screen(point))

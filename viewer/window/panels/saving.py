@@ -5,6 +5,8 @@ from __future__ import annotations
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from viewer.window import taking as commands_of
+from viewer.window.panels import annotating
 from viewer.window.ui import CaptureKind, Ui
 from viewer.window.widgets import QUIET, checkbox, paragraph, properties, row, tooltip, wide_button
 
@@ -17,6 +19,12 @@ def show(ui: Ui) -> None:
     imgui.same_line()
     if wide_button(f"{icons.ICON_FA_DISPLAY}  With panels", "the whole window (Shift+F12)"):
         ui.capture_wanted = CaptureKind.WINDOW
+    if wide_button(f"{icons.ICON_FA_FLOPPY_DISK}  Save as", "larger, with a caption, or as EXR (Ctrl+S)", 2):
+        ui.save_as_open = True
+    imgui.same_line()
+    if wide_button(f"{icons.ICON_FA_TERMINAL}  Copy command", "the command that makes this picture (Ctrl+Alt+C)"):
+        commands_of.copy_command(ui)
+    annotating.tools(ui)
     with properties("pictures", 5.0) as shown:
         if shown:
             row("Folder", "where pictures are saved")
@@ -26,6 +34,8 @@ def show(ui: Ui) -> None:
             row("Name", "template of the file's name")
             _, p.screenshot_template = imgui.input_text("##template", p.screenshot_template)
             tooltip(ui.template_help)
+            row("tev", "where tev or HDRView listens, for File, Send to tev")
+            _, p.tev = imgui.input_text("##tev", p.tev)
     tip = "where the view has one; the picture with panels shows what the window shows"
     checkbox("With legend", p.legend_in_pictures, lambda on: setattr(p, "legend_in_pictures", on), tip)
     paragraph("A saved picture carries scene, camera, settings and statistics: open or drop it to come back.", QUIET)

@@ -1,0 +1,135 @@
+"""`figure` draws methods side by side, and `check` says of figures and pictures whether they are still true."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.commands import ROOM, complaint, run
+from viewer.output import capture, png
+
+SIZE = ("--size", "64x48", "--threads", 1)
+
+
+@pytest.fixture(autouse=True)
+def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The room of `tests.commands` in a folder of its own, which is the current one."""
+    monkeypatch.chdir(tmp_path)
+    Path("room.aff").write_text(ROOM)
+
+
+def verdict(capfd: pytest.CaptureFixture[str], *files: object) -> tuple[int, list[str]]:
+    code, out, errors = run(capfd, "check", *files)
+    assert errors == ""
+    return code, out.splitlines()
+
+
+def pixels(path: str) -> np.ndarray:
+    with Image.open(path) as image:
+        return np.asarray(image.convert("RGB"))
+
+
+def test_pictures_stay_true_until_something_changes(capfd: pytest.CaptureFixture[str]) -> None:
+    modes = (
+        "--method",
+        "paper",
+        "--view",
+        "shadow:1",
+        "--frame",
+        5,
+        "--warmup",
+        4,
+        "--legend",
+        "--caption",
+        "A {view}",
+    )
+    assert run(capfd, "render", "room.aff", "-o", "modes.png", *SIZE, *modes)[0] == 0
+    assert run(capfd, "render", "room.aff", "-o", "plain.png", *SIZE, "--samples", 3)[0] == 0
+    code, lines = verdict(capfd, "modes.png", "plain.png")
+    assert code == 0 and [line.split(": ")[:2] for line in lines] == [["modes.png", "true"], ["plain.png", "true"]]
+    assert all("bit for bit" in line for line in lines)
+
+    png.write(Path("edited.png"), pixels("plain.png") ^ 1, json.dumps(capture.read_data(Path("plain.png"))))
+    code, (line,) = verdict(capfd, "edited.png")
+    assert code == 1 and "FALSE: 3,072 of 3,072 pixels differ, by 1 of 255" in line and "the file's own pixels" in line
+
+    Path("room.aff").write_text(ROOM.replace("l 2 4 3 1 1 1", "l 2 5 3 1 1 1").replace("f 0.8 0.6", "f 0.7 0.6"))
+    code, lines = verdict(capfd, "modes.png", "plain.png")
+    assert code == 1 and all("changed since: the scene's materials and lights" in line for line in lines)
+    assert all("FALSE" in line and "pixels differ" in line for line in lines)
+
+    Path("room.aff").write_text(ROOM)
+    data = capture.read_data(Path("plain.png"))
+    data["made"]["version"] = "0.0.1"
+    png.write(Path("old.png"), pixels("plain.png"), json.dumps(data))
+    assert verdict(capfd, "old.png")[0] == 0, "another version that makes the same picture"
+    data["state"]["settings"]["depth"] = 0
+    png.write(Path("old.png"), pixels("plain.png"), json.dumps(data))
+    code, (line,) = verdict(capfd, "old.png")
+    assert code == 1 and "the version, 0.0.1 then" in line and "shadow rays due" in line
+
+
+def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> None:
+    assert run(capfd, "render", "room.aff", "-o", "a.png", *SIZE)[0] == 0
+    data = capture.read_data(Path("a.png"))
+    for name, change in (
+        ("window", {"window": True}),
+        ("unknown", {"picture": data["picture"] | {"history": "its modes were learnt elsewhere"}}),
+        ("gone", {"state": data["state"] | {"scene": "/gone/gone.aff"}}),
+        ("damaged", {"picture": data["picture"] | {"warmup": "many"}}),
+        ("figure", {"figure": {}}),
+    ):
+        png.write(Path(f"{name}.png"), pixels("a.png"), json.dumps(data | change))
+    Image.new("RGB", (4, 4)).save("plain.png")
+    Path("other.pdf").write_bytes(b"%PDF-1.4")
+    said = {
+        "window.png": "panels",
+        "unknown.png": "learnt elsewhere",
+        "gone.png": "its scene is gone",
+        "damaged.png": "its warmup is not understood",
+        "figure.png": "methods or crops are damaged",
+        "plain.png": "not one captured",
+        "other.pdf": "not a figure",
+        "none.png": "no such file",
+    }
+    code, lines = verdict(capfd, *said)
+    assert code == 1 and len(lines) == len(said)
+    for line, (name, words) in zip(lines, said.items()):
+        assert line.startswith(f"{name}: unknown: ") and words in line, line
+    certificates = ("--view", "certificate:0", "--method", "certified", "--size", "64x48")
+    assert run(capfd, "render", "room.aff", "-o", "one.png", *certificates, "--threads", 1)[0] == 0
+    assert run(capfd, "render", "room.aff", "-o", "two.png", *certificates, "--threads", 2)[0] == 0
+    code, lines = verdict(capfd, "one.png", "two.png")
+    assert "one.png: true" in lines[0] and "two.png: unknown" in lines[1] and "threads" in lines[1]
+
+
+@pytest.mark.parametrize("ending", [".png", ".pdf"])
+def test_a_figure_compares_methods_and_can_be_checked(capfd: pytest.CaptureFixture[str], ending: str) -> None:
+    options = ("--methods", "none,paper", "--crops", "4,4,20,8", "--frame", 3, "--warmup", 3)
+    if ending == ".pdf":
+        options = ("--methods", "none,paper", "--view", "cost", "--frame", 3)
+    code, out, _ = run(capfd, "figure", "room.aff", "-o", f"figure{ending}", *SIZE, *options)
+    assert code == 0 and "shadow rays due" in out and "pixels that differ" in out
+    code, (line,) = verdict(capfd, f"figure{ending}")
+    assert code == 0 and line.startswith(f"figure{ending}: true"), line
+    Path("room.aff").write_text(ROOM.replace("l -3 4 2", "l -3 3 2"))
+    code, (line,) = verdict(capfd, f"figure{ending}")
+    assert code == 1 and "the scene's lights" in line
+    if ending == ".png":
+        assert capture.read(Path("figure.png")).time == 3.0, "the window goes there"
+
+
+def test_figures_that_cannot_be_drawn(capfd: pytest.CaptureFixture[str]) -> None:
+    cases = [
+        (("-o", "f.svg"), ".png .pdf"),
+        (("-o", "f.png", "--crops", "60,0,10,10"), "60,0,10,10: not inside"),
+        (("-o", "f.png", "--methods", "none,none"), "each once"),
+        (("-o", "f.png", "--view", "certificate:0"), "one method alone"),
+        (("-o", "f.png", "--view", "shadow:9"), "lights are 0 to 1"),
+    ]
+    for options, said in cases:
+        assert said in complaint(run(capfd, "figure", "room.aff", *options, *SIZE))

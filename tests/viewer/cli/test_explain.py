@@ -1,0 +1,72 @@
+"""`shadowcull explain`: the tree of a pixel's rays, as text and as JSON, and one line for every mistake."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.commands import ROOM, complaint, run
+
+
+@pytest.fixture
+def room(tmp_path: Path) -> Path:
+    path = tmp_path / "room.aff"
+    path.write_text(ROOM)
+    return path
+
+
+def explained(capfd: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:
+    return run(capfd, "explain", *arguments, "--size", "48x32", "--threads", 1)
+
+
+def test_the_tree_names_what_became_of_each_ray(capfd: pytest.CaptureFixture[str], room: Path) -> None:
+    seen = (room, "--pixel", "24,26", "--method", "paper", "--frame", 4, "--warmup", 3)
+    code, out, _ = explained(capfd, *seen)
+    lines = out.splitlines()
+    assert code == 0 and lines[0].startswith("room.aff, 4.000 s, pixel 24,26 of 48 × 32, method paper")
+    assert "shadow rays that are due" in lines[1]
+    assert lines[2].startswith("└── primary ray: triangle ") and "reflected ray: " in out
+    assert sum("light 0" in line for line in lines) == out.count(" ray: ") - out.count("leaves the scene")
+    assert "steps" in out
+    _, traced, _ = explained(capfd, *seen, "--only", "traced", "--light", 1)
+    assert "shadow rays shown: traced of light 1" in traced and "light 0" not in traced.splitlines()[4:]
+    assert all("traced" in line for line in traced.splitlines()[3:] if "light 1:" in line)
+
+
+def test_json_adds_up(capfd: pytest.CaptureFixture[str], room: Path) -> None:
+    code, out, _ = explained(capfd, room, "--pixel", "24,26", "--json", "--accelerator", "kdtree", "--method", "none")
+    told = json.loads(out)
+    assert code == 0 and told["pixel"] == [24, 26] and told["size"] == [48, 32] and told["accelerator"] == "kdtree"
+    shadows = [shadow for ray in told["rays"] for shadow in ray["shadow_rays"]]
+    assert len(shadows) == told["due"] == told["traced"] > 0
+    assert {shadow["verdict"] for shadow in shadows} == {"traced"}
+    assert all((shadow["blocker"] is None) == shadow["lit"] and not shadow["wrong"] for shadow in shadows)
+    assert all(
+        ray["parent"] is None or told["rays"][ray["parent"]]["bounce"] + 1 == ray["bounce"] for ray in told["rays"]
+    )
+    summed = [sum(ray["light"][channel] for ray in told["rays"]) for channel in range(3)]
+    assert summed == pytest.approx(told["color"], rel=1e-6)
+
+
+def test_background_has_a_ray_and_no_more(capfd: pytest.CaptureFixture[str], room: Path) -> None:
+    code, out, _ = explained(capfd, room, "--pixel", "0,0")
+    assert code == 0 and "primary ray: leaves the scene" in out and "light" not in out.split("leaves")[1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--pixel", "48,0"), "--pixel 48,0: the picture is 48 x 32"),
+        (("--pixel", "1"), "is not a pixel"),
+        ((), "the following arguments are required: --pixel"),
+        (("--pixel", "1,1", "--light", "9"), "--light 9: "),
+        (("--pixel", "1,1", "--method", "no"), "invalid choice"),
+        (("--pixel", "1,1", "--frame", "99"), "frame numbers are 0 to 9"),
+    ],
+)
+def test_mistakes_end_in_one_line(
+    capfd: pytest.CaptureFixture[str], room: Path, arguments: tuple[str, ...], said: str
+) -> None:
+    assert said in complaint(explained(capfd, room, *arguments))

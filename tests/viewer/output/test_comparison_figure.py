@@ -1,0 +1,45 @@
+"""What a figure shows of its frames: one range of colours for all, and true counts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from tests.viewer.fakes import make_frame, make_scene
+from viewer.output.comparison_figure import Crop, Shown, figure
+from viewer.output.recipe import Recipe
+from viewer.state.views import View
+
+
+def shown(view: View) -> Shown:
+    right = make_frame()
+    h, w = right.primitive.shape
+    ones = np.ones((h, w), np.int32)
+    right = replace(right, saved=0 * ones, cost=40 * ones, due_rays=20 * ones)
+    color = right.color.copy()
+    color[1, 2] = 1.0 - np.clip(color[1, 2], 0.0, 0.4)
+    other = replace(right, color=color, cost=10 * ones, saved=30 * ones)
+    settings = replace(right.settings, width=w, height=h)
+    recipe = Recipe(Path("scene.aff"), 0.0, None, settings, view)
+    return Shown(make_scene(), recipe, {"none": right, "paper": other}, right, (Crop(0, 0, 4, 3),))
+
+
+def test_differences_are_counted() -> None:
+    drawn = shown(View.COLOR)
+    assert drawn.differing("none") == 0 and drawn.differing("paper") == 1
+    found = drawn.difference("paper")
+    assert found[1, 2] > 0.0 and np.count_nonzero(found) == 1
+    assert dict(drawn.counts("paper"))["pixels that differ"] == "1"
+
+
+def test_maps_of_work_have_one_range() -> None:
+    drawn = shown(View.COST)
+    hit = drawn.reference.primitive >= 0
+    assert drawn.top == 40.0
+    none, paper = (drawn.pictures[method][hit] for method in ("none", "paper"))
+    assert (none != paper).any(axis=-1).all(), "ten rays do not look like forty"
+    words = [text.get_text() for axes in figure(drawn).axes for text in axes.texts]
+    assert {"the reference", "A", "pixels that differ"} <= set(words)
+    assert "no difference" not in words

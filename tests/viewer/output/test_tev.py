@@ -1,0 +1,121 @@
+"""What is sent to tev is what its protocol says, read here by a server that knows nothing of ours."""
+
+from __future__ import annotations
+
+import socket
+import struct
+import threading
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.commands import ROOM, run
+from tests.viewer.fakes import make_frame
+from viewer.output import tev
+
+
+class Server:
+    """Listens as tev does, and puts together the images that it is told of."""
+
+    def __init__(self) -> None:
+        self.images: dict[str, dict[str, np.ndarray]] = {}
+        self._socket = socket.create_server(("127.0.0.1", 0))
+        self.port = self._socket.getsockname()[1]
+        self._thread = threading.Thread(target=self._listen, daemon=True)
+        self._thread.start()
+
+    def _listen(self) -> None:
+        connection, _ = self._socket.accept()
+        with connection, connection.makefile("rb") as stream:
+            while head := stream.read(4):
+                (length,) = struct.unpack("<I", head)
+                self._take(stream.read(length - 4))
+
+    def _take(self, packet: bytes) -> None:
+        kind, rest = packet[0], packet[2:]  # the second says whether to come to the front
+        name, rest = self._text(rest)
+        if kind == 4:
+            width, height, count = struct.unpack_from("<iii", rest)
+            rest = rest[12:]
+            self.images[name] = {}
+            for _ in range(count):
+                channel, rest = self._text(rest)
+                self.images[name][channel] = np.full((height, width), np.nan, np.float32)
+            assert rest == b""
+            return
+        assert kind == 6
+        (count,) = struct.unpack_from("<i", rest)
+        rest, channels = rest[4:], []
+        for _ in range(count):
+            channel, rest = self._text(rest)
+            channels.append(channel)
+        x, y, width, height = struct.unpack_from("<iiii", rest)
+        offsets = struct.unpack_from(f"<{count}q", rest, 16)
+        strides = struct.unpack_from(f"<{count}q", rest, 16 + 8 * count)
+        data = np.frombuffer(rest[16 + 16 * count :], "<f4")
+        for channel, offset, stride in zip(channels, offsets, strides):
+            plane = data[offset : offset + stride * width * height : stride].reshape(height, width)
+            self.images[name][channel][y : y + height, x : x + width] = plane
+
+    @staticmethod
+    def _text(data: bytes) -> tuple[str, bytes]:
+        text, _, rest = data.partition(b"\0")
+        return text.decode(), rest
+
+    def close(self) -> None:
+        self._thread.join(10.0)
+        self._socket.close()
+        assert not self._thread.is_alive()
+
+
+@pytest.fixture
+def server() -> Iterator[Server]:
+    server = Server()
+    yield server
+    server._socket.close()
+
+
+def test_all_channels_arrive(server: Server, monkeypatch: pytest.MonkeyPatch) -> None:
+    frame = make_frame()
+    lights = np.ones((*frame.primitive.shape, 3), np.uint16)
+    frame = replace(frame, asked=lights, reached=lights * np.array([0, 1, 1], np.uint16))
+    monkeypatch.setattr(tev, "_LARGEST", 700)  # so that it comes in several packets
+    tev.send(("127.0.0.1", server.port), "größe 1", frame)
+    server.close()
+    (image,) = server.images.values()
+    assert list(server.images) == ["größe 1"]
+    for axis, letter in enumerate("RGB"):
+        assert np.array_equal(image[letter], frame.color[..., axis])
+    assert np.array_equal(image["Z"], frame.depth)
+    assert np.array_equal(image["primitive"], frame.primitive.astype(np.float32)), "-1 for a miss"
+    assert not image["lit.0"].any() and image["lit.2"].all()
+    assert not any(np.isnan(plane).any() for plane in image.values())
+
+
+def test_render_sends(server: Server, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "room.aff").write_text(ROOM)
+    options = ("--to-tev", f"127.0.0.1:{server.port}", "--size", "32x24", "--threads", 1)
+    assert run(capfd, "render", tmp_path / "room.aff", *options)[0] == 0
+    server.close()
+    assert list(server.images) == ["room 0 s auto"]
+    image = server.images["room 0 s auto"]
+    assert image["R"].shape == (24, 32) and image["due.1"].any() and image["occlusion_mode"].min() == -1.0
+
+
+def test_nobody_listens() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    with pytest.raises(OSError, match=rf"nothing sent to 127.0.0.1:{port}: .*is tev or HDRView open there\?") as caught:
+        tev.send(("127.0.0.1", port), "name", make_frame())
+    assert "\n" not in str(caught.value)
+
+
+def test_addresses() -> None:
+    assert tev.address("host:99") == ("host", 99) and tev.address(":99") == ("127.0.0.1", 99)
+    assert tev.address("host") == ("host", 14158) and tev.address("[::1]:5") == ("::1", 5)
+    for wrong in ("host:", "host:x", "host:0", "host:70000"):
+        with pytest.raises(ValueError, match="is not an address"):
+            tev.address(wrong)

@@ -1,0 +1,98 @@
+"""The tree of a pixel's rays: unfolded, filtered, picked out in the picture, and stepped through."""
+
+from __future__ import annotations
+
+import numpy as np
+from imgui_bundle import imgui
+
+from tests.viewer.driver import Driver
+from viewer.state.verdicts import Shown
+
+KEY = imgui.Key
+
+
+def rays(d: Driver) -> None:
+    """A click on a pixel lists its rays; rows and keys go through them."""
+    d.settle()
+    c = d.c
+    assert not c.rays.visible, "another panel is in front at first"
+    c.settings.change(method="paper")
+    d.settle()
+    for _ in range(2):
+        c.tracing.trace_again()
+        d.settle()
+    d.press(KEY.x)
+    d.frames(4)
+    assert c.rays.visible and c.rays.tree is None
+    traced = c.history.frames
+    left, top, right, bottom = d.picture_edges()
+    x, y = _shaded(d)
+    d.context.mouse_move_to_pos((left + x * (right - left), top + y * (bottom - top)))
+    d.context.mouse_click(0)
+    d.wait(lambda: c.rays.tree is not None, "the rays of the clicked pixel", 20.0)
+    assert c.history.frames == traced, "asking has traced a frame"
+    tree = c.rays.tree
+    assert (tree.x, tree.y) == c.selection.pixel and tree.due > 0
+    assert len(c.rays.lines(c.frame)) >= tree.due
+    d.frames(3)
+    drawn = _lines_drawn(d)
+
+    # Filters hide rows and lines.
+    everything = len(c.rays.seen)
+    d.context.item_click("//Rays/wrong")
+    d.frames(3)
+    assert c.rays.shown.shown is Shown.WRONG and len(c.rays.seen) < everything and _lines_drawn(d) < drawn
+    d.context.item_click("//Rays/all")
+    d.frames(3)
+    assert len(c.rays.seen) == everything
+
+    # A row that the pointer is on is picked out; a click selects it, and its steps are listed.
+    row = next(row for _, row in c.rays.seen if len(row.places) == 1 and "traced" in row.text)
+    d.context.mouse_move(f"//Rays/**/{row.key}/##row")
+    d.frames(3)
+    assert c.rays.pointed is not None and c.rays.pointed.key == row.key
+    d.context.item_click(f"//Rays/**/{row.key}/##row")
+    d.wait(lambda: c.rays.walked, "the nodes that the ray enters", 20.0)
+    assert c.rays.selected.key == row.key and c.rays.structure == "bvh8"
+    shadows = tree.rays[row.ray].shadows
+    place = int(row.places[0])
+    assert any(visit.hits for visit in c.rays.visits) != shadows.lit[place]
+    steps = len(c.rays.visits)
+    assert steps >= 1 and c.rays.step == 0
+    d.press(KEY.period)
+    assert c.rays.step == min(1, steps - 1)
+    d.press(KEY.comma)
+    assert c.rays.step == 0
+    d.context.item_click("//Rays/**/kdtree")
+    d.wait(lambda: c.rays.walked and c.rays.structure == "kdtree", "the same in the other structure", 30.0)
+    assert any(visit.hits for visit in c.rays.visits) != shadows.lit[place]
+    d.press(int(KEY.period) | int(KEY.mod_shift))
+    d.wait(lambda: c.rays.step + 1 == len(c.rays.visits) and not c.rays.playing, "the end of the steps", 30.0)
+
+    # The path ray folds; the tree goes with the selection.
+    top_row = c.rays.seen[0][1]
+    c.rays.toggle(top_row)
+    d.frames(2)
+    assert len(c.rays.seen) == 1 and c.rays.selected is None
+    c.rays.toggle(top_row)
+    d.press(KEY.escape)
+    d.frames(3)
+    assert c.rays.tree is None
+    d.ui.show_panel("Plots")
+    d.frames(5)
+    assert not c.rays.visible
+
+
+def _shaded(d: Driver) -> tuple[float, float]:
+    """A pixel of which some shadow ray is traced and its neighbours show the same."""
+    primitive = d.c.frame.primitive
+    here = primitive >= 0
+    for shift in (-3, 3):
+        here &= (np.roll(primitive, shift, 0) == primitive) & (np.roll(primitive, shift, 1) == primitive)
+    y, x = np.argwhere(here)[here.sum() // 2]
+    return (x + 0.5) / d.c.frame.width, (y + 0.5) / d.c.frame.height
+
+
+def _lines_drawn(d: Driver) -> int:
+    """How much is drawn over the picture, in corners of triangles."""
+    return imgui.internal.find_window_by_name("Picture").draw_list.vtx_buffer.size()

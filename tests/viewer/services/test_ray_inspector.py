@@ -1,0 +1,145 @@
+"""The clicked pixel's rays are looked into on the render thread, while somebody looks, and stay true."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tests.viewer.desk import Desk
+from tracer.renderer import Renderer
+from viewer.services.ray_inspector import RayInspector, StepsQuestion
+from viewer.state import navigation
+from viewer.state.verdicts import Filter, Shown
+
+
+def looked_at(desk: Desk) -> RayInspector:
+    """The inspector of a desk whose panel is seen from now on."""
+    rays, tick = desk.c.rays, desk.tick
+
+    def with_panel() -> None:
+        rays.watch()
+        tick()
+
+    desk.tick = with_panel  # type: ignore[method-assign]
+    return rays
+
+
+def middle(desk: Desk) -> tuple[float, float]:
+    """A pixel of the square that is lit and whose neighbours are alike."""
+    frame = desk.c.frame
+    here = (frame.primitive >= 0) & (frame.primitive < 2)
+    for shift in (-2, 2):
+        here &= np.roll(here, shift, 0) & np.roll(here, shift, 1)
+    y, x = np.argwhere(here)[here.sum() // 2]
+    return (x + 0.5) / frame.width, (y + 0.5) / frame.height
+
+
+def test_nothing_is_asked_unless_the_panel_is_seen(desk: Desk) -> None:
+    desk.c.selection.select(middle(desk))
+    desk.rest()
+    assert desk.c.rays.tree is None
+    rays, traced = looked_at(desk), desk.c.history.frames
+    desk.until(lambda: rays.tree is not None)
+    assert (rays.tree.x, rays.tree.y) == desk.c.selection.pixel and rays.tree.frame.primitive is desk.c.frame.primitive
+    assert desk.c.history.frames == traced
+    desk.c.selection.clear()
+    desk.until(lambda: rays.tree is None)
+
+
+def test_the_tree_is_of_the_newest_picture_and_keeps_what_is_selected(desk: Desk) -> None:
+    rays = looked_at(desk)
+    desk.c.selection.select(middle(desk))
+    desk.until(lambda: rays.tree is not None)
+    first, row = rays.tree, rays.seen[1][1]
+    rays.select(row)
+    desk.until(lambda: rays.walked)
+    desk.c.motion.move(navigation.look(desk.c.session.camera, 0.02, 0.0, desk.c.motion.world_up))
+    desk.until(lambda: rays.tree is not first and rays.tree.frame.primitive is desk.c.frame.primitive)
+    assert rays.selected is not None and rays.selected.key == row.key
+    desk.c.motion.move(navigation.look(desk.c.session.camera, 2.5, 0.0, desk.c.motion.world_up))
+    desk.rest()
+    assert rays.tree is not None, "out of sight it is what it was"
+
+
+def test_steps_lead_through_both_structures(desk: Desk) -> None:
+    rays = looked_at(desk)
+    desk.c.selection.select(middle(desk))
+    desk.until(lambda: rays.tree is not None)
+    row = next(row for _, row in rays.seen if len(row.places) == 1)
+    rays.select(row)
+    for accelerator in ("bvh8", "kdtree"):
+        rays.accelerator = accelerator
+        desk.until(lambda name=accelerator: rays.walked and rays.structure == name)
+        assert rays.visits and rays.step == 0
+        rays.go(1000)
+        assert rays.step == len(rays.visits) - 1
+        rays.play()
+        assert rays.step == 0 and rays.playing == (len(rays.visits) > 0)
+        desk.until(lambda: not rays.playing or len(rays.visits) == 1)
+        rays.playing = False
+        rays.go(-1000)
+    rays.select(None)
+    assert not rays.visits
+
+
+def test_frame_after_frame_is_looked_into(desk: Desk) -> None:
+    rays = looked_at(desk)
+    desk.c.selection.select(middle(desk))
+    desk.c.preferences.keep_tracing = True
+    desk.c.tracing.trace_again()
+    seen = []
+
+    def others() -> bool:
+        if rays.tree is not None and not any(rays.tree is tree for tree in seen):
+            seen.append(rays.tree)
+        return len(seen) > 3
+
+    desk.until(others)
+    desk.c.preferences.keep_tracing = False
+    desk.rest()
+    desk.c.motion.step(2)
+    desk.until(lambda: rays.tree is not None and rays.tree.frame.time == desk.c.frame.time > seen[-1].frame.time)
+    desk.c.settings.change(method="none")
+    desk.until(lambda: rays.tree is not None and rays.tree.frame.settings.method == "none")
+    assert rays.tree.traced == rays.tree.due
+
+
+def test_filters_and_folds(desk: Desk) -> None:
+    rays = looked_at(desk)
+    desk.c.selection.select(middle(desk))
+    desk.until(lambda: rays.tree is not None)
+    whole = len(rays.seen)
+    rays.refilter(Filter(Shown.ALL, 1))
+    assert 1 < len(rays.seen) < whole
+    rays.refilter(Filter(Shown.WRONG))
+    assert len(rays.seen) == len(rays.tree.rays)
+    rays.refilter(Filter())
+    rays.toggle(rays.seen[0][1])
+    assert len(rays.seen) == 1
+    rays.toggle(rays.seen[0][1])
+    assert len(rays.seen) == whole and len(rays.lines(desk.c.frame)) > 0
+
+
+def test_a_run_has_the_world_to_itself(desk: Desk) -> None:
+    rays = looked_at(desk)
+    desk.c.selection.select(middle(desk))
+    desk.until(lambda: rays.tree is not None)
+    desk.c.runs.experiment_plan = replace(desk.c.runs.experiment_plan, frames=400, size=(32, 24), depth=1)
+    desk.c.runs.start_experiment()
+    desk.until(lambda: rays.tree is None)
+    desk.c.runs.stop()
+    desk.until(lambda: desk.c.runs.current is None)
+    desk.until(lambda: rays.tree is not None)
+
+
+def test_what_is_dropped_is_left(desk: Desk) -> None:
+    rays = looked_at(desk)
+    desk.c.selection.select(middle(desk))
+    desk.until(lambda: rays.tree is not None)
+    question = StepsQuestion(rays.tree, rays.seen[0][1], "kdtree", rays._worlds)
+    question.dropped = True
+    renderer = desk.c.renderer._renderer
+    assert isinstance(renderer, Renderer)
+    question.answer(renderer)
+    assert question.found is None

@@ -1,0 +1,166 @@
+"""A pixel's rays as they are told: the model of `tracer.ray_tree`."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.verdicts import Verdict
+from tracer.scene.arrays import Float32, Float64
+
+if TYPE_CHECKING:
+    from tracer.frame import Frame
+
+VERDICTS = tuple(Verdict)
+NUMBER_OF = {verdict: number for number, verdict in enumerate(VERDICTS)}
+AWAY, TRACED = NUMBER_OF[Verdict.AWAY], NUMBER_OF[Verdict.TRACED]
+
+
+class RayKind(Enum):
+    """What sent a ray."""
+
+    PRIMARY = "primary"
+    REFLECTED = "reflected"
+    REFRACTED = "refracted"
+
+
+@dataclass(frozen=True)
+class ShadowRays:
+    """The shadow rays of a point, s of them: one for each sample of each light, due or not.
+
+    Attributes
+    ----------
+    light : (s,) int32
+        The light of each.
+    verdict : (s,) uint8
+        What became of it, as its place among `VERDICTS`.
+    lit : (s,) bool
+        Whether the light gets to the point, as the frame has it; false if the ray is not due.
+    wrong : (s,) bool
+        Whether that is not true.
+    blocker : (s,) int32
+        The primitive that is truly in the way first, seen from the light; -1 for none.
+    blocked_at : (s,) float32
+        How far along the ray that is, 0 at the light and 1 at the point; inf for none.
+    met : (s,) int32
+        For rays that were traced, the primitive that the search came upon, which need not be the first; -1 for none.
+    asked_moving : (s,) bool
+        Whether moving objects alone were asked.
+    steps, tests : (s,) int32
+        Traversal steps and intersection tests of the ray, traced alone; 0 unless it was traced or moving objects were
+        asked.
+    named : dict of int to tuple of int
+        For rays that were culled: the primitives that this rests on, where it rests on some.
+    known : dict of int to str
+        For rays that were traced: what was known all the same, but did not do. That is a mode by its name: the
+        primitive's occlusion mode unless it was fully rendered, else its shadow mode; or "candidates".
+    """
+
+    light: NDArray[np.int32]
+    verdict: NDArray[np.uint8]
+    lit: NDArray[np.bool_]
+    wrong: NDArray[np.bool_]
+    blocker: NDArray[np.int32]
+    blocked_at: Float32
+    met: NDArray[np.int32]
+    asked_moving: NDArray[np.bool_]
+    steps: NDArray[np.int32]
+    tests: NDArray[np.int32]
+    named: dict[int, tuple[int, ...]]
+    known: dict[int, str]
+
+    def of_light(self, light: int) -> slice:
+        """The places of a light's samples."""
+        first, end = np.searchsorted(self.light, [light, light + 1])
+        return slice(int(first), int(end))
+
+    @cached_property
+    def counts(self) -> Counter[Verdict]:
+        """How many rays each verdict has."""
+        return counted(self.verdict)
+
+
+def counted(verdicts: NDArray[np.uint8]) -> Counter[Verdict]:
+    """How many of them are which, in the order of `Verdict`, without those that none is."""
+    numbers = np.bincount(verdicts, minlength=len(VERDICTS))
+    return Counter({verdict: int(n) for verdict, n in zip(VERDICTS, numbers) if n})
+
+
+@dataclass(frozen=True)
+class PathRay:
+    """A primary, reflected or refracted ray.
+
+    `number` is its place in `RayTree.rays`, `parent` that of the ray that sent it, -1 for the primary ray. It starts at
+    `origin` (3,), goes in the unit `direction` (3,), and counts with `weight` (3,). It hits `primitive` at `t`, -1 and
+    inf for a miss; `point` (3,) is where, and `end` (3,) a little above it, where the shadow rays `shadows` end, None
+    for a miss. `light` (3,) is what it brings to the pixel by itself, without what it sends on. `steps` and `tests` are
+    what it costs, traced alone."""
+
+    number: int
+    parent: int
+    kind: RayKind
+    bounce: int
+    origin: Float32
+    direction: Float32
+    weight: Float32
+    t: float
+    primitive: int
+    point: Float32
+    end: Float32
+    light: Float64
+    steps: int
+    tests: int
+    shadows: ShadowRays | None
+
+
+@dataclass(frozen=True)
+class RayTree:
+    """The rays of pixel (x, y) of a frame, and `samples` (s, 3), where the lights' samples are."""
+
+    frame: Frame
+    x: int
+    y: int
+    rays: tuple[PathRay, ...]
+    samples: Float32
+
+    @cached_property
+    def children(self) -> dict[int, tuple[int, ...]]:
+        """The rays that each has sent, and under -1 the primary one."""
+        found: dict[int, list[int]] = {}
+        for ray in self.rays:
+            found.setdefault(ray.parent, []).append(ray.number)
+        return {parent: tuple(numbers) for parent, numbers in found.items()}
+
+    @cached_property
+    def counts(self) -> Counter[Verdict]:
+        """How many shadow rays each verdict has."""
+        return sum((ray.shadows.counts for ray in self.rays if ray.shadows is not None), Counter())
+
+    @property
+    def due(self) -> int:
+        """Shadow rays that had to be answered."""
+        return sum(number for verdict, number in self.counts.items() if verdict.due)
+
+    @property
+    def traced(self) -> int:
+        """Shadow rays that asked static geometry."""
+        return self.counts[Verdict.TRACED]
+
+    @property
+    def color(self) -> Float32:
+        """(3,) what all rays bring to the pixel."""
+        return np.sum([ray.light for ray in self.rays], axis=0).astype(np.float32)
+
+    def shadow_rays(self) -> Iterator[tuple[PathRay, int]]:
+        """Each ray with the places of its shadow rays that are due."""
+        for ray in self.rays:
+            if ray.shadows is not None:
+                for place in np.flatnonzero(ray.shadows.verdict != AWAY):
+                    yield ray, int(place)

@@ -1,0 +1,225 @@
+"""The command `check`: whether saved pictures and figures are still what the program makes of their recipes."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from argparse import Namespace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from tracer.frame import Frame
+from tracer.geometry.world import World
+from tracer.renderer import Renderer
+from tracer.scene.files import read_regular
+from tracer.scene.load import load_visible_scene
+from tracer.scene.mesh_options import MeshOptions
+from tracer.scene.model import Cancelled, Scene, SceneError
+from viewer.cli.console import Work, working
+from viewer.cli.tracing_options import prepare_kernels
+from viewer.output import capture, comparison_figure, exr, fingerprint, recipe
+from viewer.output.recipe import Recipe
+from viewer.services import comparison, stills
+from viewer.services.scene_files import find_scene
+from viewer.state.session import Snapshot
+from viewer.util.messages import in_one_line, printable
+from viewer.util.version import program_version
+
+ROUNDING = 2  # of 255, by which a GPU may draw a view otherwise
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether a file is true, None where that cannot be told, and why."""
+
+    true: bool | None
+    text: str
+
+    def __str__(self) -> str:
+        return f"{ {True: 'true', False: 'FALSE', None: 'unknown'}[self.true] }: {self.text}"
+
+
+class Checker:
+    """Checks one file after another; a scene that several have in common is read once."""
+
+    def __init__(self, options: Namespace, work: Work) -> None:
+        self._options, self._work = options, work
+        self._scene: tuple[tuple[Path, MeshOptions], Scene] | None = None
+        self._world: tuple[str, World] | None = None
+
+    def check(self, path: Path) -> Verdict:
+        """Raises Cancelled; every other failure is a verdict."""
+        try:
+            kinds = {".pdf": self._check_pdf, exr.ENDING: self._check_exr}
+            return kinds.get(path.suffix.lower(), self._check_png)(path)
+        except Cancelled:
+            raise
+        except (SceneError, ValueError, OSError) as error:
+            text = in_one_line(error)
+            return Verdict(None, text.removeprefix(f"{path}: "))
+
+    def _check_png(self, path: Path) -> Verdict:
+        data = capture.read_data(path)
+        with Image.open(BytesIO(read_regular(path)), formats=("PNG",)) as image:
+            kept = np.asarray(image.convert("RGB"))
+        if "figure" in data:
+            again = self._figure(path, data, ".png")
+            with Image.open(BytesIO(again), formats=("PNG",)) as image:
+                return self._compared(kept, np.asarray(image.convert("RGB")), data, {}, False)
+        if data.get("window"):
+            return Verdict(None, "it shows the window with its panels, which cannot be rendered again")
+        frame, wanted = self._traced(path, data)
+        pixels, _ = stills.draw(frame, self._open_scene, wanted)
+        return self._compared(kept, pixels, data, frame.statistics.to_dict(), wanted.by_gpu)
+
+    def _traced(self, path: Path, data: Mapping[str, Any]) -> tuple[Frame, Recipe]:
+        """The frame of a picture, once more; raises ValueError, in one line, where that cannot be."""
+        snapshot, size = Snapshot.from_json(data.get("state")), capture.size_of(data.get("size"))
+        wanted = recipe.from_json(snapshot, size, data.get("picture"))
+        if wanted.history:
+            raise ValueError(f"it cannot be made again: {wanted.history}")
+        scene, wanted = self._prepared(path, snapshot, wanted, (wanted.settings.method,))
+        stills.check_light(wanted, scene)
+        renderer = Renderer(scene, wanted.settings, world=self._world_of(scene, wanted))
+        return stills.trace(renderer, wanted, cancelled=self._work.cancelled), wanted
+
+    @property
+    def _open_scene(self) -> Scene:
+        assert self._scene is not None
+        return self._scene[1]
+
+    def _check_exr(self, path: Path) -> Verdict:
+        """By its linear colours, as they are kept: with 32 bits, or with 16."""
+        exr.check()
+        kept, data = exr.read(path)
+        frame, _ = self._traced(path, data)
+        color = frame.color.astype(kept.dtype)
+        size = f"{kept.shape[1]} × {kept.shape[0]}"
+        if kept.shape != color.shape:
+            return Verdict(False, f"it has {size} pixels; {self._since(data, None)}")
+        differ = int((kept != color).any(axis=-1).sum())
+        if not differ:
+            return Verdict(True, f"{size}, the colours bit for bit")
+        since = self._since(data, None) + _counted(data.get("statistics"), frame.statistics.to_dict())
+        return Verdict(False, f"the colours of {differ:,} of {color[..., 0].size:,} pixels differ; {since}")
+
+    def _check_pdf(self, path: Path) -> Verdict:
+        kept = read_regular(path)
+        text = comparison_figure.text_of_pdf(kept)
+        if text is None:
+            return Verdict(None, "a PDF, but not a figure of Shadowcull")
+        data = json.loads(text)
+        if self._figure(path, data, ".pdf") == kept:
+            return Verdict(True, "byte for byte")
+        return Verdict(False, f"the file is another; {self._since(data, None)}")
+
+    def _figure(self, path: Path, data: Mapping[str, Any], ending: str) -> bytes:
+        """The file of a figure, made again."""
+        snapshot, size = Snapshot.from_json(data.get("state")), capture.size_of(data.get("size"))
+        wanted = comparison.from_json(snapshot, size, data["figure"])
+        scene, common = self._prepared(path, snapshot, wanted.recipe, wanted.methods)
+        wanted = replace(wanted, recipe=common)
+        shown = comparison.trace(scene, wanted, self._world_of(scene, common), cancelled=self._work.cancelled)
+        with tempfile.TemporaryDirectory() as folder:
+            again = Path(folder) / f"again{ending}"
+            # What it carries is what the other carried: times and versions are of then.
+            comparison_figure.save(shown, again, json.dumps(data))
+            return again.read_bytes()
+
+    def _prepared(
+        self, path: Path, snapshot: Snapshot, wanted: Recipe, methods: tuple[str, ...]
+    ) -> tuple[Scene, Recipe]:
+        """The scene, read, and the recipe with the path that it has now; raises ValueError where it is gone."""
+        found = find_scene(snapshot.scene, path)
+        if found is None:
+            raise ValueError(f"its scene is gone: {snapshot.scene}")
+        if self._scene is None or self._scene[0] != (found, snapshot.meshes):
+            self._scene, self._world = (
+                (
+                    (found, snapshot.meshes),
+                    load_visible_scene(found, self._work.progress, self._options.folder, snapshot.meshes),
+                ),
+                None,
+            )
+        scene = self._scene[1]
+        prepare_kernels(self._work, len(scene.lights), wanted.settings.accelerator, *methods)
+        settings = replace(wanted.settings, threads=wanted.settings.threads or self._options.threads)
+        start, end = scene.time_range
+        if not start <= wanted.time <= end:
+            raise ValueError(f"its time, {wanted.time:g} s, is none of the scene's any more")
+        return scene, replace(wanted, scene=found, settings=settings)
+
+    def _world_of(self, scene: Scene, wanted: Recipe) -> World:
+        accelerator = wanted.settings.accelerator
+        if self._world is None or self._world[0] != accelerator:
+            self._world = accelerator, World(scene, wanted.time, accelerator, self._work.progress)
+        return self._world[1]
+
+    def _compared(
+        self,
+        kept: NDArray[np.uint8],
+        again: NDArray[np.uint8],
+        data: Mapping[str, Any],
+        statistics: Mapping[str, Any],
+        by_gpu: bool,
+    ) -> Verdict:
+        size = f"{kept.shape[1]} × {kept.shape[0]}"
+        if kept.shape != again.shape:
+            now = f"{again.shape[1]} × {again.shape[0]}"
+            return Verdict(False, f"it has {size} pixels, and {now} when made again; {self._since(data, kept)}")
+        apart = np.abs(kept.astype(np.int16) - again.astype(np.int16)).max(axis=-1)
+        differ, most = int((apart > 0).sum()), int(apart.max(initial=0))
+        if not differ:
+            return Verdict(True, f"{size}, bit for bit")
+        words = f"{differ:,} of {apart.size:,} pixels differ, by {most} of 255 at most"
+        if by_gpu and most <= ROUNDING:
+            return Verdict(True, f"{size}, but for the rounding of the GPU that drew it: {words}")
+        return Verdict(False, f"{words}; {self._since(data, kept)}{_counted(data.get('statistics'), statistics)}")
+
+    def _since(self, data: Mapping[str, Any], kept: NDArray[np.uint8] | None) -> str:
+        """What has changed since a file was made, in words."""
+        made = data.get("made")
+        if not isinstance(made, Mapping) or self._scene is None:
+            return "it does not say what it was made of"
+        found = []
+        was, now = made.get("scene", {}), fingerprint.of_scene(self._scene[1])
+        parts = [part for part, code in now.items() if isinstance(was, Mapping) and was.get(part) != code]
+        if parts:
+            found.append(f"the scene's {' and '.join(filter(None, [', '.join(parts[:-1]), parts[-1]]))}")
+        if made.get("version") != program_version():
+            found.append(f"the version, {made.get('version')} then and {program_version()} now")
+        if kept is not None and "pixels" in made and made["pixels"] != fingerprint.of_pixels(kept):
+            found.append("the file's own pixels")
+        if not found:
+            return "nothing that it was made of has changed, so the program has, or the libraries it draws with"
+        return f"changed since: {'; '.join(found)}"
+
+
+def _counted(then: Any, now: Mapping[str, Any]) -> str:
+    """The counters of shadow rays that are others than then."""
+    if not isinstance(then, Mapping) or not now:
+        return ""
+    was, counts = then.get("shadow", {}), now["shadow"]
+    names = [name for name in ("due", "culled", "dynamic_only") if was.get(name) != counts[name]]
+    told = ", ".join(f"{name.replace('_', ' ')} {was.get(name):,} then, {counts[name]:,} now" for name in names)
+    return f"; shadow rays {told}" if told else ""
+
+
+def check(options: Namespace) -> bool:
+    """Check all files and print a line for each; returns whether all are true."""
+    good = True
+    with working() as work:
+        checker = Checker(options, work)
+        for number, path in enumerate(options.pictures):
+            work.count(f"checking {path.name}", number, len(options.pictures))
+            verdict = checker.check(path)
+            good &= verdict.true is True
+            print(printable(f"{path}: {verdict}"), flush=True)
+    return good

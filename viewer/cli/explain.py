@@ -1,0 +1,84 @@
+"""The command `explain`: what became of the rays of one pixel."""
+
+from __future__ import annotations
+
+import json
+from argparse import Namespace
+from dataclasses import replace
+from pathlib import Path
+
+from rich.console import Console
+from rich.text import Text
+from rich.tree import Tree
+
+from tracer.ray_tree import ray_tree
+from tracer.renderer import Renderer
+from tracer.scene.load import check_scene_file, load_visible_scene
+from tracer.scene.model import Scene
+from tracer.told_rays import RayTree
+from viewer.cli.console import working
+from viewer.cli.mesh_arguments import mesh_options
+from viewer.cli.render import times_before
+from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
+from viewer.output.legend import light_in_words
+from viewer.output.pictures import lights_in_words
+from viewer.output.ray_json import ray_data
+from viewer.output.ray_rows import RayRows, Row, totals
+from viewer.state.methods import DEFAULT
+from viewer.state.verdicts import Filter, Shown
+from viewer.util.messages import printable
+
+
+def explain(path: Path, options: Namespace) -> None:
+    """Trace a frame, and print the tree of a pixel's rays; raises SceneError and ValueError in one line, or
+    Cancelled."""
+    check_scene_file(path)
+    settings = replace(tracing_settings(options), method=options.method or DEFAULT)
+    x, y = options.pixel
+    if not (x < settings.width and y < settings.height):
+        raise ValueError(f"--pixel {x},{y}: the picture is {settings.width} x {settings.height}")
+    with working() as work:
+        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
+        if options.light is not None and options.light >= len(scene.lights):
+            raise ValueError(f"--light {options.light}: {lights_in_words(len(scene.lights))}")
+        time = moment(scene, options.frame, options.time)
+        prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
+        renderer = Renderer(scene, settings, work.progress)
+        before = times_before(scene, time, options.warmup, work)
+        for done, earlier in enumerate(before):
+            work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
+            renderer.render(earlier, options.camera, work.cancelled)
+        work.count("tracing", len(before), len(before) + 1)
+        frame = renderer.render(time, options.camera, work.cancelled)
+        tree = ray_tree(renderer, frame, x, y, work.cancelled)
+    if options.json:
+        print(json.dumps(ray_data(tree, scene), indent=2))
+        return
+    title = f"{path.name}, {time:.3f} s, pixel {x},{y} of {frame.width} × {frame.height}, method {settings.method}"
+    _print(tree, scene, Filter(Shown(options.only), options.light), title)
+
+
+def _print(tree: RayTree, scene: Scene, shown: Filter, title: str) -> None:
+    console = Console()
+    if not console.is_terminal:
+        console = Console(width=100_000, soft_wrap=True)  # a line for each row, whatever reads it
+    said = [printable(title), totals(tree)]
+    if shown != Filter():
+        of = "" if shown.light is None else f" of {light_in_words(shown.light, scene.lights[shown.light].name)}"
+        said.append(f"shadow rays shown: {shown.shown.value}{of}")
+    drawn = Tree(Text("\n".join(said), "bold"), guide_style="dim")
+    for row in RayRows(tree, scene, shown).top:
+        _add(drawn, row)
+    console.print(drawn, markup=False, highlight=False)
+    if tree.frame.statistics.decision:
+        console.print(Text(tree.frame.statistics.decision, "italic"))
+
+
+def _add(tree: Tree, row: Row) -> None:
+    """A row, and those below it, but for the single samples and lights of many with the same fate."""
+    red, green, blue = (round(255 * channel) for channel in row.color)
+    below = tree.add(Text(printable(row.text), f"rgb({red},{green},{blue})" if len(row.places) else "bold"))
+    if "fate" in row.key:
+        return
+    for one in row.rows:
+        _add(below, one)

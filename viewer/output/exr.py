@@ -1,0 +1,95 @@
+"""A frame with all its buffers as an OpenEXR file, and what it carries as JSON."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.frame import Frame
+from viewer.output.buffers import buffers
+from viewer.output.capture import CHUNK, CaptureError
+from viewer.util.files import check_writable, write_whole
+
+ENDING = ".exr"
+MOST_LIGHTS = 32  # that have channels of their own
+MISS = np.uint32(0xFFFFFFFF)
+"""In a channel of whole numbers: nothing is there."""
+_AXES = {"color": "RGB", "reference": "RGB", "normal": "XYZ"}
+_NAMES = {"color": "", "normal": "N.", "depth": "Z"}
+_HALVES = ("color", "reference", "normal")
+
+
+def check() -> None:
+    """Raise ValueError, in one line, where OpenEXR is not there."""
+    try:
+        import OpenEXR  # noqa: F401
+    except ImportError as error:
+        raise ValueError(f"an {ENDING} needs OpenEXR; install shadowcull[exr] ({error})") from None
+
+
+def channels(frame: Frame, half: bool = False) -> dict[str, NDArray[Any]]:
+    """(h, w) arrays by the names of channels, float32, float16 where `half`, or uint32."""
+    found: dict[str, NDArray[Any]] = {}
+    for name, array in (buffers(frame) | {"normal": frame.normal}).items():
+        kind = np.float16 if half and name in _HALVES else np.float32
+        if name in _AXES:
+            for axis, letter in enumerate(_AXES[name]):
+                found[f"{_NAMES.get(name, name + '.')}{letter}"] = array[..., axis].astype(kind)
+        elif array.ndim == 3:
+            for light in range(min(array.shape[-1], MOST_LIGHTS)):
+                found[f"{name}.{light}"] = _whole(array[..., light])
+        elif array.dtype.kind == "f":
+            found[_NAMES.get(name, name)] = array.astype(np.float32)
+        else:
+            found[name] = _whole(array)
+    return {name: np.ascontiguousarray(array) for name, array in found.items()}
+
+
+def _whole(array: NDArray[Any]) -> NDArray[np.uint32]:
+    """Whole numbers as EXR has them; what stands for a miss, -1 or 255, is MISS."""
+    whole = array.astype(np.uint32)
+    return np.where(array == 255, MISS, whole) if array.dtype == np.uint8 else whole
+
+
+def write(path: Path, frame: Frame, text: str, half: bool = False) -> None:
+    """Write the file, whole or not at all; raises OSError in one line."""
+    import OpenEXR
+
+    check_writable(path)
+    header = {
+        "compression": OpenEXR.ZIP_COMPRESSION,
+        "type": OpenEXR.scanlineimage,
+        "software": "Shadowcull",
+        CHUNK: text,
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        made = Path(folder) / "frame.exr"
+        try:
+            with OpenEXR.File(header, channels(frame, half)) as file:
+                file.write(str(made))
+        except RuntimeError as error:
+            raise OSError(f"{path}: not written: {error}") from None
+        write_whole(path, lambda file: file.write(made.read_bytes()))
+
+
+def read(path: Path) -> tuple[NDArray[Any], dict[str, Any]]:
+    """The colours, (h, w, 3), and what the file carries, as JSON has it; raises CaptureError."""
+    import OpenEXR
+
+    if not path.is_file():
+        raise CaptureError(f"{path}: no such file")
+    try:
+        with OpenEXR.File(str(path), separate_channels=True) as file:
+            text = file.header().get(CHUNK)
+            color = np.stack([file.channels()[letter].pixels for letter in "RGB"], axis=-1)
+        data = json.loads(text) if isinstance(text, str) else None
+    except (RuntimeError, KeyError, ValueError, RecursionError) as error:
+        raise CaptureError(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
+    if not isinstance(data, dict):
+        raise CaptureError(f"{path}: an EXR, but not one of Shadowcull")
+    return color, data

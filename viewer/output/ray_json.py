@@ -1,0 +1,82 @@
+"""A tree of rays as plain data, for JSON."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from tracer.scene.model import Scene
+from tracer.told_rays import VERDICTS, PathRay, RayTree, ShadowRays
+
+
+def ray_data(tree: RayTree, scene: Scene) -> dict[str, Any]:
+    """The pixel, how it was rendered, and its rays with all shadow rays that are due."""
+    settings = tree.frame.settings
+    return {
+        "pixel": [tree.x, tree.y],
+        "size": [tree.frame.width, tree.frame.height],
+        "time": tree.frame.time,
+        "method": settings.method,
+        "accelerator": settings.accelerator,
+        "color": _numbers(tree.color),
+        "due": tree.due,
+        "traced": tree.traced,
+        "verdicts": {verdict.value: number for verdict, number in tree.counts.items()},
+        "rays": [_ray(tree, ray, scene) for ray in tree.rays],
+    }
+
+
+def _ray(tree: RayTree, ray: PathRay, scene: Scene) -> dict[str, Any]:
+    data: dict[str, Any] = {
+        "ray": ray.number,
+        "parent": ray.parent if ray.parent >= 0 else None,
+        "kind": ray.kind.value,
+        "bounce": ray.bounce,
+        "origin": _numbers(ray.origin),
+        "direction": _numbers(ray.direction),
+        "weight": _numbers(ray.weight),
+        "light": _numbers(ray.light),
+        "traversal_steps": ray.steps,
+        "intersection_tests": ray.tests,
+        "hit": None,
+        "shadow_rays": [],
+    }
+    if ray.shadows is not None:
+        data["hit"] = {"t": ray.t, **_primitive(ray.primitive, scene), "point": _numbers(ray.point)}
+        data["shadow_rays"] = [
+            _shadow_ray(tree, ray.shadows, int(place), scene)
+            for place in np.flatnonzero([VERDICTS[number].due for number in ray.shadows.verdict])
+        ]
+        data["facing_away"] = len(ray.shadows.light) - len(data["shadow_rays"])
+    return data
+
+
+def _shadow_ray(tree: RayTree, s: ShadowRays, place: int, scene: Scene) -> dict[str, Any]:
+    light, verdict = int(s.light[place]), VERDICTS[s.verdict[place]]
+    blocker = int(s.blocker[place])
+    return {
+        "light": light,
+        "sample": place - s.of_light(light).start,
+        "position": _numbers(tree.samples[place]),
+        "verdict": verdict.value,
+        "lit": bool(s.lit[place]),
+        "wrong": bool(s.wrong[place]),
+        "blocker": {**_primitive(blocker, scene), "t": float(s.blocked_at[place])} if blocker >= 0 else None,
+        "met": int(s.met[place]) if s.met[place] >= 0 else None,
+        "moving_objects_asked": bool(s.asked_moving[place]),
+        "traversal_steps": int(s.steps[place]),
+        "intersection_tests": int(s.tests[place]),
+        "names": list(s.named.get(place, ())),
+        "known": s.known.get(place),
+    }
+
+
+def _primitive(number: int, scene: Scene) -> dict[str, Any]:
+    return {"primitive": number, "object": scene.name_of(number)}
+
+
+def _numbers(values: Any) -> list[float | None]:
+    """Three numbers; JSON has none that are not finite."""
+    return [float(x) if math.isfinite(x) else None for x in values]

@@ -1,0 +1,246 @@
+"""A tree of rays as rows of text, as the window lists it and the command line prints it.
+
+A row has rows below it: a ray that was sent on, the shadow rays of a point, by light, and where there are many, those
+that have the same fate together.  Rows below are made when somebody asks for them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.verdicts import Verdict
+from tracer.scene.model import Scene
+from tracer.told_rays import AWAY, VERDICTS, PathRay, RayTree, ShadowRays
+from viewer.output.legend import light_in_words
+from viewer.state.picking import primitive_in_words
+from viewer.state.verdicts import MEANING, SAID, WHY_TRACED, Filter, color_of, color_of_all
+from viewer.state.views import Color
+from viewer.util.numbers import count
+
+MOST_LIGHTS = 12
+"""Lights of a point that have a row each; of more, those with the same fate have one together."""
+MOST_NAMED = 3  # primitives that are named in a row
+PATH_COLOR: Color = (0.86, 0.88, 0.92)
+
+Key = tuple[int | str, ...]
+Fate = tuple[int, int, str, int, str]  # verdict, lit, what blocks it, wrong, what was known
+
+
+@dataclass(frozen=True)
+class Row:
+    """`ray` is the path ray it is about, and `places` are the shadow rays of that which it stands for, none for the
+    path ray itself; `tip` says more about it."""
+
+    key: Key
+    text: str
+    tip: str
+    color: Color
+    ray: int
+    places: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+    below: Callable[[], list[Row]] | None = None
+
+    @cached_property
+    def rows(self) -> list[Row]:
+        """What is below it."""
+        return [] if self.below is None else self.below()
+
+    @property
+    def single(self) -> bool:
+        """Whether it stands for a single ray."""
+        return len(self.places) < 2
+
+
+class RayRows:
+    """The rows of a tree of rays of a scene, as a filter lets them be seen."""
+
+    def __init__(self, tree: RayTree, scene: Scene, shown: Filter) -> None:
+        self.tree, self._scene, self._filter = tree, scene, shown
+
+    @cached_property
+    def top(self) -> list[Row]:
+        """The primary ray's row."""
+        return [self._path(number) for number in self.tree.children.get(-1, ())]
+
+    # --- rays on their way -----------------------------------------------------------------------
+
+    def _path(self, number: int) -> Row:
+        ray = self.tree.rays[number]
+        return Row(("ray", number), self._path_text(ray), self._path_tip(ray), PATH_COLOR, number,
+                   below=lambda: self._below(ray))  # fmt: skip
+
+    def _path_text(self, ray: PathRay) -> str:
+        if ray.primitive < 0:
+            return f"{ray.kind.value} ray: leaves the scene"
+        return f"{ray.kind.value} ray: {self.name(ray.primitive)} at {ray.t:.4g}"
+
+    def _path_tip(self, ray: PathRay) -> str:
+        parts = [
+            f"ray {ray.number}, bounce {ray.bounce}; counts with {ray.weight.max():.3g}; "
+            f"{count(ray.steps)} steps and {count(ray.tests)} tests, traced alone",
+            "brings the pixel ({:.3g}, {:.3g}, {:.3g}) by itself".format(*ray.light),
+        ]
+        if ray.shadows is not None:
+            parts.append("shadow rays: " + self.summary(ray.shadows, np.arange(len(ray.shadows.light))))
+        return "\n".join(parts)
+
+    def _below(self, ray: PathRay) -> list[Row]:
+        found: list[Row] = []
+        if ray.shadows is not None:
+            places = self._filter.places(ray.shadows)
+            lights = np.unique(ray.shadows.light[places])
+            of_lights = self._lights if len(lights) <= MOST_LIGHTS else self._fates
+            found += of_lights(ray, ray.shadows, places, ("ray", ray.number))
+        return found + [self._path(number) for number in self.tree.children.get(ray.number, ())]
+
+    # --- shadow rays -----------------------------------------------------------------------------
+
+    def _lights(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> list[Row]:
+        """A row for each light: of a lamp with its samples below."""
+        cuts = np.flatnonzero(np.diff(s.light[places])) + 1
+        return [self._light(ray, s, own, above) for own in np.split(places, cuts) if len(own)]
+
+    def _light(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> Row:
+        light = int(s.light[places[0]])
+        key, whole = (*above, "light", light), s.of_light(light)
+        if whole.stop - whole.start == 1:
+            return self._single(ray, s, int(places[0]), key, self._name_of_light(light))
+        name, fates = self._name_of_light(light), self._by_fate(s, places, True)
+        if len(fates) == 1:
+            (by,) = (fate[2] for fate in fates)
+            text = f"{name}: {count(len(places))} samples {self._shared_fate(s, places, by)}"
+            below = None if s.verdict[places[0]] == AWAY else lambda: self._samples(ray, s, places, key)
+            tip = MEANING[VERDICTS[s.verdict[places[0]]]]
+            return Row(key, text, tip, color_of(s, int(places[0])), ray.number, places, below)
+        text = f"{name}: {self.summary(s, places)}"
+        return Row(key, text, "", color_of_all(s, places), ray.number, places,
+                   lambda: self._fates(ray, s, places, key))  # fmt: skip
+
+    def _fates(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> list[Row]:
+        """A row for those with each fate: the verdict, whether the light arrives, and of one light also the object that
+        blocks it."""
+        one = len(np.unique(s.light[places])) == 1
+        fates, rows = self._by_fate(s, places, one), []
+        for fate in sorted(fates):
+            same = np.array(fates[fate])
+            key = (*above, "fate", *fate)
+            if len(same) == 1:
+                name = self._name_of_light(int(s.light[same[0]]))
+                rows.append(self._single(ray, s, int(same[0]), key, self._name_of_sample(s, int(same[0]), one, name)))
+                continue
+            text = f"{count(len(same))} {'samples' if one else 'rays'} {self._shared_fate(s, same, fate[2])}"
+            below = self._samples if one else self._lights
+            rows.append(
+                Row(key, text, MEANING[VERDICTS[fate[0]]], color_of(s, int(same[0])), ray.number, same,
+                    lambda same=same, key=key, below=below: below(ray, s, same, key))  # type: ignore[misc]
+            )  # fmt: skip
+        return rows
+
+    def _by_fate(self, s: ShadowRays, places: NDArray[np.int64], one: bool) -> dict[Fate, list[int]]:
+        """The places with each fate; what blocks them counts where they are of one light."""
+        fates: dict[Fate, list[int]] = {}
+        for place in places.tolist():
+            by = self._object(s, place) if one and s.verdict[place] != AWAY and not s.lit[place] else ""
+            fate = int(s.verdict[place]), int(s.lit[place]), by, int(s.wrong[place]), s.known.get(place, "")
+            fates.setdefault(fate, []).append(place)
+        return fates
+
+    def _samples(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> list[Row]:
+        return [
+            self._single(ray, s, place, (*above, place), self._name_of_sample(s, place, True, ""))
+            for place in places.tolist()
+        ]
+
+    def _single(self, ray: PathRay, s: ShadowRays, place: int, key: Key, name: str) -> Row:
+        text = f"{name}: {self.fate(s, place)}"
+        return Row(key, text, self._tip(s, place), color_of(s, place), ray.number, np.array([place]))
+
+    def fate(self, s: ShadowRays, place: int) -> str:
+        """What became of a shadow ray, in words."""
+        verdict, text = VERDICTS[s.verdict[place]], SAID[VERDICTS[s.verdict[place]]]
+        if not verdict.due:
+            return text
+        text += f" ({s.known[place]})" if place in s.known else ""
+        text += ", lit" if s.lit[place] else f", {self._blocked(s, place)}"
+        if s.wrong[place]:
+            text += " (wrong)"
+        if verdict is Verdict.TRACED:
+            text += f"; {s.steps[place]} steps, {s.tests[place]} tests"
+        return text
+
+    def _shared_fate(self, s: ShadowRays, places: NDArray[np.int64], by: str) -> str:
+        """What became of several that have the same fate, blocked by an object of this name if that is known."""
+        place = int(places[0])
+        verdict, text = VERDICTS[s.verdict[place]], SAID[VERDICTS[s.verdict[place]]]
+        if not verdict.due:
+            return text
+        text += f" ({s.known[place]})" if place in s.known else ""
+        text += ", lit" if s.lit[place] else f", blocked by {by}" if by else ", in shadow"
+        if s.wrong[place]:
+            text += " (wrong)"
+        if verdict is Verdict.TRACED:
+            text += f"; {count(s.steps[places].sum())} steps, {count(s.tests[places].sum())} tests"
+        return text
+
+    def _object(self, s: ShadowRays, place: int) -> str:
+        return self._scene.name_of(int(s.blocker[place])) if s.blocker[place] >= 0 else ""
+
+    def _blocked(self, s: ShadowRays, place: int) -> str:
+        return f"blocked by {self.name(int(s.blocker[place]))}" if s.blocker[place] >= 0 else "said to be in shadow"
+
+    def _tip(self, s: ShadowRays, place: int) -> str:
+        verdict = VERDICTS[s.verdict[place]]
+        parts = [WHY_TRACED.get(s.known.get(place, ""), MEANING[verdict])]
+        if place in s.named:
+            names = [self.name(number) for number in s.named[place][:MOST_NAMED]]
+            more = len(s.named[place]) - len(names)
+            parts.append("It names " + ", ".join(names) + (f" and {more} more." if more else "."))
+        if s.asked_moving[place]:
+            parts.append(f"Asking what moves took {s.steps[place]} steps and {s.tests[place]} tests.")
+        if verdict is Verdict.TRACED and s.met[place] not in (-1, s.blocker[place]):
+            parts.append(f"The search came upon {self.name(int(s.met[place]))} first.")
+        if s.wrong[place]:
+            truth = f"it is {self._blocked(s, place)}" if s.blocker[place] >= 0 else "nothing is in its way"
+            parts.append(f"This answer is wrong: {truth}.")
+        return "\n".join(parts)
+
+    def summary(self, s: ShadowRays, places: NDArray[np.int64]) -> str:
+        """How many of some shadow rays have each verdict, and how many of these are lit."""
+        parts = []
+        for number in np.unique(s.verdict[places]):
+            same = places[s.verdict[places] == number]
+            lit = int(s.lit[same].sum())
+            parts.append(f"{count(len(same))} {SAID[VERDICTS[number]]}" + (f" ({count(lit)} lit)" if lit else ""))
+        return ", ".join(parts)
+
+    # --- names -----------------------------------------------------------------------------------
+
+    def name(self, primitive: int) -> str:
+        """A primitive as people find it again."""
+        return primitive_in_words(self._scene, primitive)
+
+    def _name_of_light(self, light: int) -> str:
+        return light_in_words(light, self._scene.lights[light].name)
+
+    def _name_of_sample(self, s: ShadowRays, place: int, one: bool, light: str) -> str:
+        whole = s.of_light(int(s.light[place]))
+        return f"sample {place - whole.start}" if one and whole.stop - whole.start > 1 else light
+
+
+def unfolded(rows: list[Row], is_open: Callable[[Row], bool], level: int = 0) -> Iterator[tuple[int, Row]]:
+    """The rows that are seen where some are open, each with its level."""
+    for row in rows:
+        yield level, row
+        if row.below is not None and is_open(row):
+            yield from unfolded(row.rows, is_open, level + 1)
+
+
+def totals(tree: RayTree) -> str:
+    """All shadow rays of the tree in a line."""
+    paths = f"{count(len(tree.rays))} {'ray' if len(tree.rays) == 1 else 'rays'}"
+    said = ", ".join(f"{count(number)} {SAID[verdict]}" for verdict, number in tree.counts.items() if verdict.due)
+    return f"{paths} and {count(tree.due)} shadow rays that are due" + (f": {said}" if said else "")

@@ -1,0 +1,269 @@
+"""All that a picture depends on: as the options of `shadowcull render` that make it again, and as JSON in the picture.
+
+Modes come from the frames before, and certificates and the caches as well.  A picture that shows them can be made again
+where those frames are known: so many frames of the path before it (`warmup`), or the same frame so many times
+(`repeats`).  Where they are not, `history` says why, in words.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from tracer.geometry.accelerators import ACCELERATORS
+from tracer.method import Method
+from tracer.scene.load import AFF_EXTENSIONS
+from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
+from tracer.scene.model import Camera, Scene
+from tracer.settings import Settings
+from viewer.output.pictures import SHADING
+from viewer.state.annotations import Annotation
+from viewer.state.annotations import from_json as annotations_from_json
+from viewer.state.marks import wipe_column
+from viewer.state.session import Snapshot, settings_to_json
+from viewer.state.views import BENEATH, View
+from viewer.util import resources
+
+MOST_BEFORE = 100_000  # frames
+
+
+@dataclass(frozen=True)
+class Style:
+    """How a frame is drawn, without tracing it: shares instead of counts in maps of work, rings around wrong pixels for
+    a picture that is shown `magnified` times, how much of the light shows under flat colours, how bright the picture
+    beneath the difference is, borders between primitives, where the legend is if there is one, the caption, and what
+    was drawn on it."""
+
+    shares: bool = False
+    marked: bool = True
+    magnified: int = 1
+    shading: float = SHADING
+    beneath: float = BENEATH
+    outlines: bool = False
+    legend: tuple[float, float] | None = None
+    caption: str = ""
+    annotations: tuple[Annotation, ...] = ()
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """See the module.  `camera` None is the scene's own; `settings` are those of the picture's own frame; `by_gpu` says
+    that a GPU drew the view, which may round otherwise.  `folders` are those that the user lets the scene read: a
+    picture does not carry them, or it could name any."""
+
+    scene: Path
+    time: float
+    camera: Camera | None
+    settings: Settings
+    view: View = View.COLOR
+    light: int = 0
+    wipe: float = 0.5
+    style: Style = field(default_factory=Style)
+    warmup: int = 0
+    repeats: int = 0
+    history: str = ""
+    by_gpu: bool = False
+    folders: tuple[Path, ...] = ()
+    meshes: MeshOptions = AS_IN_FILE
+
+    @property
+    def size(self) -> tuple[int, int]:
+        return self.settings.width, self.settings.height
+
+    @property
+    def needs_history(self) -> bool:
+        """Whether frames before it show in the picture."""
+        return needs_history(self.settings.method, self.view)
+
+    @property
+    def by_one_thread(self) -> bool:
+        """Whether it takes a single thread to make it again."""
+        certified = Method.parse(self.settings.method).has_certificates
+        return self.settings.threads == 1 and certified and self.needs_history
+
+    def snapshot(self, scene: Scene) -> Snapshot:
+        """The state that a capture carries."""
+        camera = self.camera or scene.camera_at(self.time)
+        settings = settings_to_json(self.settings)
+        path = str(self.scene.absolute())
+        return Snapshot(
+            path, self.time, camera, self.camera is None, settings, self.view, self.light, self.wipe, self.meshes
+        )  # fmt: skip
+
+    def to_json(self) -> dict[str, Any]:
+        """What a capture carries beside its state."""
+        style = asdict(self.style) | {"annotations": [a.to_json() for a in self.style.annotations]}
+        return {
+            "accelerator": self.settings.accelerator,
+            "threads": self.settings.threads if self.by_one_thread else 0,
+            "warmup": self.warmup,
+            "repeats": self.repeats,
+            "history": self.history,
+            "by_gpu": self.by_gpu,
+            "style": style,
+        }
+
+
+def needs_history(method: str, view: View) -> bool:
+    """Whether a picture by a method in a view depends on the frames before it."""
+    parsed = Method.parse(method)
+    of_work = view is View.CERTIFICATE or (view.needs_work and parsed.culls)
+    return of_work or view.of_modes or not parsed.exact
+
+
+def by_chance(settings: Settings, view: View) -> bool:
+    """Whether chance has a part in it: what is certified within a limit of time, or by several threads, or what `auto`
+    measures."""
+    method = Method.parse(settings.method)
+    limited = method.has_certificates and (math.isfinite(settings.certificate_seconds) or settings.threads != 1)
+    return needs_history(settings.method, view) and method.exact and not view.of_modes and (limited or method.adaptive)
+
+
+def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Recipe:
+    """The recipe of a capture; what it lacks, as older ones do, is as usual.  Raises ValueError in one line."""
+    if not isinstance(data, Mapping):
+        data = {}
+    accelerator = data.get("accelerator", "bvh8")
+    if accelerator not in ACCELERATORS:
+        raise ValueError(f"its accelerator is not known: {accelerator}")
+    width, height = size or (512, 512)
+    settings = replace(Settings(), **snapshot.settings, width=width, height=height, accelerator=accelerator)
+    settings = replace(settings, threads=1 if data.get("threads") == 1 else 0)
+    try:
+        return Recipe(
+            scene=Path(snapshot.scene),
+            time=snapshot.time,
+            camera=None if snapshot.follow else snapshot.camera,
+            settings=settings.validated(),
+            view=snapshot.view,
+            light=snapshot.light,
+            wipe=snapshot.wipe,
+            style=_style(data.get("style", {})),
+            warmup=_count(data, "warmup"),
+            repeats=_count(data, "repeats"),
+            history=str(data.get("history", "")),
+            by_gpu=bool(data.get("by_gpu", False)),
+            meshes=snapshot.meshes,
+        )
+    except (TypeError, AttributeError):
+        raise ValueError("how it was drawn is damaged") from None
+
+
+def _count(data: Mapping[str, Any], name: str) -> int:
+    value = data.get(name, 0)
+    if type(value) is not int or not 0 <= value <= MOST_BEFORE:
+        raise ValueError(f"its {name} is not understood")
+    return value
+
+
+def _style(data: Mapping[str, Any]) -> Style:
+    usual = Style()
+    magnified = int(data.get("magnified", 1))
+    shading, beneath = (float(data.get(name, getattr(usual, name))) for name in ("shading", "beneath"))
+    legend = data.get("legend")
+    place = None if legend is None else (float(legend[0]), float(legend[1]))
+    if not all(0.0 <= part <= 1.0 for part in (shading, beneath, *(place or ()))) or not 1 <= magnified <= 100:
+        raise ValueError("how it was drawn is not understood")
+    return Style(
+        shares=bool(data.get("shares", False)),
+        marked=bool(data.get("marked", True)),
+        magnified=magnified,
+        shading=shading,
+        beneath=beneath,
+        outlines=bool(data.get("outlines", False)),
+        legend=place,
+        caption=str(data.get("caption", "")),
+        annotations=annotations_from_json(data.get("annotations", [])),
+    )
+
+
+def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
+    """The words after `shadowcull` that make this picture again, to the bit; `scene` names frames by their numbers."""
+    settings, view, style, usual = recipe.settings, recipe.view, recipe.style, Style()
+    words = ["render", scene_word(recipe.scene), "-o", f"./{output}" if output.startswith("-") else output]
+    words += ["--size", f"{settings.width}x{settings.height}", *_moment(recipe.time, scene)]
+    words += ["--method", settings.method]
+    light = f":{recipe.light}" if view.of_light else ""
+    wipe = f":{_wipe(recipe.wipe, settings.width)}" if view is View.WIPE else ""
+    shares = ":share" if view.needs_work and style.shares else ""
+    if view is not View.COLOR:
+        words += ["--view", f"{view.value}{light}{wipe}{shares}"]
+    if recipe.camera is not None:
+        words += ["--camera", json.dumps(recipe.camera.to_json())]
+    of_settings: tuple[tuple[str, object, object], ...] = (
+        ("--samples", settings.samples, 1),
+        ("--depth", settings.depth, 10),
+        ("--zoom-factor", settings.zoom_factor, 4.0),
+        ("--lamp-radius", settings.lamp_radius, None),
+        ("--lamp-samples", settings.lamp_samples, None),
+        ("--accelerator", settings.accelerator, "bvh8"),
+        ("--threads", settings.threads if recipe.by_one_thread else 0, 0),
+        ("--warmup", recipe.warmup, 0),
+        ("--repeat", recipe.repeats, 0),
+        ("--shading", style.shading, usual.shading),
+        ("--beneath", style.beneath, usual.beneath),
+        ("--magnified", style.magnified, usual.magnified),
+    )
+    for option, value, default in of_settings:
+        if value != default:
+            words += [option, str(value)]
+    flags = (
+        ("--symmetric", settings.symmetric),
+        ("--verify", settings.verify),
+        ("--outlines", style.outlines),
+        ("--no-marks", not style.marked),
+        ("--legend", style.legend is not None),
+    )
+    words += [option for option, given in flags if given]
+    if style.legend is not None and style.legend != (0.0, 1.0):
+        words += ["--legend-at", f"{style.legend[0]!r},{style.legend[1]!r}"]
+    if style.caption:
+        words += [f"--caption={style.caption.replace('{', '{{').replace('}', '}}')}"]
+    if style.annotations:
+        words += ["--annotations", json.dumps([a.to_json() for a in style.annotations])]
+    for folder in recipe.folders:
+        words += ["--folder", str(folder.absolute())]
+    return words + _of_meshes(recipe)
+
+
+def _of_meshes(recipe: Recipe) -> list[str]:
+    """How the scene is read, where that can be chosen."""
+    meshes = recipe.meshes
+    if recipe.scene.suffix.lower() in AFF_EXTENSIONS:
+        return []
+    up = [f"--up={meshes.up}"] if meshes.up is not None else []
+    crease = [f"--crease={meshes.crease!r}"] if meshes.crease is not None else []
+    return [*up, *crease, *([] if meshes.studio else ["--no-studio"])]
+
+
+def _wipe(wipe: float, width: int) -> str:
+    """The place of a wipe's line, as few digits as may be for the same column."""
+    column = wipe_column(width, wipe)
+    return "1" if column >= width else f"{(column + 0.5) / width:.9f}"
+
+
+def scene_word(path: Path) -> str:
+    """What names a scene on the command line: of one that comes with the program its name, else where its file is."""
+    own = next((name for name, file in resources.embedded_scenes().items() if _same(file, path)), None)
+    return own or str(path.absolute())
+
+
+def _same(one: Path, other: Path) -> bool:
+    try:
+        return one.samefile(other)
+    except OSError:
+        return False
+
+
+def _moment(time: float, scene: Scene | None) -> list[str]:
+    """The number of the frame where it is one's time to the bit, else the time."""
+    if scene is not None:
+        start, end = scene.time_range
+        number = round((time - start) / (end - start) * (scene.frames - 1)) if scene.frames > 1 and end > start else 0
+        if scene.frame_time(number) == time:
+            return ["--frame", str(number)]
+    return [f"--time={time!r}"]

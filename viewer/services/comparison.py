@@ -1,0 +1,99 @@
+"""One frame by several methods, to be held side by side: what is asked for, how it is traced, and kept as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from tracer.frame import Frame
+from tracer.geometry.world import World
+from tracer.method import Method
+from tracer.renderer import Renderer
+from tracer.scene.model import Scene
+from viewer.output import capture, fingerprint, recipe
+from viewer.output.comparison_figure import Crop, Shown
+from viewer.output.recipe import Recipe
+from viewer.services import stills
+from viewer.state.session import Session, Snapshot
+from viewer.util.version import program_version
+
+MOST_METHODS, MOST_CROPS = 6, 6
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """`recipe` is what all methods have in common; its own method does not count."""
+
+    recipe: Recipe
+    methods: tuple[str, ...]
+    crops: tuple[Crop, ...]
+
+    def checked(self) -> Comparison:
+        """The same; raises ValueError, in one line, for what cannot be drawn."""
+        width, height = self.recipe.size
+        if not 1 <= len(self.methods) <= MOST_METHODS or len(set(self.methods)) < len(self.methods):
+            raise ValueError(f"--methods: give 1 to {MOST_METHODS}, each once")
+        if len(self.crops) > MOST_CROPS:
+            raise ValueError(f"--crops: {MOST_CROPS} at most, not {len(self.crops)}")
+        for crop in self.crops:
+            inside = crop.x + crop.width <= width and crop.y + crop.height <= height
+            if not inside or crop.width < 1 or crop.height < 1:
+                raise ValueError(f"--crops {crop}: not inside the picture of {width} x {height} pixels")
+        for method in self.methods:
+            Method.parse(method)
+        return self
+
+    def to_json(self) -> dict[str, Any]:
+        """What a figure carries beside its state."""
+        crops = [[c.x, c.y, c.width, c.height] for c in self.crops]
+        return self.recipe.to_json() | {"methods": list(self.methods), "crops": crops}
+
+
+def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Comparison:
+    """The inverse of `to_json`; raises ValueError in one line."""
+    common = recipe.from_json(snapshot, size, data)
+    try:
+        crops = tuple(Crop(*(int(side) for side in crop)) for crop in data["crops"])
+        return Comparison(common, tuple(str(method) for method in data["methods"]), crops).checked()
+    except (KeyError, TypeError):
+        raise ValueError("its methods or crops are damaged") from None
+
+
+def trace(
+    scene: Scene,
+    comparison: Comparison,
+    world: World,
+    on_frame: Callable[[str, int, int], None] = lambda method, done, total: None,
+    cancelled: Callable[[], bool] = lambda: False,
+) -> Shown:
+    """The frame by each method, and by "none" as what is right, with modes of their own; raises Cancelled.
+
+    `on_frame` gets the method, and how many of its frames are done, of how many."""
+    frames: dict[str, Frame] = {}
+    for method in dict.fromkeys(("none", *comparison.methods)):
+        settings = replace(comparison.recipe.settings, method=method)
+        if Method.parse(method).has_certificates:
+            settings = replace(settings, threads=1)  # which certificates are made depends on the turns of threads
+        wanted = replace(comparison.recipe, settings=settings)
+        renderer = Renderer(scene, wanted.settings, world=world)
+
+        def tell(done: int, total: int, method: str = method) -> None:
+            on_frame(method, done, total)
+
+        frames[method] = stills.trace(renderer, wanted, on_frame=tell, cancelled=cancelled)
+    reference = frames["none"]
+    shown = {method: frames[method] for method in comparison.methods}
+    return Shown(scene, comparison.recipe, shown, reference, comparison.crops)
+
+
+def text(shown: Shown, comparison: Comparison) -> str:
+    """What a figure carries: what it compares, the counters of each method, and what they were made of."""
+    common, scene = comparison.recipe, shown.scene
+    statistics = {method: frame.statistics.to_dict() for method, frame in shown.frames.items()}
+    more = {
+        "figure": comparison.to_json(),
+        "made": {"version": program_version(), "scene": fingerprint.of_scene(scene)},
+    }
+    number = Session(scene).frame_at(common.time)
+    return capture.metadata(common.snapshot(scene), number, common.size, statistics, more)

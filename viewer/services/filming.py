@@ -1,0 +1,91 @@
+"""Films, offline: each frame traced whole, at any size, as a numbered picture that says how it was made, and a video.
+
+Modes are learnt from frame to frame, as the camera flies.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from tracer.frame import Frame
+from tracer.renderer import Renderer
+from viewer.output import png
+from viewer.output.movie import VIDEO, Video, frame_name
+from viewer.output.recipe import Recipe
+from viewer.services import stills
+from viewer.state.flight import Take
+
+FILMED = "its modes were learnt from the frames of its film before it"
+_NUMBERED = re.compile(r"\d{4,}\.png")
+FRAMES = "-frames"
+"""What the folder of the pictures of a video is called after it."""
+
+
+@dataclass(frozen=True)
+class Script:
+    """What to film: the takes, how each is traced and drawn (`recipe`, whose caption has fields), the folder that the
+    pictures go to, the video if one is wanted, and its frames a second."""
+
+    takes: Sequence[Take]
+    recipe: Recipe
+    folder: Path
+    video: Path | None = None
+    fps: float = 25.0
+
+
+def places(output: Path) -> tuple[Path, Path | None]:
+    """The folder of the pictures and the video that a name asks for: a folder, or an mp4."""
+    if output.suffix.lower() == VIDEO:
+        return output.with_name(output.stem + FRAMES), output
+    return output, None
+
+
+def check_folder(folder: Path) -> None:
+    """Make the folder; raise OSError, in one line, where that cannot be, or where it holds another film's pictures."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        taken = next((path.name for path in folder.iterdir() if _NUMBERED.fullmatch(path.name)), None)
+    except OSError as error:
+        raise OSError(f"{folder}: no folder for the pictures: {error.strerror or error}") from None
+    if taken is not None:
+        raise OSError(f"{folder}: there are numbered pictures in it already, as {taken}; give another folder")
+
+
+def shoot(
+    renderer: Renderer,
+    script: Script,
+    cancelled: Callable[[], bool] = lambda: False,
+    on_frame: Callable[[int, Frame], None] = lambda number, frame: None,
+) -> Iterator[Path]:
+    """Trace and write frame after frame; yields each picture's path.
+
+    `on_frame` gets a frame's number, from 0, and the frame.  Raises Cancelled, with the pictures so far written and the
+    video as long as these, and OSError, in one line, as when the disk is full."""
+    scene = renderer.scene
+    with ExitStack() as stack:
+        video: Video | None = None
+        for number, take in enumerate(script.takes):
+            recipe = stills.with_caption_filled(_recipe(script.recipe, take), scene)
+            frame = stills.trace(renderer, replace(recipe, warmup=0), cancelled=cancelled)
+            pixels, _ = stills.draw(frame, scene, recipe)
+            if video is None and script.video is not None:
+                height, width = pixels.shape[:2]  # with a caption, these are more than the frame's
+                video = stack.enter_context(Video(script.video, (width, height), script.fps))
+            path = script.folder / frame_name(number + 1, len(script.takes))
+            png.write(path, pixels, stills.text(pixels, frame, scene, recipe))
+            if video is not None:
+                video.add(pixels)
+            on_frame(number, frame)
+            yield path
+
+
+def _recipe(recipe: Recipe, take: Take) -> Recipe:
+    """How to make a take again, alone: after as many frames of the scene's path, where these were before it."""
+    taken = replace(recipe, time=take.time, camera=take.camera)
+    if not taken.needs_history or taken.history:  # where chance has a part in it, nothing brings it back
+        return taken
+    return replace(taken, history=FILMED) if take.warmup is None else replace(taken, warmup=take.warmup)

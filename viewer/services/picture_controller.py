@@ -1,0 +1,199 @@
+"""Pictures that leave the window otherwise than as they are shown: larger, with a caption, as EXR, to the clipboard, or
+to tev."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from tracer.frame import Frame
+from tracer.renderer import Renderer
+from tracer.scene.model import Scene
+from viewer.output import clipboard, exr, png, tev
+from viewer.output.recipe import Recipe, by_chance
+from viewer.services import stills
+from viewer.services.jobs import Job
+from viewer.services.recipes import CHANCE, Recipes
+from viewer.services.run_controller import RunController
+from viewer.services.runs import Run
+from viewer.state.notices import Notices
+from viewer.state.plans import MOST_MULTIPLE, PicturePlan
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session
+from viewer.state.views import View
+from viewer.util.files import reserve
+
+MOST_PIXELS = 1 << 26
+JPEG = ".jpg"
+
+
+class PictureRun(Run[Path]):
+    """One picture being traced; `results` is its file."""
+
+    name = "picture"
+    endings = ()
+
+    def __init__(self, scene: Scene, recipe: Recipe, folder: Path, ending: str, wake: Callable[[], None]) -> None:
+        self.recipe, self.folder, self.ending = recipe, folder, ending
+        super().__init__(scene, 1 + recipe.repeats, wake)
+
+    def lacks(self, view: View) -> str:
+        return "is traced beside it"
+
+    @property
+    def where(self) -> str:
+        return f": {self.results}" if self.results is not None else ""
+
+    def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[Path]:
+        width, height = self.recipe.size
+        own = Renderer(scene, self.recipe.settings, world=renderer.world)
+        as_exr = self.ending == exr.ENDING
+
+        def tell(done: int, total: int) -> None:
+            self.label = f"{width} x {height}"
+            self.traced = done
+
+        frame = stills.trace(own, self.recipe, as_exr, tell, cancelled)
+        pixels, _ = (frame.pixels, "") if as_exr else stills.draw(frame, scene, self.recipe)
+        text = stills.text(pixels, frame, scene, self.recipe)
+        stem = f"{scene.path.stem}-{self.recipe.view.value}-{width}x{height}"
+        self.folder.mkdir(parents=True, exist_ok=True)
+        path = reserve(self.folder, stem, self.ending)
+        try:
+            if as_exr:
+                exr.write(path, frame, text)
+            elif self.ending == JPEG:
+                Image.fromarray(pixels).save(path, "JPEG", quality=95)
+            else:
+                png.write(path, pixels, text)
+        except BaseException:
+            path.unlink(missing_ok=True)
+            raise
+        self.traced = self.frames
+        yield path
+
+    def _copy(self, results: Path) -> Path:
+        return results
+
+    def write(self, results: Path, path: Path) -> None:
+        raise ValueError("a picture is written when it is traced")
+
+
+class PictureController:
+    """`plan` is what the dialog says."""
+
+    def __init__(
+        self,
+        session: Session,
+        preferences: Preferences,
+        runs: RunController,
+        recipes: Recipes,
+        notices: Notices,
+        wake: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._session, self._preferences, self._runs, self._recipes = session, preferences, runs, recipes
+        self._notices, self._wake = notices, wake
+        self.plan = PicturePlan()
+        self.jobs: list[tuple[Job[str], str]] = []
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Of the picture that is planned; 0, 0 before there is one to take it of."""
+        recipe = self._recipes.now()
+        return (0, 0) if recipe is None else (recipe.size[0] * self.plan.multiple, recipe.size[1] * self.plan.multiple)
+
+    def save(self) -> bool:
+        """Begin to trace and write what is planned; returns whether it has begun, and else has said why not."""
+        scene, recipe = self._session.scene, self._recipes.now()
+        if scene is None or recipe is None:
+            self._notices.say("there is no picture to save yet", error=True)
+            return False
+        try:
+            wanted = self._planned(recipe, scene)
+        except ValueError as error:
+            self._notices.say(str(error), error=True)
+            return False
+        run = PictureRun(scene, wanted, self._preferences.picture_folder, self.plan.ending, self._wake)
+        self._runs.begin(run)
+        return self._runs.current is run
+
+    def _planned(self, recipe: Recipe, scene: Scene) -> Recipe:
+        plan, p = self.plan, self._preferences
+        width, height = self.size
+        if not 1 <= plan.multiple <= MOST_MULTIPLE or width * height > MOST_PIXELS:
+            raise ValueError(f"{width} x {height} are more than {MOST_PIXELS:,} pixels; choose a smaller multiple")
+        if plan.ending == exr.ENDING:
+            exr.check()
+        place = (p.legend_x, p.legend_y) if plan.legend else None
+        style = replace(recipe.style, magnified=1, legend=place, caption=plan.caption)
+        settings = replace(recipe.settings, width=width, height=height, samples=plan.samples).validated()
+        # Modes are those of a resolution, and begin anew in another; once more, and they show what they are.
+        history = CHANCE if by_chance(settings, recipe.view) else ""
+        wanted = replace(
+            recipe, settings=settings, style=style, repeats=1 if recipe.needs_history else 0, history=history,
+            by_gpu=False,
+        )  # fmt: skip
+        stills.check_light(wanted, scene)
+        if not stills.lights_fit(wanted, scene, plan.ending == exr.ENDING):
+            raise ValueError("there are too many lights for all buffers of a picture of this size")
+        return stills.with_caption_filled(wanted, scene)
+
+    # --- what is shown, elsewhere ------------------------------------------------------------------
+
+    def copy(self, pixels: NDArray[np.uint8] | None, frame: Frame | None, view: View) -> None:
+        """Put what is shown, (h, w, 3), on the clipboard, with its annotations, and its legend where that is wanted."""
+        scene = self._session.scene
+        recipe = self._recipes.of(frame, view) if frame is not None else None
+        if pixels is None or frame is None or recipe is None or scene is None:
+            self._notices.say("there is no picture to copy yet", error=True)
+            return
+        if clipboard.program() is None:
+            self._notices.say(clipboard.NONE, error=True)
+            return
+
+        def work() -> str:
+            drawn, _ = stills.dressed(pixels, frame, scene, recipe)
+            file = BytesIO()
+            Image.fromarray(drawn).save(file, "PNG", pnginfo=png.notes(stills.text(drawn, frame, scene, recipe)))
+            clipboard.copy(file.getvalue())
+            return f"the picture, {drawn.shape[1]} x {drawn.shape[0]}, is on the clipboard"
+
+        self._begin("Copying", work)
+
+    def to_tev(self, frame: Frame | None) -> None:
+        """Send the frame and its buffers to where the preferences say."""
+        scene = self._session.scene
+        if frame is None or scene is None:
+            self._notices.say("there is no picture to send yet", error=True)
+            return
+        try:
+            to = tev.address(self._preferences.tev)
+        except ValueError as error:
+            self._notices.say(str(error), error=True)
+            return
+        name = f"{scene.path.stem} frame {self._session.frame_at(frame.time)} {frame.settings.method}"
+
+        def work() -> str:
+            tev.send(to, name, frame)
+            return f"sent to {to[0]}:{to[1]} as {name!r}"
+
+        self._begin("Sending", work)
+
+    def _begin(self, title: str, work: Callable[[], str]) -> None:
+        self.jobs.append((Job(title, lambda _: work(), self._wake), title))
+
+    def follow(self) -> None:
+        """Report what has been done, or could not be."""
+        for entry in [entry for entry in self.jobs if entry[0].done]:
+            self.jobs.remove(entry)
+            job = entry[0]
+            if job.failure is not None:
+                self._notices.report(job.failure)
+            elif job.result is not None:
+                self._notices.say(job.result)

@@ -1,0 +1,105 @@
+"""The recipes of what the window shows: of its picture as it will be at rest, and of a frame that is there."""
+
+from __future__ import annotations
+
+import shlex
+from dataclasses import replace
+from pathlib import Path
+
+from tracer.frame import Frame, Settings
+from viewer.output import recipe
+from viewer.output.recipe import Recipe, Style
+from viewer.services.scene_loader import SceneLoader
+from viewer.services.tracing import Tracing
+from viewer.state.notices import Notices
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session
+from viewer.state.views import View
+
+UNKNOWN = "its modes were learnt from other frames as well"
+CHANCE = "what is certified depends on time and threads"
+
+
+class Recipes:
+    """See the module."""
+
+    def __init__(
+        self, session: Session, preferences: Preferences, tracing: Tracing, loader: SceneLoader, notices: Notices
+    ) -> None:
+        self._session, self._preferences, self._tracing = session, preferences, tracing
+        self._loader, self._notices = loader, notices
+
+    def of(self, frame: Frame, view: View, legend: bool | None = None) -> Recipe | None:
+        """What makes a frame's picture again, in a view and with a legend or not; None without a scene."""
+        session, scene = self._session, self._session.scene
+        if scene is None:
+            return None
+        follow = session.follow and frame.camera == scene.camera_at(frame.time)
+        settings = replace(frame.settings, verify=session.settings.verify, modes=False)
+        magnified = self._tracing.magnified if view.needs_verify else 1
+        found = Recipe(
+            scene=Path(scene.path).absolute(),
+            time=frame.time,
+            camera=None if follow else frame.camera,
+            settings=settings,
+            view=view,
+            light=session.light,
+            wipe=session.wipe,
+            style=self._style(magnified, self._preferences.legend_in_pictures if legend is None else legend),
+            by_gpu=view is not View.COLOR or self._preferences.outlines,
+            folders=self._loader.folders,
+            meshes=session.meshes,
+        )
+        return self._with_history(found, frame)
+
+    def _style(self, magnified: int, legend: bool) -> Style:
+        p = self._preferences
+        return Style(
+            shares=p.work_shares,
+            marked=p.mark_wrong,
+            magnified=magnified,
+            shading=p.shading,
+            beneath=p.beneath,
+            outlines=p.outlines,
+            legend=(p.legend_x, p.legend_y) if legend else None,
+            annotations=tuple(self._session.annotations),
+        )
+
+    def _with_history(self, found: Recipe, frame: Frame) -> Recipe:
+        if not found.needs_history:
+            return found
+        if recipe.by_chance(frame.settings, found.view):
+            return replace(found, history=CHANCE)
+        repeats = self._tracing.learnt.repeats(frame)
+        return replace(found, history=UNKNOWN) if repeats is None else replace(found, repeats=repeats)
+
+    def now(self) -> Recipe | None:
+        """What makes the picture that the window shows, or will show when it has all its samples; None before one."""
+        session, frame = self._session, self._tracing.frame
+        if session.scene is None or frame is None:
+            return None
+        width, height = self._tracing.full_size
+        settings: Settings = replace(
+            self._tracing.settings, width=width, height=height, samples=session.settings.samples
+        )
+        as_wanted = replace(frame, time=session.time, camera=session.camera, settings=settings)
+        return self.of(as_wanted, session.view)
+
+    def command(self) -> str | None:
+        """The command line that makes the picture again; None, and one line, where there is no picture."""
+        found = self.now()
+        if found is None:
+            self._notices.say("there is no picture yet", error=True)
+            return None
+        name = f"{found.scene.stem}-{found.view.value}-{self._session.frame:04d}.png"
+        words = shlex.join(["shadowcull", *recipe.arguments(found, self._session.scene, name)])
+        try:
+            words.encode()
+        except UnicodeEncodeError:
+            self._notices.say("not copied: the name of the scene's file is no text", error=True)
+            return None
+        if found.history:
+            self._notices.say(f"copied, but the picture may differ: {found.history} (Backspace forgets them)")
+        else:
+            self._notices.say(f"copied: {words}")
+        return words
