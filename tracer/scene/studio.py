@@ -29,9 +29,9 @@ LAMP_DISTANCE = 3.5
 
 # Towards the camera's right, up and towards the camera, in LAMP_DISTANCE; radius, in the model's; colour; samples.
 _LAMPS = {
-    "key": ((-0.75, 0.95, 0.70), 0.60, (0.84, 0.81, 0.76), 64),
+    "key": ((-0.75, 0.95, 0.70), 0.60, (0.79, 0.765, 0.72), 64),
     "fill": ((1.05, 0.60, 0.60), 1.00, (0.28, 0.30, 0.34), 16),
-    "rim": ((0.55, 1.00, -0.85), 0.90, (0.26, 0.26, 0.27), 16),
+    "rim": ((0.55, 1.00, -0.85), 0.90, (0.40, 0.40, 0.41), 16),
 }
 _FLOOR_COLOR = np.array([0.44, 0.45, 0.465])
 _FLOOR_AMBIENT = np.array([0.25, 0.26, 0.275])

@@ -16,6 +16,10 @@ from tracer.scene.arrays import Float32, Float64
 
 NEAR_GROUND = 0.004
 """Part of the model's diagonal within which a point touches the ground."""
+NEARLY = 0.03
+"""The same for the usual way: a model that lies there on a small bump would only settle a little..."""
+DOUBTFUL = 0.1
+"""... so it counts for this part of how well it would stand then."""
 STEADY = 30.0
 """Degrees: what must be tipped as far before it falls stands as well as anything."""
 UNSTEADY = 8.0
@@ -36,7 +40,10 @@ def guess(path: Path, head: bytes, corners: Float32) -> str:
     if path.suffix.lower() in (".gltf", ".glb") or not len(corners):
         return custom
     other = "y" if custom == "z" else "z"
-    (_, usual), (tipping, better) = (footing(corners, axis) for axis in (custom, other))
+    wide = np.asarray(corners, np.float64)
+    mass = _mass(wide)
+    usual = max(_footing(wide, mass, custom, NEAR_GROUND)[1], DOUBTFUL * _footing(wide, mass, custom, NEARLY)[1])
+    tipping, better = _footing(wide, mass, other, NEAR_GROUND)
     return other if tipping >= UNSTEADY and better > MUCH_BETTER * usual else custom
 
 
@@ -44,12 +51,18 @@ def footing(corners: Float32, axis: str) -> tuple[float, float]:
     """How well triangles (n, 3, 3) stand with y or z up: how many degrees they can be tipped before they fall, negative
     where they fall at once; and a score, 0 for what does not stand."""
     wide = np.asarray(corners, np.float64)
+    return _footing(wide, _mass(wide), axis, NEAR_GROUND)
+
+
+def _footing(wide: Float64, mass: tuple[Float64, Float64], axis: str, touching: float) -> tuple[float, float]:
+    """As `footing`; `mass` is of these triangles, `touching` the part of their diagonal within which a point touches the
+    ground."""
     up = "xyz".index(axis)
     flat = [i for i in range(3) if i != up]
     points = wide.reshape(-1, 3)
     low, high = points.min(axis=0), points.max(axis=0)
-    near = points[points[:, up] <= low[up] + NEAR_GROUND * float(np.linalg.norm(high - low))][:, flat]
-    middle, spread = _mass(wide)
+    near = points[points[:, up] <= low[up] + touching * float(np.linalg.norm(high - low))][:, flat]
+    middle, spread = mass
     turns = np.linspace(0.0, 2.0 * np.pi, _DIRECTIONS, endpoint=False)
     ways = np.stack([np.cos(turns), np.sin(turns)])
     reach = np.array([np.argmax(near @ way) for way in ways.T])  # the corners of what it stands on
@@ -70,12 +83,12 @@ def _mass(corners: Float64) -> tuple[Float64, Float64]:
     sides = corners[:, 1:] - corners[:, :1]
     areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
     weights = areas / areas.sum() if areas.sum() > 0 else np.full(len(areas), 1.0 / len(areas))
-    centers = corners.mean(axis=1)
-    middle = weights @ centers
-    away = corners - middle
-    means = centers - middle
+    means = (corners[:, 0] + corners[:, 1] + corners[:, 2]) / 3.0
+    middle = weights @ means
+    means -= middle
     # The exact second moments of triangles, of equal weight per area.
-    spread = (
-        np.einsum("n,nki,nkj->ij", weights, away, away) + 9.0 * np.einsum("n,ni,nj->ij", weights, means, means)
-    ) / 12
-    return middle, spread
+    spread = 9.0 * (weights[:, None] * means).T @ means
+    for corner in range(3):
+        away = corners[:, corner] - middle
+        spread += (weights[:, None] * away).T @ away
+    return middle, spread / 12
