@@ -55,8 +55,7 @@ def footing(corners: Float32, axis: str) -> tuple[float, float]:
 
 
 def _footing(wide: Float64, mass: tuple[Float64, Float64], axis: str, touching: float) -> tuple[float, float]:
-    """As `footing`; `mass` is of these triangles, `touching` the part of their diagonal within which a point touches the
-    ground."""
+    """As `footing`; `mass` is theirs, and `touching` the part of their diagonal within which a point touches ground."""
     up = "xyz".index(axis)
     flat = [i for i in range(3) if i != up]
     points = wide.reshape(-1, 3)

@@ -123,6 +123,8 @@ class SceneLoader:
         """Show a scene that a script has loaded, or made."""
         settings = self._session.settings
         self._given = {}
+        up = up_in_studio(scene)
+        self._reading_meshes = MeshOptions(up is not None, up)  # as far as it shows
         self.load_job = Job(
             f"Opening {scene.path.name}",
             lambda progress: scene_files.open_loaded(scene, settings, self._kernels_ready, progress),
@@ -175,10 +177,17 @@ class SceneLoader:
             self._changed = changed
 
     def read_as(self, meshes: MeshOptions) -> None:
-        """Read the mesh that is open in another way, and look at it from its first camera."""
+        """Read the mesh that is open in another way, and look at it from its first camera.
+
+        Whether it gets a studio holds for what is opened after it too."""
         if self._session.scene is not None:
             path = Path(self._session.scene.path)
-            self._ask_first(f"{path.name} again", lambda: self._load(path, None, meshes=meshes))
+
+            def go_on() -> None:
+                self.meshes = replace(self.meshes, studio=meshes.studio)
+                self._load(path, None, meshes=meshes)
+
+            self._ask_first(f"{path.name} again", go_on)
 
     def cancel(self) -> None:
         """Give up the load that is under way; the scene that is open stays."""

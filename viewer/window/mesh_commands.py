@@ -18,10 +18,17 @@ def build(ui: Ui) -> list[Command]:
     def shown_up() -> str | None:
         return up_in_studio(c.session.scene) if c.session.scene is not None else None
 
+    def is_mesh() -> bool:
+        return c.session.scene is not None and c.session.scene.path.suffix.lower() in MESH_EXTENSIONS
+
+    def wanted() -> bool:
+        return c.session.meshes.studio if is_mesh() else loader.meshes.studio
+
     def toggle() -> None:
-        loader.meshes = replace(loader.meshes, studio=not loader.meshes.studio)
-        if c.session.scene is not None and c.session.scene.path.suffix.lower() in MESH_EXTENSIONS:
-            loader.read_as(replace(c.session.meshes, studio=loader.meshes.studio))
+        if is_mesh():
+            loader.read_as(replace(c.session.meshes, studio=not wanted()))
+        else:
+            loader.meshes = replace(loader.meshes, studio=not wanted())
 
     def turn() -> None:
         up = shown_up()
@@ -33,7 +40,7 @@ def build(ui: Ui) -> list[Command]:
         lambda: loader.load_job is None and shown_up() is not None, "no model stands in a studio, or one is being read"
     )
     return [
-        Command("Studio", "File", toggle, checked=lambda: loader.meshes.studio, separated=True,
+        Command("Studio", "File", toggle, checked=wanted, separated=True,
                 tip="a floor, three lamps and an upright view for a mesh that brings neither camera nor lights"),
         Command("Turn the model", "File", turn, "Ctrl+U", enabled=stands,
                 tip="another axis points up: y, z, x, -y, -z, -x in turn"),

@@ -39,5 +39,12 @@ def standing(d: Driver) -> None:
     d.drop(d.folder / "pictures" / "lying.png")
     d.wait(lambda: up_in_studio(d.c.session.scene) == "x", "the picture's scene, as it stood")
     d.settle()
-    studio.run()
-    assert studio.checked()
+    assert studio.checked() and d.c.loader.meshes.studio is False
+    d.press(chord("Ctrl+U"))
+    d.wait(lambda: up_in_studio(d.c.session.scene) == "-y", "the model to lie otherwise")
+    d.settle()
+    assert d.c.undo.undoes == "-y up"
+    d.press(chord("Ctrl+Z"))
+    d.wait(lambda: up_in_studio(d.c.session.scene) == "x", "the step to be undone")
+    d.settle()
+    assert d.c.session.camera.up == (1.0, 0.0, 0.0) and "undone: -y up" in d.c.notices.message.text
