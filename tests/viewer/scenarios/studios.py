@@ -14,6 +14,7 @@ KEY = imgui.Key
 
 def standing(d: Driver) -> None:
     """The window shows it upright, a key turns it, a saved picture remembers how it stood, and the studio goes away."""
+    d.c.settings.change(lamp_samples=1)  # many rays show nothing more here
     path = d.folder / "rod.ply"
     trimesh.creation.cylinder(0.5, 2.0, sections=16).export(path)
     d.drop(path)
