@@ -18,6 +18,7 @@ from viewer.state.methods import BY_MODES, with_base
 from viewer.state.views import View
 
 SECONDS = 2.0  # that a picture stays when it is shown
+PATIENCE = 20.0  # seconds that a picture or an answer may take to come
 _PLACES = sorted(  # where a shadow is looked for, in parts of the picture's width and height: from its middle on
     ((x / 14.0, y / 14.0) for x in range(1, 14) for y in range(1, 14)),
     key=lambda at: (at[0] - 0.5) ** 2 + (at[1] - 0.5) ** 2,
@@ -117,6 +118,13 @@ def _has_toggled_culling(c: Controller) -> Iterator[None]:
             yield
 
 
+def _until(met: Callable[[], bool]) -> Iterator[float]:
+    """Wait until the picture has come that shows something, for as long as a user would."""
+    end = time.monotonic() + PATIENCE
+    while not met() and time.monotonic() < end:
+        yield 0.02
+
+
 def _culls(c: Controller) -> bool:
     """Whether culling has saved something in the newest frame."""
     return c.frame is not None and fully_traced(c.frame.statistics.shadow) < c.frame.statistics.shadow.due
@@ -127,13 +135,11 @@ def _toggle_culling(c: Controller, show_panel: Callable[[str], None]) -> Iterato
     show_panel("Statistics")
     if not _culls(c):
         c.settings.change(method=with_base(before, BY_MODES))
-    for _ in range(50):  # modes are set by a whole picture first
-        yield 0.1
-        if _culls(c):
-            break
-    for _ in range(2):
+    yield from _until(lambda: _culls(c))  # modes are set by a whole picture first
+    for culls in (False, True):
         yield SECONDS
         c.settings.toggle_culling()
+        yield from _until(lambda culls=culls: _culls(c) is culls)
     yield SECONDS
     if Method.parse(before).culls:
         c.settings.change(method=before)
@@ -190,10 +196,7 @@ def _click_a_shadow(c: Controller, show_panel: Callable[[str], None]) -> Iterato
         c.selection.select(at)
         if c.selection.picked is None or c.selection.picked.dynamic:
             continue
-        for _ in range(50):  # an answer takes a moment
-            yield 0.02
-            if c.inspector.answer is not None:
-                break
+        yield from _until(lambda: c.inspector.answer is not None)
         if _in_shadow(c):
             yield SECONDS
             return

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from unittest.mock import patch
+
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
+from viewer.services import tour as steps
 from viewer.services.tour import STEPS
 from viewer.state.preferences import load_preferences
 from viewer.state.views import View
@@ -16,6 +19,11 @@ KEY = imgui.Key
 
 def touring(d: Driver) -> None:
     """The tour comes on the first start; a step is done by doing it, by "Show me", or skipped; Help has it again."""
+    with patch.object(steps, "SECONDS", 0.3):  # nobody looks
+        _tour(d)
+
+
+def _tour(d: Driver) -> None:
     tour = d.ui.tour
     assert tour.at == 0 and not d.c.preferences.tour, "a first start begins with the tour, and only that one"
     d.settle()
@@ -67,15 +75,15 @@ def touring(d: Driver) -> None:
         assert d.picture_edges()[3] <= window.pos.y + 1.0, f"the tour covers the picture at {size}"
     camera = d.c.session.camera
     d.context.item_click(show)
-    d.wait(lambda: tour.at == 1, "the flight that is shown", 30.0)
+    d.wait(lambda: tour.at == 1, "the flight that is shown", 90.0)
     assert d.c.session.camera != camera
     d.c.settings.change(method="auto")
     method = d.c.session.settings.method
     d.context.item_click(show)
-    d.wait(lambda: tour.at == 2, "culling off and on", 30.0)
+    d.wait(lambda: tour.at == 2, "culling off and on", 90.0)
     assert d.c.session.settings.method == method
     d.context.item_click(show)
-    d.wait(lambda: tour.at == 3, "the modes", 30.0)
+    d.wait(lambda: tour.at == 3, "the modes", 90.0)
     assert d.c.session.view is View.COLOR
     d.frames(5)
     assert tour.at == 3
