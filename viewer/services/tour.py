@@ -121,6 +121,7 @@ def _has_toggled_culling(c: Controller) -> Iterator[None]:
 def _until(met: Callable[[], bool]) -> Iterator[float]:
     """Wait until the picture has come that shows something, for as long as a user would."""
     end = time.monotonic() + PATIENCE
+    yield 0.02  # what is there at first belongs to the picture, or the place, before
     while not met() and time.monotonic() < end:
         yield 0.02
 
