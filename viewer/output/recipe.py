@@ -16,6 +16,8 @@ from typing import Any
 
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
+from tracer.scene.load import AFF_EXTENSIONS
+from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.output.pictures import SHADING
@@ -70,6 +72,7 @@ class Recipe:
     history: str = ""
     by_gpu: bool = False
     folders: tuple[Path, ...] = ()
+    meshes: MeshOptions = AS_IN_FILE
 
     @property
     def size(self) -> tuple[int, int]:
@@ -93,8 +96,9 @@ class Recipe:
         path = str(self.scene.absolute())
         follow, style = self.camera is None, self.style
         return Snapshot(
-            path, self.time, camera, follow, settings, self.view, self.light, self.wipe, style.tone, style.span
-        )
+            path, self.time, camera, follow, settings, self.view, self.light, self.wipe,
+            tone=style.tone, span=style.span, meshes=self.meshes,
+        )  # fmt: skip
 
     def to_json(self) -> dict[str, Any]:
         """What a capture carries beside its state."""
@@ -150,6 +154,7 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Re
             repeats=_count(data, "repeats"),
             history=str(data.get("history", "")),
             by_gpu=bool(data.get("by_gpu", False)),
+            meshes=snapshot.meshes,
         )
     except (TypeError, AttributeError):
         raise ValueError("how it was drawn is damaged") from None
@@ -236,7 +241,17 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         words += ["--annotations", json.dumps([a.to_json() for a in style.annotations])]
     for folder in recipe.folders:
         words += ["--folder", str(folder.absolute())]
-    return words
+    return words + _of_meshes(recipe)
+
+
+def _of_meshes(recipe: Recipe) -> list[str]:
+    """How the scene is read, where that can be chosen."""
+    meshes = recipe.meshes
+    if recipe.scene.suffix.lower() in AFF_EXTENSIONS:
+        return []
+    up = [f"--up={meshes.up}"] if meshes.up is not None else []
+    crease = [f"--crease={meshes.crease!r}"] if meshes.crease is not None else []
+    return [*up, *crease, *([] if meshes.studio else ["--no-studio"])]
 
 
 def _wipe(wipe: float, width: int) -> str:

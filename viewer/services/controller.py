@@ -66,7 +66,10 @@ class Controller:
         self.motion = Motion(session, preferences, notices, self.runs.refuses)
         self.comparing = Comparing(session, self.tracing, self.settings, notices)
         self.bookmarks = Bookmarks(session, preferences, self.settings, notices)
-        self.undo = Undo(session, preferences, self.motion, notices, self.runs.refuses)
+        self.undo = Undo(
+            session, preferences, self.motion, notices, self.runs.refuses,
+            lambda meshes: self.loader.read_as(meshes), lambda: self.loader.load_job is not None,
+        )  # fmt: skip
         self.presets = Presets(
             session, preferences, notices, self.runs.refuses, self.settings.save, self.undo.call_next
         )

@@ -50,6 +50,7 @@ class Recipes:
             style=style,
             by_gpu=view is not View.COLOR or style.outlines or not style.tone.neutral or style.clipping,
             folders=self._loader.folders,
+            meshes=session.meshes,
         )
         return self._with_history(found, frame)
 

@@ -137,10 +137,12 @@ def _toggle_culling(c: Controller, show_panel: Callable[[str], None]) -> Iterato
     if not _culls(c):
         c.settings.change(method=with_base(before, BY_MODES))
     yield from _until(lambda: _culls(c))  # modes are set by a whole picture first
-    for culls in (False, True):
-        yield SECONDS
-        c.settings.toggle_culling()
-        yield from _until((lambda: _culls(c)) if culls else (lambda: not _culls(c)))
+    yield SECONDS
+    c.settings.toggle_culling()
+    yield from _until(lambda: not _culls(c))
+    yield SECONDS
+    c.settings.toggle_culling()
+    yield from _until(lambda: _culls(c))
     yield SECONDS
     if Method.parse(before).culls:
         c.settings.change(method=before)

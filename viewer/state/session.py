@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from tracer.renderer import Settings
+from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from viewer.state.annotations import Annotation
 from viewer.state.comparison import Comparison
@@ -32,7 +33,8 @@ _OPTIONAL: dict[str, type] = {"lamp_radius": float, "lamp_samples": int}  # None
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A state to come back to.  `settings` holds the fields of `tracer.Settings`; `scene` is a path."""
+    """A state to come back to.  `settings` holds the fields of `tracer.Settings`; `scene` is a path, and
+    `meshes` says how it was read."""
 
     scene: str
     time: float
@@ -44,6 +46,7 @@ class Snapshot:
     wipe: float = 0.5
     tone: Tone = NEUTRAL
     span: tuple[float, float] | None = None
+    meshes: MeshOptions = AS_IN_FILE
 
     def to_json(self) -> dict[str, Any]:
         data = asdict(self)
@@ -69,6 +72,7 @@ class Snapshot:
                 wipe=wipe if 0.0 <= wipe <= 1.0 else 0.5,
                 tone=Tone.from_json(data.get("tone", {})),
                 span=_span(data.get("span")),
+                meshes=_meshes_from_json(data.get("meshes", {})),
             )
         except KeyError as error:
             raise ValueError(f"its saved state lacks {error}") from None
@@ -108,6 +112,14 @@ def settings_from_json(data: Any) -> dict[str, Any]:
     return known
 
 
+def _meshes_from_json(data: Any) -> MeshOptions:
+    """How a mesh was read; raises ValueError."""
+    up, crease = (data.get(key) for key in ("up", "crease")) if isinstance(data, Mapping) else (0, 0)
+    if not (up is None or isinstance(up, str)) or not (crease is None or type(crease) in (int, float)):
+        raise ValueError("its options of meshes are not understood")
+    return MeshOptions(bool(data.get("studio", False)), up, crease)
+
+
 @dataclass
 class Session:
     """The state behind the window; plain data and what it implies, no threads and no widgets.
@@ -129,6 +141,7 @@ class Session:
     zoom: Zoom = FIT
     comparison: Comparison = field(default_factory=Comparison)
     selected: tuple[float, float] | None = None
+    meshes: MeshOptions = AS_IN_FILE  # how the scene was read
     annotations: list[Annotation] = field(default_factory=list)
 
     @property
@@ -217,6 +230,7 @@ class Session:
             wipe=self.wipe,
             tone=self.tone,
             span=self.spans.get(self.view),
+            meshes=self.meshes,
         )
 
     def restore(self, snapshot: Snapshot) -> None:
