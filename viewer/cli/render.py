@@ -134,7 +134,8 @@ def times_before(scene: Scene, time: float, warmup: int, work: Work) -> list[flo
     """Times of the frames of `--warmup`, with a note where there are not so many."""
     times = stills.times_before(scene, time, warmup)
     if len(times) < warmup:
-        work.note(f"--warmup {warmup}: only {len(times)} frames come before this one")
+        come = {0: "no frame comes", 1: "only one frame comes"}.get(len(times), f"only {len(times)} frames come")
+        work.note(f"--warmup {warmup}: {come} before this one")
     return times
 
 

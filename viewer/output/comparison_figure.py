@@ -49,13 +49,15 @@ class Crop(NamedTuple):
 
 @dataclass(frozen=True)
 class Shown:
-    """What a figure shows: the frames by their methods, that by "none" as the reference, and the crops."""
+    """What a figure shows: the frames by their methods, that by "none" as the reference, and the crops; `warmed` is how
+    many frames were traced before each."""
 
     scene: Scene
     recipe: Recipe
     frames: Mapping[str, Frame]
     reference: Frame
     crops: Sequence[Crop]
+    warmed: int = 0
 
     @property
     def span(self) -> tuple[float, float] | None:
@@ -165,7 +167,8 @@ def _figure(shown: Shown) -> Figure:
 def _title(shown: Shown) -> str:
     recipe, (width, height) = shown.recipe, shown.recipe.size
     number = Session(shown.scene).frame_at(recipe.time)
-    warm = f", after {recipe.warmup} frames before it" if recipe.warmup else ""
+    before = "the frame" if shown.warmed == 1 else f"the {shown.warmed} frames"
+    warm = f", after {before} before it" if shown.warmed else ""
     samples = f", {recipe.settings.samples} samples" if recipe.settings.samples > 1 else ""
     return f"{shown.scene.path.name}, frame {number}{warm}, {width} × {height}{samples}; {recipe.view.label.lower()}"
 

@@ -84,7 +84,8 @@ def trace(
         frames[method] = stills.trace(renderer, wanted, on_frame=tell, cancelled=cancelled)
     reference = frames["none"]
     shown = {method: frames[method] for method in comparison.methods}
-    return Shown(scene, comparison.recipe, shown, reference, comparison.crops)
+    warmed = len(stills.times_before(scene, comparison.recipe.time, comparison.recipe.warmup))
+    return Shown(scene, comparison.recipe, shown, reference, comparison.crops, warmed)
 
 
 def text(shown: Shown, comparison: Comparison) -> str:
