@@ -153,7 +153,7 @@ def _placeholder(ui: Ui, room: ImVec2) -> None:
     c = ui.controller
     if c.loader.load_job is not None or c.loader.warm_up_job is not None or c.renderer.busy:
         return  # the progress window speaks
-    text = "Open a scene (Ctrl+O), or drop one on this window"
+    text = ui.with_keys("Open a scene (Ctrl+O), or drop one on this window")
     width = imgui.calc_text_size(text).x
     at = imgui.get_cursor_pos()
     imgui.set_cursor_pos(ImVec2(at.x + max(0.0, (room.x - width) / 2.0), at.y + room.y / 2.0))
