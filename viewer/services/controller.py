@@ -29,6 +29,7 @@ from viewer.services.recipes import Recipes
 from viewer.services.render_thread import RenderThread, Traced
 from viewer.services.run_controller import RunController
 from viewer.services.scene_loader import Arrival, SceneLoader
+from viewer.services.scene_table import SceneTable
 from viewer.services.scene_watcher import SceneWatcher
 from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
@@ -71,6 +72,7 @@ class Controller:
         self.pads = PadFlight(session, preferences, self.motion, notices)
         self.inspector = ShadowInspector(self.selection, renderer)
         self.rays = RayInspector(session, self.selection, renderer)
+        self.table = SceneTable(session, self.selection, preferences, notices, self.captures, awaken)
         self.recorder = LightRecorder(session, renderer, self.tracing)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
@@ -119,6 +121,7 @@ class Controller:
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
         self.undo.follow()
         self.rays.follow(traced if run is None else None)  # before the next frame is asked for
+        self.table.follow(traced if run is None else None, motion.lively)
         self.tracing.ask(Conditions(size, motion.under_way, run, self.loader.ready, self.selection.hovered))
         if run is None:
             self.recorder.follow()

@@ -1,4 +1,4 @@
-"""The pixel that was clicked, and the point of the picture that the pointer is on."""
+"""The pixel that was clicked, or what was chosen by its name, and the point of the picture that the pointer is on."""
 
 from __future__ import annotations
 
@@ -7,19 +7,33 @@ from collections.abc import Callable
 from tracer.frame import Frame
 from viewer.state.picking import Pick, pick, pixel_of, refreshed
 from viewer.state.session import Session
+from viewer.state.whereabouts import pick_part, pick_primitive
 
 Point = tuple[float, float]
 """Of the picture, 0 to 1 from left and top."""
 
 
 class Selection:
-    """`picked` is what was clicked, `hovered` where the pointer is; None where there is nothing."""
+    """`picked` is what was clicked, `hovered` where the pointer is; None where there is nothing.  `part` is the whole
+    part of the scene that is selected with it, None for the primitive alone.  `serial` is another number after each
+    selection."""
 
     def __init__(self, session: Session, newest: Callable[[], Frame | None]) -> None:
         """`newest` returns the frame that the picture shows."""
         self._session, self._newest = session, newest
-        self.picked: Pick | None = None
+        self._picked: Pick | None = None
+        self.part: int | None = None
         self.hovered: Point | None = None
+        self.serial = 0
+
+    @property
+    def picked(self) -> Pick | None:
+        return self._picked
+
+    @picked.setter
+    def picked(self, found: Pick | None) -> None:
+        self._picked, self.part = found, None
+        self.serial += 1
 
     @property
     def frame(self) -> Frame | None:
@@ -42,10 +56,26 @@ class Selection:
         found = self.at(point)
         self.picked = found if found is not None and found.primitive >= 0 else None
 
+    def select_primitive(self, primitive: int) -> bool:
+        """Select a primitive by its number, seen or not; whether that could be done."""
+        frame, scene = self.frame, self._session.scene
+        found = pick_primitive(frame, scene, primitive) if frame is not None and scene is not None else None
+        if found is not None:
+            self.picked = found
+        return found is not None
+
+    def select_part(self, part: int) -> bool:
+        """Select a named part of the scene, in the middle of what is seen of it; whether that could be done."""
+        frame, scene = self.frame, self._session.scene
+        found = pick_part(frame, scene, part) if frame is not None and scene is not None else None
+        if found is not None:
+            self.picked, self.part = found, part
+        return found is not None
+
     def clear(self) -> None:
         self.picked = None
 
     def refresh(self, frame: Frame) -> None:
         """Take over modes and counts from a newer frame."""
-        if self.picked is not None:
-            self.picked = refreshed(self.picked, frame)
+        if self._picked is not None:
+            self._picked = refreshed(self._picked, frame)

@@ -99,6 +99,7 @@ class Session:
     settings: Settings = field(default_factory=lambda: Settings(method=DEFAULT))
     view: View = View.COLOR
     light: int = 0
+    counting: bool = False  # whether frames are to count the rays at each pixel, whatever the view
     wipe: float = 0.5
     selected: tuple[float, float] | None = None
     annotations: list[Annotation] = field(default_factory=list)

@@ -13,6 +13,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ import glfw  # after imgui_bundle, which brings the library that both must share
 from tracer.frame import Frame
 from tracer.scene.model import Scene
 from viewer.services.controller import Controller
+from viewer.state.parts import parts_of
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
@@ -171,7 +173,10 @@ class App:
         if display is None:
             return
         display.show(c.frame)
-        display.draw(self._look(c.selection.picked.primitive if c.selection.picked is not None else -1))
+        picked, part, scene = c.selection.picked, c.selection.part, c.session.scene
+        display.know_parts(parts_of(scene).part_of if part is not None and scene is not None else None)
+        look = self._look(picked.primitive if picked is not None else -1)
+        display.draw(look if part is None else replace(look, selected_part=part))
 
     def _tell(self) -> None:
         """Hand a whole picture to the script that opened the window, once; it closes the window by returning False."""

@@ -12,6 +12,7 @@ from viewer.state.preferences import SCALES
 from viewer.state.views import View
 from viewer.window import camera_commands, edit_commands
 from viewer.window.command import Command, Condition
+from viewer.window.finding import finding, fly_to_selected
 from viewer.window.taking import drawing, taking
 from viewer.window.ui import CaptureKind, Ui
 
@@ -107,6 +108,7 @@ def _view(ui: Ui) -> list[Command]:
         Command("Mark wrong pixels", "View", toggle("mark_wrong"), "M", checked=lambda: p.mark_wrong),
         Command("Shares of rays", "View", toggle("work_shares"), "U", checked=lambda: p.work_shares),
         *_rays(ui),
+        *finding(ui),
         Command("Draw shadow rays", "View", toggle("draw_explanation"), "I", checked=lambda: p.draw_explanation),
         Command("Smooth upscaling", "View", toggle("smooth_upscaling"), checked=lambda: p.smooth_upscaling),
         *_looks(ui),
@@ -301,8 +303,8 @@ def focus(ui: Ui) -> None:
     pixel = c.selection.pixel
     if at is None and pixel is not None and c.frame is not None:
         at = (pixel[0] + 0.5) / c.frame.width, (pixel[1] + 0.5) / c.frame.height
-    if at is None and c.selection.picked is not None:
-        c.notices.say("what was clicked is not visible from here; point at something to focus on it")
+    if c.selection.picked is not None and c.selection.hovered is None and (at is None or c.selection.part is not None):
+        fly_to_selected(ui)
         return
     if at is None or c.frame is None:
         c.notices.say("point at something, or click it, to focus on it")

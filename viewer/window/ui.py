@@ -58,12 +58,13 @@ class Fold:
 class Ui:
     """See the module. `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says that
     the pointer holds the line of the wipe, `tool` what it draws, `drawn` what is being drawn, and `drawn_text` the
-    words that are typed there, `pointed_light` which light it is on in the inspector; `light_filters` is
-    what is typed above each list of lights; `screening` is the recorded picture that is shown in the picture's place;
-    `legend_shown` says whether the picture shows its legend, `legend_held` where the pointer holds that; `key_wanted`
-    names the command that waits for a key to be pressed; `editing` is the list and the place in it of a name that is
-    being edited, `edited` that name; `tour_height` is what the picture leaves free below it for the tour, `tour_place`
-    where that is: left, top and width."""
+    words that are typed there, `pointed_light` which light it is on in the inspector; `light_filters` is what is typed
+    above each list of lights; `find_focus` asks for the keyboard above the table of what is in the scene, of which
+    `find_drawn` rows were drawn last, each `find_height` pixels high, in the order `find_order`; `screening` is the
+    recorded picture that is shown in the picture's place; `legend_shown` says whether the picture shows its legend,
+    `legend_held` where the pointer holds that; `key_wanted` names the command that waits for a key to be pressed;
+    `editing` is the list and the place in it of a name that is being edited, `edited` that name; `tour_height` is what
+    the picture leaves free below it for the tour, `tour_place` where that is: left, top and width."""
 
     controller: Controller
     display: Display | None = None
@@ -114,6 +115,10 @@ class Ui:
     zoom_all_steps: bool = False
     pointed_light: int | None = None
     light_filters: dict[str, str] = field(default_factory=dict)
+    find_focus: bool = False
+    find_drawn: int = 0
+    find_height: float = 0.0
+    find_order: object = None
     shots: Shots | None = None
     screening: Screening | None = None
     legend_shown: bool = False

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from viewer.window import finding
 from viewer.window.panels import (
     camera,
     culling,
     experiment,
     filming,
+    find,
     inspector,
     log,
     picture,
@@ -54,6 +56,7 @@ PANELS = {
         Panel("Inspector", "RightBottom", icons.ICON_FA_MAGNIFYING_GLASS, inspector.show),
         Panel("Plots", "Bottom", icons.ICON_FA_CHART_LINE, plots.show, wide=True),
         Panel("Rays", "Bottom", icons.ICON_FA_CODE_BRANCH, rays.show, wide=True),
+        Panel(finding.PANEL, "Bottom", icons.ICON_FA_TABLE_LIST, find.show, wide=True),
         Panel("Experiment", "Bottom", icons.ICON_FA_FLASK, experiment.show, wide=True),
         Panel("Zoom test", "Bottom", icons.ICON_FA_MAGNIFYING_GLASS_PLUS, zoom.show, wide=True),
         Panel("Film", "Bottom", icons.ICON_FA_FILM, filming.show, wide=True),

@@ -15,7 +15,18 @@ from viewer.state import navigation, pads
 from viewer.state.picking import point_at
 from viewer.window.camera_commands import pivot_of
 from viewer.window.palette import ON_PICTURE_ERROR
-from viewer.window.panels import annotating, explanation, film, legend, missing, ray_overlay, timeline, tour, wipe
+from viewer.window.panels import (
+    annotating,
+    explanation,
+    film,
+    legend,
+    missing,
+    ray_overlay,
+    timeline,
+    tour,
+    unseen,
+    wipe,
+)
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, em, paragraph
 
@@ -75,6 +86,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
         ray_overlay.show(ui, corner, end)
     else:
         explanation.show(ui, corner, end)
+    unseen.show(ui, corner, end)
     _pointer(ui, corner, size)
     wipe.show(ui, corner, end)
     _overlay(ui, corner, end)
