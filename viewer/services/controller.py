@@ -13,10 +13,12 @@ from typing import Any
 
 from tracer.frame import Frame
 from tracer.renderer import Renderer
+from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
 from tracer.zoom import Step
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
+from viewer.services.editing import Editing
 from viewer.services.film_controller import FilmController
 from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
@@ -74,6 +76,8 @@ class Controller:
         self.rays = RayInspector(session, self.selection, renderer)
         self.table = SceneTable(session, self.selection, preferences, notices, self.captures, awaken)
         self.recorder = LightRecorder(session, renderer, self.tracing)
+        refuses, overlook = self.runs.refuses, self.undo.overlook
+        self.editing = Editing(session, renderer, notices, refuses, self._show_edited, overlook)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
         self.recipes = Recipes(session, preferences, self.tracing, self.loader, notices)
@@ -120,6 +124,7 @@ class Controller:
         traced, motion, run = self.traced, self.motion, self.runs.current
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
         self.undo.follow()
+        self.editing.follow(run is None)
         self.rays.follow(traced if run is None else None)  # before the next frame is asked for
         self.table.follow(traced if run is None else None, motion.lively)
         self.tracing.ask(Conditions(size, motion.under_way, run, self.loader.ready, self.selection.hovered))
@@ -195,12 +200,22 @@ class Controller:
         self.session.open(scene)
         self.info = info
         self.renderer.use(renderer)
+        self.editing.enter(renderer)
         self.history.clear()
         self.tracing.forget()
         self.selection.clear()
         self.motion.enter(info.get("bounds"))
         self.preferences.remember_scene(Path(scene.path).absolute())
         self.settings.save()
+
+    def _show_edited(self, now: Edited, renderer: Renderer) -> None:
+        """Show the scene that is open with other edits: where we are, and what was chosen, stays."""
+        before = self.session.edited
+        self.undo.overlook(lambda: self.session.take(now))
+        self.renderer.use(renderer)
+        self.tracing.forget()
+        self.selection.follow_edits(before, now)
+        self.reloaded = True
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot of the open scene."""

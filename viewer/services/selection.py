@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from tracer.frame import Frame
+from tracer.scene.edits import Edited
 from viewer.state.picking import Pick, pick, pixel_of, refreshed
 from viewer.state.session import Session
 from viewer.state.whereabouts import pick_part, pick_primitive
@@ -74,6 +76,16 @@ class Selection:
 
     def clear(self) -> None:
         self.picked = None
+
+    def follow_edits(self, before: Edited | None, now: Edited) -> None:
+        """The same primitive has another number now; one that is hidden is selected no more."""
+        kept = self.picked
+        if kept is not None and before is not None:
+            number = int(now.numbers[before.primitives[kept.primitive]])
+            lights = len(now.lights)
+            shadows = kept.shadows if len(kept.shadows) == lights else (None,) * lights
+            here = replace(kept, primitive=number, unit=number, in_cells=False, shadows=shadows, seen=None)
+            self.picked = here if number >= 0 else None
 
     def refresh(self, frame: Frame) -> None:
         """Take over modes and counts from a newer frame."""

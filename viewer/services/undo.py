@@ -1,4 +1,4 @@
-"""Undo and redo of settings, view, light and camera.
+"""Undo and redo of settings, view, light, camera and edits of the scene.
 
 Nobody has to announce a change: what holds is compared from one of the window's frames to the next.  Changes that
 belong together are one step: all of a drag, all of a flight until the camera rests.  Time, and what a run does, are no
@@ -7,10 +7,12 @@ steps."""
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from tracer.scene.edits import Edits
 from tracer.scene.model import Camera
 from viewer.services.motion import Motion
+from viewer.state import edits as scene_edits
 from viewer.state.choices import Choices, differences
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
@@ -27,6 +29,7 @@ class Place:
 
     choices: Choices
     camera: Camera | None
+    edits: Edits = Edits()
 
 
 @dataclass(frozen=True)
@@ -88,6 +91,13 @@ class Undo:
     def clear(self) -> None:
         """Forget all steps, as another scene is open."""
         self._done, self._undone, self._open, self._last, self._name = [], [], None, None, ""
+
+    def overlook(self, change: Callable[[], None]) -> None:
+        """Let something change that follows from a step, and is none itself."""
+        self.follow()
+        change()
+        if self._last is not None:
+            self._last = self._place()
 
     def follow(self) -> None:
         """Take up what has changed since the last time."""
@@ -166,7 +176,8 @@ class Undo:
             session.free_camera = place.camera
             if place.camera is not None:
                 self._motion.glide(place.camera, start)
-        self._last = Place(place.choices, place.camera)
+        session.want(place.edits, place.choices.light)
+        self._last = replace(place, edits=session.edits)
         self._notices.say(said)
 
     def _place(self) -> Place | None:
@@ -175,7 +186,7 @@ class Undo:
             return None
         # On its way the camera is where it goes: a glide is one step, and one that undo began is none.
         camera = self._motion.destination or session.free_camera
-        return Place(Choices.of(session, self._preferences), camera)
+        return Place(Choices.of(session, self._preferences), camera, session.edits)
 
 
 def _changes(before: Place, after: Place) -> dict[str, str]:
@@ -183,7 +194,7 @@ def _changes(before: Place, after: Place) -> dict[str, str]:
     if before.camera != after.camera:
         onto = "camera onto the scene's path" if after.camera is None else "camera"
         changed[_CAMERA] = onto
-    return changed
+    return changed | scene_edits.differences(before.edits, after.edits)
 
 
 def _name_of(fields: dict[str, str]) -> str:

@@ -14,7 +14,9 @@ from pathlib import Path
 from typing import Any
 
 from tracer.renderer import Settings
+from tracer.scene.edits import Edited, Edits, edited
 from tracer.scene.model import Camera, Scene
+from viewer.state import edits as scene_edits
 from viewer.state.annotations import Annotation
 from viewer.state.methods import DEFAULT
 from viewer.state.views import View
@@ -39,9 +41,12 @@ class Snapshot:
     view: View
     light: int
     wipe: float = 0.5
+    edits: Edits = Edits()
 
     def to_json(self) -> dict[str, Any]:
-        data = asdict(self)
+        data = {name: value for name, value in asdict(self).items() if name != "edits"}
+        if self.edits:
+            data["edits"] = scene_edits.to_json(self.edits)
         return data | {"camera": self.camera.to_json(), "view": self.view.value}
 
     @staticmethod
@@ -62,6 +67,7 @@ class Snapshot:
                 view=View(data.get("view", View.COLOR)),
                 light=max(0, int(data.get("light", 0))),
                 wipe=wipe if 0.0 <= wipe <= 1.0 else 0.5,
+                edits=scene_edits.from_json(data.get("edits", {})),
             )
         except KeyError as error:
             raise ValueError(f"its saved state lacks {error}") from None
@@ -90,9 +96,15 @@ def settings_from_json(data: Any) -> dict[str, Any]:
 
 @dataclass
 class Session:
-    """The state behind the window; plain data and what it implies, no threads and no widgets."""
+    """The state behind the window; plain data and what it implies, no threads and no widgets.
+
+    `edits` are what is to be otherwise than in the scene as it was read, `edited` is what is of that: `scene` is the
+    scene with it, of whose lights `light` is one, and `light_to_come` of those that are to be."""
 
     scene: Scene | None = None
+    edits: Edits = Edits()
+    edited: Edited | None = None
+    light_to_come: int | None = None
     time: float = 0.0
     free_camera: Camera | None = None
     playing: bool = False
@@ -125,12 +137,35 @@ class Session:
         if self.scene is not None and scene.path != self.scene.path:
             self.settings = replace(self.settings, lamp_radius=None)
         self.scene = scene
+        self.edits, self.edited = Edits(), edited(scene, Edits())
         self.time = scene.time_range[0]
         self.free_camera = None
         self.playing = False
         self.selected = None
         self.annotations = []
         self.light = min(self.light, max(len(scene.lights) - 1, 0))
+
+    @property
+    def original(self) -> Scene | None:
+        """The scene as it was read."""
+        return self.edited.original if self.edited is not None else self.scene
+
+    def take(self, now: Edited) -> None:
+        """Look at the same scene, edited otherwise; the chosen light stays, or becomes the one after it."""
+        before = self.edited
+        if self.light_to_come is not None:
+            self.light = self.light_to_come
+        elif before is not None and self.light < len(before.lights):
+            number = int(before.lights[self.light])
+            self.light = int((now.lights < number).sum())
+        self.scene, self.edited, self.light_to_come = now.scene, now, None
+        self.light = min(self.light, max(len(now.lights) - 1, 0))
+
+    def want(self, edits: Edits, light: int) -> None:
+        """Want other edits, and this light of those that are on then."""
+        if self.original is not None and self.edited is not None:
+            self.edits = edits.within(self.original)
+            self.light_to_come = light if self.edits != self.edited.edits else None
 
     @property
     def animated(self) -> bool:
@@ -187,6 +222,7 @@ class Session:
             view=self.view,
             light=self.light,
             wipe=self.wipe,
+            edits=self.edits,
         )
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -201,3 +237,4 @@ class Session:
         self.view = snapshot.view
         self.light = min(snapshot.light, max(len(self.scene.lights) - 1, 0))
         self.wipe = snapshot.wipe
+        self.want(snapshot.edits, snapshot.light)

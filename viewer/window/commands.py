@@ -10,7 +10,7 @@ from viewer.state.methods import toggled, with_base
 from viewer.state.picking import extent_at, point_at
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
-from viewer.window import camera_commands, edit_commands
+from viewer.window import camera_commands, edit_commands, what_if_commands
 from viewer.window.command import Command, Condition
 from viewer.window.finding import finding, fly_to_selected
 from viewer.window.taking import drawing, taking
@@ -22,6 +22,7 @@ def build(ui: Ui) -> list[Command]:
     return [
         *_file(ui),
         *edit_commands.build(ui),
+        *what_if_commands.build(ui),
         *drawing(ui),
         *_view(ui),
         *_camera(ui),
