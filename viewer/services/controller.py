@@ -74,10 +74,10 @@ class Controller:
         self.pads = PadFlight(session, preferences, self.motion, notices)
         self.inspector = ShadowInspector(self.selection, renderer)
         self.rays = RayInspector(session, self.selection, renderer)
-        self.table = SceneTable(session, self.selection, preferences, notices, self.captures, awaken)
         self.recorder = LightRecorder(session, renderer, self.tracing)
         refuses, overlook = self.runs.refuses, self.undo.overlook
         self.editing = Editing(session, renderer, notices, refuses, self._show_edited, overlook)
+        self.table = SceneTable(session, self.selection, preferences, notices, self.captures, self.editing, awaken)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
         self.recipes = Recipes(session, preferences, self.tracing, self.loader, notices)

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from tracer.scene.model import Progress, Scene
+from tracer.scene.edits import Edited
+from tracer.scene.model import Progress
 from viewer.output import exports
 from viewer.output.rows_csv import write_rows
 from viewer.services.capture_service import CaptureService
@@ -53,13 +55,13 @@ class Listing:
 class _Source:
     """What tables are made of."""
 
-    scene: Scene
+    now: Edited
     frame: Frame
     light: int | None
 
     def is_like(self, other: _Source | None) -> bool:
         """Whether the tables of another would be the same: further samples of a picture count nothing."""
-        if other is None or (other.scene, other.light) != (self.scene, self.light):
+        if other is None or other.now is not self.now or other.light != self.light:
             return False
         names = ("primitive", "modes", "cells", "saved", "due_rays", "wrong")
         return all(getattr(self.frame, name) is getattr(other.frame, name) for name in names)
@@ -86,6 +88,16 @@ class _Shown:
     current: set[Level] = field(default_factory=set)
 
 
+class Hides(Protocol):
+    """The part of `Editing` that is used here."""
+
+    def hide(self, name: str) -> None: ...
+
+    def show(self, name: str) -> None: ...
+
+    def hide_primitive(self, number: int, hidden: bool = True) -> None: ...
+
+
 class SceneTable:
     """`level` is what rows are, `orders` what is asked of each level; with `all_lights` shadow modes are those for all
     lights together, else for the session's.  `held` says that the rows must not move under the pointer."""
@@ -97,10 +109,11 @@ class SceneTable:
         preferences: Preferences,
         notices: Notices,
         files: CaptureService,
+        editing: Hides,
         wake: Callable[[], None] = lambda: None,
     ) -> None:
         self._session, self._selection, self._wake = session, selection, wake
-        self._preferences, self._notices, self._files = preferences, notices, files
+        self._preferences, self._notices, self._files, self._editing = preferences, notices, files, editing
         self.level = Level.OBJECTS
         self.orders = {
             Level.OBJECTS: Order(column="pixels", descending=True),
@@ -137,26 +150,49 @@ class SceneTable:
 
     def open_part(self, part: int) -> None:
         """List the primitives of a part."""
-        scene = self._session.scene
-        if scene is not None:
+        original = self._session.original
+        if original is not None:
             self.level = Level.PRIMITIVES
-            self.filter(f"object={quoted(parts_of(scene).names[part])}")
+            self.filter(f"object={quoted(parts_of(original).names[part])}")
 
     def select(self, row: int) -> None:
         """Select a row's object or primitive in the picture."""
         selection = self._selection
         done = selection.select_part(row) if self.level is Level.OBJECTS else selection.select_primitive(row)
         if not done:
-            self._notices.say("it is nowhere in the world at this moment")
+            self._notices.say("it is hidden" if self.is_hidden(row) else "it is nowhere in the world at this moment")
         self.chosen = selection.serial
 
     @property
     def selected(self) -> int:
         """The row of what is selected in the picture, -1 for none."""
-        picked, scene = self._selection.picked, self._session.scene
-        if picked is None or scene is None or not 0 <= picked.primitive < scene.primitive_count:
+        picked, now = self._selection.picked, self._session.edited
+        if picked is None or now is None or not 0 <= picked.primitive < len(now.primitives):
             return -1
-        return int(parts_of(scene).part_of[picked.primitive]) if self.level is Level.OBJECTS else picked.primitive
+        number = int(now.primitives[picked.primitive])
+        return int(parts_of(now.original).part_of[number]) if self.level is Level.OBJECTS else number
+
+    def is_hidden(self, row: int) -> bool:
+        """Whether a row's object or primitive is hidden, or is to be."""
+        edits, original = self._session.edits, self._session.original
+        if original is None:
+            return False
+        parts = parts_of(original)
+        part = row if self.level is Level.OBJECTS else int(parts.part_of[row])
+        return parts.names[part] in edits.hidden or (self.level is Level.PRIMITIVES and row in edits.hidden_primitives)
+
+    def hide(self, row: int, hidden: bool = True) -> None:
+        """Hide a row's object or primitive, or show it again, with the object that it belongs to."""
+        original = self._session.original
+        if original is None:
+            return
+        parts = parts_of(original)
+        if self.level is Level.OBJECTS:
+            (self._editing.hide if hidden else self._editing.show)(parts.names[row])
+            return
+        if not hidden:
+            self._editing.show(parts.names[int(parts.part_of[row])])
+        self._editing.hide_primitive(row, hidden)
 
     @property
     def selection_serial(self) -> int:
@@ -196,14 +232,14 @@ class SceneTable:
         if self._job is not None and self._job.done:
             self._take(self._job)
             self._job = None
-        scene = self._session.scene
-        if self._shown.source is not None and self._shown.source.scene is not scene:
+        now = self._session.edited
+        if self._shown.source is not None and (now is None or self._shown.source.now.original is not now.original):
             self._shown = _Shown()
-        if not self.visible or scene is None or self._job is not None:
+        if not self.visible or now is None or self._job is not None:
             return
         source = self._shown.source
         if traced is not None and traced.whole and traced.request.divisor == 1:
-            newest = _Source(scene, traced.frame, None if self.all_lights else self._session.light)
+            newest = _Source(now, traced.frame, None if self.all_lights else self._session.light)
             source = source if source is not None and newest.is_like(source) else newest
         if source is not None and self._lacks(source, moving):
             self._start(source, moving)
@@ -219,7 +255,7 @@ class SceneTable:
         kept = before is not None and before.order == order and (self.held or moving)
 
         def work(_: Progress) -> _Made:
-            made = shown.tables if source is shown.source else tables_of(source.scene, source.frame, source.light)
+            made = shown.tables if source is shown.source else tables_of(source.now, source.frame, source.light)
             table = made[level]
             if kept and before is not None and len(before.rows) and before.table.rows == table.rows:
                 return _Made(source, made, level, Listing(table, before.rows, order, before.problem), False)
@@ -231,7 +267,7 @@ class SceneTable:
         if job.failure is not None:
             self._notices.report(job.failure)
         made = job.result
-        if made is None or made.source.scene is not self._session.scene:
+        if made is None or made.source.now.original is not self._session.original:
             return
         shown = self._shown
         if made.source is not shown.source:

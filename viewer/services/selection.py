@@ -16,9 +16,9 @@ Point = tuple[float, float]
 
 
 class Selection:
-    """`picked` is what was clicked, `hovered` where the pointer is; None where there is nothing.  `part` is the whole
-    part of the scene that is selected with it, None for the primitive alone.  `serial` is another number after each
-    selection."""
+    """`picked` is what was clicked, `hovered` where the pointer is; None where there is nothing.  `part` is the part of
+    the scene (`viewer.state.parts`) that is selected as a whole, None for the primitive alone.  `serial` is another
+    number after each selection."""
 
     def __init__(self, session: Session, newest: Callable[[], Frame | None]) -> None:
         """`newest` returns the frame that the picture shows."""
@@ -59,17 +59,19 @@ class Selection:
         self.picked = found if found is not None and found.primitive >= 0 else None
 
     def select_primitive(self, primitive: int) -> bool:
-        """Select a primitive by its number, seen or not; whether that could be done."""
-        frame, scene = self.frame, self._session.scene
-        found = pick_primitive(frame, scene, primitive) if frame is not None and scene is not None else None
+        """Select a primitive by its number in the scene as it was read, seen or not; whether that could be done."""
+        frame, now = self.frame, self._session.edited
+        if frame is None or now is None or not 0 <= primitive < len(now.numbers):
+            return False
+        found = pick_primitive(frame, now.scene, int(now.numbers[primitive]))
         if found is not None:
             self.picked = found
         return found is not None
 
     def select_part(self, part: int) -> bool:
-        """Select a named part of the scene, in the middle of what is seen of it; whether that could be done."""
-        frame, scene = self.frame, self._session.scene
-        found = pick_part(frame, scene, part) if frame is not None and scene is not None else None
+        """Select a part of the scene, in the middle of what is seen of it; whether that could be done."""
+        frame, now = self.frame, self._session.edited
+        found = pick_part(frame, now, part) if frame is not None and now is not None else None
         if found is not None:
             self.picked, self.part = found, part
         return found is not None
@@ -85,7 +87,10 @@ class Selection:
             lights = len(now.lights)
             shadows = kept.shadows if len(kept.shadows) == lights else (None,) * lights
             here = replace(kept, primitive=number, unit=number, in_cells=False, shadows=shadows, seen=None)
-            self.picked = here if number >= 0 else None
+            if number >= 0:
+                self._picked = here  # nothing else was selected
+            else:
+                self.picked = None
 
     def refresh(self, frame: Frame) -> None:
         """Take over modes and counts from a newer frame."""

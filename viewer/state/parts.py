@@ -1,7 +1,6 @@
-"""The parts of a scene that have names: each piece of its static geometry, and each dynamic object.
+"""The things of a scene (`tracer.scene.edits.things`) by number, and what each primitive is, of a scene as it was read.
 
-They are numbered in the order of the scene: static parts first.  All is kept as arrays over primitives, as a scene may
-have millions of these.
+All is kept as arrays over primitives, as a scene may have millions of these.
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.scene.edits import things
 from tracer.scene.model import CONE, Scene
 
 KINDS = ("triangle", "sphere", "cone")
@@ -27,11 +27,11 @@ class Parts:
     Attributes
     ----------
     names : tuple of p str
-        As the scene gives them; dynamic objects may share one.
+        Those of the things, in their order.
     part_of : (n,) int32
         The part of each primitive.
     moving : (p,) bool
-        Which are dynamic objects.
+        Which can move.
     kind : (n,) int8
         Into `KINDS`.
     material, texture : (n,) int32
@@ -59,7 +59,7 @@ _known: OrderedDict[int, tuple[weakref.ref[Scene], Parts]] = OrderedDict()
 
 
 def parts_of(scene: Scene) -> Parts:
-    """The parts of a scene, found once."""
+    """The parts of a scene as it was read, found once."""
     known = _known.get(id(scene))
     if known is None or known[0]() is not scene:
         known = _known[id(scene)] = weakref.ref(scene), _found(scene)
@@ -72,22 +72,18 @@ def _found(scene: Scene) -> Parts:
     total = scene.primitive_count
     part_of, kind = np.zeros(total, np.int32), np.zeros(total, np.int8)
     material, texture = np.zeros(total, np.int32), np.full(total, -1, np.int32)
-    names: list[str] = []
-    moving: list[bool] = []
+    found = things(scene)
+    first: dict[int, int] = {}  # the number of an object's first part
+    for number, thing in enumerate(found):
+        first.setdefault(thing.index, number)
     for index, held in enumerate(scene.objects):
-        first, count = int(scene.triangle_offsets[index]), len(held.triangles)
-        quadric, quadrics = int(scene.quadric_offsets[index]), len(held.quadrics)
-        triangles, others = slice(first, first + count), slice(quadric, quadric + quadrics)
-        if held.part_of is None:
-            part_of[triangles] = part_of[others] = len(names)
-            mine: tuple[str, ...] = (held.name,)
-        else:
-            part_of[triangles] = held.part_of[:count] + len(names)
-            part_of[others] = held.part_of[count : count + quadrics] + len(names)
-            mine = held.parts
-        names += mine
-        moving += [index > 0] * len(mine)
+        start, count = int(scene.triangle_offsets[index]), len(held.triangles)
+        begin, quadrics = int(scene.quadric_offsets[index]), len(held.quadrics)
+        triangles, others = slice(start, start + count), slice(begin, begin + quadrics)
+        mine = np.zeros(count + quadrics, np.int32) if held.part_of is None else held.part_of
+        part_of[triangles], part_of[others] = mine[:count] + first.get(index, 0), mine[count:] + first.get(index, 0)
         material[triangles], material[others] = held.triangles.material, held.quadrics.material
         texture[triangles] = held.triangles.texture
         kind[others] = np.where(held.quadrics.kind == CONE, 2, 1)
-    return Parts(tuple(names), part_of, np.array(moving, np.bool_), kind, material, texture)
+    moving = np.array([thing.moves for thing in found], np.bool_)
+    return Parts(tuple(thing.name for thing in found), part_of, moving, kind, material, texture)

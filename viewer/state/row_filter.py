@@ -175,7 +175,8 @@ def _state(table: Table, wanted: str) -> NDArray[np.bool_]:
         motion = table.columns["motion"]
         assert motion is not None
         return np.asarray(motion.numbers == (wanted == "dynamic"))
-    hidden = table.columns.get("hidden")
-    if wanted in ("hidden", "shown") and hidden is not None:
+    if wanted in ("hidden", "shown"):
+        hidden = table.columns["hidden"]
+        assert hidden is not None
         return np.asarray(hidden.numbers == (wanted == "hidden"))
     raise FilterError(f"is:{wanted} is not known: there are seen, unseen, dynamic, static, wrong, hidden and shown")

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
-from tracer.scene.model import Scene
+from tracer.scene.edits import Edited
 from viewer.state.parts import KINDS, Parts, parts_of
 from viewer.state.readings import has_modes_of_cells, units_of
 from viewer.util.numbers import count
@@ -123,15 +123,18 @@ def mode_words(kind: type[OcclusionMode] | type[ShadowMode]) -> tuple[str, ...]:
     return (*(mode.name.replace("_", " ").lower() for mode in kind), SEVERAL_WORD)
 
 
+_MOTION, _HIDDEN = ("static", "dynamic"), ("shown", "hidden")
 _OCCLUSION, _SHADOW = mode_words(OcclusionMode), mode_words(ShadowMode)
 
 
-def tables_of(scene: Scene, frame: Frame, light: int | None) -> dict[Level, Table]:
-    """Both tables as a frame of the scene knows them, with shadow modes for a light, or None for all."""
-    parts, total = parts_of(scene), scene.primitive_count
+def tables_of(now: Edited, frame: Frame, light: int | None) -> dict[Level, Table]:
+    """Both tables as a frame of the edited scene knows them, with shadow modes for a light, or None for all.
+
+    Their rows are the parts and primitives of the scene as it was read, in its order."""
+    parts, total, here = parts_of(now.original), now.original.primitive_count, len(now.primitives)
     shown = frame.primitive.reshape(-1)
-    hit = (shown >= 0) & (shown < total)
-    at = shown[hit]
+    hit = (shown >= 0) & (shown < here)
+    at = now.primitives[shown[hit]]
 
     def summed(buffer: NDArray | None) -> NDArray | None:
         if buffer is None:
@@ -140,14 +143,37 @@ def tables_of(scene: Scene, frame: Frame, light: int | None) -> dict[Level, Tabl
 
     pixels = np.bincount(at, minlength=total).astype(np.int32)
     due, saved, wrong = summed(frame.due_rays), summed(frame.saved), summed(frame.wrong)
-    occlusion, shadow = modes_of(frame, total, light)
-    of_primitives = _primitives(scene, parts, pixels, due, saved, wrong, occlusion, shadow)
-    of_objects = _objects(parts, pixels, due, saved, wrong, occlusion, shadow)
+    occlusion, shadow = (_by_original(now, codes) for codes in modes_of(frame, here, light))
+    of_primitives = _primitives(now, parts, pixels, due, saved, wrong, occlusion, shadow)
+    of_objects = _objects(now, parts, pixels, due, saved, wrong, occlusion, shadow)
     return {Level.PRIMITIVES: of_primitives, Level.OBJECTS: of_objects}
 
 
+def _by_original(now: Edited, codes: NDArray[np.int8] | None) -> NDArray[np.int8] | None:
+    """Modes by the numbers of the scene as it was read."""
+    if codes is None or now.scene is now.original:
+        return codes
+    found = np.full(now.original.primitive_count, UNKNOWN, np.int8)
+    found[now.primitives] = codes
+    return found
+
+
+def moving_parts(now: Edited) -> NDArray[np.bool_]:
+    """(parts,) which can move, as the scene is edited."""
+    parts, resting = parts_of(now.original), dict(now.edits.static)
+    if not resting and not now.edits.moving:
+        return parts.moving
+    moving, named = now.edits.moving, zip(parts.names, parts.moving.tolist(), strict=True)
+    return np.array([name in moving or (moves and name not in resting) for name, moves in named], np.bool_)
+
+
+def hidden_parts(now: Edited) -> NDArray[np.bool_]:
+    """(parts,) which are hidden."""
+    return np.array([name in now.edits.hidden for name in parts_of(now.original).names], np.bool_)
+
+
 def _primitives(
-    scene: Scene,
+    now: Edited,
     parts: Parts,
     pixels: NDArray,
     due: NDArray | None,
@@ -156,14 +182,18 @@ def _primitives(
     occlusion: NDArray | None,
     shadow: NDArray | None,
 ) -> Table:
+    scene = now.original
     textures = tuple(texture.name for texture in scene.textures)
+    hidden = hidden_parts(now)[parts.part_of]
+    hidden[list(now.edits.hidden_primitives)] = True
     columns = {
         "number": Values(np.arange(len(pixels), dtype=np.int32)),
         "object": Values(parts.part_of, parts.names),
         "kind": Values(parts.kind, KINDS),
         "material": Values(parts.material, tuple(material.name for material in scene.materials)),
         "texture": Values(parts.texture, textures),
-        "motion": Values(parts.moving[parts.part_of].astype(np.int8), ("static", "dynamic")),
+        "motion": Values(moving_parts(now)[parts.part_of].astype(np.int8), _MOTION),
+        "hidden": Values(hidden.astype(np.int8), _HIDDEN),
         "pixels": Values(pixels),
         "occlusion": None if occlusion is None else Values(occlusion, _OCCLUSION),
         "shadow": None if shadow is None else Values(shadow, _SHADOW),
@@ -173,6 +203,7 @@ def _primitives(
 
 
 def _objects(
+    now: Edited,
     parts: Parts,
     pixels: NDArray,
     due: NDArray | None,
@@ -193,7 +224,8 @@ def _objects(
 
     columns = {
         "object": Values(np.arange(number, dtype=np.int32), parts.names),
-        "motion": Values(parts.moving.astype(np.int8), ("static", "dynamic")),
+        "motion": Values(moving_parts(now).astype(np.int8), _MOTION),
+        "hidden": Values(hidden_parts(now).astype(np.int8), _HIDDEN),
         "primitives": Values(parts.sizes),
         "seen": Values(np.bincount(parts.part_of[pixels > 0], minlength=number).astype(np.int32)),
         "pixels": Values(np.bincount(parts.part_of, pixels, minlength=number).astype(np.int64)),

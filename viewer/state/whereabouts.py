@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.scene.deformation import deformed
+from tracer.scene.edits import Edited
 from tracer.scene.model import CONE, Camera, Scene
 from viewer.state import navigation
 from viewer.state.parts import parts_of
@@ -47,15 +48,15 @@ def place_of(scene: Scene, primitive: int, time: float) -> Place | None:
     return _ball(corners, normal)
 
 
-def place_of_part(scene: Scene, part: int, time: float) -> Place | None:
-    """Where a named part of the scene is; None where it is nowhere."""
-    points = _points_of_part(scene, part, time)
+def place_of_part(now: Edited, part: int, time: float) -> Place | None:
+    """Where a part of the scene is; None where it is nowhere."""
+    points = _points_of_part(now, part, time)
     return _ball(points) if len(points) else None
 
 
-def lines_of_part(scene: Scene, part: int, time: float) -> list[NDArray[np.float64]]:
-    """The edges (2, 3) of a box around a named part of the scene; none where it is nowhere."""
-    points = _points_of_part(scene, part, time)
+def lines_of_part(now: Edited, part: int, time: float) -> list[NDArray[np.float64]]:
+    """The edges (2, 3) of a box around a part of the scene; none where it is nowhere."""
+    points = _points_of_part(now, part, time)
     if not len(points):
         return []
     low, high = points.min(axis=0), points.max(axis=0)
@@ -63,9 +64,9 @@ def lines_of_part(scene: Scene, part: int, time: float) -> list[NDArray[np.float
     return [corners[list(edge)] for edge in _EDGES]
 
 
-def _points_of_part(scene: Scene, part: int, time: float) -> NDArray[np.float64]:
+def _points_of_part(now: Edited, part: int, time: float) -> NDArray[np.float64]:
     """(k, 3) corners of all its primitives that are somewhere."""
-    found = parts_of(scene).primitives_of(part)
+    scene, found = now.scene, _primitives_of(now, part)
     if not len(found):
         return np.empty((0, 3))
     index = scene.object_of(int(found[0]))
@@ -73,6 +74,12 @@ def _points_of_part(scene: Scene, part: int, time: float) -> NDArray[np.float64]
     corners = [_corners(scene, index, found[which], time).reshape(-1, 3) for which in (~quadrics, quadrics)]
     points = np.concatenate(corners)
     return points[np.isfinite(points).all(axis=1)]
+
+
+def _primitives_of(now: Edited, part: int) -> NDArray:
+    """The numbers of a part's primitives in the edited scene: of those that are in it."""
+    found = now.numbers[parts_of(now.original).primitives_of(part)]
+    return found[found >= 0]
 
 
 def _ball(points: NDArray, normal: NDArray | None = None) -> Place:
@@ -150,15 +157,15 @@ def pick_primitive(frame: Frame, scene: Scene, primitive: int) -> Pick | None:
     )
 
 
-def pick_part(frame: Frame, scene: Scene, part: int) -> Pick | None:
-    """A named part as if it had been clicked in its middle; None where it has no primitives, or is nowhere."""
-    parts = parts_of(scene)
-    hit = (frame.primitive >= 0) & (frame.primitive < scene.primitive_count)
-    shown = hit & (parts.part_of[np.where(hit, frame.primitive, 0)] == part) if scene.primitive_count else hit
-    if shown.any():
-        return _middle_pick(frame, scene, shown)
-    found = parts.primitives_of(part)
-    return pick_primitive(frame, scene, int(found[0])) if len(found) else None
+def pick_part(frame: Frame, now: Edited, part: int) -> Pick | None:
+    """A part as if it had been clicked in its middle; None where it has no primitives, is hidden, or is nowhere."""
+    found = _primitives_of(now, part)
+    if not len(found):
+        return None
+    in_part = np.zeros(len(now.primitives) + 1, np.bool_)  # -1, a miss, finds the last of them
+    in_part[found] = True
+    shown = in_part[frame.primitive]
+    return _middle_pick(frame, now.scene, shown) if shown.any() else pick_primitive(frame, now.scene, int(found[0]))
 
 
 def _middle_pick(frame: Frame, scene: Scene, shown: NDArray[np.bool_]) -> Pick:

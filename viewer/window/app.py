@@ -173,8 +173,9 @@ class App:
         if display is None:
             return
         display.show(c.frame)
-        picked, part, scene = c.selection.picked, c.selection.part, c.session.scene
-        display.know_parts(parts_of(scene).part_of if part is not None and scene is not None else None)
+        picked, part, now = c.selection.picked, c.selection.part, c.session.edited
+        if part is not None and now is not None:
+            display.know_parts(self.ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives]))
         look = self._look(picked.primitive if picked is not None else -1)
         display.draw(look if part is None else replace(look, selected_part=part))
 

@@ -38,11 +38,11 @@ def finding(ui: Ui) -> list[Command]:
 def fly_to_selected(ui: Ui) -> None:
     """Go near what is selected, whether or not it is seen from here; orbits turn around it then."""
     c = ui.controller
-    scene, picked, part = c.session.scene, c.selection.picked, c.selection.part
-    if scene is None or picked is None:
+    now, picked, part = c.session.edited, c.selection.picked, c.selection.part
+    if now is None or picked is None:
         return
     time = c.session.time
-    place = place_of(scene, picked.primitive, time) if part is None else place_of_part(scene, part, time)
+    place = place_of(now.scene, picked.primitive, time) if part is None else place_of_part(now, part, time)
     if place is None:
         c.notices.say("what is selected is nowhere in the world at this moment")
         return

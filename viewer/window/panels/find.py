@@ -113,4 +113,12 @@ def _said(ui: Ui, table: SceneTable, listing: Listing) -> None:
             table.filter("")
             table.chosen = -1  # it is scrolled to
         return
+    edits = ui.controller.session.edits
+    if edits.hidden or edits.hidden_primitives:
+        imgui.text_colored(QUIET, said)
+        imgui.same_line()
+        if imgui.small_button("Show everything"):
+            ui.controller.editing.show_everything()
+        tooltip("what is hidden comes back; is:hidden finds it")
+        return
     clipped(said, QUIET)

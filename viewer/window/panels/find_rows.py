@@ -11,10 +11,10 @@ from viewer.state.scene_rows import COLUMNS, Column, Level
 from viewer.state.views import OCCLUSION_COLORS, SHADOW_COLORS
 from viewer.window.finding import fly_to_selected
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, em, fitted, right, swatch, tooltip
+from viewer.window.widgets import ERROR, QUIET, em, fitted, right, swatch, tooltip
 
 _WIDTHS = {
-    "number": 4.6, "kind": 4.4, "pixels": 4.8, "occlusion": 9.0, "shadow": 8.0, "due": 5.0, "saved": 5.0, "share": 4.6,
+    "number": 6.2, "kind": 4.4, "pixels": 4.8, "occlusion": 9.0, "shadow": 8.0, "due": 5.0, "saved": 5.0, "share": 4.6,
     "wrong": 4.2, "motion": 4.6, "primitives": 5.4, "seen": 4.4, "rendered": 5.4, "full_shadow": 5.4, "non_shadow": 4.4,
 }  # fmt: skip
 _NAME = 9.0  # ems, at least, for what has a name
@@ -129,10 +129,31 @@ def _row(ui: Ui, table: SceneTable, listing: Listing, columns: tuple[Column, ...
         _menu(ui, table, listing, row)
         imgui.end_popup()
     imgui.same_line(0.0, 0.0)
+    hidden = table.is_hidden(row)
+    _eye(table, row, hidden)
+    if hidden:
+        imgui.push_style_color(imgui.Col_.text, QUIET)
     for number, column in enumerate(columns):
         if number == 0 or imgui.table_set_column_index(number):
             _cell(listing, column, row)
+    if hidden:
+        imgui.pop_style_color()
     imgui.pop_id()
+
+
+def _eye(table: SceneTable, row: int, hidden: bool) -> None:
+    """What hides a row's object or primitive, and shows it again."""
+    side = imgui.get_text_line_height()
+    if imgui.invisible_button("eye", ImVec2(1.4 * side, side)):
+        table.hide(row, not hidden)
+    on_it = imgui.is_item_hovered()
+    at = imgui.get_item_rect_min()
+    icon = icons.ICON_FA_EYE_SLASH if hidden else icons.ICON_FA_EYE
+    color = imgui.get_color_u32(imgui.Col_.text if on_it or hidden else imgui.Col_.text_disabled)
+    imgui.get_window_draw_list().add_text(at, color, icon)
+    if on_it:
+        tooltip("show it again" if hidden else "hide it: the picture is traced as if it were not there")
+    imgui.same_line(0.0, em(0.3))
 
 
 def _cell(listing: Listing, column: Column, row: int) -> None:
@@ -153,7 +174,8 @@ def _menu(ui: Ui, table: SceneTable, listing: Listing, row: int) -> None:
     """What can be done with a row; whatever it is, it is selected first."""
     if imgui.is_window_appearing():
         table.select(row)
-    if imgui.menu_item(f"{icons.ICON_FA_PLANE}  Go there", ui.key("Focus").strip(" ()"), False)[0]:
+    here = table.selected == row
+    if imgui.menu_item(f"{icons.ICON_FA_PLANE}  Go there", ui.key("Focus").strip(" ()"), False, here)[0]:
         fly_to_selected(ui)
     if table.level is Level.OBJECTS:
         if imgui.menu_item(f"{icons.ICON_FA_LIST}  List its primitives", "", False)[0]:
@@ -161,5 +183,9 @@ def _menu(ui: Ui, table: SceneTable, listing: Listing, row: int) -> None:
         copied = listing.table.cell("object", row)
     else:
         copied = str(row)
+    hidden = table.is_hidden(row)
+    verb = f"{icons.ICON_FA_EYE}  Show" if hidden else f"{icons.ICON_FA_EYE_SLASH}  Hide"
+    if imgui.menu_item(verb, "", False)[0]:
+        table.hide(row, not hidden)
     if imgui.menu_item(f"{icons.ICON_FA_COPY}  Copy {copied if len(copied) < 24 else 'its name'}", "", False)[0]:
         ui.copy_to(copied)
