@@ -8,6 +8,7 @@ from tests.viewer.scenarios.failing import failing
 from tests.viewer.scenarios.files import browsing, cancelling, capturing, dropping, reopening
 from tests.viewer.scenarios.film import filmstrip
 from tests.viewer.scenarios.filming import filming
+from tests.viewer.scenarios.finding import finding
 from tests.viewer.scenarios.fitting import fitting
 from tests.viewer.scenarios.lamps import lamps
 from tests.viewer.scenarios.legends import legends
@@ -23,8 +24,8 @@ SCENARIOS = {
     scenario.__name__: scenario
     for scenario in (
         views, difference, wiping, legends, lamps, culling, certifying, explaining, rays, flying, orbiting, playing,
-        resizing, capturing, dropping, reopening, cancelling, browsing, experimenting, zooming, asking, filmstrip,
-        filming, taking, failing, panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating,
-        closing_while_tracing, closing_while_loading, closing_while_experimenting,
+        resizing, capturing, dropping, reopening, cancelling, browsing, experimenting, zooming, asking, finding,
+        filmstrip, filming, taking, failing, panels, closing_panels, looks, hiding, folding, touring, fitting, at_home,
+        navigating, closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip

@@ -31,8 +31,8 @@ def now() -> Edited:
     parts = np.array([1, 0, 1, 0, 2], np.int32)
     first = replace(static, triangles=textured, quadrics=cone, parts=("Wall", "floor", "left lamp"), part_of=parts)
     last = SceneObject("train", triangles(0), empty_quadrics(), train.chain)
-    return edited(replace(scene, objects=(first, train, last), textures=(Texture("oak", np.zeros((1, 1, 3), np.uint8)),)),
-                  Edits())  # fmt: skip
+    oak = Texture("oak", np.zeros((1, 1, 3), np.uint8))
+    return edited(replace(scene, objects=(first, train, last), textures=(oak,)), Edits())
 
 
 @pytest.fixture(scope="module")
