@@ -11,14 +11,17 @@ from viewer.state.scene_rows import Level
 
 KEY = imgui.Key
 ROWS_SEEN = 60  # at most, in a window of these sizes
+WIDE, HIGH = 40, 30
 
 
 def finding(d: Driver) -> None:
     """A user looks for things in a scene of thousands of primitives."""
     d.settle()
     c, table = d.c, d.c.table
-    c.loader.open(d.folder / "big.aff")
-    d.wait(lambda: c.session.scene.primitive_count > 50_000, "the larger scene")
+    path = d.folder / "wall.aff"
+    path.write_text(_wall())
+    c.loader.open(path)
+    d.wait(lambda: c.session.scene.primitive_count == 2 * WIDE * HIGH, "the larger scene")
     d.settle()
     assert not c.session.counting, "nobody looks at the table yet"
 
@@ -102,6 +105,16 @@ def finding(d: Driver) -> None:
     d.ui.show_panel("Plots")
     d.frames(5)
     assert not table.visible and not c.session.counting
+
+
+def _wall() -> str:
+    """As many triangles behind those that are seen as there are seen."""
+    lines = ["v", "from 20 15 40", "at 20 15 0", "up 0 1 0", "angle 40", "hither 0.1", "resolution 8 8", "l 1 9 30"]
+    lines.append("f 1 0 0 1 0 1 0 1")
+    for z in (0, -9):
+        for x, y in np.ndindex(WIDE, HIGH):
+            lines.append(f"p 3\n{x} {y} {z}\n{x + 1} {y} {z}\n{x} {y + 1} {z + 0.5}")
+    return "\n".join(lines) + "\n"
 
 
 def _known(d: Driver) -> Listing:
