@@ -122,7 +122,7 @@ class Controller:
         traced, motion, run = self.traced, self.motion, self.runs.current
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
         self.undo.follow()
-        self.editing.follow(run is None)
+        self.editing.follow(run is not None, self.tracing.shows_edits or not self.renderer.busy)
         self.rays.follow(traced if run is None else None)  # before the next frame is asked for
         self.tracing.ask(Conditions(size, motion.under_way, run, self.loader.ready, self.selection.hovered))
         if run is None:
@@ -208,11 +208,13 @@ class Controller:
     def _show_edited(self, now: Edited, renderer: Renderer) -> None:
         """Show the scene that is open with other edits: where we are, and what was chosen, stays."""
         before = self.session.edited
+        same = before is not None and before.made_as(now)
         self.undo.overlook(lambda: self.session.take(now))
         self.renderer.use(renderer)
-        self.tracing.forget()
-        self.selection.follow_edits(before, now)
-        self.reloaded = True
+        self.tracing.follow_edits(same)
+        if not same:
+            self.selection.follow_edits(before, now)
+            self.reloaded = True
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot of the open scene."""

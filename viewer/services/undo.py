@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from tracer.scene.edits import Edits
+from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.model import Camera
 from viewer.services.motion import Motion
 from viewer.state import edits as scene_edits
@@ -29,7 +29,7 @@ class Place:
 
     choices: Choices
     camera: Camera | None
-    edits: Edits = Edits()
+    edits: Edits = NO_EDITS
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from tracer.scene.edits import Edits
+from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.limits import LARGEST
 
 MOST = 100_000
@@ -98,4 +98,4 @@ def _other(before: dict[Any, Any], after: dict[Any, Any]) -> Iterable[tuple[Any,
 
 def in_words(edits: Edits) -> list[str]:
     """Each edit in a few words."""
-    return list(differences(Edits(), edits).values())
+    return list(differences(NO_EDITS, edits).values())

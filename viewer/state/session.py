@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from tracer.renderer import Settings
-from tracer.scene.edits import Edited, Edits, edited
+from tracer.scene.edits import NO_EDITS, Edited, Edits, edited
 from tracer.scene.model import Camera, Scene
 from viewer.state import edits as scene_edits
 from viewer.state.annotations import Annotation
@@ -41,7 +41,7 @@ class Snapshot:
     view: View
     light: int
     wipe: float = 0.5
-    edits: Edits = Edits()
+    edits: Edits = NO_EDITS
 
     def to_json(self) -> dict[str, Any]:
         data = {name: value for name, value in asdict(self).items() if name != "edits"}
@@ -102,7 +102,7 @@ class Session:
     scene with it, of whose lights `light` is one, and `light_to_come` of those that are to be."""
 
     scene: Scene | None = None
-    edits: Edits = Edits()
+    edits: Edits = NO_EDITS
     edited: Edited | None = None
     light_to_come: int | None = None
     time: float = 0.0
@@ -136,7 +136,7 @@ class Session:
         if self.scene is not None and scene.path != self.scene.path:
             self.settings = replace(self.settings, lamp_radius=None)
         self.scene = scene
-        self.edits, self.edited = Edits(), edited(scene, Edits())
+        self.edits, self.edited = NO_EDITS, edited(scene, NO_EDITS)
         self.time = scene.time_range[0]
         self.free_camera = None
         self.playing = False
