@@ -16,6 +16,7 @@ from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
 from tracer.zoom import Step
+from viewer.services.before_edits import BeforeEdits
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
 from viewer.services.editing import Editing
@@ -76,6 +77,7 @@ class Controller:
         self.recorder = LightRecorder(session, renderer, self.tracing)
         refuses, overlook = self.runs.refuses, self.undo.overlook
         self.editing = Editing(session, renderer, notices, refuses, self._show_edited, overlook)
+        self.before_edits = BeforeEdits(session, self.editing, self.undo)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
         self.recipes = Recipes(session, preferences, self.tracing, self.loader, notices)
@@ -127,10 +129,17 @@ class Controller:
         self.tracing.ask(Conditions(size, motion.under_way, run, self.loader.ready, self.selection.hovered))
         if run is None:
             self.recorder.follow()
+            self._follow_before_edits()
             if self.traced is not None and self.traced.whole:
                 self.bookmarks.follow(self.traced.frame, self.traced.request.divisor == 1)
         self.inspector.follow(self.frame if run is None else None, not motion.lively)
         return frame
+
+    def _follow_before_edits(self) -> None:
+        traced, tracing = self.traced, self.tracing
+        now = traced is not None and traced.whole and traced.request.divisor == 1 and not self.motion.lively
+        frame = traced.frame if traced is not None and now and tracing.shows_edits else None
+        self.before_edits.follow(frame, not (tracing.awaits or tracing.adds_samples or self.renderer.busy))
 
     def _take_scene(self) -> None:
         arrival = self.loader.follow()
@@ -198,6 +207,7 @@ class Controller:
         self.info = info
         self.renderer.use(renderer)
         self.editing.enter(renderer)
+        self.before_edits.forget()
         self.history.clear()
         self.tracing.forget()
         self.selection.clear()

@@ -96,6 +96,19 @@ def _other(before: dict[Any, Any], after: dict[Any, Any]) -> Iterable[tuple[Any,
     return ((key, after.get(key)) for key in sorted(before.keys() | after.keys()) if before.get(key) != after.get(key))
 
 
+def one_by_one(edits: Edits) -> list[tuple[str, Edits]]:
+    """Each edit in a few words, and all others without it."""
+    without = [
+        *(edits.with_light(number, True) for number in edits.lights_off),
+        *(edits.with_light_at(number, None) for number, _ in edits.moved_lights),
+        *(edits.with_thing(name, True) for name in edits.hidden),
+        *(edits.with_primitive(number, True) for number in edits.hidden_primitives),
+        *(edits.with_static(name, None) for name, _ in edits.static),
+        *(edits.with_moving(name, False) for name in edits.moving),
+    ]
+    return sorted(((" and ".join(differences(one, edits).values()), one) for one in without), key=lambda pair: pair[0])
+
+
 def in_words(edits: Edits) -> list[str]:
     """Each edit in a few words."""
     return list(differences(NO_EDITS, edits).values())

@@ -58,8 +58,10 @@ class Fold:
 class Ui:
     """See the module. `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says that
     the pointer holds the line of the wipe, `tool` what it draws, `drawn` what is being drawn, and `drawn_text` the
-    words that are typed there, `pointed_light` which light it is on in the inspector; `light_filters` is
-    what is typed above each list of lights; `screening` is the recorded picture that is shown in the picture's place;
+    words that are typed there, `pointed_light` which light it is on in the inspector;
+    `what_if_drawn` is the frame of ImGui's in which the panel What if was drawn last, `held_light` the light that the
+    pointer drags, `changed_shown` says that changed pixels are to be seen; `light_filters` is what is typed above each
+    list of lights; `screening` is the recorded picture that is shown in the picture's place;
     `legend_shown` says whether the picture shows its legend, `legend_held` where the pointer holds that; `key_wanted`
     names the command that waits for a key to be pressed; `editing` is the list and the place in it of a name that is
     being edited, `edited` that name; `tour_height` is what the picture leaves free below it for the tour, `tour_place`
@@ -113,6 +115,9 @@ class Ui:
     log_errors_only: bool = False
     zoom_all_steps: bool = False
     pointed_light: int | None = None
+    what_if_drawn: int = -9
+    held_light: int | None = None
+    changed_shown: bool = False
     light_filters: dict[str, str] = field(default_factory=dict)
     shots: Shots | None = None
     screening: Screening | None = None

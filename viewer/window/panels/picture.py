@@ -15,7 +15,18 @@ from viewer.state import navigation, pads
 from viewer.state.picking import point_at
 from viewer.window.camera_commands import pivot_of
 from viewer.window.palette import ON_PICTURE_ERROR
-from viewer.window.panels import annotating, explanation, film, legend, missing, ray_overlay, timeline, tour, wipe
+from viewer.window.panels import (
+    annotating,
+    edited_picture,
+    explanation,
+    film,
+    legend,
+    missing,
+    ray_overlay,
+    timeline,
+    tour,
+    wipe,
+)
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, em, paragraph
 
@@ -71,12 +82,14 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     imgui.invisible_button("picture", size, _ALL_BUTTONS)
     end = ImVec2(corner.x + size.x, corner.y + size.y)
     imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), corner, end)
+    edited_picture.show_changed(ui, corner, end)
     if c.rays.visible:  # it shows the same rays, and more
         ray_overlay.show(ui, corner, end)
     else:
         explanation.show(ui, corner, end)
     _pointer(ui, corner, size)
     wipe.show(ui, corner, end)
+    edited_picture.show_lights(ui, corner, end)
     _overlay(ui, corner, end)
     annotating.show(ui, corner, end)
     legend.show(ui, corner, end)
@@ -114,7 +127,7 @@ def _pointer(ui: Ui, corner: ImVec2, size: ImVec2) -> None:
     if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
         c.selection.hovered = (u, v)
         _wheel(ui, io.mouse_wheel)
-    if annotating.handle(ui, corner, size) or wipe.handle(ui, corner, size):
+    if annotating.handle(ui, corner, size) or wipe.handle(ui, corner, size) or edited_picture.handle(ui, corner, size):
         return
     if imgui.is_item_activated():
         ui.dragged = False
