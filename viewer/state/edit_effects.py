@@ -143,14 +143,14 @@ def _counters(before: FrameStatistics, after: FrameStatistics) -> tuple[Counter,
     def of(s: FrameStatistics) -> dict[str, int]:
         kinds = s.primary, s.secondary, s.shadow
         return {
-            "shadow rays due": s.shadow.due,
+            "due": s.shadow.due,
             "culled": s.shadow.culled,
             "dynamic only": s.shadow.dynamic_only,
             "candidates": s.shadow.candidates_only,
             "traced": fully_traced(s.shadow),
             "steps": sum(kind.traversal_steps for kind in kinds),
             "tests": sum(kind.intersection_tests for kind in kinds),
-            "new certificates": s.certificates,
+            "certified": s.certificates,
         }
 
     first, second = of(before), of(after)

@@ -18,6 +18,7 @@ from tests.viewer.scenarios.rays import rays
 from tests.viewer.scenarios.runs import asking, experimenting, zooming
 from tests.viewer.scenarios.taking import taking
 from tests.viewer.scenarios.touring import touring
+from tests.viewer.scenarios.what_if import what_if
 
 SCENARIOS = {
     scenario.__name__: scenario
@@ -25,6 +26,6 @@ SCENARIOS = {
         views, difference, wiping, legends, lamps, culling, certifying, explaining, rays, flying, orbiting, playing,
         resizing, capturing, dropping, reopening, cancelling, browsing, experimenting, zooming, asking, filmstrip,
         filming, taking, failing, panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating,
-        closing_while_tracing, closing_while_loading, closing_while_experimenting,
+        what_if, closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip

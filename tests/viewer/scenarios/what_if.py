@@ -38,7 +38,7 @@ def what_if(d: Driver) -> None:
     assert len(c.session.scene.lights) == len(c.session.original.lights) - 1
     found = c.before_edits.effects
     assert found is not None and found.pixels == int((c.frame.color != traced).any(-1).sum()) > 0
-    due = {one.name: one for one in found.counters}["shadow rays due"]
+    due = {one.name: one for one in found.counters}["due"]
     assert due.before == before.statistics.shadow.due > due.after == c.frame.statistics.shadow.due
     d.context.item_click("//What if/**/Show changed pixels")
     d.frames(5)
@@ -55,10 +55,10 @@ def what_if(d: Driver) -> None:
     d.frames(5)
     look(d, "3-clicked")
     shown = c.session.scene.primitive_count
-    d.context.item_click("//What if/**/Hide")
-    d.wait(lambda: not c.editing.under_way, "the object hidden", 20.0)
+    d.context.item_click("//What if/**/Hide primitive")
+    d.wait(lambda: not c.editing.under_way, "the primitive hidden", 20.0)
     d.settle()
-    assert c.session.edits.hidden and c.session.scene.primitive_count < shown
+    assert c.session.edits.hidden_primitives and c.session.scene.primitive_count < shown
     assert c.selection.picked is None
     look(d, "4-hidden")
 

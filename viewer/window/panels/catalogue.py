@@ -53,7 +53,7 @@ PANELS = {
         Panel("Saving", "Right", icons.ICON_FA_CAMERA, saving.show),
         Panel("Culling", "RightMiddle", icons.ICON_FA_SCISSORS, culling.show),
         Panel("Inspector", "RightBottom", icons.ICON_FA_MAGNIFYING_GLASS, inspector.show),
-        Panel("What if", "RightBottom", icons.ICON_FA_WAND_MAGIC_SPARKLES, what_if.show),
+        Panel("What if", "LeftBottom", icons.ICON_FA_WAND_MAGIC_SPARKLES, what_if.show),
         Panel("Plots", "Bottom", icons.ICON_FA_CHART_LINE, plots.show, wide=True),
         Panel("Rays", "Bottom", icons.ICON_FA_CODE_BRANCH, rays.show, wide=True),
         Panel("Experiment", "Bottom", icons.ICON_FA_FLASK, experiment.show, wide=True),

@@ -11,6 +11,7 @@ from tracer.scene.edits import Edited, Thing
 from tracer.scene.limits import LARGEST
 from viewer.output.legend import light_in_words
 from viewer.services.before_edits import Lack
+from viewer.state import terms
 from viewer.state.edit_effects import Effects, Transitions
 from viewer.state.edits import one_by_one
 from viewer.state.picking import primitive_in_words
@@ -30,7 +31,13 @@ from viewer.window.widgets import (
     wide_button,
 )
 
-_ROWS = 6  # of lists that are seen at once
+_TIPS = {
+    "due": terms.MEANINGS[terms.DUE],
+    "steps": "nodes of trees that rays of all kinds enter",
+    "tests": "rays of all kinds tested against primitives",
+    "certified": "certificates made in this frame",
+}
+_ROWS = 5  # of lists that are seen at once
 _MOST_PAIRS = 4  # of transitions of a light that are listed
 _MOST_BLOCKERS = 4
 
@@ -44,10 +51,10 @@ def show(ui: Ui) -> None:
     ui.what_if_drawn = imgui.get_frame_count()
     if not ui.controller.editing.now and not ui.controller.before_edits.taking:
         paragraph("Change the scene, not its file, and see what that changes. Undo brings all back.", QUIET)
-    _effects(ui)
-    _edits(ui)
     _object(ui, edited)
     _lights(ui, edited)
+    _edits(ui)
+    _effects(ui)
 
 
 # --- what is edited ----------------------------------------------------------------------------------
@@ -96,10 +103,10 @@ def _object(ui: Ui, edited: Edited) -> None:
 def _thing(ui: Ui, thing: Thing, primitive: int) -> None:
     """What can be done with the object, and with this primitive of it."""
     editing = ui.controller.editing
-    if wide_button(f"{icons.ICON_FA_EYE_SLASH}  Hide", f"{thing.name}, all of it", 2):
+    if wide_button("Hide all of it", thing.name, 2):
         editing.hide(thing.name)
     imgui.same_line()
-    if wide_button(f"{icons.ICON_FA_EYE_SLASH}  Hide primitive", f"primitive {primitive} alone", 1):
+    if wide_button("Hide primitive", f"primitive {primitive} alone", 1):
         editing.hide_primitive(primitive)
     if thing.moves:
         static = thing.name in dict(editing.now.static)
@@ -239,6 +246,7 @@ def _counters(found: Effects) -> None:
         imgui.table_next_row()
         imgui.table_next_column()
         clipped(one.name.capitalize(), QUIET)
+        tooltip(_TIPS.get(one.name, terms.MEANINGS.get(one.name, "")) or one.name)
         change = one.after - one.before
         for text in (count(one.before), count(one.after), f"{'+' if change > 0 else ''}{count(change)}"):
             imgui.table_next_column()
