@@ -241,11 +241,11 @@ def _objects(scene: Scene, edits: Edits) -> tuple[list[SceneObject], list[Held]]
     for thing in things(scene):
         if thing.index > 0 or not (thing.name in edits.hidden or thing.name in edits.moving):
             continue
-        whole = np.ones(len(shown), np.bool_) if thing.part < 0 else static.part_of == thing.part
+        whole = np.ones(len(shown), np.bool_) if static.part_of is None else static.part_of == thing.part
         if thing.name not in edits.hidden:
             one = replace(_subset(static, whole & shown), name=thing.name, chain=(np.eye(4),), parts=(), part_of=None)
             freed.append((one, _of(static_held, whole & shown)))
-        shown &= ~whole
+        shown = shown & ~whole
     if not shown.all():
         static, static_held = _subset(static, shown), _of(static_held, shown)
 
@@ -299,9 +299,10 @@ def _at_rest(scene: Scene, one: SceneObject, time: float) -> SceneObject:
     if one.deformation is not None:
         corners, normals = deformed(one.deformation, time)
         triangles = replace(triangles, corners=corners, normals=normals)
-    corners, normals = under_matrix(triangles.corners.astype(np.float64), triangles.normals.astype(np.float64), matrix)
+    wide, normals_there = (array.astype(np.float64) for array in (triangles.corners, triangles.normals))
+    there, turned = under_matrix(wide, normals_there, matrix)
     uvs = triangles.uvs[:, [0, 2, 1]] if np.linalg.det(matrix[:3, :3]) < 0 else triangles.uvs
-    triangles = replace(triangles, corners=corners.astype(np.float32), normals=unit_normals(normals, corners), uvs=uvs)
+    triangles = replace(triangles, corners=there.astype(np.float32), normals=unit_normals(turned, there), uvs=uvs)
     square = np.concatenate([one.quadrics.to_object, np.tile([[[0.0, 0.0, 0.0, 1.0]]], (len(one.quadrics), 1, 1))], 1)
     to_world: Float64 = (matrix @ square)[:, :3]
     return SceneObject(one.name, triangles, replace(one.quadrics, to_object=to_world))

@@ -18,6 +18,7 @@ from PIL import Image
 from tracer.frame import Frame
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
+from tracer.scene.edits import Edits, edited
 from tracer.scene.files import read_regular
 from tracer.scene.load import load_visible_scene
 from tracer.scene.model import Cancelled, Scene, SceneError
@@ -50,7 +51,7 @@ class Checker:
 
     def __init__(self, options: Namespace, work: Work) -> None:
         self._options, self._work = options, work
-        self._scene: tuple[Path, Scene] | None = None
+        self._scene: tuple[tuple[Path, Edits], Scene] | None = None
         self._world: tuple[str, World] | None = None
 
     def check(self, path: Path) -> Verdict:
@@ -139,11 +140,9 @@ class Checker:
         found = find_scene(snapshot.scene, path)
         if found is None:
             raise ValueError(f"its scene is gone: {snapshot.scene}")
-        if self._scene is None or self._scene[0] != found:
-            self._scene, self._world = (
-                (found, load_visible_scene(found, self._work.progress, self._options.folder)),
-                None,
-            )
+        if self._scene is None or self._scene[0] != (found, wanted.edits):
+            read = load_visible_scene(found, self._work.progress, self._options.folder)
+            self._scene, self._world = ((found, wanted.edits), edited(read, wanted.edits).scene), None
         scene = self._scene[1]
         prepare_kernels(self._work, len(scene.lights), wanted.settings.accelerator, *methods)
         settings = replace(wanted.settings, threads=wanted.settings.threads or self._options.threads)

@@ -18,6 +18,7 @@ from viewer.cli.argument_types import (
     tev_address,
     view,
 )
+from viewer.cli.edit_options import add_edits
 from viewer.cli.parsers import Parser
 
 
@@ -72,6 +73,7 @@ def _add_picture(parser: Parser) -> None:
     add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
     _add_style(parser)
     add("--camera", metavar="JSON", help=f"another camera: {parsers.CAMERA}")
+    add_edits(parser)
 
 
 def film() -> Parser:

@@ -10,6 +10,7 @@ from typing import Any
 
 from tracer.scene.files import read_regular
 from tracer.scene.model import Camera
+from viewer.cli import edit_options
 from viewer.cli.argument_types import ChosenView
 from viewer.output import capture, recipe
 from viewer.output.recipe import Recipe
@@ -39,6 +40,7 @@ def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
         kept["camera"] = saved.camera
     kept["view"] = ChosenView(saved.view, saved.light, saved.wipe, saved.style.shares)
     kept["moment"] = saved.time
+    kept |= edit_options.defaults(saved.edits)
     return saved.scene, kept
 
 

@@ -16,9 +16,11 @@ from typing import Any
 
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
+from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.output.pictures import SHADING
+from viewer.state import edits as scene_edits
 from viewer.state.annotations import Annotation
 from viewer.state.annotations import from_json as annotations_from_json
 from viewer.state.marks import wipe_column
@@ -51,7 +53,8 @@ class Style:
 class Recipe:
     """See the module.  `camera` None is the scene's own; `settings` are those of the picture's own frame; `by_gpu` says
     that a GPU drew the view, which may round otherwise.  `folders` are those that the user lets the scene read: a
-    picture does not carry them, or it could name any."""
+    picture does not carry them, or it could name any.  `edits` are what is otherwise than in the scene's file; `light`
+    counts those that are on."""
 
     scene: Path
     time: float
@@ -66,6 +69,7 @@ class Recipe:
     history: str = ""
     by_gpu: bool = False
     folders: tuple[Path, ...] = ()
+    edits: Edits = NO_EDITS
 
     @property
     def size(self) -> tuple[int, int]:
@@ -87,7 +91,8 @@ class Recipe:
         camera = self.camera or scene.camera_at(self.time)
         settings = settings_to_json(self.settings)
         path = str(self.scene.absolute())
-        return Snapshot(path, self.time, camera, self.camera is None, settings, self.view, self.light, self.wipe)
+        seen = self.camera is None, settings, self.view, self.light, self.wipe
+        return Snapshot(path, self.time, camera, *seen, self.edits)
 
     def to_json(self) -> dict[str, Any]:
         """What a capture carries beside its state."""
@@ -142,6 +147,7 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Re
             repeats=_count(data, "repeats"),
             history=str(data.get("history", "")),
             by_gpu=bool(data.get("by_gpu", False)),
+            edits=snapshot.edits,
         )
     except (TypeError, AttributeError):
         raise ValueError("how it was drawn is damaged") from None
@@ -219,6 +225,7 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         words += [f"--caption={style.caption.replace('{', '{{').replace('}', '}}')}"]
     if style.annotations:
         words += ["--annotations", json.dumps([a.to_json() for a in style.annotations])]
+    words += scene_edits.as_options(recipe.edits)
     for folder in recipe.folders:
         words += ["--folder", str(folder.absolute())]
     return words

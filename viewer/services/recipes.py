@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from tracer.frame import Frame, Settings
+from tracer.scene.edits import NO_EDITS
 from viewer.output import recipe
 from viewer.output.recipe import Recipe, Style
 from viewer.services.scene_loader import SceneLoader
@@ -48,6 +49,7 @@ class Recipes:
             style=self._style(magnified, self._preferences.legend_in_pictures if legend is None else legend),
             by_gpu=view is not View.COLOR or self._preferences.outlines,
             folders=self._loader.folders,
+            edits=session.edited.edits if session.edited is not None else NO_EDITS,
         )
         return self._with_history(found, frame)
 

@@ -17,8 +17,8 @@ from viewer.state.history import fully_traced
 from viewer.state.readings import has_modes_of_cells
 from viewer.state.views import WRONG, Certificate
 
-DIMMED = 0.3
-"""Brightness of the picture beneath changed pixels."""
+DIMMED, LEAST = 0.3, 0.25
+"""Brightness of the picture beneath changed pixels, and how strong the colour is of those that have changed least."""
 
 
 class Counter(NamedTuple):
@@ -56,12 +56,12 @@ class Transitions:
 
 @dataclass(frozen=True)
 class Effects:
-    """`changed` (h, w) bool are pixels of another colour, None where the pictures are not of the same place, size and
-    samples; `most` is the largest difference of a channel on the screen, 0 to 255.  What has no modes, or no
-    certificates, has none of these lists."""
+    """`changes` (h, w) uint8 are the largest differences of each pixel's channels on the screen, None where the
+    pictures do not have the same samples; `exact` is how many pixels have another linear colour.  What has no modes, or
+    no certificates, has none of these lists."""
 
-    changed: NDArray[np.bool_] | None
-    most: int
+    changes: NDArray[np.uint8] | None
+    exact: int
     counters: tuple[Counter, ...]
     occlusion: Transitions | None = None
     shadows: tuple[Transitions, ...] = ()
@@ -69,7 +69,13 @@ class Effects:
 
     @property
     def pixels(self) -> int:
-        return int(np.count_nonzero(self.changed)) if self.changed is not None else 0
+        """How many have another colour on the screen."""
+        return int(np.count_nonzero(self.changes)) if self.changes is not None else 0
+
+    @property
+    def most(self) -> int:
+        """The largest difference of a channel on the screen, 0 to 255."""
+        return int(self.changes.max(initial=0)) if self.changes is not None else 0
 
 
 def same_place(one: Frame, other: Frame) -> bool:
@@ -79,13 +85,13 @@ def same_place(one: Frame, other: Frame) -> bool:
 
 def effects(before: Frame, of: Edited, after: Frame, now: Edited) -> Effects:
     """From a frame of a scene to one of the same scene edited otherwise, both of the same place."""
-    changed, most = None, 0
+    changes, exact = None, 0
     if before.settings.samples == after.settings.samples:
-        changed = (before.color != after.color).any(axis=-1)
-        most = int(np.abs(before.pixels.astype(np.int16) - after.pixels).max(initial=0))
+        exact = int((before.color != after.color).any(axis=-1).sum())
+        changes = np.abs(before.pixels.astype(np.int16) - after.pixels).max(axis=-1).astype(np.uint8)
     occlusion, shadows = _of_modes(before, of, after, now)
     certificates = _of_certificates(before, of, after, now)
-    return Effects(changed, most, _counters(before.statistics, after.statistics), occlusion, shadows, certificates)
+    return Effects(changes, exact, _counters(before.statistics, after.statistics), occlusion, shadows, certificates)
 
 
 def _of_modes(
@@ -99,12 +105,13 @@ def _of_modes(
     here = old >= 0
     words = before.modes[old[here]], after.modes[here]
     names = tuple(_said(mode.name) for mode in OcclusionMode)
-    occlusion = Transitions(None, names, _pairs(*(modes.occlusion_mode(word) for word in words), len(names)))
+    first, second = (modes.occlusion_mode(word) for word in words)
+    occlusion = Transitions(None, names, _pairs(first, second, len(names)))
     names, found = tuple(_said(mode.name) for mode in ShadowMode), []
-    for number, first, second in _lights_of_both(of, now):
-        if modes.has_shadow_mode(before.modes, first) and modes.has_shadow_mode(after.modes, second):
-            pair = modes.shadow_mode(words[0], first), modes.shadow_mode(words[1], second)
-            found.append(Transitions(number, names, _pairs(*pair, len(names))))
+    for number, old_light, light in _lights_of_both(of, now):
+        if modes.has_shadow_mode(before.modes, old_light) and modes.has_shadow_mode(after.modes, light):
+            pair = modes.shadow_mode(words[0], old_light), modes.shadow_mode(words[1], light)
+            found.append(Transitions(number, names, _pairs(pair[0], pair[1], len(names))))
     return occlusion, tuple(found)
 
 
@@ -120,7 +127,7 @@ def _of_certificates(before: Frame, of: Edited, after: Frame, now: Edited) -> tu
     for number, first, second in _lights_of_both(of, now):
         if modes.has_shadow_mode(before.certificates, first) and modes.has_shadow_mode(after.certificates, second):
             pair = modes.shadow_mode(words[0], first), modes.shadow_mode(words[1], second)
-            found.append(Transitions(number, names, _pairs(*pair, len(names))))
+            found.append(Transitions(number, names, _pairs(pair[0], pair[1], len(names))))
     return tuple(found)
 
 
@@ -157,8 +164,10 @@ def _counters(before: FrameStatistics, after: FrameStatistics) -> tuple[Counter,
     return tuple(Counter(name, first[name], second[name]) for name in first)
 
 
-def picture_of(frame: Frame, changed: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """(h, w, 3) uint8: the picture dimmed, and changed pixels in a colour that no picture has."""
-    dimmed = (frame.pixels * DIMMED).astype(np.uint8)
-    dimmed[changed] = np.array(WRONG) * 255
-    return dimmed
+def picture_of(frame: Frame, changes: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """(h, w, 3) uint8: the picture dimmed, and changed pixels the brighter in magenta the more they have changed."""
+    drawn = (frame.pixels * DIMMED).astype(np.float32)
+    changed = changes > 0
+    strength = LEAST + (1.0 - LEAST) * np.sqrt(changes[changed] / max(1, int(changes.max(initial=0))))
+    drawn[changed] = strength[:, None] * 255.0 * np.array(WRONG) + (1.0 - strength[:, None]) * drawn[changed]
+    return drawn.astype(np.uint8)

@@ -109,6 +109,18 @@ def one_by_one(edits: Edits) -> list[tuple[str, Edits]]:
     return sorted(((" and ".join(differences(one, edits).values()), one) for one in without), key=lambda pair: pair[0])
 
 
+def as_options(edits: Edits) -> list[str]:
+    """The options of a command line that ask for these edits, to the bit."""
+    return [
+        *(f"--without-light={number}" for number in sorted(edits.lights_off)),
+        *(f"--move-light={number}={','.join(repr(part) for part in place)}" for number, place in edits.moved_lights),
+        *(f"--hide={name}" for name in sorted(edits.hidden)),
+        *(f"--hide-primitive={number}" for number in sorted(edits.hidden_primitives)),
+        *(f"--make-static={name}={time!r}" for name, time in edits.static),
+        *(f"--make-moving={name}" for name in sorted(edits.moving)),
+    ]
+
+
 def in_words(edits: Edits) -> list[str]:
     """Each edit in a few words."""
     return list(differences(NO_EDITS, edits).values())

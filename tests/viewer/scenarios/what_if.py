@@ -37,7 +37,7 @@ def what_if(d: Driver) -> None:
     d.settle()
     assert len(c.session.scene.lights) == len(c.session.original.lights) - 1
     found = c.before_edits.effects
-    assert found is not None and found.pixels == int((c.frame.color != traced).any(-1).sum()) > 0
+    assert found is not None and found.exact == int((c.frame.color != traced).any(-1).sum()) > 0
     due = {one.name: one for one in found.counters}["due"]
     assert due.before == before.statistics.shadow.due > due.after == c.frame.statistics.shadow.due
     d.context.item_click("//What if/**/Show changed pixels")

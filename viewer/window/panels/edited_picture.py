@@ -41,10 +41,10 @@ class ChangedPixels:
     """The picture with changed pixels in magenta."""
 
     frame: Frame
-    changed: NDArray[np.bool_]
+    changes: NDArray[np.uint8]
 
     def pixels(self) -> NDArray[np.uint8]:
-        return edit_effects.picture_of(self.frame, self.changed)
+        return edit_effects.picture_of(self.frame, self.changes)
 
     def thumbnail(self, height: int) -> NDArray[np.uint8]:
         image = Image.fromarray(self.pixels())
@@ -159,10 +159,10 @@ def show_changed(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     if not ui.changed_shown or ui.shots is None:
         return
     found, frame = c.before_edits.effects, c.before_edits.frame
-    if found is None or frame is None or found.changed is None or c.tracing.drawn_view is not View.COLOR:
+    if found is None or frame is None or found.changes is None or c.tracing.drawn_view is not View.COLOR:
         return
-    changed = found.changed
-    shot = ui.cached("changed pixels", found, None, lambda: ChangedPixels(frame, changed))
+    changes = found.changes
+    shot = ui.cached("changed pixels", found, None, lambda: ChangedPixels(frame, changes))
     texture = ui.shots.texture_id(shot, small=False)
     if texture is None:
         return

@@ -223,13 +223,14 @@ def _effects(ui: Ui) -> None:
 
 
 def _pixels(ui: Ui, found: Effects) -> None:
-    if found.changed is None:
+    if found.changes is None:
         paragraph("The pictures have different numbers of samples until this one is done.", QUIET)
         return
-    share = 100.0 * found.pixels / max(found.changed.size, 1)
+    share = 100.0 * found.pixels / max(found.changes.size, 1)
     paragraph(f"{count(found.pixels)} pixels ({share:.1f} %), by up to {found.most} of 255")
+    tooltip(f"{count(found.exact)} where differences count that a screen does not show")
     checkbox("Show changed pixels", ui.changed_shown, lambda on: setattr(ui, "changed_shown", on),
-             "in magenta on the dimmed picture, in the view Colour")  # fmt: skip
+             "in magenta on the dimmed picture, the brighter the more they changed; in the view Colour")  # fmt: skip
 
 
 def _counters(found: Effects) -> None:
