@@ -17,6 +17,8 @@ from typing import Any
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
 from tracer.scene.edits import NO_EDITS, Edits
+from tracer.scene.load import AFF_EXTENSIONS
+from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.output.pictures import SHADING
@@ -25,6 +27,7 @@ from viewer.state.annotations import Annotation
 from viewer.state.annotations import from_json as annotations_from_json
 from viewer.state.marks import wipe_column
 from viewer.state.session import Snapshot, settings_to_json
+from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import BENEATH, View
 from viewer.util import resources
 
@@ -35,8 +38,8 @@ MOST_BEFORE = 100_000  # frames
 class Style:
     """How a frame is drawn, without tracing it: shares instead of counts in maps of work, rings around wrong pixels for
     a picture that is shown `magnified` times, how much of the light shows under flat colours, how bright the picture
-    beneath the difference is, borders between primitives, where the legend is if there is one, the caption, and what
-    was drawn on it."""
+    beneath the difference is, borders between primitives, where the legend is if there is one, the caption, what was
+    drawn on it, the tone of its colours, whether what this clips is marked, and the range of a map of numbers."""
 
     shares: bool = False
     marked: bool = True
@@ -47,6 +50,9 @@ class Style:
     legend: tuple[float, float] | None = None
     caption: str = ""
     annotations: tuple[Annotation, ...] = ()
+    tone: Tone = NEUTRAL
+    clipping: bool = False
+    span: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -69,6 +75,7 @@ class Recipe:
     history: str = ""
     by_gpu: bool = False
     folders: tuple[Path, ...] = ()
+    meshes: MeshOptions = AS_IN_FILE
     edits: Edits = NO_EDITS
 
     @property
@@ -91,12 +98,16 @@ class Recipe:
         camera = self.camera or scene.camera_at(self.time)
         settings = settings_to_json(self.settings)
         path = str(self.scene.absolute())
-        seen = self.camera is None, settings, self.view, self.light, self.wipe
-        return Snapshot(path, self.time, camera, *seen, self.edits)
+        follow, style = self.camera is None, self.style
+        return Snapshot(
+            path, self.time, camera, follow, settings, self.view, self.light, self.wipe,
+            tone=style.tone, span=style.span, meshes=self.meshes, edits=self.edits,
+        )  # fmt: skip
 
     def to_json(self) -> dict[str, Any]:
         """What a capture carries beside its state."""
         style = asdict(self.style) | {"annotations": [a.to_json() for a in self.style.annotations]}
+        del style["tone"], style["span"]  # these are of its state
         return {
             "accelerator": self.settings.accelerator,
             "threads": self.settings.threads if self.by_one_thread else 0,
@@ -142,11 +153,12 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Re
             view=snapshot.view,
             light=snapshot.light,
             wipe=snapshot.wipe,
-            style=_style(data.get("style", {})),
+            style=replace(_style(data.get("style", {})), tone=snapshot.tone, span=snapshot.span),
             warmup=_count(data, "warmup"),
             repeats=_count(data, "repeats"),
             history=str(data.get("history", "")),
             by_gpu=bool(data.get("by_gpu", False)),
+            meshes=snapshot.meshes,
             edits=snapshot.edits,
         )
     except (TypeError, AttributeError):
@@ -178,6 +190,7 @@ def _style(data: Mapping[str, Any]) -> Style:
         legend=place,
         caption=str(data.get("caption", "")),
         annotations=annotations_from_json(data.get("annotations", [])),
+        clipping=bool(data.get("clipping", False)),
     )
 
 
@@ -207,20 +220,26 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         ("--shading", style.shading, usual.shading),
         ("--beneath", style.beneath, usual.beneath),
         ("--magnified", style.magnified, usual.magnified),
+        ("--exposure", style.tone.exposure, usual.tone.exposure),
+        ("--white", style.tone.white, usual.tone.white),
+        ("--tone", style.tone.curve.value, usual.tone.curve.value),
     )
     for option, value, default in of_settings:
-        if value != default:
-            words += [option, str(value)]
+        if value != default:  # a negative number would look like an option
+            words += [f"{option}={value}"] if str(value).startswith("-") else [option, str(value)]
     flags = (
         ("--symmetric", settings.symmetric),
         ("--verify", settings.verify),
         ("--outlines", style.outlines),
         ("--no-marks", not style.marked),
+        ("--mark-clipped", style.clipping),
         ("--legend", style.legend is not None),
     )
     words += [option for option, given in flags if given]
     if style.legend is not None and style.legend != (0.0, 1.0):
         words += ["--legend-at", f"{style.legend[0]!r},{style.legend[1]!r}"]
+    if style.span is not None:
+        words += [f"--range={style.span[0]!r}:{style.span[1]!r}"]
     if style.caption:
         words += [f"--caption={style.caption.replace('{', '{{').replace('}', '}}')}"]
     if style.annotations:
@@ -228,7 +247,17 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
     words += scene_edits.as_options(recipe.edits)
     for folder in recipe.folders:
         words += ["--folder", str(folder.absolute())]
-    return words
+    return words + _of_meshes(recipe)
+
+
+def _of_meshes(recipe: Recipe) -> list[str]:
+    """How the scene is read, where that can be chosen."""
+    meshes = recipe.meshes
+    if recipe.scene.suffix.lower() in AFF_EXTENSIONS:
+        return []
+    up = [f"--up={meshes.up}"] if meshes.up is not None else []
+    crease = [f"--crease={meshes.crease!r}"] if meshes.crease is not None else []
+    return [*up, *crease, *([] if meshes.studio else ["--no-studio"])]
 
 
 def _wipe(wipe: float, width: int) -> str:
