@@ -1,4 +1,4 @@
-"""What if: a scene without some of its lights or objects, with lights elsewhere, and with objects that are static or move.
+"""What if: a scene without some lights or objects, with lights elsewhere, with objects that are static or can move.
 
 `edited` makes another scene of a scene and leaves that as it is.  Objects go by the names of `things`, lights and
 primitives by the numbers that they have in the scene as it was read, so that edits mean the same whatever else is
@@ -19,7 +19,7 @@ from tracer.scene.arrays import Float64, Int32
 from tracer.scene.assembly import under_matrix
 from tracer.scene.deformation import deformed
 from tracer.scene.lights import Vector
-from tracer.scene.model import Quadrics, Scene, SceneObject, Triangles, empty_quadrics
+from tracer.scene.model import Quadrics, Scene, SceneObject, Triangles
 from tracer.scene.normals import unit_normals
 
 NEVER = "(hidden)"
@@ -60,7 +60,7 @@ class Edits:
     moving: frozenset[str] = frozenset()
 
     def __bool__(self) -> bool:
-        return self != Edits()
+        return self != NO_EDITS
 
     def with_light(self, number: int, on: bool) -> Edits:
         """With a light on or off."""
@@ -111,6 +111,9 @@ class Edits:
         )
 
 
+NO_EDITS = Edits()
+
+
 @dataclass(frozen=True)
 class Edited:
     """A scene as edits leave it, and which of the numbers of the scene as it was read its own are.
@@ -129,6 +132,11 @@ class Edited:
         found = np.full(self.original.primitive_count, -1, np.int32)
         found[self.primitives] = np.arange(len(self.primitives), dtype=np.int32)
         return found
+
+    def made_as(self, other: Edited) -> bool:
+        """Whether the primitives and the lights of another edited scene have the same numbers."""
+        same = np.array_equal(self.primitives, other.primitives) and np.array_equal(self.lights, other.lights)
+        return same and self.original is other.original
 
     def light_here(self, number: int) -> int:
         """The number here of a light of the original; -1 where it is off."""
@@ -168,6 +176,19 @@ def thing_of(scene: Scene, primitive: int) -> Thing:
     if held.part_of is not None:
         part = int(held.part_of[_place(scene, index, primitive)])
     return next(thing for thing in things(scene) if (thing.index, thing.part) == (index, part))
+
+
+def thing_numbers(scene: Scene) -> Int32:
+    """(primitives,) int32: the place of each primitive's thing among all `things`."""
+    places = {(thing.index, thing.part): n for n, thing in enumerate(things(scene))}
+    found = np.empty(scene.primitive_count, np.int32)
+    for index, one in enumerate(scene.objects):
+        held = np.concatenate(_held(scene, index))
+        if one.part_of is None:
+            found[held] = places.get((index, -1), -1)
+        else:
+            found[held] = np.array([places[index, part] for part in range(len(one.parts))], np.int32)[one.part_of]
+    return found
 
 
 def _place(scene: Scene, index: int, primitive: int) -> int:
@@ -220,11 +241,11 @@ def _objects(scene: Scene, edits: Edits) -> tuple[list[SceneObject], list[Held]]
     for thing in things(scene):
         if thing.index > 0 or not (thing.name in edits.hidden or thing.name in edits.moving):
             continue
-        whole = np.ones(len(shown), np.bool_) if thing.part < 0 else static.part_of == thing.part
+        whole = np.ones(len(shown), np.bool_) if static.part_of is None else static.part_of == thing.part
         if thing.name not in edits.hidden:
             one = replace(_subset(static, whole & shown), name=thing.name, chain=(np.eye(4),), parts=(), part_of=None)
             freed.append((one, _of(static_held, whole & shown)))
-        shown &= ~whole
+        shown = shown & ~whole
     if not shown.all():
         static, static_held = _subset(static, shown), _of(static_held, shown)
 
@@ -278,9 +299,10 @@ def _at_rest(scene: Scene, one: SceneObject, time: float) -> SceneObject:
     if one.deformation is not None:
         corners, normals = deformed(one.deformation, time)
         triangles = replace(triangles, corners=corners, normals=normals)
-    corners, normals = under_matrix(triangles.corners.astype(np.float64), triangles.normals.astype(np.float64), matrix)
+    wide, normals_there = (array.astype(np.float64) for array in (triangles.corners, triangles.normals))
+    there, turned = under_matrix(wide, normals_there, matrix)
     uvs = triangles.uvs[:, [0, 2, 1]] if np.linalg.det(matrix[:3, :3]) < 0 else triangles.uvs
-    triangles = replace(triangles, corners=corners.astype(np.float32), normals=unit_normals(normals, corners), uvs=uvs)
+    triangles = replace(triangles, corners=there.astype(np.float32), normals=unit_normals(turned, there), uvs=uvs)
     square = np.concatenate([one.quadrics.to_object, np.tile([[[0.0, 0.0, 0.0, 1.0]]], (len(one.quadrics), 1, 1))], 1)
     to_world: Float64 = (matrix @ square)[:, :3]
     return SceneObject(one.name, triangles, replace(one.quadrics, to_object=to_world))

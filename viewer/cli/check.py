@@ -18,8 +18,10 @@ from PIL import Image
 from tracer.frame import Frame
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
+from tracer.scene.edits import Edits, edited
 from tracer.scene.files import read_regular
 from tracer.scene.load import load_visible_scene
+from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Cancelled, Scene, SceneError
 from viewer.cli.console import Work, working
 from viewer.cli.tracing_options import prepare_kernels
@@ -50,7 +52,7 @@ class Checker:
 
     def __init__(self, options: Namespace, work: Work) -> None:
         self._options, self._work = options, work
-        self._scene: tuple[Path, Scene] | None = None
+        self._scene: tuple[tuple[Path, MeshOptions, Edits], Scene] | None = None
         self._world: tuple[str, World] | None = None
 
     def check(self, path: Path) -> Verdict:
@@ -73,7 +75,7 @@ class Checker:
             with Image.open(BytesIO(again), formats=("PNG",)) as image:
                 return self._compared(kept, np.asarray(image.convert("RGB")), data, {}, False)
         if data.get("window"):
-            return Verdict(None, "it shows the window with its panels, which cannot be rendered again")
+            return Verdict(None, "it shows two pictures, or the window with its panels, which cannot be rendered again")
         frame, wanted = self._traced(path, data)
         pixels, _ = stills.draw(frame, self._open_scene, wanted)
         return self._compared(kept, pixels, data, frame.statistics.to_dict(), wanted.by_gpu)
@@ -139,11 +141,10 @@ class Checker:
         found = find_scene(snapshot.scene, path)
         if found is None:
             raise ValueError(f"its scene is gone: {snapshot.scene}")
-        if self._scene is None or self._scene[0] != found:
-            self._scene, self._world = (
-                (found, load_visible_scene(found, self._work.progress, self._options.folder)),
-                None,
-            )
+        if self._scene is None or self._scene[0] != (found, snapshot.meshes, wanted.edits):
+            read = load_visible_scene(found, self._work.progress, self._options.folder, snapshot.meshes)
+            self._scene = (found, snapshot.meshes, wanted.edits), edited(read, wanted.edits).scene
+            self._world = None
         scene = self._scene[1]
         prepare_kernels(self._work, len(scene.lights), wanted.settings.accelerator, *methods)
         settings = replace(wanted.settings, threads=wanted.settings.threads or self._options.threads)

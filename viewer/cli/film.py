@@ -15,7 +15,9 @@ from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli.console import working
-from viewer.cli.render import check_certificates, recipe_of
+from viewer.cli.edit_options import edited_scene
+from viewer.cli.mesh_arguments import mesh_options
+from viewer.cli.render import check_certificates, check_display, recipe_of
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import capture, movie
 from viewer.services import filming, stills
@@ -37,6 +39,7 @@ def film(path: Path, options: Namespace) -> bool:
     method = options.method or default_for(options.view.view)
     settings = replace(tracing_settings(options), method=method, samples=options.samples)
     check_certificates(settings, options.view.view)
+    check_display(options)
     if options.output is None:
         raise ValueError("film: nothing to write; give -o FOLDER, or -o film.mp4")
     folder, video = filming.places(options.output)
@@ -45,7 +48,8 @@ def film(path: Path, options: Namespace) -> bool:
         check_writable(video)
     stops = _stops(path, options)
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder)
+        read = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
+        scene = edited_scene(read, options)
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
         recipe = recipe_of(path, scene, settings, options)

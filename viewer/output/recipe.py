@@ -16,13 +16,18 @@ from typing import Any
 
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
+from tracer.scene.edits import NO_EDITS, Edits
+from tracer.scene.load import AFF_EXTENSIONS
+from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.output.pictures import SHADING
+from viewer.state import edits as scene_edits
 from viewer.state.annotations import Annotation
 from viewer.state.annotations import from_json as annotations_from_json
 from viewer.state.marks import wipe_column
 from viewer.state.session import Snapshot, settings_to_json
+from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import BENEATH, View
 from viewer.util import resources
 
@@ -33,8 +38,8 @@ MOST_BEFORE = 100_000  # frames
 class Style:
     """How a frame is drawn, without tracing it: shares instead of counts in maps of work, rings around wrong pixels for
     a picture that is shown `magnified` times, how much of the light shows under flat colours, how bright the picture
-    beneath the difference is, borders between primitives, where the legend is if there is one, the caption, and what
-    was drawn on it."""
+    beneath the difference is, borders between primitives, where the legend is if there is one, the caption, what was
+    drawn on it, the tone of its colours, whether what this clips is marked, and the range of a map of numbers."""
 
     shares: bool = False
     marked: bool = True
@@ -45,13 +50,17 @@ class Style:
     legend: tuple[float, float] | None = None
     caption: str = ""
     annotations: tuple[Annotation, ...] = ()
+    tone: Tone = NEUTRAL
+    clipping: bool = False
+    span: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
 class Recipe:
     """See the module.  `camera` None is the scene's own; `settings` are those of the picture's own frame; `by_gpu` says
     that a GPU drew the view, which may round otherwise.  `folders` are those that the user lets the scene read: a
-    picture does not carry them, or it could name any."""
+    picture does not carry them, or it could name any.  `edits` are what is otherwise than in the scene's file; `light`
+    counts those that are on."""
 
     scene: Path
     time: float
@@ -66,6 +75,8 @@ class Recipe:
     history: str = ""
     by_gpu: bool = False
     folders: tuple[Path, ...] = ()
+    meshes: MeshOptions = AS_IN_FILE
+    edits: Edits = NO_EDITS
 
     @property
     def size(self) -> tuple[int, int]:
@@ -87,11 +98,16 @@ class Recipe:
         camera = self.camera or scene.camera_at(self.time)
         settings = settings_to_json(self.settings)
         path = str(self.scene.absolute())
-        return Snapshot(path, self.time, camera, self.camera is None, settings, self.view, self.light, self.wipe)
+        follow, style = self.camera is None, self.style
+        return Snapshot(
+            path, self.time, camera, follow, settings, self.view, self.light, self.wipe,
+            tone=style.tone, span=style.span, meshes=self.meshes, edits=self.edits,
+        )  # fmt: skip
 
     def to_json(self) -> dict[str, Any]:
         """What a capture carries beside its state."""
         style = asdict(self.style) | {"annotations": [a.to_json() for a in self.style.annotations]}
+        del style["tone"], style["span"]  # these are of its state
         return {
             "accelerator": self.settings.accelerator,
             "threads": self.settings.threads if self.by_one_thread else 0,
@@ -137,11 +153,13 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Re
             view=snapshot.view,
             light=snapshot.light,
             wipe=snapshot.wipe,
-            style=_style(data.get("style", {})),
+            style=replace(_style(data.get("style", {})), tone=snapshot.tone, span=snapshot.span),
             warmup=_count(data, "warmup"),
             repeats=_count(data, "repeats"),
             history=str(data.get("history", "")),
             by_gpu=bool(data.get("by_gpu", False)),
+            meshes=snapshot.meshes,
+            edits=snapshot.edits,
         )
     except (TypeError, AttributeError):
         raise ValueError("how it was drawn is damaged") from None
@@ -172,6 +190,7 @@ def _style(data: Mapping[str, Any]) -> Style:
         legend=place,
         caption=str(data.get("caption", "")),
         annotations=annotations_from_json(data.get("annotations", [])),
+        clipping=bool(data.get("clipping", False)),
     )
 
 
@@ -201,27 +220,44 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         ("--shading", style.shading, usual.shading),
         ("--beneath", style.beneath, usual.beneath),
         ("--magnified", style.magnified, usual.magnified),
+        ("--exposure", style.tone.exposure, usual.tone.exposure),
+        ("--white", style.tone.white, usual.tone.white),
+        ("--tone", style.tone.curve.value, usual.tone.curve.value),
     )
     for option, value, default in of_settings:
-        if value != default:
-            words += [option, str(value)]
+        if value != default:  # a negative number would look like an option
+            words += [f"{option}={value}"] if str(value).startswith("-") else [option, str(value)]
     flags = (
         ("--symmetric", settings.symmetric),
         ("--verify", settings.verify),
         ("--outlines", style.outlines),
         ("--no-marks", not style.marked),
+        ("--mark-clipped", style.clipping),
         ("--legend", style.legend is not None),
     )
     words += [option for option, given in flags if given]
     if style.legend is not None and style.legend != (0.0, 1.0):
         words += ["--legend-at", f"{style.legend[0]!r},{style.legend[1]!r}"]
+    if style.span is not None:
+        words += [f"--range={style.span[0]!r}:{style.span[1]!r}"]
     if style.caption:
         words += [f"--caption={style.caption.replace('{', '{{').replace('}', '}}')}"]
     if style.annotations:
         words += ["--annotations", json.dumps([a.to_json() for a in style.annotations])]
+    words += scene_edits.as_options(recipe.edits)
     for folder in recipe.folders:
         words += ["--folder", str(folder.absolute())]
-    return words
+    return words + _of_meshes(recipe)
+
+
+def _of_meshes(recipe: Recipe) -> list[str]:
+    """How the scene is read, where that can be chosen."""
+    meshes = recipe.meshes
+    if recipe.scene.suffix.lower() in AFF_EXTENSIONS:
+        return []
+    up = [f"--up={meshes.up}"] if meshes.up is not None else []
+    crease = [f"--crease={meshes.crease!r}"] if meshes.crease is not None else []
+    return [*up, *crease, *([] if meshes.studio else ["--no-studio"])]
 
 
 def _wipe(wipe: float, width: int) -> str:

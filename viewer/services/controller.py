@@ -16,8 +16,10 @@ from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
 from tracer.zoom import Step
+from viewer.services.before_edits import BeforeEdits
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
+from viewer.services.comparing import Comparing
 from viewer.services.editing import Editing
 from viewer.services.film_controller import FilmController
 from viewer.services.light_recorder import LightRecorder
@@ -66,8 +68,12 @@ class Controller:
         self.tracing = Tracing(session, preferences, renderer, self.runs.refuses, awaken)
         self.settings = SettingsController(session, preferences, notices, self.runs.refuses)
         self.motion = Motion(session, preferences, notices, self.runs.refuses)
+        self.comparing = Comparing(session, self.tracing, self.settings, notices)
         self.bookmarks = Bookmarks(session, preferences, self.settings, notices)
-        self.undo = Undo(session, preferences, self.motion, notices, self.runs.refuses)
+        self.undo = Undo(
+            session, preferences, self.motion, notices, self.runs.refuses,
+            lambda meshes: self.loader.read_as(meshes), lambda: self.loader.load_job is not None,
+        )  # fmt: skip
         self.presets = Presets(
             session, preferences, notices, self.runs.refuses, self.settings.save, self.undo.call_next
         )
@@ -78,6 +84,7 @@ class Controller:
         refuses, overlook = self.runs.refuses, self.undo.overlook
         self.editing = Editing(session, renderer, notices, refuses, self._show_edited, overlook)
         self.table = SceneTable(session, self.selection, preferences, notices, self.captures, self.editing, awaken)
+        self.before_edits = BeforeEdits(session, self.editing, self.undo)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
         self.recipes = Recipes(session, preferences, self.tracing, self.loader, notices)
@@ -121,19 +128,27 @@ class Controller:
         self.pictures.follow()
         self.questions.follow()
         frame = self._take_frame()
+        self.comparing.follow()
         traced, motion, run = self.traced, self.motion, self.runs.current
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
         self.undo.follow()
-        self.editing.follow(run is None)
+        self.editing.follow(run is not None, self.tracing.shows_edits or not self.renderer.busy)
         self.rays.follow(traced if run is None else None)  # before the next frame is asked for
         self.table.follow(traced if run is None else None, motion.lively)
         self.tracing.ask(Conditions(size, motion.under_way, run, self.loader.ready, self.selection.hovered))
         if run is None:
             self.recorder.follow()
+            self._follow_before_edits()
             if self.traced is not None and self.traced.whole:
                 self.bookmarks.follow(self.traced.frame, self.traced.request.divisor == 1)
         self.inspector.follow(self.frame if run is None else None, not motion.lively)
         return frame
+
+    def _follow_before_edits(self) -> None:
+        traced, tracing = self.traced, self.tracing
+        now = traced is not None and traced.whole and traced.request.divisor == 1 and not self.motion.lively
+        frame = traced.frame if traced is not None and now and tracing.shows_edits else None
+        self.before_edits.follow(frame, not (tracing.awaits or tracing.adds_samples or self.renderer.busy))
 
     def _take_scene(self) -> None:
         arrival = self.loader.follow()
@@ -201,6 +216,7 @@ class Controller:
         self.info = info
         self.renderer.use(renderer)
         self.editing.enter(renderer)
+        self.before_edits.forget()
         self.history.clear()
         self.tracing.forget()
         self.selection.clear()
@@ -211,11 +227,13 @@ class Controller:
     def _show_edited(self, now: Edited, renderer: Renderer) -> None:
         """Show the scene that is open with other edits: where we are, and what was chosen, stays."""
         before = self.session.edited
+        same = before is not None and before.made_as(now)
         self.undo.overlook(lambda: self.session.take(now))
         self.renderer.use(renderer)
-        self.tracing.forget()
-        self.selection.follow_edits(before, now)
-        self.reloaded = True
+        self.tracing.follow_edits(same)
+        if not same:
+            self.selection.follow_edits(before, now)
+            self.reloaded = True
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot of the open scene."""

@@ -8,13 +8,15 @@ renderer of the scene as it was read is kept, with all that it knows, and so are
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from typing import cast
 
+from tracer.carry_modes import carry_modes
 from tracer.frame import Settings
 from tracer.renderer import Renderer
-from tracer.scene.edits import Edited, Edits, edited, things
+from tracer.scene.edits import NO_EDITS, Edited, Edits, edited, things
 from tracer.scene.lights import Vector
 from tracer.scene.model import Cancelled, Scene
 from viewer.services.render_thread import RenderThread, Traces
@@ -36,7 +38,7 @@ class Kept:
     others: dict[Hashable, Renderer]
 
     def find(self, made_of: Hashable) -> Renderer | None:
-        return self.first if made_of == made_of_nothing() else self.others.get(made_of)
+        return self.first if made_of == NO_EDITS else self.others.get(made_of)
 
     def keep(self, made_of: Hashable, renderer: Renderer) -> None:
         if renderer is not self.first:
@@ -53,22 +55,22 @@ def makes(edits: Edits, scene: Scene) -> Hashable:
     return replace(edits, moved_lights=(), hidden=edits.hidden - in_place)
 
 
-def made_of_nothing() -> Hashable:
-    """That of the scene as it was read."""
-    return Edits()
-
-
 class EditTask:
     """Makes the edits on the render thread; then `found` is set, or `problem`, unless it was cancelled."""
 
-    def __init__(self, scene: Scene, edits: Edits, kept: Kept, settings: Settings) -> None:
-        self.scene, self.edits, self._kept, self._settings = scene, edits, kept, settings
-        self.begun = self.done = False
+    def __init__(self, shown: Edited, edits: Edits, kept: Kept, settings: Settings) -> None:
+        self.scene, self.edits, self._shown, self._kept, self._settings = shown.original, edits, shown, kept, settings
+        self._begins = threading.Lock()
+        self._begun = self._dropped = False
+        self.done = False
         self.found: tuple[Edited, Renderer] | None = None
         self.problem: Failure | None = None
 
     def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None:
-        self.begun = True
+        with self._begins:
+            if self._dropped:
+                return
+            self._begun = True
         try:
             self.found = self._made(cast(Renderer, renderer), cancelled)
         except Cancelled:
@@ -76,6 +78,12 @@ class EditTask:
         except Exception as problem:
             self.problem = failure(problem, "the scene could not be changed", KNOWN)
         self.done = True
+
+    def drop(self) -> bool:
+        """Never begin; whether that is so, as it had not begun yet."""
+        with self._begins:
+            self._dropped = not self._begun
+            return self._dropped
 
     def _made(self, before: Renderer, cancelled: Callable[[], bool]) -> tuple[Edited, Renderer]:
         def progress(_label: str, _fraction: float) -> None:
@@ -86,6 +94,7 @@ class EditTask:
         renderer = self._kept.find(made_of)
         if renderer is None:
             renderer = Renderer(made.scene, self._settings, progress)
+            carry_modes(before, self._shown, renderer, made)
         else:
             renderer.scene = renderer.world.scene = made.scene
         self._kept.keep(made_of, renderer)
@@ -172,7 +181,7 @@ class Editing:
 
     def clear(self) -> None:
         """Take all edits back."""
-        self.change(Edits())
+        self.change(NO_EDITS)
 
     # --- bringing it about --------------------------------------------------------------------------
 
@@ -180,8 +189,9 @@ class Editing:
         if self._session.edited is not None:
             self._session.edits = self._session.edited.edits
 
-    def follow(self, free: bool) -> None:
-        """Take up what has been made and, while no run has the render thread, have made what is wanted now."""
+    def follow(self, running: bool, seen: bool) -> None:
+        """Take up what has been made, and have made what is wanted now: not while a run has the render thread, and once
+        some of what was made last has been `seen`."""
         session, task = self._session, self._task
         if task is not None and task.done:
             self._task = None
@@ -190,9 +200,9 @@ class Editing:
                 self._overlook(self._give_up)
             elif task.found is not None and task.scene is session.original:
                 self._show(*task.found)
-        original, kept = session.original, self._kept
-        if not free and self._task is not None and not self._task.begun:
+        shown, kept = session.edited, self._kept
+        if running and self._task is not None and self._task.drop():
             self._task = None  # the run has taken its place
-        if free and self._task is None and self.under_way and original is not None and kept is not None:
-            self._task = EditTask(original, session.edits, kept, session.settings)
+        if seen and not running and self._task is None and self.under_way and shown is not None and kept is not None:
+            self._task = EditTask(shown, session.edits, kept, session.settings)
             self._renderer.perform(self._task)

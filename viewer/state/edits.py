@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from tracer.scene.edits import Edits
+from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.limits import LARGEST
 
 MOST = 100_000
@@ -96,6 +96,31 @@ def _other(before: dict[Any, Any], after: dict[Any, Any]) -> Iterable[tuple[Any,
     return ((key, after.get(key)) for key in sorted(before.keys() | after.keys()) if before.get(key) != after.get(key))
 
 
+def one_by_one(edits: Edits) -> list[tuple[str, Edits]]:
+    """Each edit in a few words, and all others without it."""
+    without = [
+        *(edits.with_light(number, True) for number in edits.lights_off),
+        *(edits.with_light_at(number, None) for number, _ in edits.moved_lights),
+        *(edits.with_thing(name, True) for name in edits.hidden),
+        *(edits.with_primitive(number, True) for number in edits.hidden_primitives),
+        *(edits.with_static(name, None) for name, _ in edits.static),
+        *(edits.with_moving(name, False) for name in edits.moving),
+    ]
+    return sorted(((" and ".join(differences(one, edits).values()), one) for one in without), key=lambda pair: pair[0])
+
+
+def as_options(edits: Edits) -> list[str]:
+    """The options of a command line that ask for these edits, to the bit."""
+    return [
+        *(f"--without-light={number}" for number in sorted(edits.lights_off)),
+        *(f"--move-light={number}={','.join(repr(part) for part in place)}" for number, place in edits.moved_lights),
+        *(f"--hide={name}" for name in sorted(edits.hidden)),
+        *(f"--hide-primitive={number}" for number in sorted(edits.hidden_primitives)),
+        *(f"--make-static={name}={time!r}" for name, time in edits.static),
+        *(f"--make-moving={name}" for name in sorted(edits.moving)),
+    ]
+
+
 def in_words(edits: Edits) -> list[str]:
     """Each edit in a few words."""
-    return list(differences(Edits(), edits).values())
+    return list(differences(NO_EDITS, edits).values())

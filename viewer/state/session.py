@@ -14,12 +14,16 @@ from pathlib import Path
 from typing import Any
 
 from tracer.renderer import Settings
-from tracer.scene.edits import Edited, Edits, edited
+from tracer.scene.edits import NO_EDITS, Edited, Edits, edited
+from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from viewer.state import edits as scene_edits
 from viewer.state.annotations import Annotation
+from viewer.state.comparison import Comparison
 from viewer.state.methods import DEFAULT
+from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
+from viewer.state.zooming import FIT, Zoom
 
 # Settings that say how a frame was asked for, not what the user chose; those of this machine and of the open scene.
 _NOT_RESTORED = {
@@ -31,7 +35,8 @@ _OPTIONAL: dict[str, type] = {"lamp_radius": float, "lamp_samples": int}  # None
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A state to come back to.  `settings` holds the fields of `tracer.Settings`; `scene` is a path."""
+    """A state to come back to.  `settings` holds the fields of `tracer.Settings`; `scene` is a path, and
+    `meshes` says how it was read."""
 
     scene: str
     time: float
@@ -41,13 +46,16 @@ class Snapshot:
     view: View
     light: int
     wipe: float = 0.5
-    edits: Edits = Edits()
+    tone: Tone = NEUTRAL
+    span: tuple[float, float] | None = None
+    meshes: MeshOptions = AS_IN_FILE
+    edits: Edits = NO_EDITS
 
     def to_json(self) -> dict[str, Any]:
         data = {name: value for name, value in asdict(self).items() if name != "edits"}
         if self.edits:
             data["edits"] = scene_edits.to_json(self.edits)
-        return data | {"camera": self.camera.to_json(), "view": self.view.value}
+        return data | {"camera": self.camera.to_json(), "view": self.view.value, "tone": self.tone.to_json()}
 
     @staticmethod
     def from_json(data: Any) -> Snapshot:
@@ -67,12 +75,28 @@ class Snapshot:
                 view=View(data.get("view", View.COLOR)),
                 light=max(0, int(data.get("light", 0))),
                 wipe=wipe if 0.0 <= wipe <= 1.0 else 0.5,
+                tone=Tone.from_json(data.get("tone", {})),
+                span=_span(data.get("span")),
+                meshes=_meshes_from_json(data.get("meshes", {})),
                 edits=scene_edits.from_json(data.get("edits", {})),
             )
         except KeyError as error:
             raise ValueError(f"its saved state lacks {error}") from None
         except TypeError:
             raise ValueError("its saved state is damaged") from None
+
+
+def _span(data: Any) -> tuple[float, float] | None:
+    """A range of the colour map, if it is one."""
+    if data is None:
+        return None
+    try:
+        low, high = (float(number) for number in data)
+    except (TypeError, ValueError):
+        raise ValueError("its range is damaged") from None
+    if not (math.isfinite(low) and math.isfinite(high) and low < high):
+        raise ValueError("its range is none")
+    return low, high
 
 
 def settings_to_json(settings: Settings) -> dict[str, Any]:
@@ -94,15 +118,25 @@ def settings_from_json(data: Any) -> dict[str, Any]:
     return known
 
 
+def _meshes_from_json(data: Any) -> MeshOptions:
+    """How a mesh was read; raises ValueError."""
+    up, crease = (data.get(key) for key in ("up", "crease")) if isinstance(data, Mapping) else (0, 0)
+    if not (up is None or isinstance(up, str)) or not (crease is None or type(crease) in (int, float)):
+        raise ValueError("its options of meshes are not understood")
+    return MeshOptions(bool(data.get("studio", False)), up, crease)
+
+
 @dataclass
 class Session:
     """The state behind the window; plain data and what it implies, no threads and no widgets.
 
-    `edits` are what is to be otherwise than in the scene as it was read, `edited` is what is of that: `scene` is the
-    scene with it, of whose lights `light` is one, and `light_to_come` of those that are to be."""
+    `spans` are the ranges that were chosen for views of numbers; `clipping` marks what the screen cuts off; `zoom` is
+    how closely the picture itself is looked at, `comparison` what is compared with it.  `edits` are what is to be
+    otherwise than in the scene as it was read, `edited` is what is of that: `scene` is the scene with it, of whose
+    lights `light` is one, and `light_to_come` of those that are to be."""
 
     scene: Scene | None = None
-    edits: Edits = Edits()
+    edits: Edits = NO_EDITS
     edited: Edited | None = None
     light_to_come: int | None = None
     time: float = 0.0
@@ -113,7 +147,13 @@ class Session:
     light: int = 0
     counting: bool = False  # whether frames are to count the rays at each pixel, whatever the view
     wipe: float = 0.5
+    tone: Tone = NEUTRAL
+    clipping: bool = False
+    spans: dict[View, tuple[float, float]] = field(default_factory=dict)
+    zoom: Zoom = FIT
+    comparison: Comparison = field(default_factory=Comparison)
     selected: tuple[float, float] | None = None
+    meshes: MeshOptions = AS_IN_FILE  # how the scene was read
     annotations: list[Annotation] = field(default_factory=list)
 
     @property
@@ -136,8 +176,9 @@ class Session:
         is measured in units of the scene that was open."""
         if self.scene is not None and scene.path != self.scene.path:
             self.settings = replace(self.settings, lamp_radius=None)
+            self.zoom = FIT
         self.scene = scene
-        self.edits, self.edited = Edits(), edited(scene, Edits())
+        self.edits, self.edited = NO_EDITS, edited(scene, NO_EDITS)
         self.time = scene.time_range[0]
         self.free_camera = None
         self.playing = False
@@ -222,6 +263,9 @@ class Session:
             view=self.view,
             light=self.light,
             wipe=self.wipe,
+            tone=self.tone,
+            span=self.spans.get(self.view),
+            meshes=self.meshes,
             edits=self.edits,
         )
 
@@ -236,5 +280,8 @@ class Session:
         self.settings = replace(self.settings, **{k: v for k, v in snapshot.settings.items() if k not in _NOT_RESTORED})
         self.view = snapshot.view
         self.light = min(snapshot.light, max(len(self.scene.lights) - 1, 0))
-        self.wipe = snapshot.wipe
+        self.wipe, self.tone = snapshot.wipe, snapshot.tone
+        self.spans.pop(snapshot.view, None)
+        if snapshot.span is not None:
+            self.spans[snapshot.view] = snapshot.span
         self.want(snapshot.edits, snapshot.light)

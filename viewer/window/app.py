@@ -22,17 +22,20 @@ from imgui_bundle import glfw_utils, hello_imgui, imgui, immapp
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
 from tracer.frame import Frame
+from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Scene
 from viewer.services.controller import Controller
 from viewer.state.parts import parts_of
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, glfw_pads, menus, palette, style
+from viewer.window import commands, comparing, glfw_pads, menus, palette, style
+from viewer.window.compared import Compared
 from viewer.window.display import Display, Look
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout, LayoutFile
+from viewer.window.magnifier import Magnifier
 from viewer.window.panels import dialogs, faults, legend, loading, picture, status, strip, tour
 from viewer.window.shots import Shots
 from viewer.window.ui import CaptureKind, Ui
@@ -58,6 +61,7 @@ class App:
         scene_path: Path | None,
         settings: dict[str, Any] | None = None,
         folders: Sequence[Path] = (),
+        meshes: MeshOptions = IN_STUDIO,
         scene: Scene | None = None,
         on_frame: OnFrame | None = None,
     ) -> None:
@@ -71,6 +75,7 @@ class App:
         tell_keys(self.ui.with_keys)
         self.ui.paste_from, self.ui.copy_to = imgui.get_clipboard_text, imgui.set_clipboard_text
         self.scene_path, self.given_settings, self.folders = scene_path, settings or {}, folders
+        self.meshes = meshes
         self.scene, self.on_frame = scene, on_frame
         self._told: Frame | None = None  # what the script has seen
         self.layout_file = LayoutFile(config_folder())
@@ -129,6 +134,7 @@ class App:
         overlay("The strip of folded panels", lambda: strip.show(self.ui), lambda: setattr(self.ui.fold, "drawer", ""))
         step("Reading the keys", lambda: menus.handle_keys(self.ui))
         step("Flying", lambda: picture.fly(self.ui))
+        step("Comparing", lambda: comparing.follow_key(self.ui))
         step("Game pads", self._follow_pads)
         overlay("The progress of loading", lambda: loading.show(self.ui))
         dialogs.show(self.ui)
@@ -177,7 +183,10 @@ class App:
         if part is not None and now is not None:
             display.know_parts(self.ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives]))
         look = self._look(picked.primitive if picked is not None else -1)
-        display.draw(look if part is None else replace(look, selected_part=part))
+        look = look if part is None else replace(look, selected_part=part)
+        display.draw(look)
+        comparing.draw(self.ui, look)
+        comparing.magnify(self.ui, look)
 
     def _tell(self) -> None:
         """Hand a whole picture to the script that opened the window, once; it closes the window by returning False."""
@@ -201,13 +210,16 @@ class App:
             shading=p.shading,
             outlines=p.outlines,
             selected=selected,
-            smooth=p.smooth_upscaling,
+            smooth=p.smooth_upscaling and c.session.zoom.fits,
             marked=p.mark_wrong,
             magnified=c.tracing.magnified,
             wipe=c.session.wipe,
             line=not c.tracing.becoming_finer,
             shares=p.work_shares,
             beneath=p.beneath,
+            tone=c.session.tone,
+            clipping=c.session.clipping,
+            span=c.comparing.span(c.tracing.drawn_view),
         )
 
     def _capture_picture(self) -> None:
@@ -220,11 +232,14 @@ class App:
             look = self._look(selected=-1)  # the mark is for the user, not for the picture
             self.ui.display.draw(look)
             pixels = self.ui.display.read() if self.ui.display.drawn(look) else None
+            compared = pixels is not None and comparing.shown(self.ui) is not None
+            if pixels is not None and compared:
+                pixels = comparing.composed(self.ui, pixels)
+            described = legend.of_picture(self.ui) if c.preferences.legend_in_pictures else None
+            recipe = c.recipes.of(c.frame, look.view) if c.frame is not None and not compared else None
             if wanted is CaptureKind.CLIPBOARD:
-                c.pictures.copy(pixels, c.frame, look.view)
+                c.pictures.copy(pixels, c.frame, described, recipe)
             else:
-                described = legend.of_picture(self.ui) if c.preferences.legend_in_pictures else None
-                recipe = c.recipes.of(c.frame, look.view) if c.frame is not None else None
                 c.captures.capture(c.frame, pixels, described, recipe)
         if self.ui.capture_wanted is CaptureKind.WINDOW:
             self.ui.capture_wanted = None
@@ -238,7 +253,8 @@ class App:
 
     def _stay_awake(self) -> None:
         """Doze but when something moves: whatever comes from a thread wakes the window, and it needs the processor."""
-        idling, lively = self.params.fps_idling, self.controller.motion.lively
+        idling = self.params.fps_idling
+        lively = self.controller.motion.lively or self.controller.comparing.blinks()
         by_processor = lively and self.drawn_by_processor
         idling.enable_idling = by_processor or not lively
         idling.fps_idle = SLOWEST_BY_PROCESSOR if by_processor else IDLE
@@ -286,6 +302,8 @@ class App:
         """The window and its GL context exist."""
         self.ui.display = Display()
         self.ui.shots = Shots(self.ui.display.context)
+        self.ui.compared = Compared(self.ui.display.passes)
+        self.ui.magnifier = Magnifier(self.ui.display.passes)
         self.ui.renderer_name = self.ui.display.context.info["GL_RENDERER"]
         self.drawn_by_processor = any(name in self.ui.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
         if self.drawn_by_processor:
@@ -296,7 +314,7 @@ class App:
         glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
         opener = self.controller.loader
-        opener.start(self.scene_path, self.given_settings, self.folders)
+        opener.start(self.scene_path, self.given_settings, self.folders, self.meshes)
         if self.scene is not None:
             opener.take(self.scene)
         elif self.scene_path is None and not (self.controller.preferences.start_where_left and opener.go_on()):
@@ -317,6 +335,12 @@ class App:
     def _release(self) -> None:
         self.ui.full_screen.end()
         self.controller.wake = lambda: None  # threads may still be at work when the window is gone
+        if self.ui.compared is not None:
+            self.ui.compared.release()
+            self.ui.compared = None
+        if self.ui.magnifier is not None:
+            self.ui.magnifier.release()
+            self.ui.magnifier = None
         if self.ui.display is not None:
             self.ui.display.release()
             self.ui.display = None
@@ -337,8 +361,13 @@ def _configure_imgui() -> None:
     configure_recovery()
 
 
-def run(scene_path: Path | None = None, settings: dict[str, Any] | None = None, folders: Sequence[Path] = ()) -> int:
+def run(
+    scene_path: Path | None = None,
+    settings: dict[str, Any] | None = None,
+    folders: Sequence[Path] = (),
+    meshes: MeshOptions = IN_STUDIO,
+) -> int:
     """Open the viewer on a scene or a saved picture; without one on what was open last, where that is wanted, else on
     the embedded room.  `settings` are fields of `tracer.Settings` that win over what is opened first; scenes may read
-    files from `folders` besides their own.  Returns the exit code."""
-    return App(scene_path, settings, folders).run()
+    files from `folders` besides their own; `meshes` says how meshes are read.  Returns the exit code."""
+    return App(scene_path, settings, folders, meshes).run()

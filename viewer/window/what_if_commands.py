@@ -15,9 +15,13 @@ def build(ui: Ui) -> list[Command]:
     )
     edited = Condition(lambda: bool(c.editing.now), "the scene is as its file says")
     return [
-        Command("Hide the object", "Edit/What if", lambda: hide(ui), enabled=hides, separated=True,
+        Command("What if...", "Edit/What if", lambda: ui.show_panel("What if"), separated=True,
+                tip="switch off a light, hide an object, and see what changes"),
+        Command("Hide the object", "Edit/What if", lambda: hide(ui), enabled=hides,
                 tip="that was clicked, or is under the pointer"),
         Command("Show everything", "Edit/What if", c.editing.show_everything, enabled=hidden),
+        Command("Changed pixels", "Edit/What if", lambda: setattr(ui, "changed_shown", not ui.changed_shown),
+                checked=lambda: ui.changed_shown, enabled=edited, tip="by the edits: in magenta on the dimmed picture"),
         Command("Take all edits back", "Edit/What if", c.editing.clear, enabled=edited,
                 tip="the scene as its file says"),
     ]  # fmt: skip

@@ -8,14 +8,18 @@ from dataclasses import replace
 import pytest
 
 from tests.viewer.fakes import make_scene
+from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Camera
 from viewer.services.motion import GLIDE_SECONDS, IDLE_AFTER, Motion
 from viewer.services.settings_controller import SettingsController
 from viewer.services.undo import MOST, Undo
+from viewer.state.comparison import Way
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.tone import Tone
 from viewer.state.views import View
+from viewer.state.zooming import Zoom
 
 AWAY = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
 
@@ -33,7 +37,14 @@ class Desk:
         lock = lambda: self.locked  # noqa: E731
         self.settings = SettingsController(self.session, self.preferences, self.notices, lock)
         self.motion = Motion(self.session, self.preferences, self.notices, lock)
-        self.undo = Undo(self.session, self.preferences, self.motion, self.notices, lock)
+        self.read: list[MeshOptions] = []  # what undo has asked for
+        self.reading = False
+
+        def read_as(meshes: MeshOptions) -> None:
+            self.read.append(meshes)
+            self.reading = True
+
+        self.undo = Undo(self.session, self.preferences, self.motion, self.notices, lock, read_as, lambda: self.reading)
         self.frame()
 
     def frame(self, seconds: float = 0.02) -> None:
@@ -44,6 +55,13 @@ class Desk:
 
     def rest(self) -> None:
         self.frame(IDLE_AFTER + GLIDE_SECONDS)
+        self.frame()
+
+    def arrive(self, meshes: MeshOptions) -> None:
+        """The mesh has been read so, and is seen from its first camera."""
+        self.reading = False
+        self.session.open(self.session.scene)
+        self.session.meshes = meshes
         self.frame()
 
     @property
@@ -179,6 +197,48 @@ def test_nothing_is_undone_while_it_is_locked_and_another_scene_forgets_all(desk
     assert desk.said == "there is nothing to undo" and desk.session.settings.depth == 2
 
 
+def test_how_a_mesh_is_read_comes_back_with_what_was_seen_of_it(desk: Desk):
+    desk.arrive(IN_STUDIO)
+    desk.undo.clear()
+    desk.frame()
+    desk.session.free_camera = AWAY
+    desk.rest()
+    for meshes, name in (
+        (MeshOptions(True, "x"), "x up"),
+        (MeshOptions(True, "x", 20.0), "crease angle 20°"),
+        (MeshOptions(False, "x", 20.0), "studio off"),
+    ):
+        desk.arrive(meshes)
+        assert desk.undo.undoes == name and desk.session.free_camera is None
+    desk.undo.undo()
+    desk.frame()
+    desk.undo.undo()  # while it is being read: too early
+    desk.settings.change(depth=3)
+    desk.arrive(MeshOptions(True, "x", 20.0))
+    assert desk.read == [MeshOptions(True, "x", 20.0)] and desk.said == "undone: studio off"
+    assert desk.undo.redoes == "studio off" and desk.undo.undoes == "crease angle 20°"
+    desk.undo.undo()
+    desk.arrive(MeshOptions(True, "x"))
+    desk.undo.undo()
+    desk.arrive(IN_STUDIO)
+    desk.rest()
+    assert desk.said == "undone: x up" and desk.session.free_camera == AWAY and desk.undo.undoes == "camera"
+    desk.undo.redo()
+    desk.arrive(MeshOptions(True, "x"))
+    desk.rest()
+    assert desk.said == "redone: x up" and desk.session.free_camera is None
+
+
+def test_a_mesh_that_could_not_be_read_again_leaves_the_steps_as_they_were(desk: Desk):
+    desk.arrive(IN_STUDIO)
+    steps = desk.undo.undoes, desk.undo.redoes
+    assert steps[0] == "studio on"
+    desk.undo.undo()
+    desk.reading = False
+    desk.frame()
+    assert (desk.undo.undoes, desk.undo.redoes) == steps and desk.session.meshes == IN_STUDIO
+
+
 def test_memory_is_bounded(desk: Desk):
     for number in range(MOST + 20):
         desk.settings.change(depth=number % 50)
@@ -187,3 +247,62 @@ def test_memory_is_bounded(desk: Desk):
         assert desk.undo.undoes
         desk.undo.undo()
     assert desk.undo.undoes == ""
+
+
+def test_turns_of_the_wheel_are_one_step_and_a_rest_begins_another(desk: Desk):
+    for scale in (2.0, 4.0, 8.0):
+        desk.session.zoom = Zoom(scale)
+        desk.frame(0.2)
+    desk.frame(1.0)
+    desk.session.zoom = Zoom(16.0)
+    desk.frame(1.0)
+    assert desk.undo.undoes == "zoom to 16 x"
+    desk.undo.undo()
+    assert desk.session.zoom == Zoom(8.0) and desk.undo.undoes == "zoom to 8 x"
+    desk.undo.undo()
+    assert desk.session.zoom.fits and desk.undo.undoes == ""
+
+
+def test_strokes_of_other_kinds_are_steps_of_their_own(desk: Desk):
+    desk.session.tone = Tone(0.5)
+    desk.frame()
+    desk.session.zoom = Zoom(2.0)
+    desk.frame()
+    desk.undo.undo()
+    assert desk.session.zoom.fits and desk.session.tone == Tone(0.5) and desk.undo.undoes == "tone +0.5 EV"
+    desk.undo.undo()
+    assert desk.session.tone.neutral
+    desk.undo.redo()
+    assert desk.session.tone == Tone(0.5)
+
+
+def test_ranges_and_stripes_come_back(desk: Desk):
+    desk.session.spans[View.DEPTH] = (1.0, 2.0)
+    desk.frame()
+    desk.session.clipping = True
+    desk.frame()
+    assert desk.undo.undoes == "marks of clipped pixels on"
+    desk.undo.undo()
+    desk.undo.undo()
+    assert not desk.session.spans and not desk.session.clipping
+    desk.undo.redo()
+    desk.session.spans.clear()
+    desk.frame()
+    desk.undo.undo()
+    assert desk.session.spans == {View.DEPTH: (1.0, 2.0)}, "what is kept is no reference to what holds now"
+
+
+def test_a_comparison_is_a_step_but_what_is_kept_stays(desk: Desk):
+    comparison = desk.session.comparison
+    comparison.on, comparison.way = True, Way.SIDE
+    desk.frame()
+    comparison.kept = kept = object()
+    comparison.same_view = True
+    desk.frame()
+    assert desk.undo.undoes == "A in the view of B"
+    desk.undo.undo()
+    assert comparison.on and not comparison.same_view and desk.undo.undoes == "comparison: side by side"
+    desk.undo.undo()
+    assert not comparison.on and comparison.kept is kept
+    desk.undo.redo()
+    assert comparison.on and comparison.way is Way.SIDE
