@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.scene_table import Listing, SceneTable
@@ -34,7 +34,10 @@ def show(ui: Ui) -> None:
         paragraph("The table is made when the picture is whole.", QUIET)
         return
     _said(ui, table, listing)
-    find_rows.show(ui, table, listing)
+    # The table scrolls sideways by itself; a window around it says so, which else would seem too wide for its content.
+    if imgui.begin_child("around", ImVec2(0.0, 0.0), 0, int(imgui.WindowFlags_.horizontal_scrollbar)):
+        find_rows.show(ui, table, listing)
+    imgui.end_child()
 
 
 def _tools(ui: Ui, table: SceneTable) -> None:
@@ -45,7 +48,9 @@ def _tools(ui: Ui, table: SceneTable) -> None:
         if imgui.radio_button(level.value, table.level is level):
             table.level = level
         tooltip(_LEVEL_TIPS[level])
-    save = imgui.get_frame_height() + imgui.get_style().item_spacing.x
+    style = imgui.get_style()
+    icon = imgui.calc_text_size(icons.ICON_FA_FLOPPY_DISK).x
+    save = icon + 2.0 * style.frame_padding.x + style.item_spacing.x + 1.0
     edge = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
     if imgui.get_item_rect_max().x + em(_FIELD + _LIGHT) + save <= edge:
         imgui.same_line(0.0, em(1.0))
