@@ -140,6 +140,17 @@ def test_a_light_that_is_switched_on_again_is_learnt_anew():
     assert not (modes.occlusion_mode(history.words) == modes.FULLY_RENDERED).any()
 
 
+def test_a_renderer_beside_another_shows_the_same_edits():
+    original = lidded()
+    first = learnt(original, "certified")
+    second = first.beside()
+    second.settings = replace(first.settings, method="none")
+    second.render(0.0, ABOVE)
+    first.scene = first.world.scene = edited(original, Edits(moved_lights=((0, (1.0, 1.0, 2.5)),))).scene
+    second.follow(first)
+    assert np.array_equal(second.render(0.0, ABOVE).color, first.render(0.0, ABOVE).color)
+
+
 @quickly(12)
 @given(walk=walks(), seed=st.integers(0, 2**32 - 1))
 def test_numbers_lead_back_to_the_scene_as_it_was_read(walk: Walk, seed: int):

@@ -143,9 +143,13 @@ class Edited:
         (found,) = np.nonzero(self.lights == number)
         return int(found[0]) if len(found) else -1
 
+    @cached_property
+    def _things(self) -> dict[tuple[int, int], Thing]:
+        return {(thing.index, thing.part): thing for thing in things(self.original)}
+
     def thing_of(self, primitive: int) -> Thing:
         """The thing that holds a primitive of this scene."""
-        return thing_of(self.original, int(self.primitives[primitive]))
+        return self._things[_owner(self.original, int(self.primitives[primitive]))]
 
 
 def things(scene: Scene) -> tuple[Thing, ...]:
@@ -171,11 +175,15 @@ def things(scene: Scene) -> tuple[Thing, ...]:
 
 def thing_of(scene: Scene, primitive: int) -> Thing:
     """The thing that holds a primitive."""
+    owner = _owner(scene, primitive)
+    return next(thing for thing in things(scene) if (thing.index, thing.part) == owner)
+
+
+def _owner(scene: Scene, primitive: int) -> tuple[int, int]:
+    """The object that holds a primitive, and the part of it, -1 for all."""
     index = scene.object_of(primitive)
-    held, part = scene.objects[index], -1
-    if held.part_of is not None:
-        part = int(held.part_of[_place(scene, index, primitive)])
-    return next(thing for thing in things(scene) if (thing.index, thing.part) == (index, part))
+    part_of = scene.objects[index].part_of
+    return index, -1 if part_of is None else int(part_of[_place(scene, index, primitive)])
 
 
 def thing_numbers(scene: Scene) -> Int32:

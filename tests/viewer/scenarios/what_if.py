@@ -10,6 +10,7 @@ from imgui_bundle import imgui
 from PIL import Image
 
 from tests.viewer.driver import Driver
+from viewer.window.panels.edited_picture import marks_of
 
 KEY = imgui.Key
 UNDO = int(imgui.Key.z) | int(imgui.Key.mod_ctrl)
@@ -26,6 +27,8 @@ def what_if(d: Driver) -> None:
     """Edits by the panel and by the hand on a light; each is a step of undo."""
     d.settle()
     c = d.c
+    c.settings.change(method="paper")
+    d.settle()
     d.ui.show_panel("What if")
     d.frames(5)
     before, traced = c.frame, c.frame.color.copy()
@@ -43,6 +46,8 @@ def what_if(d: Driver) -> None:
     d.context.item_click("//What if/**/Show changed pixels")
     d.frames(5)
     look(d, "2-light-off")
+    d.scroll_down("What if")
+    look(d, "2-scrolled")
     d.context.item_click("//What if/**/Show changed pixels")
 
     # What was clicked, hidden.
@@ -63,10 +68,8 @@ def what_if(d: Driver) -> None:
     look(d, "4-hidden")
 
     # A light dragged in the picture.
-    from viewer.window.panels.edited_picture import marks_of
-
     marks = [mark for mark in marks_of(d.ui, c.frame) if mark.on]
-    if marks:
+    if marks:  # else they are all beside the picture
         mark = marks[0]
         left, top, right, bottom = d.picture_edges()
         place = left + mark.at[0] * (right - left), top + mark.at[1] * (bottom - top)
@@ -75,13 +78,15 @@ def what_if(d: Driver) -> None:
         d.settle()
         assert c.session.edits.light_place(mark.number) is not None
         look(d, "5-dragged")
+        d.scroll_down("What if")
+        look(d, "5-scrolled")
         assert c.undo.undoes == f"light {mark.number} moved"
         d.press(UNDO)
         d.settle()
         assert c.session.edits.light_place(mark.number) is None
 
     # All comes back.
-    for _ in range(2):
+    while c.session.edits:
         d.press(UNDO)
         d.wait(lambda: not c.editing.under_way, "the step taken back", 20.0)
     d.settle()

@@ -37,7 +37,7 @@ _TIPS = {
     "tests": "rays of all kinds tested against primitives",
     "certified": "certificates made in this frame",
 }
-_ROWS = 5  # of lists that are seen at once
+_ROWS = 4  # of lists that are seen at once
 _MOST_PAIRS = 4  # of transitions of a light that are listed
 _MOST_BLOCKERS = 4
 
@@ -260,9 +260,8 @@ def _transitions(ui: Ui, title: str, listed: Sequence[Transitions], units: str) 
     if not listed:
         return
     changed = sum(one.changed for one in listed)
-    if not imgui.tree_node_ex(
-        f"{title}: {count(changed)} changed###{title}", int(imgui.TreeNodeFlags_.span_avail_width)
-    ):
+    flags = imgui.TreeNodeFlags_.span_avail_width | imgui.TreeNodeFlags_.default_open
+    if not imgui.tree_node_ex(f"{title}: {count(changed)} changed###{title}", int(flags)):
         return
     kept = sum(int(one.counts.trace() - one.counts[0, 0]) for one in listed)
     of_lights = ", summed over the lights" if listed[0].light is not None and len(listed) > 1 else ""
