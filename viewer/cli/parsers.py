@@ -19,6 +19,7 @@ from viewer.cli.argument_types import (
     several,
     size,
 )
+from viewer.cli.edit_options import add_edits
 from viewer.cli.mesh_arguments import add_mesh_options, joined
 from viewer.util import resources
 from viewer.util.messages import ERROR, say
@@ -142,6 +143,7 @@ def explain() -> Parser:
     add("--light", type=count(0, 2**31 - 1), metavar="N", help="only shadow rays to this light")
     add("--json", action="store_true", help="all rays as JSON on standard output")
     add("--camera", metavar="JSON", help=f"another camera: {CAMERA}")
+    add_edits(parser)
     add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
     add_tracing_options(parser, "bvh8")
     add_zoom_factor(parser)

@@ -20,6 +20,7 @@ from viewer.cli.argument_types import (
     values,
     view,
 )
+from viewer.cli.edit_options import add_edits
 from viewer.cli.parsers import Parser
 
 
@@ -75,6 +76,7 @@ def _add_picture(parser: Parser) -> None:
     add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
     _add_style(parser)
     add("--camera", metavar="JSON", help=f"another camera: {parsers.CAMERA}")
+    add_edits(parser)
 
 
 def film() -> Parser:

@@ -10,6 +10,7 @@ from typing import Any
 
 from tracer.scene.files import read_regular
 from tracer.scene.model import Camera
+from viewer.cli import edit_options
 from viewer.cli.argument_types import ChosenView
 from viewer.output import capture, recipe
 from viewer.output.recipe import Recipe
@@ -44,6 +45,7 @@ def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
     kept["view"] = ChosenView(saved.view, saved.light, saved.wipe, saved.style.shares)
     kept["moment"] = saved.time
     kept |= {"no_studio": not saved.meshes.studio, "up": saved.meshes.up, "crease": saved.meshes.crease}
+    kept |= edit_options.defaults(saved.edits)
     return saved.scene, kept
 
 

@@ -16,11 +16,13 @@ from typing import Any
 
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
+from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.load import AFF_EXTENSIONS
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.output.pictures import SHADING
+from viewer.state import edits as scene_edits
 from viewer.state.annotations import Annotation
 from viewer.state.annotations import from_json as annotations_from_json
 from viewer.state.marks import wipe_column
@@ -57,7 +59,8 @@ class Style:
 class Recipe:
     """See the module.  `camera` None is the scene's own; `settings` are those of the picture's own frame; `by_gpu` says
     that a GPU drew the view, which may round otherwise.  `folders` are those that the user lets the scene read: a
-    picture does not carry them, or it could name any."""
+    picture does not carry them, or it could name any.  `edits` are what is otherwise than in the scene's file; `light`
+    counts those that are on."""
 
     scene: Path
     time: float
@@ -73,6 +76,7 @@ class Recipe:
     by_gpu: bool = False
     folders: tuple[Path, ...] = ()
     meshes: MeshOptions = AS_IN_FILE
+    edits: Edits = NO_EDITS
 
     @property
     def size(self) -> tuple[int, int]:
@@ -97,7 +101,7 @@ class Recipe:
         follow, style = self.camera is None, self.style
         return Snapshot(
             path, self.time, camera, follow, settings, self.view, self.light, self.wipe,
-            tone=style.tone, span=style.span, meshes=self.meshes,
+            tone=style.tone, span=style.span, meshes=self.meshes, edits=self.edits,
         )  # fmt: skip
 
     def to_json(self) -> dict[str, Any]:
@@ -155,6 +159,7 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Re
             history=str(data.get("history", "")),
             by_gpu=bool(data.get("by_gpu", False)),
             meshes=snapshot.meshes,
+            edits=snapshot.edits,
         )
     except (TypeError, AttributeError):
         raise ValueError("how it was drawn is damaged") from None
@@ -239,6 +244,7 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         words += [f"--caption={style.caption.replace('{', '{{').replace('}', '}}')}"]
     if style.annotations:
         words += ["--annotations", json.dumps([a.to_json() for a in style.annotations])]
+    words += scene_edits.as_options(recipe.edits)
     for folder in recipe.folders:
         words += ["--folder", str(folder.absolute())]
     return words + _of_meshes(recipe)

@@ -13,11 +13,14 @@ from typing import Any
 
 from tracer.frame import Frame
 from tracer.renderer import Renderer
+from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
 from tracer.zoom import Step
+from viewer.services.before_edits import BeforeEdits
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
+from viewer.services.editing import Editing
 from viewer.services.film_controller import FilmController
 from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
@@ -30,6 +33,7 @@ from viewer.services.recipes import Recipes
 from viewer.services.render_thread import RenderThread, Traced
 from viewer.services.run_controller import RunController
 from viewer.services.scene_loader import Arrival, SceneLoader
+from viewer.services.scene_table import SceneTable
 from viewer.services.scene_watcher import SceneWatcher
 from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
@@ -77,6 +81,10 @@ class Controller:
         self.inspector = ShadowInspector(self.selection, renderer)
         self.rays = RayInspector(session, self.selection, renderer)
         self.recorder = LightRecorder(session, renderer, self.tracing)
+        refuses, overlook = self.runs.refuses, self.undo.overlook
+        self.editing = Editing(session, renderer, notices, refuses, self._show_edited, overlook)
+        self.table = SceneTable(session, self.selection, preferences, notices, self.captures, self.editing, awaken)
+        self.before_edits = BeforeEdits(session, self.editing, self.undo)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
         self.recipes = Recipes(session, preferences, self.tracing, self.loader, notices)
@@ -124,14 +132,23 @@ class Controller:
         traced, motion, run = self.traced, self.motion, self.runs.current
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
         self.undo.follow()
+        self.editing.follow(run is not None, self.tracing.shows_edits or not self.renderer.busy)
         self.rays.follow(traced if run is None else None)  # before the next frame is asked for
+        self.table.follow(traced if run is None else None, motion.lively)
         self.tracing.ask(Conditions(size, motion.under_way, run, self.loader.ready, self.selection.hovered))
         if run is None:
             self.recorder.follow()
+            self._follow_before_edits()
             if self.traced is not None and self.traced.whole:
                 self.bookmarks.follow(self.traced.frame, self.traced.request.divisor == 1)
         self.inspector.follow(self.frame if run is None else None, not motion.lively)
         return frame
+
+    def _follow_before_edits(self) -> None:
+        traced, tracing = self.traced, self.tracing
+        now = traced is not None and traced.whole and traced.request.divisor == 1 and not self.motion.lively
+        frame = traced.frame if traced is not None and now and tracing.shows_edits else None
+        self.before_edits.follow(frame, not (tracing.awaits or tracing.adds_samples or self.renderer.busy))
 
     def _take_scene(self) -> None:
         arrival = self.loader.follow()
@@ -198,12 +215,25 @@ class Controller:
         self.session.open(scene)
         self.info = info
         self.renderer.use(renderer)
+        self.editing.enter(renderer)
+        self.before_edits.forget()
         self.history.clear()
         self.tracing.forget()
         self.selection.clear()
         self.motion.enter(info.get("bounds"))
         self.preferences.remember_scene(Path(scene.path).absolute())
         self.settings.save()
+
+    def _show_edited(self, now: Edited, renderer: Renderer) -> None:
+        """Show the scene that is open with other edits: where we are, and what was chosen, stays."""
+        before = self.session.edited
+        same = before is not None and before.made_as(now)
+        self.undo.overlook(lambda: self.session.take(now))
+        self.renderer.use(renderer)
+        self.tracing.follow_edits(same)
+        if not same:
+            self.selection.follow_edits(before, now)
+            self.reloaded = True
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot of the open scene."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from tracer.frame import Frame, Settings
+from tracer.scene.edits import NO_EDITS
 from viewer.output import recipe
 from viewer.output.recipe import Recipe, Style
 from viewer.services.scene_loader import SceneLoader
@@ -51,6 +52,7 @@ class Recipes:
             by_gpu=view is not View.COLOR or style.outlines or not style.tone.neutral or style.clipping,
             folders=self._loader.folders,
             meshes=session.meshes,
+            edits=session.edited.edits if session.edited is not None else NO_EDITS,
         )
         return self._with_history(found, frame)
 

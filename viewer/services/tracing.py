@@ -85,6 +85,22 @@ class Tracing:
         self.refinement.forget()
         self.governor.forget()
 
+    def follow_edits(self, same: bool) -> None:
+        """The scene is edited otherwise; `same` says that primitives and lights have the numbers that they had.
+
+        If they have not, the newest frame means nothing any more."""
+        if not same:
+            self.traced = self._known = None
+        self._asked = None
+        self.learnt.confuse()
+        self.refinement.forget()
+        self.again()
+
+    @property
+    def shows_edits(self) -> bool:
+        """Whether some of a picture has come since the scene was edited, or was to be traced again."""
+        return self.traced is not None and self.traced.request.serial == self._serial
+
     def again(self) -> None:
         """Trace what was traced last once more."""
         self._serial += 1

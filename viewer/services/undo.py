@@ -1,4 +1,4 @@
-"""Undo and redo of settings, view, light, tone, comparison, zoom and camera.
+"""Undo and redo of settings, view, light, tone, comparison, zoom, camera and edits of the scene.
 
 Nobody has to announce a change: what holds is compared from one of the window's frames to the next.  Changes that
 belong together are one step: all of a drag, all of a flight until the camera rests, all turns of the wheel until it
@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Camera
 from viewer.services.motion import Motion
+from viewer.state import edits as scene_edits
 from viewer.state.choices import Choices, differences
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
@@ -33,6 +35,7 @@ class Place:
     choices: Choices
     camera: Camera | None
     meshes: MeshOptions
+    edits: Edits = NO_EDITS
 
 
 @dataclass(frozen=True)
@@ -111,6 +114,13 @@ class Undo:
         """Forget all steps, as another scene is open."""
         self._done, self._undone, self._open, self._last, self._name = [], [], None, None, ""
         self._coming = None
+
+    def overlook(self, change: Callable[[], None]) -> None:
+        """Let something change that follows from a step, and is none itself."""
+        self.follow()
+        change()
+        if self._last is not None:
+            self._last = self._place()
 
     def follow(self) -> None:
         """Take up what has changed since the last time."""
@@ -218,7 +228,8 @@ class Undo:
             session.free_camera = place.camera
             if place.camera is not None:
                 self._motion.glide(place.camera, start)
-        self._last = place
+        session.want(place.edits, place.choices.light)
+        self._last = replace(place, edits=session.edits)
         self._notices.say(said)
 
     def _place(self) -> Place | None:
@@ -227,7 +238,7 @@ class Undo:
             return None
         # On its way the camera is where it goes: a glide is one step, and one that undo began is none.
         camera = self._motion.destination or session.free_camera
-        return Place(Choices.of(session, self._preferences), camera, session.meshes)
+        return Place(Choices.of(session, self._preferences), camera, session.meshes, session.edits)
 
 
 def _changes(before: Place, after: Place) -> dict[str, str]:
@@ -237,7 +248,7 @@ def _changes(before: Place, after: Place) -> dict[str, str]:
     if before.camera != after.camera:
         onto = "camera onto the scene's path" if after.camera is None else "camera"
         changed[_CAMERA] = onto
-    return changed
+    return changed | scene_edits.differences(before.edits, after.edits)
 
 
 def _name_of(fields: dict[str, str]) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
@@ -59,7 +61,8 @@ def _details(ui: Ui, pick: Pick) -> None:
             if pick.wrong is not None:
                 answers = f"{count(pick.wrong)} shadow {'answer' if pick.wrong == 1 else 'answers'}"
                 fact("Wrong here", answers, "for any light, at any bounce: what is seen in mirrors counts too")
-            fact("Depth", f"{pick.depth:.5g}")
+            if math.isfinite(pick.depth):  # else nothing of it is seen
+                fact("Depth", f"{pick.depth:.5g}")
             if pick.point is not None:
                 fact("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
             if pick.normal is not None:
