@@ -120,7 +120,7 @@ def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) 
         history = f"what the method {settings.method} makes depends on time and threads"
     return Recipe(
         path, time, options.camera, settings, view, light, wipe, style, options.warmup, options.repeat, history,
-        folders=tuple(options.folder),
+        folders=tuple(options.folder), before=options.before,
     )  # fmt: skip
 
 

@@ -1,8 +1,8 @@
 """All that a picture depends on: as the options of `shadowcull render` that make it again, and as JSON in the picture.
 
 Modes come from the frames before, and certificates and the caches as well.  A picture that shows them can be made again
-where those frames are known: so many frames of the path before it (`warmup`), or the same frame so many times
-(`repeats`).  Where they are not, `history` says why, in words.
+where those frames are known: any frames, each by its time and camera (`before`), then so many frames of the path before
+it (`warmup`), then the same frame so many times (`repeats`).  Where they are not, `history` says why, in words.
 """
 
 from __future__ import annotations
@@ -21,6 +21,9 @@ from tracer.settings import Settings
 from viewer.output.pictures import SHADING
 from viewer.state.annotations import Annotation
 from viewer.state.annotations import from_json as annotations_from_json
+from viewer.state.earlier import Earlier
+from viewer.state.earlier import from_json as earlier_from_json
+from viewer.state.earlier import to_json as earlier_to_json
 from viewer.state.marks import wipe_column
 from viewer.state.session import Snapshot, settings_to_json
 from viewer.state.views import BENEATH, View
@@ -66,6 +69,7 @@ class Recipe:
     history: str = ""
     by_gpu: bool = False
     folders: tuple[Path, ...] = ()
+    before: tuple[Earlier, ...] = ()
 
     @property
     def size(self) -> tuple[int, int]:
@@ -100,6 +104,7 @@ class Recipe:
             "history": self.history,
             "by_gpu": self.by_gpu,
             "style": style,
+            **({"before": earlier_to_json(self.before)} if self.before else {}),
         }
 
 
@@ -142,6 +147,7 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Re
             repeats=_count(data, "repeats"),
             history=str(data.get("history", "")),
             by_gpu=bool(data.get("by_gpu", False)),
+            before=earlier_from_json(data.get("before", [])),
         )
     except (TypeError, AttributeError):
         raise ValueError("how it was drawn is damaged") from None
@@ -217,6 +223,8 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         words += ["--legend-at", f"{style.legend[0]!r},{style.legend[1]!r}"]
     if style.caption:
         words += [f"--caption={style.caption.replace('{', '{{').replace('}', '}}')}"]
+    if recipe.before:
+        words += ["--before", json.dumps(earlier_to_json(recipe.before))]
     if style.annotations:
         words += ["--annotations", json.dumps([a.to_json() for a in style.annotations])]
     for folder in recipe.folders:
