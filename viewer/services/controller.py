@@ -26,6 +26,7 @@ from viewer.services.presets import Presets
 from viewer.services.questions import Questions
 from viewer.services.ray_inspector import RayInspector
 from viewer.services.recipes import Recipes
+from viewer.services.record import Record
 from viewer.services.render_thread import RenderThread, Traced
 from viewer.services.run_controller import RunController
 from viewer.services.scene_loader import Arrival, SceneLoader
@@ -33,6 +34,8 @@ from viewer.services.scene_watcher import SceneWatcher
 from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
 from viewer.services.shadow_inspector import ShadowInspector
+from viewer.services.teachers import Teachers
+from viewer.services.time_travel import TimeTravel
 from viewer.services.tracing import Conditions, Tracing
 from viewer.services.undo import Undo
 from viewer.state.history import History
@@ -57,6 +60,7 @@ class Controller:
         self.notices = notices = Notices(awaken)
         self.renderer = renderer = RenderThread(awaken)
         self.history = History()
+        self.record = Record(session, self.history)
         self.selection = Selection(session, lambda: self.frame)
         self.captures = CaptureService(session, preferences, notices, awaken)
         self.runs = RunController(session, self.selection, renderer, preferences, notices, self.captures, awaken)
@@ -71,6 +75,11 @@ class Controller:
         self.pads = PadFlight(session, preferences, self.motion, notices)
         self.inspector = ShadowInspector(self.selection, renderer)
         self.rays = RayInspector(session, self.selection, renderer)
+        self.teachers = Teachers(session, self.selection, self.record, renderer)
+        self.travel = TimeTravel(
+            session, preferences, self.record, self.tracing, self.runs, self.undo, self.selection, notices,
+            self.restore, awaken,
+        )  # fmt: skip
         self.recorder = LightRecorder(session, renderer, self.tracing)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
@@ -125,6 +134,8 @@ class Controller:
             if self.traced is not None and self.traced.whole:
                 self.bookmarks.follow(self.traced.frame, self.traced.request.divisor == 1)
         self.inspector.follow(self.frame if run is None else None, not motion.lively)
+        self.travel.follow(self.traced)
+        self.teachers.follow(self.traced if run is None and not motion.lively else None)
         return frame
 
     def _take_scene(self) -> None:
@@ -165,18 +176,20 @@ class Controller:
         run = self.runs.follow()
         if run.ended:
             self.tracing.again()  # else the world might stay where the run has put it
-        before = self.traced
+        if self.travel.replay is not None:  # they teach the window's own modes
+            replayed = self.travel.replay.take_traced()
+            self.record.add(replayed, None, self.drawn_seconds)
+            for traced in replayed:
+                self.tracing.learnt.add(traced.frame)
         if run.picture is not None:
             self.tracing.show(run.picture)
             frame = run.picture.frame
         else:
-            traced = self.tracing.take()
-            if traced is None:
+            newest = self.tracing.take()
+            self.record.add(self.renderer.take_whole(), newest, self.drawn_seconds)
+            if newest is None:
                 return None
-            frame = traced.frame
-            if frame.settings.samples == 1:  # further samples count nothing
-                again = before is not None and before.request is traced.request
-                self.history.add(frame, self.drawn_seconds, again)
+            frame = newest.frame
         self.reloaded = False
         self.motion.look_around(frame)
         self.selection.refresh(frame)
@@ -192,7 +205,7 @@ class Controller:
         self.session.open(scene)
         self.info = info
         self.renderer.use(renderer)
-        self.history.clear()
+        self.record.forget()
         self.tracing.forget()
         self.selection.clear()
         self.motion.enter(info.get("bounds"))

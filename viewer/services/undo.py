@@ -7,7 +7,7 @@ steps."""
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from tracer.scene.model import Camera
 from viewer.services.motion import Motion
@@ -23,10 +23,12 @@ _CAMERA = "camera"
 
 @dataclass(frozen=True)
 class Place:
-    """All that a step can bring back; `camera` is None while it follows the scene's own path."""
+    """All that a step can bring back; `camera` is None while it follows the scene's own path, `time` where the step is
+    not about going to another time."""
 
     choices: Choices
     camera: Camera | None
+    time: float | None = None
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,7 @@ class Undo:
         self._open: _Open | None = None
         self._last: Place | None = None
         self._name = ""
+        self._time: float | None = None  # before what is about to change, if that goes to another time
 
     @property
     def undoes(self) -> str:
@@ -79,15 +82,17 @@ class Undo:
         """What would be done again; "" where there is nothing."""
         return self._undone[-1].name if self._undone and self._open is None else ""
 
-    def call_next(self, name: str) -> None:
-        """Give a name to what is about to change, which is a step of its own."""
+    def call_next(self, name: str, with_time: bool = False) -> None:
+        """Give a name to what is about to change, which is a step of its own; `with_time`, it brings back the time as
+        well."""
         self.follow()
         self._close()
-        self._name = name
+        self._name, self._time = name, self._session.time if with_time else None
 
     def clear(self) -> None:
         """Forget all steps, as another scene is open."""
         self._done, self._undone, self._open, self._last, self._name = [], [], None, None, ""
+        self._time = None
 
     def follow(self) -> None:
         """Take up what has changed since the last time."""
@@ -99,9 +104,14 @@ class Undo:
             return
         changed = _changes(self._last, now)
         name, self._name = self._name, ""
-        if name and changed:
+        before, self._time = self._time, None
+        moved = before is not None and before != self._session.time
+        if name and (changed or moved):
             self._close()
-            self._add(Step(name, self._last, now))
+            then, after = self._last, now
+            if moved:
+                then, after = replace(then, time=before), replace(now, time=self._session.time)
+            self._add(Step(name, then, after))
         elif changed:
             if self._open is not None and not changed.keys() <= self._open.fields.keys():
                 self._close()
@@ -160,6 +170,8 @@ class Undo:
     def _bring(self, place: Place, said: str) -> None:
         session = self._session
         place.choices.put_into(session, self._preferences)
+        if place.time is not None:
+            session.time, session.playing = place.time, False
         if place.camera != session.free_camera:
             start = session.camera
             self._motion.halt()

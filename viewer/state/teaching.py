@@ -40,7 +40,10 @@ class Ledger:
     A mode that was forgotten and learnt again within one and the same frame counts as learnt when it first was, unless
     its light has moved."""
 
-    def __init__(self, lights: int, most_bytes: int = MOST_BYTES) -> None:
+    def __init__(self, lights: int, most_bytes: int = MOST_BYTES, blank: bool = True) -> None:
+        """`blank`: nothing was known before the first frame that is added; else nobody knows who taught what that one
+        leaves."""
+        self._blank = blank
         self.lights = min(lights, MAX_CULLED_LIGHTS)
         self._words: NDArray[np.unsignedinteger] | None = None
         self._row_of = np.empty(0, np.int32)
@@ -59,7 +62,7 @@ class Ledger:
         `moved` (lights,) says which lights are elsewhere than in the frame before: their modes were forgotten."""
         before = self._words
         if before is None or len(before) != len(words):
-            before = np.zeros_like(words)
+            before = np.zeros_like(words) if self._blank else words
             self._row_of, self._rows = np.full(len(words), NEVER, np.int32), 0
         self._words = words
         kept = before & ~_modes_of(moved, words.dtype.type) if moved is not None and moved.any() else before
