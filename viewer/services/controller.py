@@ -18,6 +18,7 @@ from tracer.zoom import Step
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
 from viewer.services.film_controller import FilmController
+from viewer.services.hunt_controller import HuntController
 from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
 from viewer.services.pad_flight import PadFlight
@@ -87,6 +88,9 @@ class Controller:
         films = FilmController(session, preferences, self.runs, self.recipes, self.bookmarks, notices, awaken)
         self.films = films
         self.pictures = PictureController(session, preferences, self.runs, self.recipes, notices, awaken)
+        self.hunts = HuntController(
+            session, preferences, self.runs, self.travel, self.recipes, notices, awaken
+        )  # fmt: skip
         self.watcher = SceneWatcher(
             preferences, lambda: self.loader.files, self._may_reload, self.loader.follow_change, awaken
         )

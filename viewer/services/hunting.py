@@ -70,6 +70,7 @@ def hunt(
     if Method.parse(settings.method).has_certificates:
         settings = replace(settings, threads=1)  # which certificates are made depends on the turns of threads
     world = world or World(scene, search.times[0], settings.accelerator)
+    settings = replace(settings, accelerator=world.accelerator)
     names = {name: getattr(settings, name) for name in _NAMES}
     found = Findings(str(scene.path), settings.method, (settings.width, settings.height), names)
     hunter = _Hunter(scene, search, settings, world, cancelled, found)

@@ -15,13 +15,14 @@ from viewer.services.record import Record
 from viewer.services.render_thread import Traced
 from viewer.services.replay import Past, Replay
 from viewer.services.run_controller import RunController
+from viewer.services.runs import Experiment
 from viewer.services.selection import Point, Selection
 from viewer.services.tracing import Tracing
 from viewer.services.undo import Undo
 from viewer.state.moments import Moment
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
-from viewer.state.session import Session, Snapshot
+from viewer.state.session import Session, Snapshot, settings_to_json
 
 MOST_REPLAYED = 2000
 """Frames that are traced once more for one picture."""
@@ -75,6 +76,31 @@ class TimeTravel:
         before = self._before(moment)
         if before is not None:
             self.replay_to(goal, before)
+
+    def go_to_experiment(self, run: Experiment, number: int, modes: bool = False) -> None:
+        """Go to a frame of an experiment, traced by the method that it shows; with `modes`, after those before it."""
+        scene = self._session.scene
+        if scene is None or self._runs.refuses():
+            return
+        if not run.is_of(scene):
+            self._notices.say(f"this was measured in {run.scene_path.name}; open that scene again to go there")
+            return
+        session, settings = (
+            self._session,
+            replace(run.settings, method=run.shown, samples=self._session.settings.samples),
+        )
+        time = run.times[number]
+        snapshot = Snapshot(
+            str(scene.path), time, scene.camera_at(time), True, settings_to_json(settings), session.view, session.light,
+            session.wipe,
+        )  # fmt: skip
+        goal = Goal(snapshot, f"frame {number} of the experiment", (settings.width, settings.height))
+        if modes:
+            before = [(then, scene.camera_at(then)) for then in run.times[:number]]
+            self.replay_to(goal, pasts(before, settings))
+        else:
+            self._arrive(goal)
+            self._notices.say(f"frame {number} of the path, by {run.shown}")
 
     def _snapshot(self, moment: Moment) -> Snapshot:
         scene = self._session.scene

@@ -12,6 +12,7 @@ from viewer.window.panels import (
     culling,
     experiment,
     filming,
+    hunt,
     inspector,
     log,
     picture,
@@ -56,6 +57,7 @@ PANELS = {
         Panel("Rays", "Bottom", icons.ICON_FA_CODE_BRANCH, rays.show, wide=True),
         Panel("Experiment", "Bottom", icons.ICON_FA_FLASK, experiment.show, wide=True),
         Panel("Zoom test", "Bottom", icons.ICON_FA_MAGNIFYING_GLASS_PLUS, zoom.show, wide=True),
+        Panel("Hunt", "Bottom", icons.ICON_FA_CROSSHAIRS, hunt.show, wide=True),
         Panel("Film", "Bottom", icons.ICON_FA_FILM, filming.show, wide=True),
         Panel("Log", "Bottom", icons.ICON_FA_LIST, log.show, wide=True),
     )
