@@ -62,8 +62,9 @@ class Ui:
     what is typed above each list of lights; `screening` is the recorded picture that is shown in the picture's place;
     `legend_shown` says whether the picture shows its legend, `legend_held` where the pointer holds that; `key_wanted`
     names the command that waits for a key to be pressed; `editing` is the list and the place in it of a name that is
-    being edited, `edited` that name; `plot_frame` is the frame whose menu is open in a plot; `tour_height` is what the
-    picture leaves free below it for the tour, `tour_place` where that is: left, top and width."""
+    being edited, `edited` that name; `plot_frame` is the frame whose menu is open in a plot, `plot_pointed` the one
+    that the pointer was on last; `tour_height` is what the picture leaves free below it for the tour, `tour_place`
+    where that is: left, top and width."""
 
     controller: Controller
     display: Display | None = None
@@ -89,6 +90,7 @@ class Ui:
     about_open: bool = False
     per_pixel: bool = True
     plot_frame: int = 0
+    plot_pointed: int | None = None
     picture_area: tuple[int, int] = (0, 0)
     picture_focused: bool = False
     picture_shape: tuple[int, int] = (1, 1)

@@ -61,6 +61,7 @@ def _menu(ui: Ui, plot: str, number: int | None, name: str, said: list[str], go:
     """What the pointer is told, and what it can do."""
     imgui.push_id(plot)
     if number is not None:
+        ui.plot_pointed = number
         if imgui.is_mouse_clicked(imgui.MouseButton_.left):
             go(number, False)
         elif imgui.is_mouse_clicked(imgui.MouseButton_.right):
