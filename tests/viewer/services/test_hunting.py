@@ -70,9 +70,7 @@ def test_finds_are_distinct_and_the_worst_first(found: Findings) -> None:
     assert AROUND in {find.place for find in found.finds}
 
 
-def test_a_find_is_made_again_by_the_frames_that_it_keeps(
-    world: tracer.World, alone: Findings, found: Findings
-) -> None:
+def test_a_find_is_made_again_by_its_frames(world: tracer.World, alone: Findings, found: Findings) -> None:
     """Its pixel has the same wrong colour, bit for bit, after no more frames than it needs; and its rays say why."""
     scene = world.scene
     assert any(len(find.before) < find.learnt_from for find in alone.finds), "nothing was left out: this shows nothing"
