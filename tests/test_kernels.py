@@ -43,6 +43,7 @@ IndexDataCacheFile._save_index = lambda *a: (time.sleep(0.2), save(*a))
 def package(tmp_path: Path) -> Path:
     """A folder with a copy of the tracer, and in it a kernel that asks a helper of another file for a number."""
     shutil.copytree(ROOT / "tracer", tmp_path / "tracer", ignore=shutil.ignore_patterns("__pycache__"))
+    (tmp_path / "tracer" / "__init__.py").write_text("")  # so that a process loads no more than it asks
     (tmp_path / "tracer" / "geometry" / "tiny.py").write_text(
         "from tracer.kernels import kernel\nfrom tracer.simd.tiny import value\n\n"
         "@kernel\ndef ask(x):\n    return value() + x\n"

@@ -19,12 +19,14 @@ from tracer.geometry.rays import ray_batch as RayBatch
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, scene_info
+from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Camera, Cancelled, Scene, SceneError
 
 __all__ = [
     "Camera",
     "Cancelled",
     "Frame",
+    "MeshOptions",
     "RayBatch",
     "Renderer",
     "Scene",

@@ -9,9 +9,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from viewer.cli import main as command_line
+
+if TYPE_CHECKING:
+    from tracer.scene.mesh_options import MeshOptions
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -19,14 +22,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return command_line.main(sys.argv[1:] if arguments is None else arguments, _open_window)
 
 
-def _open_window(scene: Path | None, settings: dict[str, Any], folders: Sequence[Path]) -> int:
+def _open_window(scene: Path | None, settings: dict[str, Any], folders: Sequence[Path], meshes: MeshOptions) -> int:
     """Open the viewer with some settings; raises OSError, in one line, where a library that it needs is missing."""
     try:
         from viewer.window import app
     except ImportError as error:
         why = f"no window can be opened, as a library is missing ({error}); 'shadowcull render' needs none"
         raise OSError(why) from error
-    return app.run(scene, settings, folders)
+    return app.run(scene, settings, folders, meshes)
 
 
 if __name__ == "__main__":

@@ -19,6 +19,18 @@ def test_nff_is_aff(write):
     assert load_scene(write(TRIANGLE, "scene.NFF")).triangle_count == 1
 
 
+@pytest.mark.parametrize("name, lights, colors", [
+    ("a.nff", "l 1 2 3 l 4 5 6 l 7 8 9 l 1 1 1", [(0.5, 0.5, 0.5)] * 4),
+    ("a.NFF", "l 1 2 3", [(1, 1, 1)]),
+    ("a.aff", "l 1 2 3 l 4 5 6", [(1, 1, 1)] * 2),
+    ("a.nff", "l 1 2 3 l 4 5 6 .2 .3 .4", [(1, 1, 1), (0.2, 0.3, 0.4)]),
+    ("a.nff", "l 1 2 3 lamp sphere at 4 5 6 radius 1", [(1, 1, 1)] * 2),
+    ("a.nff", "", []),
+])  # fmt: skip
+def test_lights_of_nff_without_colours_share_their_intensity(write, name, lights, colors):
+    assert [light.color for light in load_scene(write(f"{lights} {TRIANGLE}", name)).lights] == colors
+
+
 @pytest.mark.parametrize("name", ["nowhere.aff", "nowhere.obj"])
 def test_a_missing_file(tmp_path, name):
     with pytest.raises(SceneError, match=r"nowhere\.\w+: no such file; check the path"):

@@ -15,7 +15,7 @@ from time import perf_counter
 import numpy as np
 
 from tracer.scene import aff_blocks, rotations
-from tracer.scene.aff_lights import FoundLight, read_lamp, read_light, settled
+from tracer.scene.aff_lights import FoundLight, dimmed, read_lamp, read_light, settled
 from tracer.scene.aff_tokens import AffFile, Cursor, quoted, reason
 from tracer.scene.animation import Animation, Chain, TrackSet
 from tracer.scene.assembly import Geometry
@@ -284,7 +284,8 @@ class _Reader:
     # The end
 
     def scene(self) -> Scene:
-        lights, left_out = settled(self.lights, self.tracks)
+        found = dimmed(self.lights) if self.path.suffix.lower() == ".nff" else self.lights
+        lights, left_out = settled(found, self.tracks)
         objects, remarks = self.geometry.objects(self.tracks, self.report_assembly)
         animation = Animation(self.tracks)
         camera = self.camera

@@ -51,15 +51,18 @@ class FoundLight:
     light: Light
     chain: Chain
     place: WordPlace
+    plain: bool = False
+    """Whether it is a position alone, without a colour and anything else."""
 
 
 def read_light(at: Cursor, chain: Chain, number: int, name: str | None = None) -> FoundLight:
     """`l` and, with a name, `la`; `number` counts the lights before it."""
     place = WordPlace(at.file, at.position - 1)
     position = at.numbers(3, "the position of a light")
-    color = at.triple("the colour of a light") if at.at_number() else (1.0, 1.0, 1.0)
+    plain = not at.at_number()
+    color = (1.0, 1.0, 1.0) if plain else at.triple("the colour of a light")
     light = Light(name or f"light {number}", _moved(_static(chain), position), color, name)
-    return FoundLight(light, chain, place)
+    return FoundLight(light, chain, place, plain)
 
 
 def read_lamp(at: Cursor, chain: Chain, number: int) -> FoundLight:
@@ -121,6 +124,16 @@ def _read_words(at: Cursor, kind: str) -> dict[bytes, Any]:
             if word == b"radius" and given[word][0] < 0:
                 raise at.error(f"a radius of {given[word][0]:g}; give 0 or more")
     return given
+
+
+def dimmed(found: list[FoundLight]) -> list[FoundLight]:
+    """The lights of an NFF file: where none has a colour, each of n is white of intensity sqrt(n) / n. The format
+    leaves it to the program; this is what the Standard Procedural Databases, its home, are commonly drawn with, and all
+    lights at full intensity would wash them out."""
+    if not all(one.plain for one in found):
+        return found
+    share = len(found) ** -0.5 if found else 1.0
+    return [replace(one, light=replace(one.light, color=(share, share, share))) for one in found]
 
 
 def settled(found: Iterable[FoundLight], tracks: Mapping[str, TrackSet]) -> tuple[tuple[Light, ...], list[str]]:

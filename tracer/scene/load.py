@@ -12,6 +12,7 @@ import numpy as np
 
 from tracer.scene.aff import load_aff
 from tracer.scene.framing import bounds
+from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.meshes import MESH_EXTENSIONS, load_mesh
 from tracer.scene.model import CONE, SPHERE, Progress, Scene, SceneError
 
@@ -19,7 +20,12 @@ AFF_EXTENSIONS = (".aff", ".nff")
 SCENE_EXTENSIONS = (*AFF_EXTENSIONS, *MESH_EXTENSIONS)
 
 
-def load_scene(path: str | Path, progress: Progress | None = None, folders: Iterable[Path] = ()) -> Scene:
+def load_scene(
+    path: str | Path,
+    progress: Progress | None = None,
+    folders: Iterable[Path] = (),
+    meshes: MeshOptions = AS_IN_FILE,
+) -> Scene:
     """Read a scene from a file: AFF, NFF, OBJ, PLY, STL, glTF or GLB.
 
     Parameters
@@ -30,6 +36,9 @@ def load_scene(path: str | Path, progress: Progress | None = None, folders: Iter
         Called with what is done and the fraction done (0 to 1). It may raise Cancelled to stop.
     folders : iterable of Path
         Folders besides its own that the scene may read files from.
+    meshes : MeshOptions
+        How meshes are read: whether a model that comes alone is set in a studio, which way is up, and which edges are
+        rounded. By default nothing is added to what the file holds.
 
     Returns
     -------
@@ -49,7 +58,7 @@ def load_scene(path: str | Path, progress: Progress | None = None, folders: Iter
     if path.suffix.lower() in AFF_EXTENSIONS:
         scene = load_aff(path, progress, folders=folders)
     else:
-        scene = load_mesh(path, progress, folders)
+        scene = load_mesh(path, progress, folders, meshes)
     if progress is not None:
         progress(f"Read {path.name}", 1.0)
     return scene
@@ -73,9 +82,14 @@ def check_scene_file(path: Path) -> None:
         raise SceneError(f"{path}: unknown kind of scene; give a file of one of these kinds: {known}")
 
 
-def load_visible_scene(path: str | Path, progress: Progress | None = None, folders: Iterable[Path] = ()) -> Scene:
+def load_visible_scene(
+    path: str | Path,
+    progress: Progress | None = None,
+    folders: Iterable[Path] = (),
+    meshes: MeshOptions = AS_IN_FILE,
+) -> Scene:
     """As `load_scene`, but a scene with nothing to see in it is a SceneError too."""
-    scene = load_scene(path, progress, folders)
+    scene = load_scene(path, progress, folders, meshes)
     if scene.primitive_count == 0:
         raise SceneError(f"{path}: nothing to see in it: no triangles, spheres or cones")
     return scene

@@ -3,13 +3,13 @@
 Such files say little of how a surface shines in a Whitted world, and most have neither camera
 nor lights.  Colours and textures are kept as they would be displayed; roughness and metalness
 become a diffuse and a mirror part; where the file has none, a camera that frames the model and two
-lights are added.
+lights are added, or a studio around it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -20,15 +20,20 @@ from numpy.typing import NDArray
 from tracer.scene.animation import Animation
 from tracer.scene.arrays import Float64
 from tracer.scene.assembly import Geometry
+from tracer.scene.crease import creased_normals
 from tracer.scene.files import SceneFiles, read_regular
 from tracer.scene.framing import bounds, framing_camera, framing_lights
 from tracer.scene.limits import LARGEST, MOST_NESTED, MOST_PRIMITIVES
 from tracer.scene.mesh_materials import MaterialTable
+from tracer.scene.mesh_options import AS_IN_FILE, CREASE, MeshOptions
 from tracer.scene.mesh_reading import only_known_images, quiet
 from tracer.scene.model import Camera, Progress, Scene, SceneError
 from tracer.scene.pieces import Mesh, Piece
-from tracer.scene.punctual_lights import punctual_lights
+from tracer.scene.punctual_lights import has_lights, punctual_lights
+from tracer.scene.studio import build_studio, with_floor
 from tracer.scene.textures import open_image
+from tracer.scene.tristrips import with_strips
+from tracer.scene.upright import guess
 
 MESH_EXTENSIONS = (".obj", ".ply", ".stl", ".gltf", ".glb")
 
@@ -52,14 +57,22 @@ class _MeshPlace:
         return f"{self.path}: {self.mesh!a}, triangle {item}"
 
 
-def load_mesh(path: str | Path, progress: Progress | None = None, folders: Iterable[Path] = ()) -> Scene:
+def load_mesh(
+    path: str | Path,
+    progress: Progress | None = None,
+    folders: Iterable[Path] = (),
+    options: MeshOptions = AS_IN_FILE,
+) -> Scene:
     """A mesh file as a static scene; raises SceneError in one line that names the file.
 
     What it refers to lies below its folder or one of `folders`."""
     path = Path(path)
     report = progress or (lambda what, fraction: None)
     report(f"Reading {path.name}", 0.0)
-    model, troubles = _read(path, SceneFiles(path, folders))
+    model, troubles, head = _read(path, SceneFiles(path, folders))
+    own_camera = _own_camera(model)
+    alone = options.studio and own_camera is None and not has_lights(model)
+    crease = _crease(options, alone, path)
     table = MaterialTable(path)
     geometry = Geometry()
     nodes = list(model.graph.nodes_geometry)
@@ -71,15 +84,15 @@ def load_mesh(path: str | Path, progress: Progress | None = None, folders: Itera
         if not hasattr(mesh, "faces"):
             skipped.append(f"{path}: {name!a} has no triangles; it is left out")
             continue
-        for shape, material, texture in _shapes(mesh, _MeshPlace(path, name), table):
+        for shape, material, texture in _shapes(mesh, _MeshPlace(path, name), table, crease):
             geometry.meshes.append(Piece(shape, (np.asarray(matrix, np.float64),), material, texture))
     objects, remarks = geometry.objects(())
     if not len(objects[0].triangles):
         remarks.append(f"{path}: no triangle; only the background is seen")
     box = bounds(objects, Animation.empty(), 0.0)
-    camera = _own_camera(model) or framing_camera(box)
+    camera = own_camera or framing_camera(box)
     lights, dark = punctual_lights(model, path, objects, box)
-    return Scene(
+    scene = Scene(
         path=path,
         objects=objects,
         materials=tuple(table.materials),
@@ -90,10 +103,34 @@ def load_mesh(path: str | Path, progress: Progress | None = None, folders: Itera
         background=(0.6, 0.7, 0.8),
         warnings=(*troubles, *table.warnings, *skipped, *remarks, *dark),
     )
+    return _in_studio(scene, options.up, head) if alone and box is not None else scene
 
 
-def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str]]:
-    """The trimesh scene in a file, and warnings of what it refers to and could not be read."""
+def _in_studio(scene: Scene, up: str | None, head: bytes) -> Scene:
+    """The scene with floor, camera and lamps around its triangles; `head` is how its file begins."""
+    static = scene.objects[0]
+    corners = static.triangles.corners
+    studio = build_studio(corners, up or guess(scene.path, head, corners), len(scene.materials))
+    return replace(
+        scene,
+        objects=(with_floor(static, studio.floor), *scene.objects[1:]),
+        materials=(*scene.materials, studio.material),
+        lights=studio.lights,
+        camera=studio.camera,
+        background=studio.background,
+    )
+
+
+def _crease(options: MeshOptions, alone: bool, path: Path) -> float:
+    """The crease angle in degrees, where the file has no normals; its maker's word goes before ours: glTF asks for
+    sharp edges there."""
+    if options.crease is not None:
+        return options.crease
+    return CREASE if alone and path.suffix.lower() not in (".gltf", ".glb") else 0.0
+
+
+def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str], bytes]:
+    """The trimesh scene in a file, warnings of what it refers to and could not be read, and how the file begins."""
     import trimesh  # here, because it takes a while that other scenes need not wait for
 
     class Beside(trimesh.resolvers.Resolver):
@@ -138,6 +175,7 @@ def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str]]:
     try:
         with quiet(), only_known_images():
             model = trimesh.load_scene(BytesIO(data), file_type=kind.lower(), resolver=Beside(), process=False)
+            model = with_strips(model)
             _check_nesting(model.graph.transforms.parents, path)
             triangles = 0
             for node in model.graph.nodes_geometry:
@@ -152,7 +190,7 @@ def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str]]:
     except Exception:  # trimesh lets whatever its parsers raise on broken files through
         what = f"cannot be read as {kind.upper()}: it is damaged or incomplete"
         raise SceneError(f"{path}: {what}; repair or convert the file") from None
-    return model, list(dict.fromkeys(troubles))
+    return model, list(dict.fromkeys(troubles)), data[:1024]
 
 
 def _check_nesting(parents: Mapping[str, str], path: Path) -> None:
@@ -179,11 +217,14 @@ def _check(mesh: Any, path: Path) -> None:
         raise SceneError(f"{path}: a triangle refers to a vertex that is not there; repair the file")
 
 
-def _shapes(mesh: Any, place: _MeshPlace, table: MaterialTable) -> Iterator[tuple[Mesh, int, int]]:
-    """Parts of one material each, with its number and that of the texture."""
+def _shapes(mesh: Any, place: _MeshPlace, table: MaterialTable, crease: float) -> Iterator[tuple[Mesh, int, int]]:
+    """Parts of one material each, with its number and that of the texture; `crease` is the angle in degrees up to which
+    edges are rounded where there are no normals."""
     faces = np.asarray(mesh.faces, np.int64)
     corners = np.asarray(mesh.vertices, np.float64)[faces]
     normals = _of_corners(_vertex_normals(mesh), faces, (len(mesh.vertices), 3))
+    if normals is None and crease > 0:
+        normals = creased_normals(mesh.vertices, faces, crease)
     uvs = _of_corners(getattr(mesh.visual, "uv", None), faces, (len(mesh.vertices), 2))
     for which, material, texture in table.parts(mesh, place()):
         yield (

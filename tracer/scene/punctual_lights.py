@@ -65,6 +65,11 @@ def punctual_lights(
     return _exposed([light for _, light in lights], objects), warnings
 
 
+def has_lights(model: Any) -> bool:
+    """Whether a trimesh scene has lights, usable or not."""
+    return bool(_json(model.metadata, list, "gltf_extensions", EXTENSION, "lights")) or any(True for _ in _uses(model))
+
+
 def _json(value: Any, kind: type, *keys: str) -> Any:
     """What lies below some keys of parsed JSON; an empty value of this kind where that is not to be found."""
     for key in keys:

@@ -20,6 +20,7 @@ from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli import lamp_bench
 from viewer.cli.console import Work, print_table, working
+from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import exports
 from viewer.output.reports import LINES, WRONG, frames_in_words
@@ -42,7 +43,7 @@ def bench(path: Path, options: Namespace) -> bool:
     if by_lamps and "plot" in wanted:
         raise ValueError("--plot: it draws one kind of lamps; give one --lamp-radius and one --lamp-samples")
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder)
+        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
         times = experiment.path_times(scene, options.path_frames)

@@ -20,6 +20,7 @@ from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.files import read_regular
 from tracer.scene.load import load_visible_scene
+from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Cancelled, Scene, SceneError
 from viewer.cli.console import Work, working
 from viewer.cli.tracing_options import prepare_kernels
@@ -50,7 +51,7 @@ class Checker:
 
     def __init__(self, options: Namespace, work: Work) -> None:
         self._options, self._work = options, work
-        self._scene: tuple[Path, Scene] | None = None
+        self._scene: tuple[tuple[Path, MeshOptions], Scene] | None = None
         self._world: tuple[str, World] | None = None
 
     def check(self, path: Path) -> Verdict:
@@ -139,9 +140,12 @@ class Checker:
         found = find_scene(snapshot.scene, path)
         if found is None:
             raise ValueError(f"its scene is gone: {snapshot.scene}")
-        if self._scene is None or self._scene[0] != found:
+        if self._scene is None or self._scene[0] != (found, snapshot.meshes):
             self._scene, self._world = (
-                (found, load_visible_scene(found, self._work.progress, self._options.folder)),
+                (
+                    (found, snapshot.meshes),
+                    load_visible_scene(found, self._work.progress, self._options.folder, snapshot.meshes),
+                ),
                 None,
             )
         scene = self._scene[1]

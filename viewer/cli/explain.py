@@ -17,6 +17,7 @@ from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
 from tracer.told_rays import RayTree
 from viewer.cli.console import working
+from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.render import times_before
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
 from viewer.output.legend import light_in_words
@@ -38,7 +39,7 @@ def explain(path: Path, options: Namespace) -> None:
     if not (x < settings.width and y < settings.height):
         raise ValueError(f"--pixel {x},{y}: the picture is {settings.width} x {settings.height}")
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder)
+        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
         if options.light is not None and options.light >= len(scene.lights):
             raise ValueError(f"--light {options.light}: {lights_in_words(len(scene.lights))}")
         time = moment(scene, options.frame, options.time)

@@ -11,6 +11,7 @@ from rich.table import Table
 from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file, load_visible_scene
 from viewer.cli.console import print_table, working
+from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.render import recipe_of
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import comparison_figure
@@ -33,7 +34,7 @@ def figure(path: Path, options: Namespace) -> None:
         raise ValueError("figure: certificates are of one method alone; give another --view")
     settings = replace(tracing_settings(options), samples=options.samples)
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder)
+        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
         recipe = recipe_of(path, scene, settings, options)

@@ -15,6 +15,7 @@ from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli.console import working
+from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.render import check_certificates, recipe_of
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import capture, movie
@@ -45,7 +46,7 @@ def film(path: Path, options: Namespace) -> bool:
         check_writable(video)
     stops = _stops(path, options)
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder)
+        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
         recipe = replace(recipe_of(path, scene, settings, options), before=())  # modes are learnt from the film alone

@@ -16,6 +16,7 @@ from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli.console import Work, print_table, working
+from viewer.cli.mesh_arguments import as_arguments, mesh_options
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import finds
 from viewer.output.finds import Findings
@@ -34,7 +35,7 @@ def run(path: Path, options: Namespace) -> bool:
     settings = replace(tracing_settings(options), method=options.method, verify=True)
     found, whole = None, True
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder)
+        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
         search = _search(scene, settings, options)
@@ -85,10 +86,12 @@ def _write(found: Findings, scene: Scene, search: Search, world: World, options:
     written = []
     for number, find in enumerate(found.finds, 1):
         stem = options.output / find_figures.name_of(number)
-        find_figures.save_json(find, found, scene, stem.with_suffix(".json"))
+        find_figures.save_json(find, found, scene, stem.with_suffix(".json"), as_arguments(mesh_options(options)))
         if not work.stopped:
             work.count(f"figure {number} of {len(found.finds)}", number - 1, len(found.finds))
-            wanted = find_figures.comparison_of(find, found, scene, search.settings, tuple(options.folder))
+            meshes = mesh_options(options).of_file(Path(scene.path))
+            folders = tuple(options.folder)
+            wanted = find_figures.comparison_of(find, found, scene, search.settings, folders, meshes)
             try:
                 find_figures.save_figure(wanted, scene, world, stem.with_suffix(".png"), cancelled=work.cancelled)
                 written.append(stem.with_suffix(".png"))

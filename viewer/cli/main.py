@@ -23,17 +23,21 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from viewer.cli import hunt_parser, parsers, picture_parsers
+from viewer.cli.mesh_arguments import as_arguments, mesh_options
 from viewer.cli.parsers import MISUSED
 from viewer.util import resources
 from viewer.util.messages import ERROR, say
 from viewer.util.screen import has_display, no_display_reason
 
-OpenWindow = Callable[[Path | None, dict[str, Any], Sequence[Path]], int]
-"""Opens the viewer on a scene or a saved picture, with some settings, and folders that scenes may read files from;
-returns the exit code, or raises OSError in one line."""
+if TYPE_CHECKING:
+    from tracer.scene.mesh_options import MeshOptions
+
+OpenWindow = Callable[[Path | None, dict[str, Any], Sequence[Path], "MeshOptions"], int]
+"""Opens the viewer on a scene or a saved picture, with some settings, folders that scenes may read files from, and how
+meshes are read; returns the exit code, or raises OSError in one line."""
 
 FAILED, INTERRUPTED = 1, 130
 PICTURE = Path("out") / "first-light.png"
@@ -101,7 +105,7 @@ def _view(arguments: list[str], commands: list[str], open_window: OpenWindow) ->
     lamps = {name: getattr(options, name) for name in ("lamp_radius", "lamp_samples")}
     settings = {name: value for name, value in lamps.items() if value is not None}
     scene = resources.scene_path(options.scene) if options.scene is not None else None
-    return open_window(scene, settings, options.folder)
+    return open_window(scene, settings, options.folder, mesh_options(options))
 
 
 def _check_is_scene(parser: parsers.Parser, name: str, commands: list[str]) -> None:
@@ -124,6 +128,7 @@ def _picture_instead(options: Namespace) -> int:
     for name in ("lamp_radius", "lamp_samples"):
         if getattr(options, name) is not None:
             where += [f"--{name.replace('_', '-')}", str(getattr(options, name))]
+    where += as_arguments(mesh_options(options))
     return _render([options.scene or resources.DEFAULT_SCENE, "-o", str(PICTURE.absolute()), *where])
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from viewer.cli import examples
 from viewer.cli.argument_types import (
@@ -20,6 +20,7 @@ from viewer.cli.argument_types import (
     several,
     size,
 )
+from viewer.cli.mesh_arguments import add_mesh_options, joined
 from viewer.util import resources
 from viewer.util.messages import ERROR, say
 from viewer.util.version import program_version
@@ -42,6 +43,9 @@ class Parser(argparse.ArgumentParser):
             allow_abbrev=False,
         )
 
+    def parse_known_args(self, args: Sequence[str] | None = None, namespace: Any = None) -> Any:  # type: ignore[override]
+        return super().parse_known_args(joined(sys.argv[1:] if args is None else args), namespace)
+
     def error(self, message: str) -> NoReturn:
         say(f"{message} (see '{self.prog} --help')", ERROR)
         sys.exit(MISUSED)
@@ -56,6 +60,7 @@ def viewer() -> Parser:
     )
     add_scene(parser)
     _add_lamps(parser)
+    add_mesh_options(parser)
     parser.add_argument("--version", action="version", version=f"shadowcull {program_version()}")
     parser.add_argument("--or-picture", action="store_true", help=argparse.SUPPRESS)
     return parser
@@ -191,6 +196,7 @@ def add_tracing_options(parser: Parser, accelerator: str, many_lamps: bool = Fal
     add("--depth", type=count(0, 100), default=10, metavar="D", help="the most bounces (default: 10)")
     add("--symmetric", action="store_true", help="occlusion tests in both directions between neighbouring pixels")
     _add_lamps(parser, many_lamps)
+    add_mesh_options(parser)
 
 
 def _add_lamps(parser: Parser, many: bool = False) -> None:

@@ -40,6 +40,7 @@ def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
         kept["camera"] = saved.camera
     kept["view"] = ChosenView(saved.view, saved.light, saved.wipe, saved.style.shares)
     kept["moment"] = saved.time
+    kept |= {"no_studio": not saved.meshes.studio, "up": saved.meshes.up, "crease": saved.meshes.crease}
     return saved.scene, kept
 
 

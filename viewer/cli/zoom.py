@@ -19,6 +19,7 @@ from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from tracer.zoom import Aim, Approach, Results
 from viewer.cli.console import Work, print_table, working
+from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
 from viewer.output import exports
 from viewer.output.reports import (
@@ -55,7 +56,7 @@ def run(path: Path, options: Namespace) -> bool:
     wanted = exports.wanted_files(options)
     results = None
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder)
+        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
         time = moment(scene, options.frame, options.time)

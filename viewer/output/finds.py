@@ -130,7 +130,7 @@ def in_words(find: Find, scene: Scene) -> list[str]:
     brighter = sum(find.color) > sum(find.reference)
     seen = f", seen by {find.bounces} bounce{'s' * (find.bounces != 1)}" if find.bounces else ""
     said = [
-        f"Pixel {find.x},{find.y} is too {'bright' if brighter else 'dark'}, by {find.difference:.3f} of 1.",
+        f"Pixel {find.x}, {find.y} is too {'bright' if brighter else 'dark'}, by {find.difference:.3f} of 1.",
         f"It shows {primitive_in_words(scene, find.primitive)}{seen}.",
     ]
     known, light = verdict_of(find), _capital(light_of(find, scene))

@@ -16,6 +16,8 @@ from typing import Any
 
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
+from tracer.scene.load import AFF_EXTENSIONS
+from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.output.pictures import SHADING
@@ -70,6 +72,7 @@ class Recipe:
     by_gpu: bool = False
     folders: tuple[Path, ...] = ()
     before: tuple[Earlier, ...] = ()
+    meshes: MeshOptions = AS_IN_FILE
 
     @property
     def size(self) -> tuple[int, int]:
@@ -91,7 +94,9 @@ class Recipe:
         camera = self.camera or scene.camera_at(self.time)
         settings = settings_to_json(self.settings)
         path = str(self.scene.absolute())
-        return Snapshot(path, self.time, camera, self.camera is None, settings, self.view, self.light, self.wipe)
+        return Snapshot(
+            path, self.time, camera, self.camera is None, settings, self.view, self.light, self.wipe, self.meshes
+        )  # fmt: skip
 
     def to_json(self) -> dict[str, Any]:
         """What a capture carries beside its state."""
@@ -148,6 +153,7 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Re
             history=str(data.get("history", "")),
             by_gpu=bool(data.get("by_gpu", False)),
             before=earlier_from_json(data.get("before", [])),
+            meshes=snapshot.meshes,
         )
     except (TypeError, AttributeError):
         raise ValueError("how it was drawn is damaged") from None
@@ -229,7 +235,17 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         words += ["--annotations", json.dumps([a.to_json() for a in style.annotations])]
     for folder in recipe.folders:
         words += ["--folder", str(folder.absolute())]
-    return words
+    return words + _of_meshes(recipe)
+
+
+def _of_meshes(recipe: Recipe) -> list[str]:
+    """How the scene is read, where that can be chosen."""
+    meshes = recipe.meshes
+    if recipe.scene.suffix.lower() in AFF_EXTENSIONS:
+        return []
+    up = [f"--up={meshes.up}"] if meshes.up is not None else []
+    crease = [f"--crease={meshes.crease!r}"] if meshes.crease is not None else []
+    return [*up, *crease, *([] if meshes.studio else ["--no-studio"])]
 
 
 def _wipe(wipe: float, width: int) -> str:

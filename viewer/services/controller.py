@@ -69,7 +69,10 @@ class Controller:
         self.settings = SettingsController(session, preferences, notices, self.runs.refuses)
         self.motion = Motion(session, preferences, notices, self.runs.refuses)
         self.bookmarks = Bookmarks(session, preferences, self.settings, notices)
-        self.undo = Undo(session, preferences, self.motion, notices, self.runs.refuses)
+        self.undo = Undo(
+            session, preferences, self.motion, notices, self.runs.refuses,
+            lambda meshes: self.loader.read_as(meshes), lambda: self.loader.load_job is not None,
+        )  # fmt: skip
         self.presets = Presets(
             session, preferences, notices, self.runs.refuses, self.settings.save, self.undo.call_next
         )

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from tracer.frame import Settings
 from tracer.geometry.world import World
+from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Scene
 from viewer.output import comparison_figure, finds
 from viewer.output.finds import Find, Findings
@@ -40,7 +41,12 @@ def name_of(number: int) -> str:
 
 
 def comparison_of(
-    find: Find, findings: Findings, scene: Scene, settings: Settings, folders: tuple[Path, ...] = ()
+    find: Find,
+    findings: Findings,
+    scene: Scene,
+    settings: Settings,
+    folders: tuple[Path, ...] = (),
+    meshes: MeshOptions = AS_IN_FILE,
 ) -> Comparison:
     """The figure of a find: the right picture and the method's, with the surroundings of the pixel enlarged."""
     common = Recipe(
@@ -50,6 +56,7 @@ def comparison_of(
         settings=replace(settings, method=findings.method, verify=False, samples=1, modes=False),
         folders=folders,
         before=find.before,
+        meshes=meshes,
     )
     words = " ".join(finds.in_words(find, scene))
     crop = finds.crop_of(find, findings.size)
@@ -69,12 +76,13 @@ def save_figure(
     comparison_figure.save(shown, path, comparison.text(shown, wanted))
 
 
-def save_json(find: Find, findings: Findings, scene: Scene, path: Path) -> None:
-    """All about a find, with the command that explains it; raises OSError in one line."""
+def save_json(find: Find, findings: Findings, scene: Scene, path: Path, of_meshes: Sequence[str] = ()) -> None:
+    """All about a find, with the command that explains it, and options of that about meshes; raises OSError in one
+    line."""
     told = finds.to_json(find, scene) | {"size": list(findings.size), "method": findings.method}
     told |= {"scene": findings.scene, "settings": findings.settings, "version": program_version()}
     told["words"] = finds.in_words(find, scene)
-    told["explain"] = shlex.join(finds.explaining(find, findings, path.name))
+    told["explain"] = shlex.join([*finds.explaining(find, findings, path.name), *of_meshes])
     write_text(path, json.dumps(told, indent=1))
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tracer.frame import Frame
 from tracer.renderer import Renderer
+from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene
 from viewer.output import exports
 from viewer.output.finds import Find, Findings
@@ -60,10 +61,10 @@ class FigureRun(Run[Path]):
 
     def __init__(
         self, scene: Scene, found: Findings, find: Find, search: Search, folder: Path, folders: tuple[Path, ...],
-        wake: Callable[[], None],
+        meshes: MeshOptions, wake: Callable[[], None],
     ) -> None:  # fmt: skip
         self._found, self._find, self._folder = found, find, folder
-        self._comparison = find_figures.comparison_of(find, found, scene, search.settings, folders)
+        self._comparison = find_figures.comparison_of(find, found, scene, search.settings, folders, meshes)
         super().__init__(scene, len(find.before) + 2, wake)
 
     def lacks(self, view: View) -> str:
@@ -168,7 +169,7 @@ class HuntController:
         chosen = settings_to_json(replace(settings, samples=self._session.settings.samples))
         snapshot = Snapshot(
             str(scene.path), find.time, find.camera, find.own_camera, chosen, self._session.view, find.light,
-            self._session.wipe,
+            self._session.wipe, self._session.meshes,
         )  # fmt: skip
         point = (find.x + 0.5) / size[0], (find.y + 0.5) / size[1]
         before = pasts([(one.time, one.camera or scene.camera_at(one.time)) for one in find.before], settings)
@@ -180,4 +181,5 @@ class HuntController:
         if find is None or hunt is None or found is None or scene is None:
             return
         folder, folders = self._preferences.picture_folder, self._recipes.folders
-        self._runs.begin(FigureRun(scene, found, find, hunt.search, folder, folders, self._wake))
+        meshes = self._session.meshes
+        self._runs.begin(FigureRun(scene, found, find, hunt.search, folder, folders, meshes, self._wake))

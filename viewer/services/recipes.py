@@ -48,6 +48,7 @@ class Recipes:
             style=self._style(magnified, self._preferences.legend_in_pictures if legend is None else legend),
             by_gpu=view is not View.COLOR or self._preferences.outlines,
             folders=self._loader.folders,
+            meshes=session.meshes,
         )
         return self._with_history(found, frame)
 

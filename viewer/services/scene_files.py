@@ -15,7 +15,9 @@ from tracer.compilation import can_draw, warm_up
 from tracer.renderer import Renderer, Settings
 from tracer.scene.files import Stamp, noting
 from tracer.scene.load import load_visible_scene, scene_info
+from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Progress, Scene
+from tracer.scene.studio import model_bounds
 from viewer.util import resources
 
 SCENE_SUFFIXES = (".aff", ".nff", ".obj", ".ply", ".stl", ".gltf", ".glb")
@@ -58,6 +60,7 @@ def open_scene(
     progress: Progress,
     folders: Sequence[Path] = (),
     files: dict[Path, Stamp] | None = None,
+    meshes: MeshOptions = AS_IN_FILE,
 ) -> Opened:
     """Read a scene and build its trees; waits for the tracer to be `ready` in between.  What was read gets into
     `files`, also where it cannot be shown.
@@ -65,7 +68,7 @@ def open_scene(
     Raises SceneError or Cancelled; runs on a thread of its own."""
     started = time.perf_counter()
     with noting({} if files is None else files), _no_collecting():
-        scene = load_visible_scene(path, progress, folders)
+        scene = load_visible_scene(path, progress, folders, meshes)
     return _opened(scene, settings, ready, progress, started)
 
 
@@ -76,7 +79,11 @@ def _opened(scene: Scene, settings: Settings, ready: Callable[[], bool], progres
     if not can_draw(len(scene.lights), settings.accelerator):  # many lights need wider words, and kernels for them
         warm_up(progress, len(scene.lights), settings.accelerator)
     renderer = Renderer(scene, settings, progress)
-    return Opened(scene, renderer, scene_info(scene), time.perf_counter() - started)
+    info = scene_info(scene)
+    model = model_bounds(scene)
+    if model is not None:  # what the camera goes around is the model, not the floor
+        info["bounds"] = model.tolist()
+    return Opened(scene, renderer, info, time.perf_counter() - started)
 
 
 def open_loaded(scene: Scene, settings: Settings, ready: Callable[[], bool], progress: Progress) -> Opened:

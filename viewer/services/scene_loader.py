@@ -14,7 +14,9 @@ from typing import Any
 
 from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.scene.files import Stamp
+from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Scene
+from tracer.scene.studio import up_in_studio
 from viewer.output import capture
 from viewer.services import scene_files
 from viewer.services.jobs import Job
@@ -56,6 +58,8 @@ class SceneLoader:
         self.load_job: Job[scene_files.Opened] | None = None
         self._cancelled_at = 0.0
         self._folders: tuple[Path, ...] = ()
+        self.meshes = IN_STUDIO  # how the next mesh is read
+        self._reading_meshes = IN_STUDIO  # how the one that is being read is
         self._abandoned: list[Job] = []
         self._place: Snapshot | None = None  # where to go once the scene is loaded
         self._restored: Arrival | None = None
@@ -81,12 +85,18 @@ class SceneLoader:
         """Whether all kernels are; those that make certificates come last, and pictures without them look the same."""
         return self.warm_up_job is None
 
-    def start(self, path: Path | None, settings: Mapping[str, Any] | None = None, folders: Sequence[Path] = ()) -> None:
+    def start(
+        self,
+        path: Path | None,
+        settings: Mapping[str, Any] | None = None,
+        folders: Sequence[Path] = (),
+        meshes: MeshOptions = IN_STUDIO,
+    ) -> None:
         """Compile or load the kernels in the background, and open a first scene meanwhile.
 
         `settings` hold for what is opened first, also where a saved place in it has others.  All scenes may read files
-        from `folders` besides their own."""
-        self._folders = tuple(folders)
+        from `folders` besides their own. `meshes` says how meshes are read; which way is up holds for the first."""
+        self._folders, self.meshes = tuple(folders), meshes
         self._given = dict(settings or {})
         self._session.settings = replace(self._session.settings, **self._given)
         title = "Loading the tracer" if compiled_before() else "Compiling the tracer (first start only)"
@@ -113,6 +123,8 @@ class SceneLoader:
         """Show a scene that a script has loaded, or made."""
         settings = self._session.settings
         self._given = {}
+        up = up_in_studio(scene)
+        self._reading_meshes = MeshOptions(up is not None, up)  # as far as it shows
         self.load_job = Job(
             f"Opening {scene.path.name}",
             lambda progress: scene_files.open_loaded(scene, settings, self._kernels_ready, progress),
@@ -164,6 +176,19 @@ class SceneLoader:
             self._load(Path(self._session.scene.path), None, again=True)
             self._changed = changed
 
+    def read_as(self, meshes: MeshOptions) -> None:
+        """Read the mesh that is open in another way, and look at it from its first camera.
+
+        Whether it gets a studio holds for what is opened after it too."""
+        if self._session.scene is not None:
+            path = Path(self._session.scene.path)
+
+            def go_on() -> None:
+                self.meshes = replace(self.meshes, studio=meshes.studio)
+                self._load(path, None, meshes=meshes)
+
+            self._ask_first(f"{path.name} again", go_on)
+
     def cancel(self) -> None:
         """Give up the load that is under way; the scene that is open stays."""
         if self.load_job is not None and not self.load_job.stopping:
@@ -201,7 +226,12 @@ class SceneLoader:
         scene = self._session.scene
         if found is None:
             self._refuse(f"{path.name}: its scene was not found: {snapshot.scene}")
-        elif scene is not None and self.load_job is None and _same_file(found, scene):
+        elif (
+            scene is not None
+            and self.load_job is None
+            and _same_file(found, scene)
+            and snapshot.meshes == self._session.meshes
+        ):
             self._restored = Arrival(None, snapshot, f"restored {path.name}")
             self._wake()
         else:
@@ -216,7 +246,7 @@ class SceneLoader:
         if self._from_shell:
             say(why, ERROR)
 
-    def _load(self, path: Path, then: Snapshot | None, again: bool = False) -> None:
+    def _load(self, path: Path, then: Snapshot | None, again: bool = False, meshes: MeshOptions | None = None) -> None:
         if self.load_job is not None:
             self.load_job.cancel()
             self._abandoned.append(self.load_job)
@@ -225,11 +255,18 @@ class SceneLoader:
         self._given = {}
         self._place, self._again, self._changed = then, again, ""
         files = self._reading = {}
+        if meshes is None and then is not None:
+            meshes = then.meshes
+        elif meshes is None and again:
+            meshes = self._session.meshes
+        elif meshes is None:
+            meshes, self.meshes = self.meshes, replace(self.meshes, up=None)
+        meshes = self._reading_meshes = meshes.of_file(path)
         settings = self._session.settings
         self.load_job = Job(
             f"Loading {path.name}",
             lambda progress: scene_files.open_scene(
-                path, settings, self._kernels_ready, progress, self._folders, files
+                path, settings, self._kernels_ready, progress, self._folders, files, meshes
             ),
             self._wake,
         )
@@ -253,10 +290,13 @@ class SceneLoader:
             self._notices.report(replace(job.failure, text=f"{job.failure.text}{stays}"))
         elif job.result is not None:
             opened = job.result
+            self._session.meshes = self._reading_meshes
+            up = up_in_studio(opened.scene)
+            standing = f", with {up} up" if up else ""
             count = len(opened.scene.warnings)
             warned = f", {count} warning{'s' * (count > 1)}" if count else ""
             name = opened.scene.path.name
-            said = f"{name} {'reloaded' if again else 'opened'} in {opened.seconds:.1f} s{warned}"
+            said = f"{name} {'reloaded' if again else 'opened'} in {opened.seconds:.1f} s{standing}{warned}"
             return Arrival(opened, place, f"{said}: {self._changed} changed" if self._changed else said, again)
         return None
 

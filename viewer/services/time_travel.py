@@ -92,7 +92,7 @@ class TimeTravel:
         time = run.times[number]
         snapshot = Snapshot(
             str(scene.path), time, scene.camera_at(time), True, settings_to_json(settings), session.view, session.light,
-            session.wipe,
+            session.wipe, session.meshes,
         )  # fmt: skip
         goal = Goal(snapshot, f"frame {number} of the experiment", (settings.width, settings.height))
         if modes:
@@ -106,7 +106,10 @@ class TimeTravel:
         scene = self._session.scene
         assert scene is not None
         path, chosen = str(scene.path), dict(moment.chosen)
-        return Snapshot(path, moment.time, moment.camera, moment.follow, chosen, moment.view, moment.light, moment.wipe)
+        return Snapshot(
+            path, moment.time, moment.camera, moment.follow, chosen, moment.view, moment.light, moment.wipe,
+            self._session.meshes,
+        )  # fmt: skip
 
     def _may_differ(self, moment: Moment) -> str:
         """What else its picture depends on, in words."""

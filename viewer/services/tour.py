@@ -121,6 +121,7 @@ def _has_toggled_culling(c: Controller) -> Iterator[None]:
 def _until(met: Callable[[], bool]) -> Iterator[float]:
     """Wait until the picture has come that shows something, for as long as a user would."""
     end = time.monotonic() + PATIENCE
+    yield 0.02  # what is there at first belongs to the picture, or the place, before
     while not met() and time.monotonic() < end:
         yield 0.02
 
@@ -136,10 +137,12 @@ def _toggle_culling(c: Controller, show_panel: Callable[[str], None]) -> Iterato
     if not _culls(c):
         c.settings.change(method=with_base(before, BY_MODES))
     yield from _until(lambda: _culls(c))  # modes are set by a whole picture first
-    for culls in (False, True):
-        yield SECONDS
-        c.settings.toggle_culling()
-        yield from _until(lambda culls=culls: _culls(c) is culls)
+    yield SECONDS
+    c.settings.toggle_culling()
+    yield from _until(lambda: not _culls(c))
+    yield SECONDS
+    c.settings.toggle_culling()
+    yield from _until(lambda: _culls(c))
     yield SECONDS
     if Method.parse(before).culls:
         c.settings.change(method=before)

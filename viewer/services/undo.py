@@ -2,13 +2,14 @@
 
 Nobody has to announce a change: what holds is compared from one of the window's frames to the next.  Changes that
 belong together are one step: all of a drag, all of a flight until the camera rests.  Time, and what a run does, are no
-steps."""
+steps.  How a mesh is read is one, which takes a while to be brought back: the mesh is read again."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
+from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Camera
 from viewer.services.motion import Motion
 from viewer.state.choices import Choices, differences
@@ -28,6 +29,7 @@ class Place:
 
     choices: Choices
     camera: Camera | None
+    meshes: MeshOptions
     time: float | None = None
 
 
@@ -38,6 +40,16 @@ class Step:
     name: str
     before: Place
     after: Place
+
+
+@dataclass(frozen=True)
+class _Coming:
+    """What is brought back once the mesh has been read for it, what to say then, and the steps as they were before."""
+
+    place: Place
+    said: str
+    done: list[Step]
+    undone: list[Step]
 
 
 @dataclass
@@ -58,10 +70,15 @@ class Undo:
         motion: Motion,
         notices: Notices,
         locked: Callable[[], bool],
+        read_as: Callable[[MeshOptions], None] = lambda meshes: None,
+        reading: Callable[[], bool] = lambda: False,
     ) -> None:
-        """Nothing is brought back while `locked()`, which says so itself."""
+        """Nothing is brought back while `locked()`, which says so itself.  `read_as` begins to read the open mesh in
+        another way, and `reading()` says whether a scene is being read."""
         self._session, self._preferences, self._motion = session, preferences, motion
         self._notices, self._locked = notices, locked
+        self._read_as, self._reading = read_as, reading
+        self._coming: _Coming | None = None
         self.held = False
         self._done: list[Step] = []
         self._undone: list[Step] = []
@@ -93,9 +110,12 @@ class Undo:
         """Forget all steps, as another scene is open."""
         self._done, self._undone, self._open, self._last, self._name = [], [], None, None, ""
         self._time = None
+        self._coming = None
 
     def follow(self) -> None:
         """Take up what has changed since the last time."""
+        if self._coming is not None and not self._come():
+            return
         now = self._place()
         if now is None:
             return
@@ -123,29 +143,31 @@ class Undo:
 
     def undo(self) -> None:
         """Bring back what held before the newest step."""
-        if self._locked():
+        if self._locked() or self._coming is not None:
             return
         self.follow()
         self._close()
         if not self._done:
             self._notices.say("there is nothing to undo")
             return
+        before = list(self._done), list(self._undone)
         step = self._done.pop()
         self._undone.append(step)
-        self._bring(step.before, f"undone: {step.name}")
+        self._start(step.before, f"undone: {step.name}", *before)
 
     def redo(self) -> None:
         """Do again what was undone last."""
-        if self._locked():
+        if self._locked() or self._coming is not None:
             return
         self.follow()
         self._close()
         if not self._undone:
             self._notices.say("there is nothing to redo")
             return
+        before = list(self._done), list(self._undone)
         step = self._undone.pop()
         self._done.append(step)
-        self._bring(step.after, f"redone: {step.name}")
+        self._start(step.after, f"redone: {step.name}", *before)
 
     # --- inside ----------------------------------------------------------------------------------
 
@@ -167,6 +189,27 @@ class Undo:
         self._done = [*self._done, step][-MOST:]
         self._undone = []
 
+    def _start(self, place: Place, said: str, done: list[Step], undone: list[Step]) -> None:
+        """Bring a place back, now or once its mesh is read; `done` and `undone` are the steps as they were before."""
+        if place.meshes == self._session.meshes:
+            self._bring(place, said)
+        else:
+            self._coming = _Coming(place, said, done, undone)
+            self._read_as(place.meshes)
+
+    def _come(self) -> bool:
+        """Bring back what a mesh is being read for, or forget of it where nothing has come of the reading; whether
+        either is done."""
+        coming = self._coming
+        if coming is None or self._reading():
+            return coming is None
+        self._coming = None
+        if coming.place.meshes == self._session.meshes:
+            self._bring(coming.place, coming.said)
+        else:
+            self._done, self._undone = coming.done, coming.undone
+        return True
+
     def _bring(self, place: Place, said: str) -> None:
         session = self._session
         place.choices.put_into(session, self._preferences)
@@ -178,7 +221,7 @@ class Undo:
             session.free_camera = place.camera
             if place.camera is not None:
                 self._motion.glide(place.camera, start)
-        self._last = Place(place.choices, place.camera)
+        self._last = place
         self._notices.say(said)
 
     def _place(self) -> Place | None:
@@ -187,11 +230,13 @@ class Undo:
             return None
         # On its way the camera is where it goes: a glide is one step, and one that undo began is none.
         camera = self._motion.destination or session.free_camera
-        return Place(Choices.of(session, self._preferences), camera)
+        return Place(Choices.of(session, self._preferences), camera, session.meshes)
 
 
 def _changes(before: Place, after: Place) -> dict[str, str]:
     changed = differences(before.choices, after.choices)
+    if before.meshes != after.meshes:
+        return changed | {"meshes": _in_words(before.meshes, after.meshes)}  # which has a first camera of its own
     if before.camera != after.camera:
         onto = "camera onto the scene's path" if after.camera is None else "camera"
         changed[_CAMERA] = onto
@@ -201,3 +246,12 @@ def _changes(before: Place, after: Place) -> dict[str, str]:
 def _name_of(fields: dict[str, str]) -> str:
     first, *others = fields.values()
     return f"{first} and {len(others)} more" if len(others) > 1 else " and ".join([first, *others])
+
+
+def _in_words(before: MeshOptions, after: MeshOptions) -> str:
+    """How a mesh is read now, where it was read in another way before."""
+    if before.studio != after.studio:
+        return f"studio {'on' if after.studio else 'off'}"
+    if before.up != after.up:
+        return f"{after.up} up" if after.up is not None else "up as it was guessed"
+    return f"crease angle {after.crease:g}°" if after.crease is not None else "usual crease angle"

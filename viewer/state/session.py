@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from tracer.renderer import Settings
+from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from viewer.state.annotations import Annotation
 from viewer.state.methods import DEFAULT
@@ -29,7 +30,8 @@ _OPTIONAL: dict[str, type] = {"lamp_radius": float, "lamp_samples": int}  # None
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A state to come back to.  `settings` holds the fields of `tracer.Settings`; `scene` is a path."""
+    """A state to come back to.  `settings` holds the fields of `tracer.Settings`; `scene` is a path, and
+    `meshes` says how it was read."""
 
     scene: str
     time: float
@@ -39,6 +41,7 @@ class Snapshot:
     view: View
     light: int
     wipe: float = 0.5
+    meshes: MeshOptions = AS_IN_FILE
 
     def to_json(self) -> dict[str, Any]:
         data = asdict(self)
@@ -62,6 +65,7 @@ class Snapshot:
                 view=View(data.get("view", View.COLOR)),
                 light=max(0, int(data.get("light", 0))),
                 wipe=wipe if 0.0 <= wipe <= 1.0 else 0.5,
+                meshes=_meshes_from_json(data.get("meshes", {})),
             )
         except KeyError as error:
             raise ValueError(f"its saved state lacks {error}") from None
@@ -88,6 +92,14 @@ def settings_from_json(data: Any) -> dict[str, Any]:
     return known
 
 
+def _meshes_from_json(data: Any) -> MeshOptions:
+    """How a mesh was read; raises ValueError."""
+    up, crease = (data.get(key) for key in ("up", "crease")) if isinstance(data, Mapping) else (0, 0)
+    if not (up is None or isinstance(up, str)) or not (crease is None or type(crease) in (int, float)):
+        raise ValueError("its options of meshes are not understood")
+    return MeshOptions(bool(data.get("studio", False)), up, crease)
+
+
 @dataclass
 class Session:
     """The state behind the window; plain data and what it implies, no threads and no widgets."""
@@ -101,6 +113,7 @@ class Session:
     light: int = 0
     wipe: float = 0.5
     selected: tuple[float, float] | None = None
+    meshes: MeshOptions = AS_IN_FILE  # how the scene was read
     annotations: list[Annotation] = field(default_factory=list)
 
     @property
@@ -186,6 +199,7 @@ class Session:
             view=self.view,
             light=self.light,
             wipe=self.wipe,
+            meshes=self.meshes,
         )
 
     def restore(self, snapshot: Snapshot) -> None:

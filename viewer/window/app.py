@@ -21,6 +21,7 @@ from imgui_bundle import glfw_utils, hello_imgui, imgui, immapp
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
 from tracer.frame import Frame
+from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Scene
 from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
@@ -56,6 +57,7 @@ class App:
         scene_path: Path | None,
         settings: dict[str, Any] | None = None,
         folders: Sequence[Path] = (),
+        meshes: MeshOptions = IN_STUDIO,
         scene: Scene | None = None,
         on_frame: OnFrame | None = None,
     ) -> None:
@@ -69,6 +71,7 @@ class App:
         tell_keys(self.ui.with_keys)
         self.ui.paste_from, self.ui.copy_to = imgui.get_clipboard_text, imgui.set_clipboard_text
         self.scene_path, self.given_settings, self.folders = scene_path, settings or {}, folders
+        self.meshes = meshes
         self.scene, self.on_frame = scene, on_frame
         self._told: Frame | None = None  # what the script has seen
         self.layout_file = LayoutFile(config_folder())
@@ -290,7 +293,7 @@ class App:
         glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
         opener = self.controller.loader
-        opener.start(self.scene_path, self.given_settings, self.folders)
+        opener.start(self.scene_path, self.given_settings, self.folders, self.meshes)
         if self.scene is not None:
             opener.take(self.scene)
         elif self.scene_path is None and not (self.controller.preferences.start_where_left and opener.go_on()):
@@ -331,8 +334,13 @@ def _configure_imgui() -> None:
     configure_recovery()
 
 
-def run(scene_path: Path | None = None, settings: dict[str, Any] | None = None, folders: Sequence[Path] = ()) -> int:
+def run(
+    scene_path: Path | None = None,
+    settings: dict[str, Any] | None = None,
+    folders: Sequence[Path] = (),
+    meshes: MeshOptions = IN_STUDIO,
+) -> int:
     """Open the viewer on a scene or a saved picture; without one on what was open last, where that is wanted, else on
     the embedded room.  `settings` are fields of `tracer.Settings` that win over what is opened first; scenes may read
-    files from `folders` besides their own.  Returns the exit code."""
-    return App(scene_path, settings, folders).run()
+    files from `folders` besides their own; `meshes` says how meshes are read.  Returns the exit code."""
+    return App(scene_path, settings, folders, meshes).run()

@@ -10,7 +10,7 @@ from viewer.state.methods import toggled, with_base
 from viewer.state.picking import extent_at, point_at
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
-from viewer.window import camera_commands, edit_commands
+from viewer.window import camera_commands, edit_commands, mesh_commands
 from viewer.window.command import Command, Condition
 from viewer.window.taking import drawing, taking
 from viewer.window.ui import CaptureKind, Ui
@@ -54,6 +54,7 @@ def _file(ui: Ui) -> list[Command]:
             checked=lambda: p.watch_scene,
             tip="the scene, and what it includes: textures, materials, meshes",
         ),
+        *mesh_commands.build(ui),
         Command("Save picture", "File", want(CaptureKind.PICTURE), "F12", separated=True),
         Command("Save picture with panels", "File", want(CaptureKind.WINDOW), "Shift+F12"),
         *taking(ui),

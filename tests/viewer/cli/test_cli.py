@@ -16,6 +16,7 @@ from PIL import Image
 
 from tests.commands import CAMERA, ROOM, complaint, render, run
 from tests.terminal import Terminal
+from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from viewer.cli import main as command_line
 from viewer.output import capture
 from viewer.state.views import BENEATH
@@ -91,9 +92,11 @@ def test_lamps_that_cannot_be_are_said(
 def test_the_window_is_given_the_lamps(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[tuple[Path | None, dict[str, object]]] = []
 
-    def open_window(scene: Path | None, settings: dict[str, object], folders: Sequence[Path]) -> int:
+    def open_window(
+        scene: Path | None, settings: dict[str, object], folders: Sequence[Path], meshes: MeshOptions
+    ) -> int:
         opened.append((scene, settings))
-        assert list(folders) == []
+        assert list(folders) == [] and meshes == IN_STUDIO
         return 0
 
     monkeypatch.setattr("viewer.cli.main.has_display", lambda: True)

@@ -11,6 +11,7 @@ from imgui_bundle import glfw_utils, imgui
 from PIL import Image
 
 from tests.viewer.driver import Driver
+from tests.viewer.scenarios.studios import standing
 from viewer.output.pictures import picture
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
@@ -105,6 +106,8 @@ def dropping(d: Driver) -> None:
     d.settle()
     d.press(KEY._3)
     assert d.c.frame.primitive.max() >= 0
+    d.press(KEY._1)
+    standing(d)
 
 
 def reopening(d: Driver) -> None:

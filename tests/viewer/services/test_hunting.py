@@ -134,7 +134,7 @@ def test_words_say_what_is_wrong_and_true(world: tracer.World, found: Findings) 
     scene = world.scene
     for find in found.finds:
         text = " ".join(finds.in_words(find, scene))
-        assert f"Pixel {find.x},{find.y} is too " in text and f" {find.primitive} of " in text
+        assert f"Pixel {find.x}, {find.y} is too " in text and f" {find.primitive} of " in text
         assert ("but is blocked by" in text or "but the first is blocked by" in text) == find.lit
         assert ("nothing is in" in text) != find.lit
         crop = finds.crop_of(find, found.size)

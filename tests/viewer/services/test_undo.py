@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from tests.viewer.fakes import make_scene
+from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Camera
 from viewer.services.motion import GLIDE_SECONDS, IDLE_AFTER, Motion
 from viewer.services.settings_controller import SettingsController
@@ -33,7 +34,14 @@ class Desk:
         lock = lambda: self.locked  # noqa: E731
         self.settings = SettingsController(self.session, self.preferences, self.notices, lock)
         self.motion = Motion(self.session, self.preferences, self.notices, lock)
-        self.undo = Undo(self.session, self.preferences, self.motion, self.notices, lock)
+        self.read: list[MeshOptions] = []  # what undo has asked for
+        self.reading = False
+
+        def read_as(meshes: MeshOptions) -> None:
+            self.read.append(meshes)
+            self.reading = True
+
+        self.undo = Undo(self.session, self.preferences, self.motion, self.notices, lock, read_as, lambda: self.reading)
         self.frame()
 
     def frame(self, seconds: float = 0.02) -> None:
@@ -44,6 +52,13 @@ class Desk:
 
     def rest(self) -> None:
         self.frame(IDLE_AFTER + GLIDE_SECONDS)
+        self.frame()
+
+    def arrive(self, meshes: MeshOptions) -> None:
+        """The mesh has been read so, and is seen from its first camera."""
+        self.reading = False
+        self.session.open(self.session.scene)
+        self.session.meshes = meshes
         self.frame()
 
     @property
@@ -177,6 +192,48 @@ def test_nothing_is_undone_while_it_is_locked_and_another_scene_forgets_all(desk
     assert desk.undo.undoes == ""
     desk.undo.undo()
     assert desk.said == "there is nothing to undo" and desk.session.settings.depth == 2
+
+
+def test_how_a_mesh_is_read_comes_back_with_what_was_seen_of_it(desk: Desk):
+    desk.arrive(IN_STUDIO)
+    desk.undo.clear()
+    desk.frame()
+    desk.session.free_camera = AWAY
+    desk.rest()
+    for meshes, name in (
+        (MeshOptions(True, "x"), "x up"),
+        (MeshOptions(True, "x", 20.0), "crease angle 20°"),
+        (MeshOptions(False, "x", 20.0), "studio off"),
+    ):
+        desk.arrive(meshes)
+        assert desk.undo.undoes == name and desk.session.free_camera is None
+    desk.undo.undo()
+    desk.frame()
+    desk.undo.undo()  # while it is being read: too early
+    desk.settings.change(depth=3)
+    desk.arrive(MeshOptions(True, "x", 20.0))
+    assert desk.read == [MeshOptions(True, "x", 20.0)] and desk.said == "undone: studio off"
+    assert desk.undo.redoes == "studio off" and desk.undo.undoes == "crease angle 20°"
+    desk.undo.undo()
+    desk.arrive(MeshOptions(True, "x"))
+    desk.undo.undo()
+    desk.arrive(IN_STUDIO)
+    desk.rest()
+    assert desk.said == "undone: x up" and desk.session.free_camera == AWAY and desk.undo.undoes == "camera"
+    desk.undo.redo()
+    desk.arrive(MeshOptions(True, "x"))
+    desk.rest()
+    assert desk.said == "redone: x up" and desk.session.free_camera is None
+
+
+def test_a_mesh_that_could_not_be_read_again_leaves_the_steps_as_they_were(desk: Desk):
+    desk.arrive(IN_STUDIO)
+    steps = desk.undo.undoes, desk.undo.redoes
+    assert steps[0] == "studio on"
+    desk.undo.undo()
+    desk.reading = False
+    desk.frame()
+    assert (desk.undo.undoes, desk.undo.redoes) == steps and desk.session.meshes == IN_STUDIO
 
 
 def test_memory_is_bounded(desk: Desk):

@@ -27,7 +27,7 @@ from viewer.window.widgets import (
     tooltip_above,
 )
 
-_COLUMNS = (("", 1.4), ("difference", 4.6), ("pixel", 4.0), ("wrong", 3.2))
+_COLUMNS = (("", 1.4), ("by", 2.6), ("pixel", 4.2), ("wrong", 2.8))
 _REST = ("where", "primitive", "light")
 
 
@@ -38,7 +38,7 @@ def show(ui: Ui) -> None:
         lambda: _controls(ui, hunts),
         lambda size: _finds(ui, hunts, size),
         lambda: _chosen(ui, hunts),
-        em(22.0),
+        em(16.0),
     )
 
 
@@ -121,7 +121,7 @@ def _table(ui: Ui, hunts: HuntController, found: Findings, scene: Scene) -> None
         if imgui.selectable(f"{number + 1}##find", hunts.chosen == number, int(spans))[0]:
             hunts.go(number)
             ui.show_panel("Inspector")
-        tooltip("fly there: the frames before it are traced again, and its pixel is selected")
+        tooltip_above("fly there: the frames before it are traced again, and its pixel is selected")
         more = f" (+{find.more_lights})" if find.more_lights else ""
         for text in (
             f"{find.difference:.3f}",

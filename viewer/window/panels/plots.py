@@ -121,7 +121,9 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
     number = going_back.pointed(history.first, history.first + len(history) - 1)
     implot.end_plot()
     at = 0 if number is None else number - history.first
-    said = [f"{label}: {short(values[at])}" for label, values, _ in curves]
+    said = [
+        f"{label}: {values[at]:.3g}" if per_pixel else f"{label}: {short(values[at])}" for label, values, _ in curves
+    ]
     going_back.handle(ui, title, number, said)
 
 
