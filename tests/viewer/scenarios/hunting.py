@@ -6,7 +6,7 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
-from viewer.util.resources import embedded_scenes
+from tests.viewer.marbles import LAST, STEP, write_marbles
 
 KEY = imgui.Key
 CTRL = int(KEY.mod_ctrl)
@@ -15,8 +15,8 @@ CTRL = int(KEY.mod_ctrl)
 def hunting(d: Driver) -> None:
     """A click in a plot, or on a frame in the inspector, goes back there; a hunt's finds are flown to and explained."""
     d.settle()
-    d.drop(embedded_scenes()["default"])
-    d.wait(lambda: d.c.session.scene.path.name == "default.aff", "the study")
+    d.drop(write_marbles(d.folder))
+    d.wait(lambda: d.c.session.scene.path.name == "marbles.aff", "the scene")
     d.settle()
     d.c.settings.change(method="paper", depth=2)
     d.settle()
@@ -92,14 +92,14 @@ def _from_the_inspector(d: Driver) -> None:
 
 def _to_a_find(d: Driver) -> None:
     c, plan = d.c, d.c.hunts.plan
-    plan.size, plan.last, plan.step, plan.around, plan.keep = (96, 72), 8, 2, 4, 5
+    plan.size, plan.last, plan.step, plan.around, plan.keep = (96, 96), LAST, STEP, 4, 5
     d.ui.show_panel("Hunt")
     d.frames(3)
     d.context.item_click(f"//Hunt/**/{icons.ICON_FA_PLAY}  Start")
     d.wait(lambda: c.hunts.found is not None and c.runs.current is None, "the hunt", 120.0)
     d.settle()
     found = c.hunts.found
-    assert c.hunts.hunt.whole and found.finds and found.frames == 9
+    assert c.hunts.hunt.whole and found.finds and found.frames == LAST // STEP + 5
     d.context.item_click("//Hunt/**/1##find")
     find = found.finds[0]
     d.wait(lambda: c.runs.current is None and c.selection.picked is not None, "the find", 60.0)
