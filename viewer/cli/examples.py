@@ -167,7 +167,7 @@ examples:
   shadowcull hunt kitchen.aff --method paper --step 10 --around 100 --radius 0.5 --seed 7
   shadowcull hunt default --method certified --around 50
   shadowcull check wrong/*.png
-  shadowcull explain kitchen.aff --time 3.2 --pixel 7,98 --method paper --before wrong/find-1.json --only wrong
+  shadowcull explain kitchen.aff --frame 12 --pixel 147,125 --method paper --before '[[0, null]]' --only wrong
 
 The frames are traced one after another, as in bench, so that the method learns from each; every culled shadow ray is
 verified. Wrong pixels are ranked by how far their colour is from the right one, and of each primitive and light the

@@ -101,6 +101,12 @@ def where(find: Find, scene: Scene) -> str:
     return number if find.place == PATH else f"beside {number}" if session.animated else "beside it"
 
 
+def frame_of(find: Find, scene: Scene) -> str:
+    """The number of that frame, in few words."""
+    number = Session(scene).frame_at(find.time)
+    return f"{number}" if find.place == PATH else f"near {number}"
+
+
 def verdict_of(find: Find) -> str:
     """What culling goes by, such as "non shadow"."""
     return find.verdict.replace("_", " ").lower()

@@ -20,12 +20,12 @@ from tracer.method import Method
 from tracer.ray_tree import ray_tree
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Cancelled, Scene
-from tracer.told_rays import VERDICTS, RayTree
 from viewer.output.finds import AROUND, PATH, VISIBLE, Find, Findings
+from viewer.services.counterexample import Lessons, find_in, triple
 from viewer.state.earlier import Earlier
 from viewer.state.picking import point_at, typical_depth
 from viewer.state.readings import has_modes_of_cells
-from viewer.state.teaching import NEVER, Ledger
+from viewer.state.teaching import NEVER
 
 OnFrame = Callable[[str, int, int, Frame], None]
 MOST_LOOKED_INTO = 12
@@ -108,7 +108,7 @@ class _Hunter:
         self._scene, self._search, self._settings, self._world = scene, search, settings, world
         self._cancelled, self._found = cancelled, found
         self._renderer = Renderer(scene, settings, world=world)
-        self._path = _Lessons(scene)
+        self._path = Lessons(scene)
 
     def along_path(self, time: float) -> Frame:
         """The next frame of the path, judged."""
@@ -140,7 +140,7 @@ class _Hunter:
 
     # --- judging ----------------------------------------------------------------------------------
 
-    def _judge(self, renderer: Renderer, frame: Frame, place: str, lessons: _Lessons, own_camera: bool) -> None:
+    def _judge(self, renderer: Renderer, frame: Frame, place: str, lessons: Lessons, own_camera: bool) -> None:
         """Count what is wrong in a picture that comes after others, and keep it where it is among the worst."""
         found = self._found
         assert frame.wrong is not None and frame.reference is not None
@@ -151,7 +151,7 @@ class _Hunter:
         found.wrong_pixels += pixels
         found.wrong_frames += pixels > 0
         for x, y, difference in self._candidates(frame, wrong):
-            find = _find_in(ray_tree(renderer, frame, x, y, self._cancelled), self._scene)
+            find = find_in(ray_tree(renderer, frame, x, y, self._cancelled), self._scene)
             if find is not None:
                 color, right = frame.color[y, x], frame.reference[y, x]
                 self._keep(
@@ -160,8 +160,8 @@ class _Hunter:
                         place=place,
                         own_camera=own_camera,
                         difference=difference,
-                        color=_triple(color),
-                        reference=_triple(right),
+                        color=triple(color),
+                        reference=triple(right),
                         pixels=pixels,
                         before=tuple(lessons.frames),
                         learnt_from=len(lessons.frames),
@@ -228,10 +228,10 @@ class _Hunter:
         renderer = Renderer(self._scene, self._settings, world=self._world)
         self._trace_before(renderer, before)
         frame = renderer.render(find.time, find.seen_camera, self._cancelled)
-        return _triple(frame.color[find.y, find.x]) == find.color
+        return triple(frame.color[find.y, find.x]) == find.color
 
-    def _trace_before(self, renderer: Renderer, before: tuple[Earlier, ...]) -> _Lessons:
-        renderer.settings, lessons = replace(self._settings, verify=False), _Lessons(self._scene)
+    def _trace_before(self, renderer: Renderer, before: tuple[Earlier, ...]) -> Lessons:
+        renderer.settings, lessons = replace(self._settings, verify=False), Lessons(self._scene)
         for earlier in before:
             lessons.add(renderer.render(earlier.time, earlier.camera, self._cancelled), earlier)
         return lessons
@@ -269,72 +269,5 @@ class _Hunter:
             ahead = target - place
             direction = ahead / max(float(np.linalg.norm(ahead)), 1e-300) + aside
             if not blocked and np.linalg.norm(direction) > 1e-6 and np.linalg.norm(ahead) > 1e-3 * distance:
-                return replace(camera, position=_triple(place), direction=_triple(direction))
+                return replace(camera, position=triple(place), direction=triple(direction))
         return camera
-
-
-class _Lessons:
-    """Frames that came one after another, and which of them taught what."""
-
-    def __init__(self, scene: Scene) -> None:
-        self._scene = scene
-        self.frames: list[Earlier] = []
-        self.ledger = Ledger(len(scene.lights))
-        self._lights: np.ndarray | None = None
-
-    def add(self, frame: Frame, earlier: Earlier) -> None:
-        """A frame has been traced, and leaves modes."""
-        lights = self._scene.light_positions(frame.time)
-        moved = None if self._lights is None else (lights != self._lights).any(axis=1)
-        if frame.settings.keeps_modes:
-            self.ledger.add(len(self.frames), frame.modes, moved)
-        self._lights = lights
-        self.frames.append(earlier)
-
-    def with_teacher(self, find: Find) -> Find:
-        """The find with the frame that taught the mode of its primitive."""
-        taught = self.ledger.of(find.primitive)
-        if taught is None or find.light >= len(taught.lights):
-            return find
-        lesson = taught.lights[find.light]
-        number = lesson.lit if find.lit else lesson.blocked
-        return find if number == NEVER else replace(find, taught=number, taught_time=self.frames[number].time)
-
-
-def _find_in(tree: RayTree, scene: Scene) -> Find | None:
-    """What is wrong at a pixel: of its wrong answers the one that weighs most; None where none is, as with a sum of
-    rounding alone."""
-    worst: tuple[float, Find] | None = None
-    for ray in tree.rays:
-        if ray.shadows is None:
-            continue
-        for place in np.flatnonzero(ray.shadows.wrong).tolist():
-            light = int(ray.shadows.light[place])
-            weight = float(ray.weight.max()) * max(scene.lights[light].color)
-            if worst is None or weight > worst[0]:
-                others = np.unique(ray.shadows.light[ray.shadows.wrong & (ray.shadows.lit == ray.shadows.lit[place])])
-                find = Find(
-                    place=PATH,
-                    time=tree.frame.time,
-                    camera=tree.frame.camera,
-                    own_camera=False,
-                    x=tree.x,
-                    y=tree.y,
-                    difference=0.0,
-                    color=(0.0, 0.0, 0.0),
-                    reference=(0.0, 0.0, 0.0),
-                    primitive=ray.primitive,
-                    light=light,
-                    lit=bool(ray.shadows.lit[place]),
-                    verdict=VERDICTS[ray.shadows.verdict[place]].value,
-                    blocker=int(ray.shadows.blocker[place]),
-                    bounces=ray.bounce,
-                    pixels=0,
-                    more_lights=len(others) - 1,
-                )
-                worst = weight, find
-    return None if worst is None else worst[1]
-
-
-def _triple(values: np.ndarray) -> tuple[float, float, float]:
-    return float(values[0]), float(values[1]), float(values[2])

@@ -28,7 +28,7 @@ from viewer.window.widgets import (
 )
 
 _COLUMNS = (("", 1.4), ("by", 2.6), ("pixel", 4.2), ("wrong", 2.8))
-_REST = ("where", "primitive", "light")
+_REST = ("frame", "primitive", "light")
 
 
 def show(ui: Ui) -> None:
@@ -111,7 +111,7 @@ def _table(ui: Ui, hunts: HuntController, found: Findings, scene: Scene) -> None
     imgui.table_setup_scroll_freeze(0, 1)
     for heading, width in _COLUMNS:
         imgui.table_setup_column(heading, int(imgui.TableColumnFlags_.width_fixed), em(width))
-    for heading, weight in zip(_REST, (1.1, 1.5, 0.7), strict=True):
+    for heading, weight in zip(_REST, (0.9, 1.7, 0.7), strict=True):
         imgui.table_setup_column(heading, int(imgui.TableColumnFlags_.width_stretch), weight)
     imgui.table_headers_row()
     for number, find in enumerate(found.finds):
@@ -127,7 +127,7 @@ def _table(ui: Ui, hunts: HuntController, found: Findings, scene: Scene) -> None
             f"{find.difference:.3f}",
             f"{find.x}, {find.y}",
             f"{find.pixels}",
-            finds.where(find, scene),
+            finds.frame_of(find, scene),
             finds.primitive_of(find, scene),
             f"{find.light}{more}",
         ):
