@@ -51,11 +51,11 @@ def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
         "bench": _bench,
         "zoom": _zoom,
         "explain": _explain,
-        "hunt": _hunt,
         "info": _info,
         "film": _film,
         "figure": _figure,
         "check": _check,
+        "hunt": _hunt,
     }
     try:
         if arguments and arguments[0] in commands:
