@@ -1,2 +1,2 @@
-// The traced picture: display-referred, so a clamp is all it needs.
-void main() { finish(clamp(texelFetch(color_buffer, pixel(), 0).rgb, 0.0, 1.0)); }
+// The traced picture, by the tone that is chosen.
+void main() { finish(marked_where_clipped(texelFetch(color_buffer, pixel(), 0).rgb)); }

@@ -15,9 +15,14 @@ uniform int selected;                 // primitive drawn with a bright border, -
 uniform usampler2D mark_buffer;       // of verified frames: NONE, RING around wrong pixels, WRONG
 uniform bool marked;                  // draw the rings
 uniform vec3 wrong_color;
-uniform bool shares;                  // heat maps: shares of a whole, not rays up to `top`
-uniform float top;
+uniform bool shares;                  // heat maps: shares of a whole, not rays in `range`
+uniform vec2 range;                   // what has the first and the last colour of the map
 uniform vec3 unknown;                 // where there is nothing to show of what is seen
+uniform int curve;                    // of tone: none, Reinhard's, filmic, sRGB
+uniform float gain;                   // by which colours are exposed
+uniform float white;                  // the exposed colour that becomes white
+uniform bool clipping;                // stripe pixels that are too bright, or black
+uniform vec3 clip_colors[2];          // of the two
 const int RING = 1, WRONG = 2;
 
 out vec4 result;
@@ -45,6 +50,39 @@ int mode_bits(int unit, int position) {
 }
 
 ivec2 counts_of(int unit) { return texelFetch(count_table, table_entry(unit), 0).rg; }
+
+// Hable's filmic curve, before it is divided by that of white.
+vec3 hable(vec3 x) {
+    const float a = 0.15, b = 0.50, c = 0.10, d = 0.20, e = 0.02, f = 0.30;
+    return (x * (a * x + c * b) + d * e) / (x * (a * x + b) + d * f) - e / f;
+}
+
+vec3 srgb(vec3 x) {
+    vec3 curved = 1.055 * pow(max(x, vec3(0.0031308)), vec3(1.0 / 2.4)) - 0.055;
+    return mix(curved, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
+}
+
+// A traced colour as the screen is to show it, not clipped yet.
+vec3 toned(vec3 traced) {
+    vec3 x = max(traced, 0.0) * gain;
+    if (curve == 1) return x * (1.0 + x / (white * white)) / (1.0 + x);
+    if (curve == 2) return hable(x) / hable(vec3(white));
+    if (curve == 3) return srgb(x / white);
+    return x / white;
+}
+
+vec3 displayed(vec3 traced) { return clamp(toned(traced), 0.0, 1.0); }
+
+// The same, with stripes where the screen cuts something off and that is to be marked.
+vec3 marked_where_clipped(vec3 traced) {
+    vec3 shown = toned(traced);
+    ivec2 p = pixel();
+    if (clipping && ((p.x + p.y) / 4) % 2 == 0) {
+        if (any(greaterThan(shown, vec3(1.0)))) return clip_colors[0];
+        if (all(lessThanEqual(shown, vec3(0.0)))) return clip_colors[1];
+    }
+    return clamp(shown, 0.0, 1.0);
+}
 
 // A flat colour with some of the traced picture's light and shade, so that shapes stay readable.
 vec3 shaded(vec3 flat_color) {
@@ -81,8 +119,11 @@ void finish_mapped(float t) {
     finish(primitive_at(pixel()) < 0 ? background : mapped(t));
 }
 
+// A number as its place on the colour map.
+float in_range(float number) { return (number - range.x) / (range.y - range.x); }
+
 // Rays at a pixel: how many, or which share of the whole; of none there is no share.
 void finish_work(int rays, int whole) {
     if (shares && whole == 0 && primitive_at(pixel()) >= 0) finish(unknown);
-    else finish_mapped(shares ? float(rays) / float(max(whole, 1)) : float(rays) / top);
+    else finish_mapped(shares ? float(rays) / float(max(whole, 1)) : in_range(float(rays)));
 }

@@ -1,4 +1,4 @@
-// Rays traced for each pixel, from none to `top` and more, or their share of those that tracing without culling takes.
+// Rays traced for each pixel, by their range, or their share of those that tracing without culling takes.
 uniform isampler2D cost_buffer;
 uniform isampler2D saved_buffer;
 

@@ -4,7 +4,7 @@ uniform float beneath;  // brightness of the picture
 
 void main() {
     int mark = mark_at(pixel());
-    vec3 color = beneath * clamp(texelFetch(color_buffer, pixel(), 0).rgb, 0.0, 1.0);
+    vec3 color = beneath * displayed(texelFetch(color_buffer, pixel(), 0).rgb);
     if (outlines && on_border(primitive_at(pixel()))) color *= 0.35;
     if (marked && mark == RING) color = ring_color;
     if (mark == WRONG) color = wrong_color;

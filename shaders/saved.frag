@@ -1,4 +1,4 @@
-// Shadow rays of each pixel that were spared, from none to `top` and more, or their share of those that were due.
+// Shadow rays of each pixel that were spared, by their range, or their share of those that were due.
 uniform isampler2D saved_buffer;
 uniform isampler2D due_rays_buffer;
 

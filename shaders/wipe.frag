@@ -8,7 +8,7 @@ void main() {
     ivec2 p = pixel();
     if (line && p.x == column) { finish_over(line_color); return; }
     vec3 traced = texelFetch(color_buffer, p, 0).rgb, right = texelFetch(reference_buffer, p, 0).rgb;
-    vec3 color = clamp(p.x < column ? traced : right, 0.0, 1.0);
+    vec3 color = marked_where_clipped(p.x < column ? traced : right);
     if (marked && mark_at(p) == RING) finish_over(wrong_color);  // the pixels inside it stay as they are
     else finish(color);
 }

@@ -264,6 +264,36 @@ class Renderer:
         answers = (method.explain(primitive, point, light) for method in self._last)
         return next((answer for answer in answers if answer is not None), None)
 
+    def beside(self) -> Renderer:
+        """Make another renderer of the same world, with modes and counters of its own.
+
+        Returns
+        -------
+        Renderer
+            To be used in turn with this one, frame by frame; within a frame, each must first `take_turn`.
+        """
+        return Renderer(self.scene, self.settings, world=self.world)
+
+    def follow(self, other: Renderer) -> None:
+        """Let the next picture that is refined begin with the pixels with which that of another renderer begins.
+
+        Parameters
+        ----------
+        other : Renderer
+            A renderer whose next picture has not begun yet.
+        """
+        self._turn = other._turn
+
+    def take_turn(self, time: float) -> None:
+        """Place the world once more as the frame that this renderer has begun needs it.
+
+        Parameters
+        ----------
+        time : float
+            The moment of that frame, in seconds.
+        """
+        self.world.place(self.world.pose(time), self.state.rest.now.since > 0)
+
     @property
     def memory_bytes(self) -> int:
         """Memory that the methods of the last frame hold, in bytes."""

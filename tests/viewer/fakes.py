@@ -176,6 +176,19 @@ class FakeRenderer:
         self.go = Event()
         self.go.set()
         self.failing: Exception | None = None
+        self.other: FakeRenderer | None = None
+        self.turns: list[str] = []
+
+    def beside(self) -> FakeRenderer:
+        self.other = FakeRenderer()
+        self.other.go, self.other.turns = self.go, self.turns
+        return self.other
+
+    def follow(self, other: FakeRenderer) -> None:
+        pass
+
+    def take_turn(self, time: float) -> None:
+        self.turns.append(self.settings.method)
 
     def reset_modes(self) -> None:
         self.resets += 1

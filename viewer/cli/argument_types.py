@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -14,6 +15,7 @@ from viewer.state.plans import parse_factors
 if TYPE_CHECKING:
     from viewer.state.annotations import Annotation
     from viewer.state.earlier import Earlier
+    from viewer.state.tone import Curve
     from viewer.state.views import View
 
 T = TypeVar("T")
@@ -58,6 +60,26 @@ def number(least: float, most: float) -> Callable[[str], float]:
         return value
 
     return parse
+
+
+def values(text: str) -> tuple[float, float]:
+    """A range of numbers, like 0:12.5."""
+    try:
+        low, high = (float(word) for word in text.split(":"))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a range; give one like 0:12.5") from None
+    if not (math.isfinite(low) and math.isfinite(high) and low < high):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a range: the first number is to be the smaller")
+    return low, high
+
+
+def curve(text: str) -> Curve:
+    from viewer.state.tone import Curve
+
+    try:
+        return Curve(text.strip().lower())
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no tone; there is {', '.join(Curve)}") from None
 
 
 def several(parse: Callable[[str], T]) -> Callable[[str], list[T]]:

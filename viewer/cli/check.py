@@ -74,7 +74,7 @@ class Checker:
             with Image.open(BytesIO(again), formats=("PNG",)) as image:
                 return self._compared(kept, np.asarray(image.convert("RGB")), data, {}, False)
         if data.get("window"):
-            return Verdict(None, "it shows the window with its panels, which cannot be rendered again")
+            return Verdict(None, "it shows two pictures, or the window with its panels, which cannot be rendered again")
         frame, wanted = self._traced(path, data)
         pixels, _ = stills.draw(frame, self._open_scene, wanted)
         return self._compared(kept, pixels, data, frame.statistics.to_dict(), wanted.by_gpu)

@@ -29,6 +29,7 @@ examples:
   shadowcull render -o room.png
   shadowcull render kitchen.aff -o kitchen.png --size 1024x768 --samples 16
   shadowcull render kitchen.aff -o soft.png --frame 100 --lamp-radius 0.1 --lamp-samples 64
+  shadowcull render kitchen.aff -o bright.png --exposure 1 --white 4 --tone filmic
   shadowcull render kitchen.aff -o modes.png --frame 50 --warmup 20 --view shadow:2
   shadowcull render kitchen.aff -o wrong.png --frame 50 --warmup 20 --view difference
   shadowcull render kitchen.aff -o cells.png --frame 50 --warmup 20 --method certified --view certificate:0

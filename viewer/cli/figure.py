@@ -12,7 +12,7 @@ from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file, load_visible_scene
 from viewer.cli.console import print_table, working
 from viewer.cli.mesh_arguments import mesh_options
-from viewer.cli.render import recipe_of
+from viewer.cli.render import check_display, recipe_of
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import comparison_figure
 from viewer.output.comparison_figure import ENDINGS, Crop, Shown
@@ -32,6 +32,7 @@ def figure(path: Path, options: Namespace) -> None:
     check_writable(options.output)
     if view is View.CERTIFICATE:
         raise ValueError("figure: certificates are of one method alone; give another --view")
+    check_display(options)
     settings = replace(tracing_settings(options), samples=options.samples)
     with working() as work:
         scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))

@@ -16,7 +16,7 @@ from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli.console import working
 from viewer.cli.mesh_arguments import mesh_options
-from viewer.cli.render import check_certificates, recipe_of
+from viewer.cli.render import check_certificates, check_display, recipe_of
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import capture, movie
 from viewer.services import filming, stills
@@ -38,6 +38,7 @@ def film(path: Path, options: Namespace) -> bool:
     method = options.method or default_for(options.view.view)
     settings = replace(tracing_settings(options), method=method, samples=options.samples)
     check_certificates(settings, options.view.view)
+    check_display(options)
     if options.output is None:
         raise ValueError("film: nothing to write; give -o FOLDER, or -o film.mp4")
     folder, video = filming.places(options.output)

@@ -144,7 +144,8 @@ def _render(arguments: list[str]) -> int:
         path, kept = saved_pictures.defaults(picture)
         parser.set_defaults(**kept)
         options = parser.parse_args(arguments)
-        saved_pictures.settle(options, kept, picture)
+        saved_pictures.settle(options, kept)
+        saved_pictures.name_output(options, picture)
     options.camera = saved_pictures.camera(options.camera)
     render.render(path, options)
     return 0
@@ -178,8 +179,7 @@ def _with_saved(parser: parsers.Parser, arguments: list[str]) -> tuple[Path, Nam
         path, kept = saved_pictures.defaults(path)
         parser.set_defaults(**kept)
         options = parser.parse_args(arguments)
-        if options.frame is None and options.time is None:
-            options.time = kept["moment"]
+        saved_pictures.settle(options, kept)
     options.camera = saved_pictures.camera(options.camera)
     return path, options
 

@@ -9,6 +9,7 @@ from viewer.cli.argument_types import (
     annotation_list,
     count,
     crops,
+    curve,
     method,
     number,
     place,
@@ -16,6 +17,7 @@ from viewer.cli.argument_types import (
     size,
     span,
     tev_address,
+    values,
     view,
 )
 from viewer.cli.parsers import Parser
@@ -69,6 +71,7 @@ def _add_picture(parser: Parser) -> None:
         "saved:share (default: color)",
     )
     add("--legend", action="store_true", help="draw the view's legend into the picture")
+    _add_display(parser)
     add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
     _add_style(parser)
     add("--camera", metavar="JSON", help=f"another camera: {parsers.CAMERA}")
@@ -141,6 +144,21 @@ def check() -> Parser:
     add("--folder", type=Path, action="append", default=[], metavar="DIR", help=help_)
     add("--threads", type=count(0, 1024), default=0, metavar="N", help="0, the default: one per core")
     return parser
+
+
+def _add_display(parser: Parser) -> None:
+    """How colours and numbers that were found become those of a picture."""
+    from viewer.state.tone import MOST_EXPOSURE, WHITES, Curve
+
+    add, stops = parser.add_argument, number(-MOST_EXPOSURE, MOST_EXPOSURE)
+    add("--exposure", type=stops, default=0.0, metavar="STOPS", help="brighter by so many stops (default: 0)")
+    help_ = "the colour, once exposed, that becomes white (default: 1)"
+    add("--white", type=number(*WHITES), default=1.0, metavar="W", help=help_)
+    help_ = f"the tone curve: {', '.join(Curve)} (default: none)"
+    add("--tone", type=curve, default=Curve.NONE, metavar="CURVE", help=help_)
+    add("--mark-clipped", action="store_true", help="stripes over pixels that are too bright, or black")
+    help_ = "what has the first and the last colour in the views depth, saved, cost and lights (default: as they come)"
+    add("--range", type=values, metavar="LOW:HIGH", help=help_)
 
 
 def _add_style(parser: Parser) -> None:

@@ -29,6 +29,7 @@ from viewer.output.recipe import Recipe, Style
 from viewer.services import stills
 from viewer.state.methods import CERTIFIED, default_for
 from viewer.state.readings import MOST_RECORDED
+from viewer.state.tone import Tone
 from viewer.state.views import View
 from viewer.util.files import check_writable, write_whole
 from viewer.util.messages import printable, say
@@ -59,6 +60,7 @@ def render(path: Path, options: Namespace) -> None:
     if not options.print_command:
         _check_outputs(options.output, options.buffers, options.to_tev is not None)
     check_certificates(settings, view)
+    check_display(options)
     with working() as work:
         scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
         for warning in scene.warnings:
@@ -114,6 +116,9 @@ def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) 
         legend=(options.legend_at or LEGEND_PLACE) if options.legend else None,
         caption=options.caption,
         annotations=options.annotations,
+        tone=_tone(options),
+        clipping=options.mark_clipped,
+        span=options.range,
     )
     time = moment(scene, options.frame, options.time)
     history = ""
@@ -169,6 +174,22 @@ def _check_outputs(output: Path | None, npz: Path | None, sent: bool) -> None:
     for path in (output, npz):
         if path is not None:
             check_writable(path)
+
+
+def _tone(options: Namespace) -> Tone:
+    return Tone(options.exposure, options.white, options.tone)
+
+
+def check_display(options: Namespace) -> None:
+    """Raises ValueError for options that the view has no use for."""
+    view, shares = options.view.view, options.view.shares
+    if not view.shows_picture and not _tone(options).neutral:
+        raise ValueError(f"--exposure, --white and --tone are for pictures: --view {view.value} shows none")
+    if options.mark_clipped and not view.shows_clipped:
+        raise ValueError(f"--mark-clipped is for the views color and wipe, not {view.value}")
+    if options.range is not None and (not view.has_range or shares):
+        names = ", ".join(one.value for one in View if one.has_range)
+        raise ValueError(f"--range is for views of numbers: {names}{' as counts' if shares else ''}")
 
 
 def write_picture(path: Path, scene: Scene, frame: Frame, wanted: Recipe) -> None:

@@ -14,6 +14,7 @@ from viewer.cli.argument_types import ChosenView
 from viewer.output import capture, recipe
 from viewer.output.recipe import Recipe
 from viewer.services.scene_files import find_scene, is_capture
+from viewer.state.tone import Curve
 
 _A_CAMERA = '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
 _LARGEST_CAMERA = 1 << 20  # bytes
@@ -21,6 +22,7 @@ _SETTINGS = (
     "method", "samples", "depth", "symmetric", "zoom_factor", "verify", "lamp_radius", "lamp_samples", "accelerator"
 )  # fmt: skip
 _STYLE = ("magnified", "shading", "beneath", "outlines", "annotations")
+_TONE = ("exposure", "white", "tone")
 
 
 def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
@@ -33,6 +35,8 @@ def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
     kept |= {"before": saved.before, "warmup": saved.warmup, "repeat": saved.repeats}
     kept |= {"no_marks": not saved.style.marked}
     kept |= {"legend": saved.style.legend is not None, "legend_at": saved.style.legend}
+    kept |= {"exposure": saved.style.tone.exposure, "white": saved.style.tone.white, "tone": saved.style.tone.curve}
+    kept |= {"mark_clipped": saved.style.clipping, "range": saved.style.span}
     kept["caption"] = saved.style.caption.replace("{", "{{").replace("}", "}}")
     if size is not None:
         kept["size"] = size
@@ -59,10 +63,22 @@ def read(path: Path) -> tuple[Recipe, tuple[int, int] | None]:
     return replace(saved, scene=scene), size
 
 
-def settle(options: Namespace, kept: dict[str, Any], picture: Path) -> None:
-    """What options mean together: a frame or a time that was given wins over the picture's, as does a file's name."""
+def settle(options: Namespace, kept: dict[str, Any]) -> None:
+    """What options mean together: a frame or a time that was given wins over the picture's, and in a view that has no
+    use for its tone, its stripes or its range, these go."""
+    view = options.view.view
+    if not view.shows_picture and all(getattr(options, name) == kept[name] for name in _TONE):
+        options.exposure, options.white, options.tone = 0.0, 1.0, Curve.NONE
+    if kept["mark_clipped"] and not view.shows_clipped:
+        options.mark_clipped = False
+    if options.range == kept["range"] and (view is not kept["view"].view or options.view.shares):
+        options.range = None
     if options.frame is None and options.time is None:
         options.time = kept["moment"]
+
+
+def name_output(options: Namespace, picture: Path) -> None:
+    """A file's name that was given wins over one after the saved picture's."""
     given = (options.output, options.buffers, options.to_tev)
     if not any(given) and not options.print_command:
         options.output = _free_name(f"{picture.stem}-rendered")

@@ -20,7 +20,7 @@ from viewer.output.pictures import picture
 from viewer.output.recipe import Recipe
 from viewer.state.readings import work_top
 from viewer.state.session import Session
-from viewer.state.views import color_map
+from viewer.state.views import View, color_map
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,19 +64,22 @@ class Shown:
     words: str = ""
 
     @property
-    def top(self) -> float | None:
-        """What has the last colour of a map of work, for all methods; None in other views."""
+    def span(self) -> tuple[float, float] | None:
+        """What has the first and the last colour, for all methods: as was asked for, or of a map of work that of all;
+        None in other views."""
         view = self.recipe.view
-        return max(work_top(frame, view) for frame in self.frames.values()) if view.needs_work else None
+        if self.recipe.style.span is not None or not view.needs_work:
+            return self.recipe.style.span
+        return 0.0, max(work_top(frame, view) for frame in self.frames.values())
 
     @property
     def pictures(self) -> dict[str, NDArray[np.uint8]]:
         """(h, w, 3) of each method, in one range of colours for all."""
-        view, style, top = self.recipe.view, self.recipe.style, self.top
+        view, style = self.recipe.view, self.recipe.style
         return {
             method: picture(
                 frame, view, self.recipe.light, style.shading, style.marked, self.recipe.wipe, style.shares,
-                style.beneath, style.outlines, top=top,
+                style.beneath, style.outlines, 1, style.tone, style.clipping, self.span,
             )
             for method, frame in self.frames.items()
         }  # fmt: skip
@@ -249,27 +252,31 @@ def _show_counts(panel: Axes, counts: Sequence[tuple[str, str]], first: bool) ->
 
 
 def _color_bars(page: Figure, shown: Shown, top: float, size: tuple[float, float]) -> None:
-    """What the colours of all differences mean, where there are any, and those of maps of work."""
+    """What the colours of all differences mean, where there are any, and those of maps of numbers."""
     from matplotlib.colors import ListedColormap
 
-    bars: list[tuple[float, Any, str]] = []
-    if shown.top is not None and not shown.recipe.style.shares:
-        colors = ListedColormap(color_map())  # type: ignore[arg-type]
-        bars.append((shown.top, colors, f"{shown.recipe.view.label.lower()}, per pixel"))
+    bars: list[tuple[tuple[float, float], Any, str]] = []
+    view = shown.recipe.view
+    if shown.span is not None and not shown.recipe.style.shares:
+        near_is_bright = view is View.DEPTH
+        colors = ListedColormap(color_map()[::-1] if near_is_bright else color_map())  # type: ignore[arg-type]
+        bars.append((shown.span, colors, view.label.lower() if near_is_bright else f"{view.label.lower()}, per pixel"))
     if top > _LEAST:
-        bars.append((top, "inferno", "difference to none, of 1"))
-    for number, (most, colors, words) in enumerate(bars):
+        bars.append(((0.0, top), "inferno", "difference to none, of 1"))
+    for number, (span, colors, words) in enumerate(bars):
         height = 0.8 / len(bars) - 0.08
         bottom = 0.5 - height / 2 if len(bars) == 1 else 0.1 + (1 - number) * 0.4
         place = (1.0 - 0.92 * _BAR / size[0], bottom, 0.12 / size[0], min(height, 0.4))
-        _color_bar(page, place, most, colors, words)
+        _color_bar(page, place, span, colors, words)
 
 
-def _color_bar(page: Figure, place: tuple[float, float, float, float], most: float, colors: Any, words: str) -> None:
+def _color_bar(
+    page: Figure, place: tuple[float, float, float, float], span: tuple[float, float], colors: Any, words: str
+) -> None:
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    bar = page.colorbar(ScalarMappable(Normalize(0.0, most), colors), cax=page.add_axes(place))
+    bar = page.colorbar(ScalarMappable(Normalize(*span), colors), cax=page.add_axes(place))
     bar.set_label(words, fontsize=10.5)
     bar.ax.tick_params(labelsize=9.5)
     bar.outline.set_visible(False)  # type: ignore[operator]

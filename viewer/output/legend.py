@@ -25,8 +25,20 @@ from viewer.output.legend_counts import (
     work_legend,
 )
 from viewer.state import terms
-from viewer.state.readings import can_draw, depth_range, has_modes_of_cells
-from viewer.state.views import ARRIVAL_COLORS, ARRIVAL_MEANING, GREY, WRONG, Arrival, Color, View
+from viewer.state.readings import can_draw, has_modes_of_cells, span_of
+from viewer.state.tone import NEUTRAL, clipped
+from viewer.state.tone import Tone as DisplayTone
+from viewer.state.views import (
+    ARRIVAL_COLORS,
+    ARRIVAL_MEANING,
+    BLACK,
+    GREY,
+    TOO_BRIGHT,
+    WRONG,
+    Arrival,
+    Color,
+    View,
+)
 from viewer.util.numbers import count, percent
 
 
@@ -53,12 +65,14 @@ class Entry:
 
 @dataclass(frozen=True)
 class Scale:
-    """The colour map as a bar, and what its ends and its middle stand for; `reverse` begins with its last colour."""
+    """The colour map as a bar, and what its ends and its middle stand for; `reverse` begins with its last colour, and
+    `signed` is that of a signed difference."""
 
     low: str
     high: str
     middle: str = ""
     reverse: bool = False
+    signed: bool = False
 
 
 @dataclass(frozen=True)
@@ -83,16 +97,22 @@ class Legend:
 
 @dataclass(frozen=True)
 class Chosen:
-    """What else is chosen of a view: its light, with a name, whether wrong pixels are marked, and shares of rays."""
+    """What else is chosen of a view: its light, with a name, whether wrong pixels are marked, shares of rays, the range
+    of its numbers, the tone of its picture, and whether what this clips is marked."""
 
     light: int = 0
     light_name: str = ""
     marked: bool = True
     shares: bool = False
+    span: tuple[float, float] | None = None
+    tone: DisplayTone = NEUTRAL
+    clipping: bool = False
 
 
 def legend_of(frame: Frame, view: View, chosen: Chosen = Chosen()) -> Legend | None:
     """The legend of a frame in a view that can be drawn of it; None for colours that speak for themselves."""
+    if view is View.COLOR and chosen.clipping:
+        return _clipped(frame, chosen)
     makers: dict[View, Callable[[Frame, View, Chosen], Legend]] = {
         View.OCCLUSION: _occlusion,
         View.SHADOW: _of_light,
@@ -184,8 +204,20 @@ def _primitives(frame: Frame, view: View, chosen: Chosen) -> Legend:
     return Legend(view.label, facts=(Entry("in view, each in a colour of its own", values=(count(seen),)),))
 
 
+def _clipped(frame: Frame, chosen: Chosen) -> Legend:
+    """How much of the picture the screen cuts off."""
+    found, pixels = clipped(frame.color, chosen.tone), frame.primitive.size
+    rows = (("too bright", TOO_BRIGHT, found.bright, _TOO_BRIGHT), ("black", BLACK, found.black, _BLACK))
+    entries = tuple(
+        Entry(name, color, (percent(int(where.sum()), pixels),), f"{meaning}: {count(int(where.sum()))} pixels")
+        for name, color, where, meaning in rows
+    )
+    words = chosen.tone.in_words()
+    return Legend(f"Clipped pixels{f', {words}' if words else ''}", ("pixels",), entries)
+
+
 def _depth(frame: Frame, view: View, chosen: Chosen) -> Legend:
-    near, far = depth_range(frame)
+    near, far = chosen.span or span_of(frame, view)
     return Legend(f"{view.label}, in units of the scene", scale=Scale(f"{near:.4g}", f"{far:.4g}", "", reverse=True))
 
 
@@ -207,9 +239,9 @@ def _work(frame: Frame, view: View, chosen: Chosen) -> Legend:
     facts = [Entry("in all", values=(f"{count(found.total)} ({part})",), meaning=_IN_ALL_SAVED if saved else _IN_ALL)]
     facts.append(Entry("per pixel", values=(f"{found.per_pixel:.2f}, at most {count(found.most)}",)))
     if not chosen.shares:
-        return Legend(
-            view.label, (), (), Scale("0", f"{found.top:.4g} and more", f"{found.top / 2.0:.3g}"), tuple(facts)
-        )
+        low, high = chosen.span or (0.0, found.top)
+        scale = Scale(f"{low:.4g}", f"{high:.4g} and more", f"{(low + high) / 2.0:.3g}")
+        return Legend(view.label, (), (), scale, tuple(facts))
     title = (
         "Share of the shadow rays due that is saved" if saved else "Share of the rays without culling that is traced"
     )
@@ -238,6 +270,8 @@ def _lights(frame: Frame, view: View, chosen: Chosen) -> Legend:
     entries = (Entry(_ARRIVALS[Arrival.UNKNOWN], GREY),) if frame.shaded is not None else ()
     middle = count(found.most // 2) if found.most % 2 == 0 else ""
     scale = Scale("0", count(found.most), middle)
+    if chosen.span is not None:
+        scale = Scale(f"{chosen.span[0]:.4g}", f"{chosen.span[1]:.4g}")
     return Legend("Lights that each pixel has to look at", (), entries, scale, facts)
 
 
@@ -277,6 +311,8 @@ _ARRIVALS = {
     Arrival.LIT: "fully lit",
     Arrival.UNKNOWN: "not known yet",
 }
+_TOO_BRIGHT = "red, green or blue is brighter than the screen's"
+_BLACK = "no channel is brighter than nothing"
 _SHARE = "of the samples that pixels in the penumbra face, those that reach them"
 _BY_MODES = "of this frame, at all bounces, by the modes after the frame before: what the paper's method saves"
 _IN_ALL_SAVED = "of the first sample of each pixel; the share is of the shadow rays due"

@@ -35,7 +35,8 @@ class Words:
 
 @dataclass(frozen=True)
 class Swatch:
-    """A rectangle of a colour, or, where that is None, of the colour map, which may go from last to first."""
+    """A rectangle of a colour, or, where that is None, of the colour map, which may go from last to first, or that of a
+    signed difference."""
 
     x: float
     y: float
@@ -43,6 +44,7 @@ class Swatch:
     height: float
     color: Color | None
     reverse: bool = False
+    signed: bool = False
 
 
 @dataclass(frozen=True)
@@ -100,7 +102,7 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
 
     if legend.scale is not None:
         scale = legend.scale
-        swatches.append(Swatch(pad, y + 0.1 * line, inner, 0.7 * line, None, scale.reverse))
+        swatches.append(Swatch(pad, y + 0.1 * line, inner, 0.7 * line, None, scale.reverse, scale.signed))
         y += line
         words.append(Words(pad, y, scale.low))
         words.append(Words(pad + (inner - measure(scale.middle)) / 2.0, y, scale.middle, QUIET))

@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from viewer.output.legend import Legend
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, Layout, Swatch, fitting
-from viewer.state.views import Color, color_map
+from viewer.state.views import Color, color_map, signed_map
 
 SMALLEST, LINES = 11, 42
 """The least size of letters in pixels, and how many lines of them a picture holds at least from edge to edge."""
@@ -59,7 +59,7 @@ def _fill(image: Image.Image, draw: ImageDraw.ImageDraw, swatch: Swatch, left: i
     if swatch.color is not None:
         draw.rectangle((x, y, x + width - 1, y + height - 1), _bytes(swatch.color))
         return
-    colors = np.round(color_map(width) * 255.0).astype(np.uint8)
+    colors = np.round((signed_map if swatch.signed else color_map)(width) * 255.0).astype(np.uint8)
     bar = np.broadcast_to(colors[::-1] if swatch.reverse else colors, (height, width, 3))
     image.paste(Image.fromarray(np.ascontiguousarray(bar)), (x, y))
 

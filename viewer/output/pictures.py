@@ -17,25 +17,27 @@ from viewer.output.legend_counts import certificates_of
 from viewer.state.marks import Mark, wipe_column, wrong_marks
 from viewer.state.readings import (
     arrivals,
-    depth_range,
     lights_due,
-    lights_top,
     samples_of,
+    span_of,
     units_of,
     whole_of,
     work_of,
-    work_top,
 )
+from viewer.state.tone import NEUTRAL, Tone, clipped, toned
 from viewer.state.views import (
     ARRIVAL_COLORS,
     BACKGROUND,
     BENEATH,
+    BLACK,
     CELL_LINE,
     CERTIFICATE_COLORS,
+    CLIP_STRIPE,
     GREY,
     OCCLUSION_COLORS,
     RING_DIMMING,
     SHADOW_COLORS,
+    TOO_BRIGHT,
     WIPE_LINE,
     WRONG,
     Arrival,
@@ -63,35 +65,39 @@ def picture(
     beneath: float = BENEATH,
     outlines: bool = False,
     magnified: int = 1,
-    top: float | None = None,
+    tone: Tone = NEUTRAL,
+    clipping: bool = False,
+    span: tuple[float, float] | None = None,
 ) -> NDArray[np.uint8]:
     """(height, width, 3) uint8, row 0 at the top: a frame in one of its views.
 
     `light` is the light that views of one light speak of, `marked` draws rings around wrong pixels, and `wipe` is the
     place of the wipe's line, 0 to 1 from the left.  Maps of work show counts of rays, or `shares`; `beneath` is the
     brightness of the picture beneath the difference.  `outlines` draws the borders between primitives, and rings are
-    for a picture that is shown `magnified` times.  `top` is what has a map of work's last colour, if not as many as the
-    frame says.  Raises ValueError where there is no such light, or where the view is
-    one of verified frames, or of what was recorded, and the frame is not.
+    for a picture that is shown `magnified` times.  Pictures have a `tone`, and stripes where the screen cuts them off
+    if `clipping`; maps of numbers go over `span`, by default over what the frame has.
+
+    Raises ValueError where there is no such light, or where the view is one of verified frames, or of what was
+    recorded, and the frame is not.
     """
     if view.of_light and not 0 <= light < frame.lights:
         raise ValueError(f"no light {light}: {lights_in_words(frame.lights)}")
     if view is View.COLOR:
-        colors = np.clip(frame.color, 0.0, 1.0)
+        colors = _displayed(frame.color, tone, clipping)
     elif view is View.DIFFERENCE:
-        colors = _difference(frame, marked, beneath, outlines, magnified)
+        colors = _difference(frame, marked, beneath, outlines, magnified, tone)
     elif view is View.WIPE:
-        colors = _wipe(frame, marked, wipe, outlines, magnified)
+        colors = _wipe(frame, marked, wipe, outlines, magnified, tone, clipping)
     elif view.needs_work:
-        colors = _on_background(frame, _work(frame, view, shares, top))
+        colors = _on_background(frame, _work(frame, view, shares, span))
     elif view is View.CERTIFICATE:
         colors = _on_background(frame, _certificate(frame, light, shading))
     elif view is View.PENUMBRA:
         colors = _on_background(frame, _shaded(frame, _penumbra(frame, light), shading))
     elif view is View.LIGHTS:
-        colors = _on_background(frame, _lights(frame))
+        colors = _on_background(frame, _lights(frame, span))
     elif view is View.DEPTH:
-        colors = _on_background(frame, _depth(frame))
+        colors = _on_background(frame, _depth(frame, span))
     elif view is View.NORMAL:
         colors = _on_background(frame, frame.normal * 0.5 + 0.5)
     else:
@@ -172,10 +178,22 @@ def _penumbra(frame: Frame, light: int) -> NDArray:
     return np.where(between[..., None], ramp, palette[found])
 
 
-def _lights(frame: Frame) -> NDArray:
-    """By how many lights each pixel faces, from none to the most; grey where that is not known yet."""
+def _displayed(color: NDArray[np.float32], tone: Tone, clipping: bool) -> NDArray:
+    """Colours by their tone, with stripes where the screen cuts something off and that is to be marked."""
+    shown = np.clip(toned(color, tone), 0.0, 1.0)
+    if clipping:
+        found, (y, x) = clipped(color, tone), np.indices(color.shape[:2])
+        stripes = (x + y) // CLIP_STRIPE % 2 == 0
+        shown[found.bright & stripes] = TOO_BRIGHT
+        shown[found.black & stripes] = BLACK
+    return shown
+
+
+def _lights(frame: Frame, span: tuple[float, float] | None) -> NDArray:
+    """By how many lights each pixel faces, by their range; grey where that is not known yet."""
     due = lights_due(frame)
-    return np.where((due >= 0)[..., None], _mapped(due / lights_top(due)), np.asarray(GREY, np.float32))
+    mapped = _mapped(_in_range(due, span or span_of(frame, View.LIGHTS)))
+    return np.where((due >= 0)[..., None], mapped, np.asarray(GREY, np.float32))
 
 
 def _outlined(frame: Frame, colors: NDArray) -> NDArray:
@@ -191,13 +209,18 @@ def _on_line(cells: NDArray[np.int32]) -> NDArray[np.bool_]:
     return line
 
 
-def _work(frame: Frame, view: View, shares: bool, top: float | None) -> NDArray:
-    """Rays at each pixel, from none to the view's top, or which share they are; grey where they are a share of none."""
+def _in_range(numbers: NDArray, span: tuple[float, float]) -> NDArray:
+    """Numbers as places on the colour map."""
+    return (numbers - span[0]) / (span[1] - span[0])
+
+
+def _work(frame: Frame, view: View, shares: bool, span: tuple[float, float] | None) -> NDArray:
+    """Rays at each pixel, by their range, or which share they are; grey where they are a share of none."""
     work = work_of(frame, view)
     if not shares or work is None:
-        top = top or work_top(frame, view)
+        span = span or span_of(frame, view)
         assert work is not None
-        return _mapped(work / top)
+        return _mapped(_in_range(work, span))
     whole = whole_of(frame, view)
     return np.where((whole > 0)[..., None], _mapped(work / np.maximum(whole, 1)), np.asarray(GREY, np.float32))
 
@@ -223,16 +246,16 @@ def _pixel_count(frame: Frame) -> NDArray:
     return np.where((frame.highest_count > 0)[:, None], _mapped(t), np.asarray(GREY, np.float32))
 
 
-def _depth(frame: Frame) -> NDArray:
-    """Near is bright; the range is that of the frame."""
-    near, far = depth_range(frame)
+def _depth(frame: Frame, span: tuple[float, float] | None) -> NDArray:
+    """Near is bright; the range is that of the frame, or chosen."""
+    near, far = span or span_of(frame, View.DEPTH)
     depth = np.where(np.isfinite(frame.depth), frame.depth, far)
-    return _mapped(1.0 - np.clip((depth - near) / (far - near), 0.0, 1.0))
+    return _mapped(1.0 - np.clip(_in_range(depth, (near, far)), 0.0, 1.0))
 
 
-def _difference(frame: Frame, marked: bool, beneath: float, outlines: bool, magnified: int) -> NDArray:
+def _difference(frame: Frame, marked: bool, beneath: float, outlines: bool, magnified: int, tone: Tone) -> NDArray:
     """Wrong pixels in their colour over the dimmed picture, and rings around them."""
-    marks, colors = wrong_marks(frame, magnified), beneath * np.clip(frame.color, 0.0, 1.0)
+    marks, colors = wrong_marks(frame, magnified), beneath * np.clip(toned(frame.color, tone), 0.0, 1.0)
     if outlines:
         colors = _outlined(frame, colors)
     if marked:
@@ -241,11 +264,14 @@ def _difference(frame: Frame, marked: bool, beneath: float, outlines: bool, magn
     return colors
 
 
-def _wipe(frame: Frame, marked: bool, wipe: float, outlines: bool, magnified: int) -> NDArray:
+def _wipe(
+    frame: Frame, marked: bool, wipe: float, outlines: bool, magnified: int, tone: Tone, clipping: bool
+) -> NDArray:
     """Left of a line the traced picture, right of it the one in which every shadow answer is right."""
     marks, column = wrong_marks(frame, magnified), wipe_column(frame.width, wipe)
     assert frame.reference is not None
-    colors = np.clip(np.concatenate([frame.color[:, :column], frame.reference[:, column:]], axis=1), 0.0, 1.0)
+    traced = np.concatenate([frame.color[:, :column], frame.reference[:, column:]], axis=1)
+    colors = _displayed(traced, tone, clipping)
     if outlines:
         colors = _outlined(frame, colors)
     if marked:

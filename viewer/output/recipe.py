@@ -28,6 +28,7 @@ from viewer.state.earlier import from_json as earlier_from_json
 from viewer.state.earlier import to_json as earlier_to_json
 from viewer.state.marks import wipe_column
 from viewer.state.session import Snapshot, settings_to_json
+from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import BENEATH, View
 from viewer.util import resources
 
@@ -38,8 +39,8 @@ MOST_BEFORE = 100_000  # frames
 class Style:
     """How a frame is drawn, without tracing it: shares instead of counts in maps of work, rings around wrong pixels for
     a picture that is shown `magnified` times, how much of the light shows under flat colours, how bright the picture
-    beneath the difference is, borders between primitives, where the legend is if there is one, the caption, and what
-    was drawn on it."""
+    beneath the difference is, borders between primitives, where the legend is if there is one, the caption, what was
+    drawn on it, the tone of its colours, whether what this clips is marked, and the range of a map of numbers."""
 
     shares: bool = False
     marked: bool = True
@@ -50,6 +51,9 @@ class Style:
     legend: tuple[float, float] | None = None
     caption: str = ""
     annotations: tuple[Annotation, ...] = ()
+    tone: Tone = NEUTRAL
+    clipping: bool = False
+    span: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -94,13 +98,16 @@ class Recipe:
         camera = self.camera or scene.camera_at(self.time)
         settings = settings_to_json(self.settings)
         path = str(self.scene.absolute())
+        follow, style = self.camera is None, self.style
         return Snapshot(
-            path, self.time, camera, self.camera is None, settings, self.view, self.light, self.wipe, self.meshes
+            path, self.time, camera, follow, settings, self.view, self.light, self.wipe,
+            tone=style.tone, span=style.span, meshes=self.meshes,
         )  # fmt: skip
 
     def to_json(self) -> dict[str, Any]:
         """What a capture carries beside its state."""
         style = asdict(self.style) | {"annotations": [a.to_json() for a in self.style.annotations]}
+        del style["tone"], style["span"]  # these are of its state
         return {
             "accelerator": self.settings.accelerator,
             "threads": self.settings.threads if self.by_one_thread else 0,
@@ -147,7 +154,7 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Re
             view=snapshot.view,
             light=snapshot.light,
             wipe=snapshot.wipe,
-            style=_style(data.get("style", {})),
+            style=replace(_style(data.get("style", {})), tone=snapshot.tone, span=snapshot.span),
             warmup=_count(data, "warmup"),
             repeats=_count(data, "repeats"),
             history=str(data.get("history", "")),
@@ -184,6 +191,7 @@ def _style(data: Mapping[str, Any]) -> Style:
         legend=place,
         caption=str(data.get("caption", "")),
         annotations=annotations_from_json(data.get("annotations", [])),
+        clipping=bool(data.get("clipping", False)),
     )
 
 
@@ -213,20 +221,26 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         ("--shading", style.shading, usual.shading),
         ("--beneath", style.beneath, usual.beneath),
         ("--magnified", style.magnified, usual.magnified),
+        ("--exposure", style.tone.exposure, usual.tone.exposure),
+        ("--white", style.tone.white, usual.tone.white),
+        ("--tone", style.tone.curve.value, usual.tone.curve.value),
     )
     for option, value, default in of_settings:
-        if value != default:
-            words += [option, str(value)]
+        if value != default:  # a negative number would look like an option
+            words += [f"{option}={value}"] if str(value).startswith("-") else [option, str(value)]
     flags = (
         ("--symmetric", settings.symmetric),
         ("--verify", settings.verify),
         ("--outlines", style.outlines),
         ("--no-marks", not style.marked),
+        ("--mark-clipped", style.clipping),
         ("--legend", style.legend is not None),
     )
     words += [option for option, given in flags if given]
     if style.legend is not None and style.legend != (0.0, 1.0):
         words += ["--legend-at", f"{style.legend[0]!r},{style.legend[1]!r}"]
+    if style.span is not None:
+        words += [f"--range={style.span[0]!r}:{style.span[1]!r}"]
     if style.caption:
         words += [f"--caption={style.caption.replace('{', '{{').replace('}', '}}')}"]
     if recipe.before:

@@ -67,7 +67,7 @@ class CaptureService:
     ) -> None:
         """Save a picture, (h, w, 3) uint8, of a frame, with its legend, named by the user's template.
 
-        With the recipe that makes it again; without one it shows more than a picture, as the window."""
+        With the recipe that makes it again; without one it shows more than a picture, as the window, or two."""
         session, preferences, scene = self._session, self._preferences, self._session.scene
         if frame is None or pixels is None or scene is None:
             self._notices.say("there is no picture to save yet", error=True)

@@ -17,6 +17,7 @@ from tracer.scene.model import Scene
 from tracer.zoom import Step
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
+from viewer.services.comparing import Comparing
 from viewer.services.film_controller import FilmController
 from viewer.services.hunt_controller import HuntController
 from viewer.services.light_recorder import LightRecorder
@@ -68,6 +69,7 @@ class Controller:
         self.tracing = Tracing(session, preferences, renderer, self.runs.refuses, awaken)
         self.settings = SettingsController(session, preferences, notices, self.runs.refuses)
         self.motion = Motion(session, preferences, notices, self.runs.refuses)
+        self.comparing = Comparing(session, self.tracing, self.settings, notices)
         self.bookmarks = Bookmarks(session, preferences, self.settings, notices)
         self.undo = Undo(
             session, preferences, self.motion, notices, self.runs.refuses,
@@ -131,6 +133,7 @@ class Controller:
         self.pictures.follow()
         self.questions.follow()
         frame = self._take_frame()
+        self.comparing.follow()
         traced, motion, run = self.traced, self.motion, self.runs.current
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
         self.undo.follow()

@@ -22,7 +22,7 @@ from viewer.state import flight
 from viewer.state.notices import Notices
 from viewer.state.plans import HuntPlan
 from viewer.state.preferences import Preferences
-from viewer.state.session import Session, Snapshot, settings_to_json
+from viewer.state.session import Session, settings_to_json
 from viewer.state.views import View
 
 
@@ -166,10 +166,9 @@ class HuntController:
             return
         self.chosen = number
         settings, size = hunt.search.settings, (hunt.search.settings.width, hunt.search.settings.height)
-        chosen = settings_to_json(replace(settings, samples=self._session.settings.samples))
-        snapshot = Snapshot(
-            str(scene.path), find.time, find.camera, find.own_camera, chosen, self._session.view, find.light,
-            self._session.wipe, self._session.meshes,
+        snapshot = replace(
+            self._session.snapshot(), time=find.time, camera=find.camera, follow=find.own_camera,
+            settings=settings_to_json(replace(settings, samples=self._session.settings.samples)), light=find.light,
         )  # fmt: skip
         point = (find.x + 0.5) / size[0], (find.y + 0.5) / size[1]
         before = pasts([(one.time, one.camera or scene.camera_at(one.time)) for one in find.before], settings)

@@ -16,6 +16,8 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from viewer.output import clipboard, exr, png, tev
+from viewer.output.legend import Legend
+from viewer.output.legend_picture import with_legend
 from viewer.output.recipe import Recipe, by_chance
 from viewer.services import stills
 from viewer.services.jobs import Job
@@ -146,11 +148,18 @@ class PictureController:
 
     # --- what is shown, elsewhere ------------------------------------------------------------------
 
-    def copy(self, pixels: NDArray[np.uint8] | None, frame: Frame | None, view: View) -> None:
-        """Put what is shown, (h, w, 3), on the clipboard, with its annotations, and its legend where that is wanted."""
-        scene = self._session.scene
-        recipe = self._recipes.of(frame, view) if frame is not None else None
-        if pixels is None or frame is None or recipe is None or scene is None:
+    def copy(
+        self,
+        pixels: NDArray[np.uint8] | None,
+        frame: Frame | None,
+        legend: Legend | None = None,
+        recipe: Recipe | None = None,
+    ) -> None:
+        """Put what is shown, (h, w, 3), on the clipboard, with its legend.
+
+        With the recipe that makes it again, and its annotations; without one, as for two pictures, it says nothing."""
+        scene, place = self._session.scene, (self._preferences.legend_x, self._preferences.legend_y)
+        if pixels is None or frame is None or scene is None:
             self._notices.say("there is no picture to copy yet", error=True)
             return
         if clipboard.program() is None:
@@ -158,9 +167,14 @@ class PictureController:
             return
 
         def work() -> str:
-            drawn, _ = stills.dressed(pixels, frame, scene, recipe)
             file = BytesIO()
-            Image.fromarray(drawn).save(file, "PNG", pnginfo=png.notes(stills.text(drawn, frame, scene, recipe)))
+            if recipe is not None:
+                drawn, _ = stills.dressed(pixels, frame, scene, recipe)
+                Image.fromarray(drawn).save(file, "PNG", pnginfo=png.notes(stills.text(drawn, frame, scene, recipe)))
+            else:
+                described = with_legend(pixels, legend, place) if legend is not None else None
+                drawn = pixels if described is None else described
+                Image.fromarray(drawn).save(file, "PNG")
             clipboard.copy(file.getvalue())
             return f"the picture, {drawn.shape[1]} x {drawn.shape[0]}, is on the clipboard"
 

@@ -14,6 +14,7 @@ from viewer.services.tracing import Tracing
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.tone import NEUTRAL
 from viewer.state.views import View
 
 UNKNOWN = "its modes were learnt from other frames as well"
@@ -37,6 +38,7 @@ class Recipes:
         follow = session.follow and frame.camera == scene.camera_at(frame.time)
         settings = replace(frame.settings, verify=session.settings.verify, modes=False)
         magnified = self._tracing.magnified if view.needs_verify else 1
+        style = self._style(view, magnified, self._preferences.legend_in_pictures if legend is None else legend)
         found = Recipe(
             scene=Path(scene.path).absolute(),
             time=frame.time,
@@ -45,15 +47,17 @@ class Recipes:
             view=view,
             light=session.light,
             wipe=session.wipe,
-            style=self._style(magnified, self._preferences.legend_in_pictures if legend is None else legend),
-            by_gpu=view is not View.COLOR or self._preferences.outlines,
+            style=style,
+            by_gpu=view is not View.COLOR or style.outlines or not style.tone.neutral or style.clipping,
             folders=self._loader.folders,
             meshes=session.meshes,
         )
         return self._with_history(found, frame)
 
-    def _style(self, magnified: int, legend: bool) -> Style:
-        p = self._preferences
+    def _style(self, view: View, magnified: int, legend: bool) -> Style:
+        """Of tone and range, what the view has a use for."""
+        p, session = self._preferences, self._session
+        ranged = view.has_range and not (view.needs_work and p.work_shares)
         return Style(
             shares=p.work_shares,
             marked=p.mark_wrong,
@@ -62,7 +66,10 @@ class Recipes:
             beneath=p.beneath,
             outlines=p.outlines,
             legend=(p.legend_x, p.legend_y) if legend else None,
-            annotations=tuple(self._session.annotations),
+            annotations=tuple(session.annotations),
+            tone=session.tone if view.shows_picture else NEUTRAL,
+            clipping=session.clipping and view.shows_clipped,
+            span=session.spans.get(view) if ranged else None,
         )
 
     def _with_history(self, found: Recipe, frame: Frame) -> Recipe:

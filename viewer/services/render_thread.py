@@ -20,12 +20,13 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Protocol
+from typing import Any, Protocol
 
 from tracer.renderer import Frame, Settings
 from tracer.scene.model import Camera, Cancelled
 from tracer.statistics import FrameStatistics
 from viewer.services.jobs import TRACER, step_back
+from viewer.services.pair import Asked, Pair
 from viewer.util.failures import Failure, failure
 
 MOST_WHOLE = 16
@@ -50,11 +51,18 @@ class Traces(Protocol):
 
     def reset_modes(self) -> None: ...
 
+    def beside(self) -> Traces: ...
+
+    def follow(self, other: Any) -> None: ...
+
+    def take_turn(self, time: float) -> None: ...
+
 
 @dataclass(frozen=True)
 class RenderRequest:
     """What to trace: a picture, with so many samples a pixel in the end.
 
+    `second` is the method that traces the same once more, if any, after each part of the picture.
     `divisor` is how much coarser than the window it is; `serial` tells requests apart that are otherwise alike;
     `refinement_seconds` is how long, at least, certificates may be made for it where nobody waits for the picture.  How
     the picture comes about does not tell requests apart: `parts` of it, in sixteenths, around a `focus`.  A `quick`
@@ -67,6 +75,7 @@ class RenderRequest:
     serial: int = 0
     refinement_seconds: float = 0.0
     samples: int = 1
+    second: str = ""
     parts: tuple[float, ...] = field(default=(16,), compare=False)
     quick: bool = field(default=False, compare=False)
     final: bool = field(default=False, compare=False)
@@ -83,12 +92,13 @@ class RenderRequest:
 
 @dataclass(frozen=True)
 class Traced:
-    """A frame and the request it answers, and what the first part of this cost; `fresh` says of a whole frame that all
-    modes were forgotten before it, and none has become whole in between."""
+    """A frame and the request it answers, what the first part of this cost, and the same frame by a second method;
+    `fresh` says of a whole frame that all modes were forgotten before it, and none has become whole in between."""
 
     request: RenderRequest
     frame: Frame
     first: FrameStatistics
+    second: Frame | None = None
     fresh: bool = False
 
     @property
@@ -139,6 +149,7 @@ class RenderThread:
         self._wake = wake
         self._changed = threading.Condition()
         self._renderer: Traces | None = None
+        self._pair: Pair | None = None  # of the renderer, with a second one; the thread's own
         self._waiting: RenderRequest | None = None
         self._running: RenderRequest | None = None
         self._shown = self._whole = False  # whether a part of what is running, or all of it, has been
@@ -320,17 +331,15 @@ class RenderThread:
             if reset:
                 renderer.reset_modes()
                 self._fresh = True
+                self._pair = None
             seconds = max(request.settings.certificate_seconds, request.refinement_seconds)
             patient = request.refinement_seconds > 0.0
             renderer.settings = replace(request.settings, certificate_seconds=seconds, patient=patient)
-            refining = renderer.refine(
-                request.time, request.camera, lambda: self._cancel, request.parts, request.samples, request.focus
-            )
-            with closing(refining):
+            with closing(self._refining(renderer, request)) as refining:
                 first = None
-                for frame in refining:
+                for frame, second in refining:
                     first = first or frame.statistics
-                    if not self._deliver(renderer, Traced(request, frame, first)):
+                    if not self._deliver(renderer, Traced(request, frame, first, second)):
                         break
                     self._answer_meanwhile(renderer, request.time)
         except Cancelled:
@@ -342,6 +351,17 @@ class RenderThread:
             if renderer is self._renderer:
                 self._failure = failed or self._failure
         self._wake()
+
+    def _refining(self, renderer: Traces, request: RenderRequest) -> Generator[tuple[Frame, Frame | None], None, None]:
+        """The pictures that a request asks for, each with that by the second method where there is one."""
+        asked = Asked(request.time, request.camera, lambda: self._cancel, request.parts, request.samples, request.focus)
+        if not request.second:
+            self._pair = None  # nor is what it has learnt kept in memory
+            yield from ((frame, None) for frame in asked.of(renderer))
+            return
+        if self._pair is None or not self._pair.is_of(renderer):
+            self._pair = Pair(renderer)
+        yield from self._pair.refine(asked, request.second)
 
     def _deliver(self, renderer: Traces, traced: Traced) -> bool:
         """Hand out a frame, unless it is of a scene that was left meanwhile; whether more of it is wanted."""

@@ -60,7 +60,7 @@ class Replay(Run[int]):
             frame = renderer.render(past.time, past.camera, cancelled)
             request = RenderRequest(frame.time, frame.camera, frame.settings)
             with self._taking:
-                self._traced.append(Traced(request, _without_picture(frame), frame.statistics, number == 0))
+                self._traced.append(Traced(request, _without_picture(frame), frame.statistics, fresh=number == 0))
             self._count(f"frame {number + 1} of {len(self._frames)}")
             self._show(frame, wait=False)
             yield self.traced

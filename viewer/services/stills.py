@@ -97,7 +97,7 @@ def draw(frame: Frame, scene: Scene, recipe: Recipe) -> tuple[NDArray[np.uint8],
     style, view, light = recipe.style, recipe.view, recipe.light
     pixels = picture(
         frame, view, light, style.shading, style.marked, recipe.wipe, style.shares, style.beneath,
-        style.outlines, style.magnified,
+        style.outlines, style.magnified, style.tone, style.clipping, style.span,
     )  # fmt: skip
     return dressed(pixels, frame, scene, recipe)
 
@@ -107,7 +107,8 @@ def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recip
     style, view, light, missing = recipe.style, recipe.view, recipe.light, ""
     if style.legend is not None:
         name = scene.lights[light].name if view.of_light else ""
-        legend = legend_of(frame, view, Chosen(light, name, style.marked, style.shares))
+        chosen = Chosen(light, name, style.marked, style.shares, style.span, style.tone, style.clipping)
+        legend = legend_of(frame, view, chosen)
         described = with_legend(pixels, legend, style.legend) if legend is not None else None
         if described is None:
             missing = f"no legend: {'the picture is too small for it' if legend else 'the traced picture needs none'}"

@@ -90,9 +90,9 @@ class TimeTravel:
             replace(run.settings, method=run.shown, samples=self._session.settings.samples),
         )
         time = run.times[number]
-        snapshot = Snapshot(
-            str(scene.path), time, scene.camera_at(time), True, settings_to_json(settings), session.view, session.light,
-            session.wipe, session.meshes,
+        snapshot = replace(
+            session.snapshot(), time=time, camera=scene.camera_at(time), follow=True,
+            settings=settings_to_json(settings),
         )  # fmt: skip
         goal = Goal(snapshot, f"frame {number} of the experiment", (settings.width, settings.height))
         if modes:
@@ -103,12 +103,10 @@ class TimeTravel:
             self._notices.say(f"frame {number} of the path, by {run.shown}")
 
     def _snapshot(self, moment: Moment) -> Snapshot:
-        scene = self._session.scene
-        assert scene is not None
-        path, chosen = str(scene.path), dict(moment.chosen)
-        return Snapshot(
-            path, moment.time, moment.camera, moment.follow, chosen, moment.view, moment.light, moment.wipe,
-            self._session.meshes,
+        return replace(
+            self._session.snapshot(), time=moment.time, camera=moment.camera, follow=moment.follow,
+            settings=dict(moment.chosen), view=moment.view, light=moment.light, wipe=moment.wipe,
+            span=self._session.spans.get(moment.view),
         )  # fmt: skip
 
     def _may_differ(self, moment: Moment) -> str:

@@ -18,9 +18,10 @@ from viewer.services.governor import AT_ONCE, Governor, Plan, divided
 from viewer.services.lamps import LampSteps
 from viewer.services.refinement import Refinement
 from viewer.services.render_thread import Pictures, RenderRequest, Traced
-from viewer.services.requests import as_asked, fulfils, lacks, settings_for
+from viewer.services.requests import as_asked, fulfils, lacks, settings_for, with_modes_of
 from viewer.services.runs import Run
 from viewer.state.learnt import Learnt
+from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.preferences import Preferences
 from viewer.state.readings import can_draw, records_lights
 from viewer.state.session import Session
@@ -52,12 +53,15 @@ class Tracing:
         wake: Callable[[], None] = lambda: None,
         governor: Governor | None = None,
     ) -> None:
-        """Nothing is traced again on the user's behalf while `locked()`, which says so itself."""
+        """Nothing is traced again on the user's behalf while `locked()`, which says so itself.  `second` is the method
+        that traces each frame once more; none where it is empty."""
+        self.second = ""
         self._session, self._preferences, self._renderer = session, preferences, renderer
         self._locked, self._wake = locked, wake
         self.now = Conditions()
         self.traced: Traced | None = None
         self._known: Frame | None = None  # the last that was whole and of the window's resolution
+        self._known_second: Frame | None = None  # the same by the second method
         self.governor = governor or Governor()
         self.refinement = Refinement()
         self.lamps = LampSteps(session)
@@ -77,7 +81,7 @@ class Tracing:
 
     def forget(self) -> None:
         """Begin with another scene: it has no frame yet, and its pixels cost something else."""
-        self.traced = self._known = self._asked = None
+        self.traced = self._known = self._known_second = self._asked = None
         self._new = True
         self.learnt.forget()
         self.refinement.forget()
@@ -97,7 +101,7 @@ class Tracing:
         if not self._locked():
             self._renderer.reset_modes()
             self.learnt.forget()
-            self._known = None
+            self._known = self._known_second = None
             self.refinement.forget()
             self.again()
 
@@ -127,18 +131,11 @@ class Tracing:
 
     def _with_modes(self, traced: Traced) -> Traced:
         """Modes are those of a resolution: what is coarser than the window shows what its last whole picture knew."""
-        frame, known = traced.frame, self._known
-        if traced.request.divisor == 1:
-            self._known = frame if traced.whole else known
-        elif known is not None and known.settings.keeps_modes and len(known.modes) == len(frame.modes):
-            frame = replace(
-                frame,
-                modes=known.modes,
-                pixel_count=known.pixel_count,
-                highest_count=known.highest_count,
-                statistics=replace(frame.statistics, by_modes=known.statistics.by_modes),
-            )
-            return replace(traced, frame=frame)
+        if traced.request.divisor > 1:
+            second = traced.second and with_modes_of(self._known_second, traced.second)
+            return replace(traced, frame=with_modes_of(self._known, traced.frame), second=second)
+        if traced.whole:
+            self._known, self._known_second = traced.frame, traced.second
         return traced
 
     def ask(self, now: Conditions) -> None:
@@ -169,7 +166,7 @@ class Tracing:
             settings, samples = replace(settings, lamp_samples=lamp_samples), 1
         seconds = refinement.SECONDS if self._refines else 0.0
         wanted = RenderRequest(
-            session.time, session.camera, settings, plan.divisor, self._serial, seconds, samples,
+            session.time, session.camera, settings, plan.divisor, self._serial, seconds, samples, self._second,
             plan.parts, moving or session.playing, focus=now.focus,
         )  # fmt: skip
         if self._answered(wanted):
@@ -218,7 +215,14 @@ class Tracing:
 
     @property
     def _frame_seconds(self) -> float:
-        return 1.0 / self._preferences.target_fps
+        """That a picture may take until some of it is shown: half of a frame's where each is traced twice."""
+        return (0.5 if self.second else 1.0) / self._preferences.target_fps
+
+    @property
+    def _second(self) -> str:
+        """The second method, or the one without culling until what makes certificates has been compiled."""
+        waits = bool(self.second) and not self.now.ready and Method.parse(self.second).has_certificates
+        return with_base(self.second, NO_CULLING) if waits else self.second
 
     # --- samples of lamps ------------------------------------------------------------------------
 
@@ -236,6 +240,8 @@ class Tracing:
     def _shows_session(self, asked: RenderRequest) -> bool:
         """Whether a request is for what the session looks at now, however finely."""
         session = self._session
+        if asked.second != self._second:
+            return False
         settings = as_asked(self.settings, asked.settings)
         return (session.time, session.camera, settings) == (asked.time, asked.camera, asked.settings)
 

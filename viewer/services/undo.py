@@ -1,11 +1,13 @@
-"""Undo and redo of settings, view, light and camera.
+"""Undo and redo of settings, view, light, tone, comparison, zoom and camera.
 
 Nobody has to announce a change: what holds is compared from one of the window's frames to the next.  Changes that
-belong together are one step: all of a drag, all of a flight until the camera rests.  Time, and what a run does, are no
-steps.  How a mesh is read is one, which takes a while to be brought back: the mesh is read again."""
+belong together are one step: all of a drag, all of a flight until the camera rests, all turns of the wheel until it
+does.  Time, and what a run does, are no steps.  How a mesh is read is one, which takes a while to be brought back: the
+mesh is read again."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
@@ -20,6 +22,8 @@ from viewer.state.session import Session
 MOST = 200
 """Steps that are kept."""
 _CAMERA = "camera"
+_BY_STROKES = {"tone", "zoom"}  # what the wheel or a key changes little by little
+_STROKE = 0.6  # seconds from one to the next, at most, for both to be one step
 
 
 @dataclass(frozen=True)
@@ -83,6 +87,7 @@ class Undo:
         self._done: list[Step] = []
         self._undone: list[Step] = []
         self._open: _Open | None = None
+        self._changed_at = 0.0
         self._last: Place | None = None
         self._name = ""
         self._time: float | None = None  # before what is about to change, if that goes to another time
@@ -137,6 +142,7 @@ class Undo:
                 self._close()
             self._open = self._open or _Open(self._last)
             self._open.fields |= changed
+            self._changed_at = time.monotonic()
         self._last = now
         if not self._goes_on:
             self._close()
@@ -174,7 +180,10 @@ class Undo:
     @property
     def _goes_on(self) -> bool:
         """Whether more may come of the step that is open."""
-        return self._open is not None and (self.held or (_CAMERA in self._open.fields and self._motion.handled))
+        if self._open is None:
+            return False
+        strokes = self._open.fields.keys() <= _BY_STROKES and time.monotonic() < self._changed_at + _STROKE
+        return self.held or strokes or (_CAMERA in self._open.fields and self._motion.handled)
 
     def _close(self) -> None:
         """End the step that is open; what has come back to where it was is none."""

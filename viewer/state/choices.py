@@ -1,6 +1,8 @@
 """What the user has chosen to see and how: settings, view, light and the looks of the picture, as one value.
 
-It is what a step of undo brings back, and what a preset keeps.  Camera, time and scene are no part of it."""
+It is what a step of undo brings back, and what a preset keeps.  Camera, time and scene are no part of it.  How closely
+the picture is looked at, ranges of colours and the comparison are undone, but no preset keeps them: they belong to what
+is shown at the time."""
 
 from __future__ import annotations
 
@@ -8,9 +10,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from viewer.state.comparison import Chosen
 from viewer.state.preferences import Preferences, checked
 from viewer.state.session import Session, settings_from_json, settings_to_json
+from viewer.state.tone import Tone
 from viewer.state.views import View
+from viewer.state.zooming import Zoom
 
 LOOKS = {
     "outlines": "outlines",
@@ -41,19 +46,28 @@ _SETTINGS = {
 
 @dataclass(frozen=True)
 class Choices:
-    """`settings` holds fields of `tracer.Settings` as a snapshot does, `looks` those of LOOKS."""
+    """`settings` holds fields of `tracer.Settings` as a snapshot does, `looks` those of LOOKS; None says nothing."""
 
     settings: dict[str, Any]
     view: View = View.COLOR
     light: int = 0
     wipe: float = 0.5
     looks: dict[str, Any] = field(default_factory=dict)
+    tone: Tone | None = None
+    clipping: bool | None = None
+    spans: dict[View, tuple[float, float]] | None = None
+    zoom: Zoom | None = None
+    comparison: Chosen | None = None
 
     @staticmethod
     def of(session: Session, preferences: Preferences) -> Choices:
         """Those that hold now."""
         looks = {name: getattr(preferences, name) for name in LOOKS}
-        return Choices(settings_to_json(session.settings), session.view, session.light, session.wipe, looks)
+        s = session
+        return Choices(
+            settings_to_json(s.settings), s.view, s.light, s.wipe, looks,
+            s.tone, s.clipping, dict(s.spans), s.zoom, s.comparison.chosen,
+        )  # fmt: skip
 
     def put_into(self, session: Session, preferences: Preferences) -> None:
         """Make them hold; what they say nothing of stays.  Raises ValueError, and changes nothing, where the settings
@@ -62,6 +76,12 @@ class Choices:
         lights = len(session.scene.lights) if session.scene is not None else 0
         session.settings, session.view, session.wipe = settings, self.view, self.wipe
         session.light = min(self.light, max(lights - 1, 0))
+        session.tone = session.tone if self.tone is None else self.tone
+        session.clipping = session.clipping if self.clipping is None else self.clipping
+        session.spans = session.spans if self.spans is None else dict(self.spans)
+        session.zoom = session.zoom if self.zoom is None else self.zoom
+        if self.comparison is not None:
+            session.comparison.choose(self.comparison)
         preferences.keep(settings)
         preferences.view = self.view.value
         for name, value in self.looks.items():
@@ -69,7 +89,9 @@ class Choices:
 
     def to_json(self) -> dict[str, Any]:
         values = {"settings": self.settings, "view": self.view.value, "light": self.light, "wipe": self.wipe}
-        return values | {"looks": self.looks}
+        tone = {} if self.tone is None else {"tone": self.tone.to_json()}
+        clipping = {} if self.clipping is None else {"clipping": self.clipping}
+        return values | {"looks": self.looks} | tone | clipping
 
     @staticmethod
     def from_json(data: Any) -> Choices:
@@ -86,6 +108,8 @@ class Choices:
                 max(0, int(data.get("light", 0))),
                 min(max(float(data.get("wipe", 0.5)), 0.0), 1.0),
                 {name: checked(name, looks[name], getattr(defaults, name)) for name in LOOKS if name in looks},
+                Tone.from_json(data["tone"]) if "tone" in data else None,
+                bool(data["clipping"]) if "clipping" in data else None,
             )
         except TypeError:
             raise ValueError("it is damaged") from None
@@ -107,6 +131,17 @@ def differences(before: Choices, after: Choices) -> dict[str, str]:
     for name, called in LOOKS.items():
         if before.looks.get(name) != after.looks.get(name):
             changed[f"looks.{name}"] = _in_words(called, after.looks.get(name))
+    if before.tone != after.tone and after.tone is not None:
+        changed["tone"] = f"tone {after.tone.in_words() or 'as traced'}"
+    if before.clipping != after.clipping:
+        changed["clipping"] = _in_words("marks of clipped pixels", after.clipping)
+    if before.spans != after.spans:
+        changed["spans"] = "range of colours"
+    if before.zoom != after.zoom and after.zoom is not None:
+        changed["zoom"] = "zoom to the whole picture" if after.zoom.fits else f"zoom to {after.zoom.scale:.3g} x"
+    if before.comparison is not None and after.comparison is not None:
+        words = before.comparison.changes(after.comparison)
+        changed |= {f"comparison.{name}": said for name, said in words.items()}
     return changed
 
 

@@ -23,6 +23,7 @@ HELD = {
     "Turn right": "",
     "Turn up": "",
     "Turn down": "",
+    "Show A": "Z",
 }
 """What is done for as long as a key is held, and its key; Shift makes it faster."""
 

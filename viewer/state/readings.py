@@ -129,6 +129,19 @@ def work_top(frame: Frame, view: View) -> float:
     return max(1.0, float(np.percentile(sample, 99.0))) if len(sample) else 1.0
 
 
+def span_of(frame: Frame, view: View) -> tuple[float, float]:
+    """What the first and the last colour of the map stand for in a view with a range, unless others are chosen.
+
+    Raises ValueError for a frame without that record, and for other views."""
+    if view is View.DEPTH:
+        return depth_range(frame)
+    if view is View.LIGHTS:
+        return 0.0, float(lights_top(lights_due(frame)))
+    if not view.has_range:
+        raise ValueError(f"the view {view.value} has no range")
+    return 0.0, work_top(frame, view)
+
+
 def verified(buffer: NDArray | None) -> NDArray:
     """A buffer of verified frames; raises ValueError where the frame is none."""
     if buffer is None:

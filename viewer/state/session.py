@@ -17,8 +17,11 @@ from tracer.renderer import Settings
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from viewer.state.annotations import Annotation
+from viewer.state.comparison import Comparison
 from viewer.state.methods import DEFAULT
+from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
+from viewer.state.zooming import FIT, Zoom
 
 # Settings that say how a frame was asked for, not what the user chose; those of this machine and of the open scene.
 _NOT_RESTORED = {
@@ -41,11 +44,13 @@ class Snapshot:
     view: View
     light: int
     wipe: float = 0.5
+    tone: Tone = NEUTRAL
+    span: tuple[float, float] | None = None
     meshes: MeshOptions = AS_IN_FILE
 
     def to_json(self) -> dict[str, Any]:
         data = asdict(self)
-        return data | {"camera": self.camera.to_json(), "view": self.view.value}
+        return data | {"camera": self.camera.to_json(), "view": self.view.value, "tone": self.tone.to_json()}
 
     @staticmethod
     def from_json(data: Any) -> Snapshot:
@@ -65,12 +70,27 @@ class Snapshot:
                 view=View(data.get("view", View.COLOR)),
                 light=max(0, int(data.get("light", 0))),
                 wipe=wipe if 0.0 <= wipe <= 1.0 else 0.5,
+                tone=Tone.from_json(data.get("tone", {})),
+                span=_span(data.get("span")),
                 meshes=_meshes_from_json(data.get("meshes", {})),
             )
         except KeyError as error:
             raise ValueError(f"its saved state lacks {error}") from None
         except TypeError:
             raise ValueError("its saved state is damaged") from None
+
+
+def _span(data: Any) -> tuple[float, float] | None:
+    """A range of the colour map, if it is one."""
+    if data is None:
+        return None
+    try:
+        low, high = (float(number) for number in data)
+    except (TypeError, ValueError):
+        raise ValueError("its range is damaged") from None
+    if not (math.isfinite(low) and math.isfinite(high) and low < high):
+        raise ValueError("its range is none")
+    return low, high
 
 
 def settings_to_json(settings: Settings) -> dict[str, Any]:
@@ -102,7 +122,10 @@ def _meshes_from_json(data: Any) -> MeshOptions:
 
 @dataclass
 class Session:
-    """The state behind the window; plain data and what it implies, no threads and no widgets."""
+    """The state behind the window; plain data and what it implies, no threads and no widgets.
+
+    `spans` are the ranges that were chosen for views of numbers; `clipping` marks what the screen cuts off; `zoom` is
+    how closely the picture itself is looked at, `comparison` what is compared with it."""
 
     scene: Scene | None = None
     time: float = 0.0
@@ -112,6 +135,11 @@ class Session:
     view: View = View.COLOR
     light: int = 0
     wipe: float = 0.5
+    tone: Tone = NEUTRAL
+    clipping: bool = False
+    spans: dict[View, tuple[float, float]] = field(default_factory=dict)
+    zoom: Zoom = FIT
+    comparison: Comparison = field(default_factory=Comparison)
     selected: tuple[float, float] | None = None
     meshes: MeshOptions = AS_IN_FILE  # how the scene was read
     annotations: list[Annotation] = field(default_factory=list)
@@ -136,6 +164,7 @@ class Session:
         is measured in units of the scene that was open."""
         if self.scene is not None and scene.path != self.scene.path:
             self.settings = replace(self.settings, lamp_radius=None)
+            self.zoom = FIT
         self.scene = scene
         self.time = scene.time_range[0]
         self.free_camera = None
@@ -199,6 +228,8 @@ class Session:
             view=self.view,
             light=self.light,
             wipe=self.wipe,
+            tone=self.tone,
+            span=self.spans.get(self.view),
             meshes=self.meshes,
         )
 
@@ -213,4 +244,7 @@ class Session:
         self.settings = replace(self.settings, **{k: v for k, v in snapshot.settings.items() if k not in _NOT_RESTORED})
         self.view = snapshot.view
         self.light = min(snapshot.light, max(len(self.scene.lights) - 1, 0))
-        self.wipe = snapshot.wipe
+        self.wipe, self.tone = snapshot.wipe, snapshot.tone
+        self.spans.pop(snapshot.view, None)
+        if snapshot.span is not None:
+            self.spans[snapshot.view] = snapshot.span

@@ -70,6 +70,26 @@ class View(StrEnum):
         return self in (View.SHADOW, View.CERTIFICATE, View.PENUMBRA)
 
     @property
+    def has_range(self) -> bool:
+        """Whether it shows a number on the colour map, whose range can be chosen."""
+        return self in (View.DEPTH, View.SAVED, View.COST, View.LIGHTS)
+
+    @property
+    def shows_picture(self) -> bool:
+        """Whether it shows traced colours, by the tone that is chosen."""
+        return self in (View.COLOR, View.DIFFERENCE, View.WIPE)
+
+    @property
+    def shows_clipped(self) -> bool:
+        """Whether it can mark what the screen cuts off of its colours."""
+        return self in (View.COLOR, View.WIPE)
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether it may be smoothed where it is enlarged."""
+        return self in (View.COLOR, View.WIPE)
+
+    @property
     def of_modes(self) -> bool:
         """Whether it shows modes, of frames that keep them alone."""
         return self in (View.OCCLUSION, View.SHADOW, View.PIXEL_COUNT)
@@ -233,6 +253,14 @@ BENEATH = 0.3
 
 WIPE_LINE = _hex("F2F4F7")
 
+LESS, SAME, MORE = _hex("5AA9F5"), _hex("1B1D22"), _hex("FF9F40")
+"""In a signed difference: where B has less than A, the same, and more."""
+
+TOO_BRIGHT, BLACK = _hex("FF3B30"), _hex("2F7BFF")
+"""Stripes over pixels of which the screen cuts something off, where these are marked."""
+CLIP_STRIPE = 4
+"""Pixels across which such a stripe goes, and the gap beside it."""
+
 # Viridis (even to the eye, in greys and to the colour-blind) as a polynomial of degree 6, constant term first.
 _VIRIDIS = np.array(
     [
@@ -251,3 +279,10 @@ def color_map(steps: int = 256) -> NDArray[np.float32]:
     """(steps, 3) float32 colours from the lowest value to the highest."""
     t = np.linspace(0.0, 1.0, steps)[:, None]
     return np.clip((t ** np.arange(len(_VIRIDIS))) @ _VIRIDIS, 0.0, 1.0).astype(np.float32)
+
+
+def signed_map(steps: int = 256) -> NDArray[np.float32]:
+    """(steps, 3) float32 colours of a signed difference, from the least to the largest."""
+    t = np.linspace(-1.0, 1.0, steps, dtype=np.float32)[:, None]
+    less, same, more = (np.asarray(color, np.float32) for color in (LESS, SAME, MORE))
+    return (same + np.abs(t) * (np.where(t < 0.0, less, more) - same)).astype(np.float32)

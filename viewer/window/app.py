@@ -27,11 +27,13 @@ from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, glfw_pads, menus, palette, style
+from viewer.window import commands, comparing, glfw_pads, menus, palette, style
+from viewer.window.compared import Compared
 from viewer.window.display import Display, Look
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout, LayoutFile
+from viewer.window.magnifier import Magnifier
 from viewer.window.panels import dialogs, faults, legend, loading, picture, status, strip, tour
 from viewer.window.shots import Shots
 from viewer.window.ui import CaptureKind, Ui
@@ -130,6 +132,7 @@ class App:
         overlay("The strip of folded panels", lambda: strip.show(self.ui), lambda: setattr(self.ui.fold, "drawer", ""))
         step("Reading the keys", lambda: menus.handle_keys(self.ui))
         step("Flying", lambda: picture.fly(self.ui))
+        step("Comparing", lambda: comparing.follow_key(self.ui))
         step("Game pads", self._follow_pads)
         overlay("The progress of loading", lambda: loading.show(self.ui))
         dialogs.show(self.ui)
@@ -174,7 +177,10 @@ class App:
         if display is None:
             return
         display.show(c.frame)
-        display.draw(self._look(c.selection.picked.primitive if c.selection.picked is not None else -1))
+        look = self._look(c.selection.picked.primitive if c.selection.picked is not None else -1)
+        display.draw(look)
+        comparing.draw(self.ui, look)
+        comparing.magnify(self.ui, look)
 
     def _tell(self) -> None:
         """Hand a whole picture to the script that opened the window, once; it closes the window by returning False."""
@@ -198,13 +204,16 @@ class App:
             shading=p.shading,
             outlines=p.outlines,
             selected=selected,
-            smooth=p.smooth_upscaling,
+            smooth=p.smooth_upscaling and c.session.zoom.fits,
             marked=p.mark_wrong,
             magnified=c.tracing.magnified,
             wipe=c.session.wipe,
             line=not c.tracing.becoming_finer,
             shares=p.work_shares,
             beneath=p.beneath,
+            tone=c.session.tone,
+            clipping=c.session.clipping,
+            span=c.comparing.span(c.tracing.drawn_view),
         )
 
     def _capture_picture(self) -> None:
@@ -217,11 +226,14 @@ class App:
             look = self._look(selected=-1)  # the mark is for the user, not for the picture
             self.ui.display.draw(look)
             pixels = self.ui.display.read() if self.ui.display.drawn(look) else None
+            compared = pixels is not None and comparing.shown(self.ui) is not None
+            if pixels is not None and compared:
+                pixels = comparing.composed(self.ui, pixels)
+            described = legend.of_picture(self.ui) if c.preferences.legend_in_pictures else None
+            recipe = c.recipes.of(c.frame, look.view) if c.frame is not None and not compared else None
             if wanted is CaptureKind.CLIPBOARD:
-                c.pictures.copy(pixels, c.frame, look.view)
+                c.pictures.copy(pixels, c.frame, described, recipe)
             else:
-                described = legend.of_picture(self.ui) if c.preferences.legend_in_pictures else None
-                recipe = c.recipes.of(c.frame, look.view) if c.frame is not None else None
                 c.captures.capture(c.frame, pixels, described, recipe)
         if self.ui.capture_wanted is CaptureKind.WINDOW:
             self.ui.capture_wanted = None
@@ -235,7 +247,8 @@ class App:
 
     def _stay_awake(self) -> None:
         """Doze but when something moves: whatever comes from a thread wakes the window, and it needs the processor."""
-        idling, lively = self.params.fps_idling, self.controller.motion.lively
+        idling = self.params.fps_idling
+        lively = self.controller.motion.lively or self.controller.comparing.blinks()
         by_processor = lively and self.drawn_by_processor
         idling.enable_idling = by_processor or not lively
         idling.fps_idle = SLOWEST_BY_PROCESSOR if by_processor else IDLE
@@ -283,6 +296,8 @@ class App:
         """The window and its GL context exist."""
         self.ui.display = Display()
         self.ui.shots = Shots(self.ui.display.context)
+        self.ui.compared = Compared(self.ui.display.passes)
+        self.ui.magnifier = Magnifier(self.ui.display.passes)
         self.ui.renderer_name = self.ui.display.context.info["GL_RENDERER"]
         self.drawn_by_processor = any(name in self.ui.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
         if self.drawn_by_processor:
@@ -314,6 +329,12 @@ class App:
     def _release(self) -> None:
         self.ui.full_screen.end()
         self.controller.wake = lambda: None  # threads may still be at work when the window is gone
+        if self.ui.compared is not None:
+            self.ui.compared.release()
+            self.ui.compared = None
+        if self.ui.magnifier is not None:
+            self.ui.magnifier.release()
+            self.ui.magnifier = None
         if self.ui.display is not None:
             self.ui.display.release()
             self.ui.display = None

@@ -14,7 +14,7 @@ from imgui_bundle import imgui
 
 from viewer.state.keymap import MODIFIERS
 
-MENUS = ("File", "Edit", "View", "Camera", "Time", "Culling", "Run", "Help")
+MENUS = ("File", "Edit", "View", "Picture", "Compare", "Camera", "Time", "Culling", "Run", "Help")
 
 
 @dataclass(frozen=True)

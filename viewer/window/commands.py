@@ -11,6 +11,7 @@ from viewer.state.picking import extent_at, point_at
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
 from viewer.window import camera_commands, edit_commands, mesh_commands
+from viewer.window.closer_commands import comparing, looking
 from viewer.window.command import Command, Condition
 from viewer.window.taking import drawing, taking
 from viewer.window.ui import CaptureKind, Ui
@@ -18,17 +19,10 @@ from viewer.window.ui import CaptureKind, Ui
 
 def build(ui: Ui) -> list[Command]:
     """All commands, in the order of the menus."""
-    return [
-        *_file(ui),
-        *edit_commands.build(ui),
-        *drawing(ui),
-        *_view(ui),
-        *_camera(ui),
-        *_time(ui),
-        *_culling(ui),
-        *_run(ui),
-        *_help(ui),
-    ]
+    menus = (
+        _file, edit_commands.build, drawing, _view, looking, comparing, _camera, _time, _culling, _run, _help
+    )  # fmt: skip
+    return [command for menu in menus for command in menu(ui)]
 
 
 def _file(ui: Ui) -> list[Command]:
@@ -120,7 +114,7 @@ def _view(ui: Ui) -> list[Command]:
 def _rays(ui: Ui) -> list[Command]:
     """The tree of the clicked pixel's rays, and the steps of one of them."""
     rays = ui.controller.rays
-    walked = lambda: bool(rays.visits)  # noqa: E731
+    walked = Condition(lambda: bool(rays.visits), "no ray is followed: click a row in the panel Rays")
     return [
         Command("Rays of the clicked pixel", "View", lambda: ui.show_panel("Rays"), "X", separated=True),
         Command("Next step of the ray", "View", lambda: rays.go(1), "Period", enabled=walked, repeats=True),
@@ -142,14 +136,17 @@ def _looks(ui: Ui) -> list[Command]:
 
         return change
 
+    largest = Condition(lambda: p.ui_scale < SCALES[-1], "it is as large as it can be")
+    smallest = Condition(lambda: p.ui_scale > SCALES[0], "it is as small as it can be")
+
     def other_theme() -> None:
         p.theme = "dark" if p.theme == "light" else "light"
 
     return [
         Command("Light theme", "View", other_theme, checked=lambda: p.theme == "light", separated=True),
-        Command("Larger interface", "View", sized(1), "Ctrl+Equal", enabled=lambda: p.ui_scale < SCALES[-1],
+        Command("Larger interface", "View", sized(1), "Ctrl+Equal", enabled=largest,
                 other_keys=("Ctrl+Shift+Equal", "Ctrl+KeypadAdd")),
-        Command("Smaller interface", "View", sized(-1), "Ctrl+Minus", enabled=lambda: p.ui_scale > SCALES[0],
+        Command("Smaller interface", "View", sized(-1), "Ctrl+Minus", enabled=smallest,
                 other_keys=("Ctrl+KeypadSubtract",)),
         Command("Interface at 100 %", "View", sized(0), "Ctrl+0", other_keys=("Ctrl+Keypad0",)),
     ]  # fmt: skip

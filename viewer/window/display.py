@@ -19,27 +19,28 @@ from numpy.typing import NDArray
 from tracer.culling.modes import OcclusionMode, has_shadow_mode
 from tracer.shading.screen import to_screen
 from viewer.state.marks import wipe_column
+from viewer.state.tone import NEUTRAL, Curve, Tone
 from viewer.state.views import (
     ARRIVAL_COLORS,
     BACKGROUND,
     BENEATH,
+    BLACK,
     CELL_LINE,
     CERTIFICATE_COLORS,
     GREY,
     OCCLUSION_COLORS,
     RING_DIMMING,
     SHADOW_COLORS,
+    TOO_BRIGHT,
     WIPE_LINE,
     WRONG,
     View,
 )
-from viewer.util.resources import shader_source
 from viewer.window.frame_textures import NAMES, TABLE_WIDTH, DisplayError, FrameTextures
+from viewer.window.passes import Passes
 
 if TYPE_CHECKING:
     from tracer.renderer import Frame
-
-_PICTURES = (View.COLOR, View.WIPE)
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,8 @@ class Look:
     `marked` draws rings around wrong pixels, sized for pixels that are shown `magnified` times,
     `wipe` is the place of the line, 0 to 1 from the left, and `line` whether it is drawn.
     `shares` makes shares of the counts in maps of work; `beneath` is the brightness of the picture
-    beneath the difference."""
+    beneath the difference.  Pictures have a `tone`, and stripes where they are cut off if that is to be seen
+    (`clipping`); maps of numbers go over `span`, or, where that is None, over what the frame has."""
 
     view: View = View.COLOR
     light: int = 0
@@ -63,29 +65,44 @@ class Look:
     line: bool = True
     shares: bool = False
     beneath: float = BENEATH
+    tone: Tone = NEUTRAL
+    clipping: bool = False
+    span: tuple[float, float] | None = None
 
     @property
     def plain(self) -> bool:
         """Whether the picture is shown as it was traced: then it is brought to the target without a pass over it, which
         takes long where a processor draws."""
-        return self.view is View.COLOR and not self.outlines and self.selected < 0
+        as_traced = self.tone.neutral and not self.clipping
+        return self.view is View.COLOR and as_traced and not self.outlines and self.selected < 0
 
 
 class Display:
     """Textures of the newest frame and the target its view is drawn into; needs a current GL context."""
 
-    def __init__(self) -> None:
-        self.context = moderngl.create_context()
+    def __init__(self, passes: Passes | None = None) -> None:
+        """`passes` are those of another display, whose context this one shares."""
+        self.passes, self._shares_passes = passes or Passes(), passes is not None
+        self.context = self.passes.context
         self._buffers = FrameTextures(self.context)
         self._drawn: tuple[int, Look] | None = None
         self._failed: tuple[int, Look] | None = None
-        self._passes: dict[View, tuple[Any, Any]] = {}
         self._target: Any = None
 
     @property
     def texture_id(self) -> int | None:
         """Name of the GL texture to show, or None while there is none; row 0 is the top."""
         return self._target.color_attachments[0].glo if self._target is not None else None
+
+    @property
+    def picture(self) -> Any:
+        """That texture, or None."""
+        return self._target.color_attachments[0] if self._target is not None else None
+
+    @property
+    def version(self) -> object:
+        """Another one whenever another picture has been drawn."""
+        return self._drawn
 
     @property
     def size(self) -> tuple[int, int]:
@@ -132,19 +149,17 @@ class Display:
             target.color_attachments[0].write(_on_screen(frame.color), alignment=1)
         else:
             self._render_into(target, look)
-        filtering = moderngl.LINEAR if look.smooth and look.view in _PICTURES else moderngl.NEAREST
+        filtering = moderngl.LINEAR if look.smooth and look.view.is_smooth else moderngl.NEAREST
         target.color_attachments[0].filter = (filtering, filtering)
         problem = self.context.error
         if problem != "GL_NO_ERROR":
             raise DisplayError(f"the GPU could not draw this: {problem}")
 
     def _render_into(self, target: Any, look: Look) -> None:
-        program, triangle = self._pass(look.view)
+        program, triangle = self.passes.made(look.view.value, units=NAMES)
         self._set_uniforms(program, look)
         self._buffers.use(program, look.light, look.magnified)
-        target.use()
-        self.context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        triangle.render(moderngl.TRIANGLES, vertices=3)
+        self.passes.draw(triangle, target)
 
     def drawn(self, look: Look) -> bool:
         """Whether the target shows the frame in this look."""
@@ -166,27 +181,12 @@ class Display:
         return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 3)[::-1])
 
     def release(self) -> None:
-        """Free everything on the GPU."""
-        for program, triangle in self._passes.values():
-            triangle.release()
-            program.release()
+        """Free everything on the GPU, but what it shares with others."""
+        if not self._shares_passes:
+            self.passes.release()
         self._buffers.release()
         self._release_target()
-        self._passes.clear()
-
-    def _pass(self, view: View) -> tuple[Any, Any]:
-        """The compiled shader of a view, and the triangle it draws."""
-        if view not in self._passes:
-            version = "#version 330 core\n"
-            program = self.context.program(
-                vertex_shader=version + shader_source("fullscreen.vert"),
-                fragment_shader=version + shader_source("common.glsl") + shader_source(f"{view.value}.frag"),
-            )
-            for unit, name in enumerate(NAMES):
-                if name in program:
-                    program[name] = unit
-            self._passes[view] = (program, self.context.vertex_array(program, []))
-        return self._passes[view]
+        self._drawn = None
 
     def _set_uniforms(self, program: Any, look: Look) -> None:
         frame, view, ranges = self._buffers.frame, look.view, self._buffers.ranges
@@ -206,8 +206,12 @@ class Display:
             "outlines": look.outlines,
             "selected": look.selected,
             "light": look.light if has_shadow_mode(words, look.light) else -1,
-            "range": ranges.depth if view is View.DEPTH else (0.0, 1.0),
-            "top": ranges.top(view),
+            "range": look.span or ranges.span(view),
+            "curve": list(Curve).index(look.tone.curve),
+            "gain": look.tone.gain,
+            "white": look.tone.white,
+            "clipping": look.clipping,
+            "clip_colors": [TOO_BRIGHT, BLACK],
             "shares": look.shares,
             "beneath": look.beneath,
             "cell_line": CELL_LINE,

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from viewer.state.marks import wrong_marks
-from viewer.state.readings import depth_range, lights_due, lights_top, samples_of, units_of, work_top
+from viewer.state.readings import depth_range, lights_due, lights_top, samples_of, span_of, units_of
 from viewer.state.views import View, color_map
 
 TABLE_WIDTH = 2048
@@ -59,11 +59,13 @@ class Ranges:
         """(height, width) lights that are due at each pixel."""
         return lights_due(self._frame)
 
-    def top(self, view: View) -> float:
-        """What has the last colour of a map of counts."""
+    def span(self, view: View) -> tuple[float, float]:
+        """What has the first and the last colour of the map."""
+        if view is View.DEPTH:
+            return self.depth
         if view is View.LIGHTS:
-            return lights_top(self.lights)
-        return work_top(self._frame, view) if view.needs_work else 1.0
+            return 0.0, float(lights_top(self.lights))
+        return span_of(self._frame, view) if view.has_range else (0.0, 1.0)
 
 
 class FrameTextures:

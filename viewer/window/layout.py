@@ -211,7 +211,7 @@ def _splits() -> list[hello_imgui.DockingSplit]:
         split("MainDockSpace", "Bottom", down, 0.30),
         split("Left", "LeftBottom", down, 0.52),
         split("Right", "RightBottom", down, 0.40),
-        split("Right", "RightMiddle", down, 0.60),
+        split("Right", "RightMiddle", down, 0.54),
     ]
 
 

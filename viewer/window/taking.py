@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from viewer.state.annotations import Kind
-from viewer.window.command import Command
+from viewer.window.command import Command, Condition
 from viewer.window.ui import CaptureKind, Ui
 
 _NAMES = {Kind.ARROW: "Draw an arrow", Kind.BOX: "Draw a box", Kind.TEXT: "Write on the picture"}
@@ -38,7 +38,7 @@ def clear(ui: Ui) -> None:
 def taking(ui: Ui) -> list[Command]:
     """What follows *Save picture* in the menu File."""
     c = ui.controller
-    there = lambda: c.frame is not None  # noqa: E731
+    there = Condition(lambda: c.frame is not None, "there is no picture yet")
 
     def copy_picture() -> None:
         ui.capture_wanted = CaptureKind.CLIPBOARD
@@ -59,7 +59,7 @@ def taking(ui: Ui) -> list[Command]:
 def drawing(ui: Ui) -> list[Command]:
     """What draws on the picture, in the menu Edit."""
     c = ui.controller
-    some = lambda: bool(c.session.annotations)  # noqa: E731
+    some = Condition(lambda: bool(c.session.annotations), "nothing is drawn on the picture")
 
     def tool(kind: Kind) -> Command:
         chosen = lambda: ui.tool is kind  # noqa: E731

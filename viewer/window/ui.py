@@ -19,13 +19,16 @@ from viewer.services.file_browser import Browser
 from viewer.services.tour import Tour
 from viewer.state.annotations import Annotation, Kind
 from viewer.state.keymap import Keymap
+from viewer.state.pixels import Pixels, Point
 from viewer.state.preferences import default_screenshot_folder
 from viewer.window.command import Command, is_key, key_label
+from viewer.window.compared import Compared
 from viewer.window.display import Display
 from viewer.window.finder import Finder
 from viewer.window.full_screen import FullScreen
 from viewer.window.guard import Guard
 from viewer.window.keyboard import Keyboard
+from viewer.window.magnifier import Magnifier
 from viewer.window.screening import Screening
 from viewer.window.shots import Shots
 
@@ -56,15 +59,16 @@ class Fold:
 
 @dataclass
 class Ui:
-    """See the module. `picture_area` is the size, in framebuffer pixels, that the picture may fill; `wiping` says that
-    the pointer holds the line of the wipe, `tool` what it draws, `drawn` what is being drawn, and `drawn_text` the
-    words that are typed there, `pointed_light` which light it is on in the inspector; `light_filters` is
-    what is typed above each list of lights; `screening` is the recorded picture that is shown in the picture's place;
-    `legend_shown` says whether the picture shows its legend, `legend_held` where the pointer holds that; `key_wanted`
-    names the command that waits for a key to be pressed; `editing` is the list and the place in it of a name that is
-    being edited, `edited` that name; `plot_frame` is the frame whose menu is open in a plot, `plot_pointed` the one
-    that the pointer was on last; `tour_height` is what the picture leaves free below it for the tour, `tour_place`
-    where that is: left, top and width."""
+    """See the module. `picture_area` is the size, in framebuffer pixels, that the picture may fill, `picture_size` the
+    one that it fills; `wiping` says that the pointer holds the line of the wipe, `tool` what it draws, `drawn` what is
+    being drawn, and `drawn_text` the words that are typed there, `pointed_light` which light it is on in the inspector;
+    `light_filters` is what is typed above each list of lights; `screening` is the recorded picture that is shown in
+    the picture's place; `legend_shown` says whether the picture shows its legend, `legend_held` where the pointer holds
+    that; `key_wanted` names the command that waits for a key to be pressed; `editing` is the list and the place in it
+    of a name that is being edited, `edited` that name; `tour_height` is what the picture leaves free below it for the
+    tour, `tour_place` where that is: left, top and width. `gesture` is what a drag does that moves no camera, from
+    `gesture_at` on, a point of the picture; `menu_at` is the point that the menu over the picture is about, and
+    `plot_frame` the frame that the menu of a plot is about; `plot_pointed` is the one that the pointer was on last."""
 
     controller: Controller
     display: Display | None = None
@@ -119,6 +123,13 @@ class Ui:
     light_filters: dict[str, str] = field(default_factory=dict)
     shots: Shots | None = None
     screening: Screening | None = None
+    compared: Compared | None = None
+    magnifier: Magnifier | None = None
+    picture_size: tuple[int, int] = (0, 0)
+    pixels: Pixels = field(default_factory=Pixels)
+    gesture: str = ""
+    gesture_at: Point = (0.0, 0.0)
+    menu_at: Point = (0.0, 0.0)
     legend_shown: bool = False
     legend_held: tuple[float, float] = (0.0, 0.0)
     tour_height: float = 0.0

@@ -109,9 +109,9 @@ def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> N
 
 @pytest.mark.parametrize("ending", [".png", ".pdf"])
 def test_a_figure_compares_methods_and_can_be_checked(capfd: pytest.CaptureFixture[str], ending: str) -> None:
-    options = ("--methods", "none,paper", "--crops", "4,4,20,8", "--frame", 3, "--warmup", 3)
+    options = ("--methods", "none,paper", "--crops", "4,4,20,8", "--frame", 3, "--warmup", 3, "--exposure", -1)
     if ending == ".pdf":
-        options = ("--methods", "none,paper", "--view", "cost", "--frame", 3)
+        options = ("--methods", "none,paper", "--view", "cost", "--range", "1:5", "--frame", 3)
     code, out, _ = run(capfd, "figure", "room.aff", "-o", f"figure{ending}", *SIZE, *options)
     assert code == 0 and "shadow rays due" in out and "pixels that differ" in out
     code, (line,) = verdict(capfd, f"figure{ending}")

@@ -19,7 +19,7 @@ from tests.terminal import Terminal
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from viewer.cli import main as command_line
 from viewer.output import capture
-from viewer.state.views import BENEATH
+from viewer.state.views import BENEATH, TOO_BRIGHT
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -477,3 +477,46 @@ def test_a_legend_is_drawn_where_it_is_wanted(capfd: pytest.CaptureFixture[str],
         options = ("--size", size, "--view", view, "--legend")
         code, _, error = run(capfd, "render", room, "-o", tmp_path / "none.png", *options)
         assert code == 0 and why in error
+
+
+def test_exposure_and_tone_are_those_of_the_picture_alone(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path
+) -> None:
+    def written(name: str, *options: object) -> tuple[np.ndarray, np.ndarray]:
+        path, buffers = tmp_path / f"{name}.png", tmp_path / f"{name}.npz"
+        code, _, said = run(capfd, "render", room, "--size", "24x16", "-o", path, "--buffers", buffers, *options)
+        assert code == 0, said
+        return np.asarray(Image.open(path)), np.load(buffers)["color"]
+
+    plain, traced = written("plain")
+    assert np.array_equal(plain, np.round(np.clip(traced, 0.0, 1.0) * 255.0).astype(np.uint8))
+    neutral, _ = written("neutral", "--exposure", 0, "--white", 1, "--tone", "none")
+    assert np.array_equal(neutral, plain)
+    bright, color = written("bright", "--exposure", 1)
+    assert np.array_equal(color, traced), "buffers are as they were traced"
+    assert np.array_equal(bright, np.round(np.clip(2.0 * traced, 0.0, 1.0) * 255.0).astype(np.uint8))
+    marked, _ = written("marked", "--exposure", 5, "--mark-clipped")
+    red = (marked == np.round(np.multiply(255.0, TOO_BRIGHT))).all(axis=-1)
+    assert red.any() and (32.0 * traced[red] > 1.0).any(axis=-1).all()
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--tone", "sepia"), "'sepia' is no tone; there is none, reinhard, filmic, srgb"),
+        (("--exposure", "17"), "17 is not in -16 to 16"),
+        (("--white", "0"), "0 is not in 0.01 to 1,000"),
+        (("--range", "5:2", "--view", "depth"), "'5:2' is not a range: the first number is to be the smaller"),
+        (("--range", "much", "--view", "depth"), "'much' is not a range; give one like 0:12.5"),
+        (("--range", "0:5"), "--range is for views of numbers: depth, saved, cost, lights"),
+        (("--range", "0:5", "--view", "cost:share"), "--range is for views of numbers"),
+        (("--exposure", "1", "--view", "normal"), "--view normal shows none"),
+        (("--mark-clipped", "--view", "depth"), "--mark-clipped is for the views color and wipe, not depth"),
+    ],
+)
+def test_options_of_display_that_cannot_be(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path, options: tuple[str, ...], said: str
+) -> None:
+    code, _, error = run(capfd, "render", room, "-o", tmp_path / "none.png", *options)
+    assert code != 0 and said in error and len(error.splitlines()) == 1
+    assert not (tmp_path / "none.png").exists()

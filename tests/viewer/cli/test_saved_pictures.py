@@ -89,3 +89,33 @@ def test_mistakes_are_one_line(saved: Path, room: Path, capfd: pytest.CaptureFix
     room.unlink()
     code, _, errors = run(capfd, "render", saved)
     assert code == 1 and "its scene is gone" in errors and errors.count("\n") == 1
+
+
+def test_its_tone_and_its_range_come_back_where_the_view_has_any(room: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    size = ("--size", "24x16")
+    tone = ("--exposure", 1.5, "--white", 3, "--tone", "filmic")
+    assert run(capfd, "render", room, "-o", "toned.png", *size, *tone)[0] == 0
+    assert run(capfd, "render", room, "-o", "plain.png", *size)[0] == 0
+    assert run(capfd, "render", "toned.png", "-o", "again.png")[0] == 0
+    assert run(capfd, "render", "toned.png", "-o", "distances.png", "--view", "depth", "--range", "2:9")[0] == 0
+    assert run(capfd, "render", "distances.png", "-o", "normals.png", "--view", "normal")[0] == 0
+    assert run(capfd, "render", "distances.png", "-o", "distances-again.png")[0] == 0
+    pixels = {path.stem: np.asarray(Image.open(path)) for path in Path().glob("*.png")}
+    assert np.array_equal(pixels["toned"], pixels["again"]) and (pixels["toned"] != pixels["plain"]).any()
+    assert np.array_equal(pixels["distances"], pixels["distances-again"])
+    kept = {name: capture.read(Path(f"{name}.png")) for name in pixels}
+    assert kept["again"].tone.in_words() == "+1.5 EV, white 3, filmic" and kept["plain"].tone.neutral
+    printed = {
+        name: run(capfd, "render", f"{name}.png", "--print-command")[1] for name in ("toned", "plain", "distances")
+    }
+    assert "--exposure 1.5 --white 3.0 --tone filmic" in printed["toned"] and "--range=2.0:9.0" in printed["distances"]
+    assert not any(
+        f"--{option}" in printed["plain"] for option in ("exposure", "white", "tone", "mark-clipped", "range")
+    )
+    assert run(capfd, "check", "toned.png", "plain.png", "distances.png")[0] == 0
+    film = ("--frames", "0-0", *size, *tone)
+    assert run(capfd, "film", room, "-o", "frames", *film)[0] == 0
+    assert np.array_equal(np.asarray(Image.open("frames/0001.png")), pixels["toned"])
+    code, _, said = run(capfd, "film", room, "-o", "none", *film, "--view", "normal")
+    assert code == 1 and "--view normal shows none" in said
+    assert kept["distances"].span == (2.0, 9.0) and kept["distances"].tone.neutral and kept["normals"].span is None

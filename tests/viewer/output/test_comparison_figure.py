@@ -9,7 +9,8 @@ import numpy as np
 
 from tests.viewer.fakes import make_frame, make_scene
 from viewer.output.comparison_figure import Crop, Shown, figure
-from viewer.output.recipe import Recipe
+from viewer.output.recipe import Recipe, Style
+from viewer.state.tone import Tone
 from viewer.state.views import View
 
 
@@ -34,10 +35,19 @@ def test_differences_are_counted() -> None:
     assert dict(drawn.counts("paper"))["pixels that differ"] == "1"
 
 
+def test_pictures_have_the_tone_and_differences_are_of_what_was_traced() -> None:
+    drawn = shown(View.COLOR)
+    bright = replace(drawn, recipe=replace(drawn.recipe, style=Style(tone=Tone(1.0))))
+    assert (bright.pictures["none"] != drawn.pictures["none"]).any()
+    assert np.array_equal(bright.difference("paper"), drawn.difference("paper"))
+
+
 def test_maps_of_work_have_one_range() -> None:
     drawn = shown(View.COST)
     hit = drawn.reference.primitive >= 0
-    assert drawn.top == 40.0
+    assert drawn.span == (0.0, 40.0)
+    by_hand = replace(drawn, recipe=replace(drawn.recipe, style=Style(span=(5.0, 10.0))))
+    assert by_hand.span == (5.0, 10.0) and (by_hand.pictures["paper"] != drawn.pictures["paper"]).any()
     none, paper = (drawn.pictures[method][hit] for method in ("none", "paper"))
     assert (none != paper).any(axis=-1).all(), "ten rays do not look like forty"
     words = [text.get_text() for axes in figure(drawn).axes for text in axes.texts]

@@ -15,6 +15,7 @@ from tracer.scene.load import load_scene
 from viewer.output.legend_counts import difference_legend
 from viewer.output.pictures import SHADING, picture
 from viewer.state.readings import work_top
+from viewer.state.tone import Curve, Tone
 from viewer.state.views import (
     ARRIVAL_COLORS,
     BACKGROUND,
@@ -339,3 +340,32 @@ def test_shaders_draw_the_same(certified_frame: Frame, view: View, marked: bool,
         shown, view, 1, marked=marked, wipe=0.4, shares=marked, beneath=0.4, outlines=cells, magnified=2
     ).astype(int)
     assert np.abs(on_gpu - here).max() <= 1
+
+
+@pytest.mark.gui
+def test_shaders_have_the_same_tone_and_range(certified_frame: Frame) -> None:
+    """Of pictures with each curve, with what is clipped marked and without; and of numbers in a range."""
+    moderngl = pytest.importorskip("moderngl")
+    from viewer.window.display import Display, Look
+
+    color = certified_frame.color * np.linspace(0.0, 6.0, certified_frame.width, dtype=np.float32)[None, :, None]
+    shown = replace(certified_frame, color=color)
+    pictures = [
+        {"view": view, "tone": Tone(0.7, 1.5, curve), "clipping": clipping}
+        for view in (View.COLOR, View.WIPE, View.DIFFERENCE)
+        for curve in Curve
+        for clipping in (True, False)
+    ]
+    ranges = [{"view": view, "span": (1.5, 4.0)} for view in View if view.has_range]
+    context = moderngl.create_context(standalone=True, require=330)
+    with context:
+        display = Display()
+        display.show(shown)
+        for look in [*pictures, *ranges]:
+            display.draw(Look(light=1, shading=SHADING, **look))
+            on_gpu, here = display.read().astype(int), picture(shown, light=1, **look).astype(int)
+            assert np.abs(on_gpu - here).max() <= 1, look
+            plain = picture(shown, look["view"], 1).astype(int)
+            assert np.abs(here - plain).max() > 5, "nothing has changed"
+        display.release()
+    context.release()

@@ -1,7 +1,9 @@
 """What a user does in the window, and what must come of it.  Each function is run by `tests.viewer.window`."""
 
 from tests.viewer.scenarios.at_home import at_home
+from tests.viewer.scenarios.closeup import closeup
 from tests.viewer.scenarios.closing import closing_while_experimenting, closing_while_loading, closing_while_tracing
+from tests.viewer.scenarios.comparing import comparing
 from tests.viewer.scenarios.culling import certifying, culling, explaining
 from tests.viewer.scenarios.drawing import difference, views, wiping
 from tests.viewer.scenarios.failing import failing
@@ -23,9 +25,10 @@ from tests.viewer.scenarios.touring import touring
 SCENARIOS = {
     scenario.__name__: scenario
     for scenario in (
-        views, difference, wiping, legends, lamps, culling, certifying, explaining, rays, flying, orbiting, playing,
-        resizing, capturing, dropping, reopening, cancelling, browsing, experimenting, zooming, asking, filmstrip,
-        filming, hunting, taking, failing, panels, closing_panels, looks, hiding, folding, touring, fitting, at_home,
-        navigating, closing_while_tracing, closing_while_loading, closing_while_experimenting,
+        views, difference, wiping, comparing, closeup, legends, lamps, culling, certifying, explaining, rays,
+        flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting,
+        zooming, asking, filmstrip, filming, hunting, taking, failing,
+        panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating,
+        closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip

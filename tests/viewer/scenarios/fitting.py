@@ -39,16 +39,17 @@ def _check_panels(d: Driver, size: tuple[int, int]) -> None:
     for label in SIDES:
         d.ui.show_panel(label)
         d.frames(5)
-        _check_fit(d, f"{label} at {size}")
+        check_fit(d, f"{label} at {size}")
     d.ui.show_panel("Plots")
     # Frames of which the last has a tick of its own, on the plots' edge.
     for count in cases((1001,), (1, 11, 101, 1001)):
         d.c.history.frames = count
         d.frames(3)
-        _check_fit(d, f"Plots of {count} frames at {size}")
+        check_fit(d, f"Plots of {count} frames at {size}")
 
 
-def _check_fit(d: Driver, where: str) -> None:
+def check_fit(d: Driver, where: str) -> None:
+    """Nothing of what the window shows now is cut off, or wider than it may be."""
     letters, cut = _cut_text()
     assert letters > 100, f"{where}: only {letters} letters are seen"
     assert not cut, f"{where}: text is cut off: {cut}"

@@ -13,8 +13,12 @@ from PIL import Image
 from tests.viewer.driver import Driver
 from viewer.output import capture
 from viewer.output.annotations import annotated
+from viewer.output.compared import composed
+from viewer.output.pictures import picture
 from viewer.output.recipe import from_json
 from viewer.state.annotations import Kind
+from viewer.state.comparison import Way
+from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
 from viewer.window.panels import save_as
 
@@ -96,7 +100,16 @@ def _save_as(d: Driver) -> None:
     with Image.open(path) as image:
         assert image.width == 288 and image.height > 192
     d.c.settings.set_view(View.COLOR)
+    d.c.session.tone = Tone(1.0, 2.0, Curve.REINHARD)
     d.settle()
+    plan.multiple, plan.samples, plan.caption = 1, 1, ""
+    assert d.c.pictures.save()
+    d.wait(lambda: d.c.runs.current is None, "the toned picture")
+    (path,) = (d.folder / "pictures").glob("tiny-color-96x64*")
+    with Image.open(path) as image:
+        expected = annotated(picture(d.c.frame, tone=d.c.session.tone), d.c.session.annotations)
+        assert np.array_equal(np.asarray(image), expected)
+    assert capture.read(path).tone == d.c.session.tone
 
 
 def _copy(d: Driver) -> None:
@@ -116,9 +129,21 @@ def _copy(d: Driver) -> None:
         d.wait(lambda: (folder / "got.png").exists() and not d.c.pictures.jobs, "the copy")
         d.frames(2)
         assert "is on the clipboard" in d.c.notices.message.text
+        with Image.open(folder / "got.png") as image:
+            assert np.array_equal(np.asarray(image), annotated(d.shown(), d.c.session.annotations))
+        d.c.comparing.keep()
+        d.c.comparing.start(Way.SIDE)
+        d.settle()
+        d.press(int(KEY.c) | CTRL)
+        d.wait(lambda: not d.c.pictures.jobs and d.ui.capture_wanted is None, "the copy of both")
+        d.frames(2)
     finally:
         os.environ["PATH"] = path
         if wayland is not None:
             os.environ["WAYLAND_DISPLAY"] = wayland
     with Image.open(folder / "got.png") as image:
-        assert np.array_equal(np.asarray(image), annotated(d.shown(), d.c.session.annotations))
+        a, b = d.shown(), annotated(d.shown(), d.c.session.annotations)
+        assert np.array_equal(np.asarray(image), composed(a, b, Way.SIDE, 0.5, False))
+    d.c.comparing.forget()
+    d.c.session.tone = Tone()
+    d.settle()

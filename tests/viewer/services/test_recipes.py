@@ -15,6 +15,7 @@ from tests.commands import run
 from tests.viewer.desk import ELSEWHERE, Desk
 from tests.viewer.fakes import TINY_SCENE
 from viewer.services import stills
+from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
 
 ODD = 'it\'s "odd"; $HOME & -c\tüñ.aff'
@@ -70,6 +71,16 @@ def soft(desk: Desk) -> None:
     desk.c.settings.set_light(1)
 
 
+def toned(desk: Desk) -> None:
+    desk.c.session.tone, desk.c.session.clipping = Tone(-1.25, 0.7, Curve.FILMIC), True
+
+
+def ranged(desk: Desk) -> None:
+    """By a range of its own; tone and stripes are for other views."""
+    desk.c.session.spans[View.DEPTH] = (1e-7, 9.5)
+    desk.c.settings.set_view(View.DEPTH)
+
+
 def by_modes(view: View) -> Callable[[Desk], None]:
     def change(desk: Desk) -> None:
         desk.c.session.settings = replace(desk.c.session.settings, method="paper", symmetric=True, zoom_factor=2.5)
@@ -86,7 +97,7 @@ def by_modes(view: View) -> Callable[[Desk], None]:
 
 def test_a_copied_command_makes_the_same_picture(odd: Desk, capfd: pytest.CaptureFixture[str]) -> None:
     modes = [by_modes(view) for view in (View.SHADOW, View.OCCLUSION, View.WIPE, View.DIFFERENCE, View.SAVED)]
-    for change in (lambda _: None, later, elsewhere, soft, *modes):
+    for change in (lambda _: None, later, elsewhere, soft, toned, ranged, *modes):
         change(odd)
         odd.rest()
         assert np.array_equal(made(odd, capfd), shown(odd)), odd.c.recipes.command()

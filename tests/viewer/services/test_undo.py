@@ -13,10 +13,13 @@ from tracer.scene.model import Camera
 from viewer.services.motion import GLIDE_SECONDS, IDLE_AFTER, Motion
 from viewer.services.settings_controller import SettingsController
 from viewer.services.undo import MOST, Undo
+from viewer.state.comparison import Way
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.tone import Tone
 from viewer.state.views import View
+from viewer.state.zooming import Zoom
 
 AWAY = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
 
@@ -244,3 +247,62 @@ def test_memory_is_bounded(desk: Desk):
         assert desk.undo.undoes
         desk.undo.undo()
     assert desk.undo.undoes == ""
+
+
+def test_turns_of_the_wheel_are_one_step_and_a_rest_begins_another(desk: Desk):
+    for scale in (2.0, 4.0, 8.0):
+        desk.session.zoom = Zoom(scale)
+        desk.frame(0.2)
+    desk.frame(1.0)
+    desk.session.zoom = Zoom(16.0)
+    desk.frame(1.0)
+    assert desk.undo.undoes == "zoom to 16 x"
+    desk.undo.undo()
+    assert desk.session.zoom == Zoom(8.0) and desk.undo.undoes == "zoom to 8 x"
+    desk.undo.undo()
+    assert desk.session.zoom.fits and desk.undo.undoes == ""
+
+
+def test_strokes_of_other_kinds_are_steps_of_their_own(desk: Desk):
+    desk.session.tone = Tone(0.5)
+    desk.frame()
+    desk.session.zoom = Zoom(2.0)
+    desk.frame()
+    desk.undo.undo()
+    assert desk.session.zoom.fits and desk.session.tone == Tone(0.5) and desk.undo.undoes == "tone +0.5 EV"
+    desk.undo.undo()
+    assert desk.session.tone.neutral
+    desk.undo.redo()
+    assert desk.session.tone == Tone(0.5)
+
+
+def test_ranges_and_stripes_come_back(desk: Desk):
+    desk.session.spans[View.DEPTH] = (1.0, 2.0)
+    desk.frame()
+    desk.session.clipping = True
+    desk.frame()
+    assert desk.undo.undoes == "marks of clipped pixels on"
+    desk.undo.undo()
+    desk.undo.undo()
+    assert not desk.session.spans and not desk.session.clipping
+    desk.undo.redo()
+    desk.session.spans.clear()
+    desk.frame()
+    desk.undo.undo()
+    assert desk.session.spans == {View.DEPTH: (1.0, 2.0)}, "what is kept is no reference to what holds now"
+
+
+def test_a_comparison_is_a_step_but_what_is_kept_stays(desk: Desk):
+    comparison = desk.session.comparison
+    comparison.on, comparison.way = True, Way.SIDE
+    desk.frame()
+    comparison.kept = kept = object()
+    comparison.same_view = True
+    desk.frame()
+    assert desk.undo.undoes == "A in the view of B"
+    desk.undo.undo()
+    assert comparison.on and not comparison.same_view and desk.undo.undoes == "comparison: side by side"
+    desk.undo.undo()
+    assert not comparison.on and comparison.kept is kept
+    desk.undo.redo()
+    assert comparison.on and comparison.way is Way.SIDE

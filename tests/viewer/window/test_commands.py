@@ -10,9 +10,9 @@ from imgui_bundle import imgui
 from viewer.services.controller import Controller
 from viewer.state.keymap import HELD
 from viewer.state.methods import DEFAULT
-from viewer.state.preferences import Preferences
+from viewer.state.preferences import SCALES, Preferences
 from viewer.state.views import View
-from viewer.window import command, commands
+from viewer.window import closer, command, commands
 from viewer.window.ui import Ui
 
 
@@ -58,6 +58,25 @@ def test_every_command_can_be_asked_for_its_state_without_a_scene(ui):
         each.enabled()
         if each.checked is not None:
             each.checked()
+
+
+def test_what_cannot_be_run_says_why(ui):
+    silent = [c.name for c in ui.commands if not c.enabled() and not c.why_not]
+    assert any(not c.enabled() for c in ui.commands) and silent == []
+    ui.controller.preferences.ui_scale = SCALES[-1]
+    assert next(c for c in ui.commands if c.name == "Larger interface").why_not == "it is as large as it can be"
+
+
+def test_no_panel_opens_by_itself_where_it_would_cover_the_picture(ui):
+    shown = []
+    ui.show_panel = shown.append
+    for name in ("folded", "hidden"):
+        setattr(ui.fold, name, True)
+        closer.offer(ui, "Pixels")
+        setattr(ui.fold, name, False)
+    assert shown == []
+    closer.offer(ui, "Pixels")
+    assert shown == ["Pixels"]
 
 
 def test_views_are_chosen_and_ticked(ui):

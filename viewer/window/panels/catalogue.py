@@ -9,6 +9,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.window.panels import (
     camera,
+    compare,
     culling,
     experiment,
     filming,
@@ -16,6 +17,7 @@ from viewer.window.panels import (
     inspector,
     log,
     picture,
+    pixels,
     plots,
     rays,
     rendering,
@@ -54,6 +56,8 @@ PANELS = {
         Panel("Culling", "RightMiddle", icons.ICON_FA_SCISSORS, culling.show),
         Panel("Inspector", "RightBottom", icons.ICON_FA_MAGNIFYING_GLASS, inspector.show),
         Panel("Plots", "Bottom", icons.ICON_FA_CHART_LINE, plots.show, wide=True),
+        Panel("Compare", "Bottom", icons.ICON_FA_CODE_COMPARE, compare.show, wide=True),
+        Panel("Pixels", "Bottom", icons.ICON_FA_BORDER_ALL, pixels.show, wide=True),
         Panel("Rays", "Bottom", icons.ICON_FA_CODE_BRANCH, rays.show, wide=True),
         Panel("Experiment", "Bottom", icons.ICON_FA_FLASK, experiment.show, wide=True),
         Panel("Zoom test", "Bottom", icons.ICON_FA_MAGNIFYING_GLASS_PLUS, zoom.show, wide=True),

@@ -14,7 +14,7 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, em, paragraph, tooltip
 
 TITLE = "Keyboard and mouse"
-_FLYING = "Flying, while held"
+_FLYING = "While held"
 _KEY = 7.6  # width of a key in ems
 _BY_MODE = "look around (fly); orbit around what was clicked (orbit)"
 _DRAGS = {
@@ -195,7 +195,10 @@ def _pointer(ui: Ui) -> None:
     lines += [
         ("wheel", _WHEELS[habits.wheel]),
         ("Shift", "while flying: faster"),
-        ("drag the wipe's line", "compare the picture with the right one"),
+        ("Ctrl + wheel, Ctrl + left drag", "zoom into the picture itself around the pointer; move it"),
+        ("Shift + left drag", "choose a region, whose values the panel Pixels counts"),
+        ("right click", "a menu for the pixel"),
+        ("drag the wipe's line", "compare the picture with the right one, or A with B"),
         ("drag the legend", "put it elsewhere in the picture; it snaps to edges and corners"),
         ("click", "inspect a pixel, and draw its shadow rays; click the background to let go"),
     ]

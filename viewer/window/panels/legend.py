@@ -6,7 +6,8 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer.output.legend import Chosen, Legend, legend_of
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, Layout, Swatch, fitting, lay_out
-from viewer.state.views import Color, color_map
+from viewer.state.views import Color, color_map, signed_map
+from viewer.window import comparing
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, tooltip_at
 
@@ -22,10 +23,18 @@ def of_picture(ui: Ui) -> Legend | None:
     frame, scene, view = c.frame, c.session.scene, c.tracing.drawn_view
     if frame is None or scene is None:
         return None
-    light = c.session.light
+    of_both = comparing.legend(ui)
+    if of_both is not None:
+        return of_both
+    light, seen = c.session.light, comparing.shown(ui)
+    if seen is not None and comparing.shows_a(ui):
+        frame, view, light = seen[0].frame, seen[0].view, seen[0].light
     name = scene.lights[light].name if light < len(scene.lights) else ""
-    chosen = Chosen(light, name, c.preferences.mark_wrong, c.preferences.work_shares)
-    found: Legend | None = ui.cached("legend", frame, (view, chosen), lambda: legend_of(frame, view, chosen))
+    s, p = c.session, c.preferences
+    span = c.comparing.span(view)
+    chosen = Chosen(light, name, p.mark_wrong, p.work_shares, span, s.tone, s.clipping)
+    kept = "legend" if frame is c.frame else "legend of A"
+    found: Legend | None = ui.cached(kept, frame, (view, chosen), lambda: legend_of(frame, view, chosen))
     return found
 
 
@@ -108,7 +117,7 @@ def _fill(draw: imgui.ImDrawList, swatch: Swatch, at: ImVec2) -> None:
     if swatch.color is not None:
         draw.add_rect_filled(ImVec2(x, y), ImVec2(x + swatch.width, bottom), _packed(swatch.color), em(0.15))
         return
-    colors = color_map(_STEPS + 1)
+    colors = (signed_map if swatch.signed else color_map)(_STEPS + 1)
     packed = [_packed((float(r), float(g), float(b))) for r, g, b in (colors[::-1] if swatch.reverse else colors)]
     for i in range(_STEPS):
         start, stop = (x + swatch.width * k / _STEPS for k in (i, i + 1))

@@ -8,14 +8,32 @@ when it was pressed on the picture itself.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer.state import navigation, pads
+from viewer.state.comparison import Way
 from viewer.state.picking import point_at
+from viewer.window import comparing
 from viewer.window.camera_commands import pivot_of
 from viewer.window.palette import ON_PICTURE_ERROR
-from viewer.window.panels import annotating, explanation, film, legend, missing, ray_overlay, timeline, tour, wipe
+from viewer.window.panels import (
+    annotating,
+    closeup,
+    explanation,
+    film,
+    layers,
+    legend,
+    missing,
+    ray_overlay,
+    sides,
+    timeline,
+    tour,
+    wipe,
+)
+from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, em, paragraph
 
@@ -33,13 +51,13 @@ NOTCHES_PER_HEIGHT = 20.0
 
 def show(ui: Ui) -> None:
     """The window's content: the picture, the tour's strip and the timeline under it."""
-    room = imgui.get_content_region_avail()
-    bar = timeline.height() if ui.controller.session.animated else 0.0
+    c, room = ui.controller, imgui.get_content_region_avail()
+    bar = timeline.height() if c.session.animated else 0.0
     room = ImVec2(room.x, room.y - bar)
     strip = tour.leave_room(ui, imgui.get_cursor_screen_pos(), room)
     room = ImVec2(room.x, room.y - strip)
     scale = imgui.get_io().display_framebuffer_scale
-    ui.picture_area = (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y)))
+    ui.picture_area = sides.area_of_b(ui, (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y))))
     ui.picture_focused = imgui.is_window_focused()
     top = imgui.get_cursor_pos()
     if room.x >= 1.0 and room.y >= 1.0 and not film.screen(ui, room):
@@ -53,7 +71,8 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     c = ui.controller
     c.selection.hovered = None
     frame = c.frame
-    texture = ui.display.texture_id if ui.display is not None else None
+    filling = comparing.filling(ui)
+    texture = filling.texture_id if filling is not None else None
     if texture is not None and frame is None and c.reloaded:
         _last_picture(ui, room, texture)
         return
@@ -62,25 +81,61 @@ def _picture(ui: Ui, room: ImVec2) -> None:
         return
     width, height = c.traced.full_size if c.traced is not None else (1, 1)
     ui.picture_shape = width, height
-    factor = min(room.x / width, room.y / height)
+    seen, gap = comparing.shown(ui), em(sides.GAP)
+    beside = seen is not None and seen[2] is Way.SIDE
+    factor = min(((room.x - gap) / 2.0 if beside else room.x) / width, room.y / height)
     size = ImVec2(max(1.0, width * factor), max(1.0, height * factor))
     at = imgui.get_cursor_pos()
-    imgui.set_cursor_pos(ImVec2(at.x + (room.x - size.x) / 2.0, at.y + (room.y - size.y) / 2.0))
+    left = at.x + (room.x - (2.0 * size.x + gap if beside else size.x)) / 2.0
+    top = at.y + (room.y - size.y) / 2.0
+    if beside and seen is not None and ui.compared is not None:
+        area = _area(ui, "picture of A", left, top, size)
+        layers.draw(ui, comparing.OF_A, ui.compared.a_texture or 0, area)
+        _pointer(ui, area, takes_drawings=False)
+        closeup.show(ui, area, seen[0])
+        left += size.x + gap
+    area = _area(ui, "picture", left, top, size)
+    layers.draw(ui, comparing.PICTURE, texture, area)
+    if seen is not None:
+        sides.draw_a(ui, area, seen)
+    with _inside(area):
+        if c.rays.visible:  # it shows the same rays, and more
+            ray_overlay.show(ui, area.whole, area.whole_end)
+        else:
+            explanation.show(ui, area.whole, area.whole_end)
+    _pointer(ui, area)
+    closeup.show(ui, area)
+    wipe.show(ui, area)
+    lower = _overlay(ui, area.corner, area.end)
+    with _inside(area):
+        annotating.show(ui, area.whole, area.whole_end)
+    if seen is not None:
+        sides.show_names(ui, area, seen, lower)
+    legend.show(ui, area.corner, area.end)
+    missing.show(ui, area.corner, area.end)
+    closeup.menu(ui)
+
+
+def _area(ui: Ui, name: str, left: float, top: float, size: ImVec2) -> Area:
+    """A place for the picture in its window, which takes the pointer."""
+    imgui.set_cursor_pos(ImVec2(left, top))
     corner = imgui.get_cursor_screen_pos()
     imgui.set_next_item_allow_overlap()  # what lies over the picture takes the pointer there
-    imgui.invisible_button("picture", size, _ALL_BUTTONS)
-    end = ImVec2(corner.x + size.x, corner.y + size.y)
-    imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), corner, end)
-    if c.rays.visible:  # it shows the same rays, and more
-        ray_overlay.show(ui, corner, end)
-    else:
-        explanation.show(ui, corner, end)
-    _pointer(ui, corner, size)
-    wipe.show(ui, corner, end)
-    _overlay(ui, corner, end)
-    annotating.show(ui, corner, end)
-    legend.show(ui, corner, end)
-    missing.show(ui, corner, end)
+    imgui.invisible_button(name, size, _ALL_BUTTONS)
+    scale = imgui.get_io().display_framebuffer_scale
+    ui.picture_size = max(1, round(size.x * scale.x)), max(1, round(size.y * scale.y))
+    return Area(corner, size, ui.controller.session.zoom)
+
+
+@contextmanager
+def _inside(area: Area) -> Iterator[None]:
+    """What is drawn over the picture does not go beyond it."""
+    draw = imgui.get_window_draw_list()
+    draw.push_clip_rect(area.corner, area.end, True)
+    try:
+        yield
+    finally:
+        draw.pop_clip_rect()
 
 
 def _last_picture(ui: Ui, room: ImVec2, texture: int) -> None:
@@ -105,16 +160,19 @@ def _placeholder(ui: Ui, room: ImVec2) -> None:
     paragraph(text, QUIET)
 
 
-def _pointer(ui: Ui, corner: ImVec2, size: ImVec2) -> None:
-    """Hovering, clicking and dragging on the picture, which is ImGui's last item."""
+def _pointer(ui: Ui, area: Area, takes_drawings: bool = True) -> None:
+    """Hovering, clicking and dragging on the picture, which is ImGui's last item, and drawing if it takes any."""
     c, io = ui.controller, imgui.get_io()
     if ui.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
         ui.pivot, ui.pivot_scene = None, c.session.scene
-    u, v = (io.mouse_pos.x - corner.x) / size.x, (io.mouse_pos.y - corner.y) / size.y
+    u, v = area.to_picture(io.mouse_pos.x, io.mouse_pos.y)
     if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
         c.selection.hovered = (u, v)
-        _wheel(ui, io.mouse_wheel)
-    if annotating.handle(ui, corner, size) or wipe.handle(ui, corner, size):
+        if not closeup.wheel(ui, area):
+            _wheel(ui, io.mouse_wheel)
+    if takes_drawings and annotating.handle(ui, area.whole, area.whole_size):
+        return
+    if wipe.handle(ui, area) or closeup.drag(ui, area):
         return
     if imgui.is_item_activated():
         ui.dragged = False
@@ -128,8 +186,10 @@ def _pointer(ui: Ui, corner: ImVec2, size: ImVec2) -> None:
     if imgui.is_item_active() or released:  # a quick hand drags and lets go within one of our frames
         ui.dragged |= math.dist(ui.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > CLICK_SLACK
         if ui.dragged:
-            _drag(ui, ui.pressed, io.mouse_delta.x / size.y, io.mouse_delta.y / size.y)
-    if released and not ui.dragged:
+            _drag(ui, ui.pressed, io.mouse_delta.x / area.size.y, io.mouse_delta.y / area.size.y)
+    if released and not ui.dragged and ui.pressed == BUTTONS[1]:
+        closeup.open_menu(ui, (u, v))
+    elif released and not ui.dragged:
         c.selection.select((u, v))
 
 
@@ -197,12 +257,12 @@ def fly(ui: Ui) -> None:
     c.motion.move(pads.moved(c.session.camera, wanted, way, seconds, c.motion.world_up))
 
 
-def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
-    """What view it is and how coarse, in the picture's corner."""
+def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
+    """What view it is and how coarse, in the picture's corner; returns where the room below that begins."""
     c = ui.controller
     frame, request = c.frame, c.traced.request if c.traced is not None else None
     if frame is None or request is None:
-        return
+        return corner.y
     text = f"{c.tracing.title}   {frame.width} x {frame.height}"
     if request.divisor > 1:
         text += f"   1/{request.divisor}"
@@ -210,18 +270,25 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
         text += f"   {frame.statistics.part:.0%} shaded"
     elif request.samples > 1:
         text += f"   {c.tracing.samples_shown} of {request.samples} samples"
+    if not c.session.zoom.fits:
+        text += f"   {c.session.zoom.scale:.3g} x"
+    tone = c.session.tone.in_words()
+    text += f"   {tone}" if tone and c.tracing.drawn_view.shows_picture else ""
     shadow, counter = frame.statistics.shadow, ""
     if c.tracing.drawn_view.needs_verify and not ui.legend_shown:
         counter = f"   {count(shadow.wrong)} wrong of {count(shadow.due)} answers"
     size = imgui.calc_text_size(text + counter)
     if end.x - corner.x < size.x + em(2.0):
-        return
+        return corner.y
     pad = em(0.35)
     lower = ImVec2(corner.x + size.x + 3.0 * pad, corner.y + size.y + 2.0 * pad)
-    back, front = (imgui.get_color_u32(ImVec4(*color)) for color in ((0.05, 0.06, 0.08, 0.72), (0.93, 0.94, 0.96, 1.0)))
+    opacity = 0.72 if c.session.zoom.fits else 0.94  # there may be numbers beneath
+    colors = ((0.05, 0.06, 0.08, opacity), (0.93, 0.94, 0.96, 1.0))
+    back, front = (imgui.get_color_u32(ImVec4(*color)) for color in colors)
     draw = imgui.get_window_draw_list()
     draw.add_rect_filled(corner, lower, back, em(0.3))
     draw.add_text(ImVec2(corner.x + 1.5 * pad, corner.y + pad), front, text)
     if counter:
         color = imgui.get_color_u32(ON_PICTURE_ERROR) if shadow.wrong else front
         draw.add_text(ImVec2(corner.x + 1.5 * pad + imgui.calc_text_size(text).x, corner.y + pad), color, counter)
+    return lower.y

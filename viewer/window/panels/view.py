@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from viewer.state.views import View
-from viewer.window.panels import legend, lights
+from viewer.window.panels import legend, lights, tone
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, row
 
@@ -39,6 +39,7 @@ def show(ui: Ui) -> None:
                 row("Shading", "how much of the picture's light and shade shows under the colours")
                 changed, shading = imgui.slider_float("##shading", p.shading, 0.0, 1.0, "%.2f")
                 p.shading = min(max(shading, 0.0), 1.0) if changed else p.shading
+            tone.rows(ui)
     checkbox("Legend", p.legend, lambda on: setattr(p, "legend", on), "in the picture (N); drag it where you like")
     imgui.same_line(0.0, em(1.0))
     checkbox("Outlines", p.outlines, lambda on: setattr(p, "outlines", on), "borders between primitives (B)")
@@ -48,6 +49,7 @@ def show(ui: Ui) -> None:
     if c.session.view.needs_verify:
         tip = "rings around pixels with wrong shadow answers, so that a lone one is found (M)"
         checkbox("Mark wrong pixels", p.mark_wrong, lambda on: setattr(p, "mark_wrong", on), tip)
+    tone.ticks(ui)
     legend.in_panel(ui)
     _explanation(ui)
 

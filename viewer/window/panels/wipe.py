@@ -5,46 +5,72 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.method import Method
+from viewer.state.comparison import Way
 from viewer.state.views import View
+from viewer.window import comparing
+from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
 from viewer.window.widgets import em
 
 _REACH = 0.45  # ems to either side of the line where it can be taken hold of
-_DARK, _LIGHT, _HELD = (
+_DARK, _LIGHT, _HELD, _GROUND = (
     ImVec4(0.05, 0.06, 0.08, 0.72),
     ImVec4(0.95, 0.96, 0.97, 1.0),
     ImVec4(0.42, 0.70, 0.96, 1.0),
+    ImVec4(0.05, 0.06, 0.08, 0.94),  # where numbers may lie beneath
 )
 
 
-def handle(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
+def handle(ui: Ui, area: Area) -> bool:
     """Let the pointer drag the line across the picture, which is ImGui's last item; whether the line holds it."""
     c = ui.controller
-    if c.tracing.drawn_view is not View.WIPE:
+    if not _there(ui):
         ui.wiping = False
         return False
-    if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left) and _near(ui, corner, size):
+    if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left) and _near(ui, area):
         ui.wiping = True
     held = ui.wiping
     if held:
-        c.session.wipe = min(max((imgui.get_io().mouse_pos.x - corner.x) / size.x, 0.0), 1.0)
+        c.session.wipe = min(max(area.to_picture(imgui.get_io().mouse_pos.x, 0.0)[0], 0.0), 1.0)
         ui.wiping = imgui.is_item_active()
-    if held or (imgui.is_item_hovered() and not imgui.is_item_active() and _near(ui, corner, size)):
+    if held or (imgui.is_item_hovered() and not imgui.is_item_active() and _near(ui, area)):
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
     return held
 
 
-def _near(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
-    return abs(imgui.get_io().mouse_pos.x - corner.x - ui.controller.session.wipe * size.x) <= em(_REACH)
+def _there(ui: Ui) -> bool:
+    """Whether a line is seen: between the culled picture and the right one, or between A and B."""
+    seen = comparing.shown(ui)
+    if seen is not None:
+        return seen[2] is Way.WIPE and not comparing.shows_a(ui)
+    return ui.controller.tracing.drawn_view is View.WIPE
 
 
-def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
+def _names(ui: Ui) -> tuple[str, str]:
+    """Of what lies left of the line, and right of it."""
+    c, seen = ui.controller, comparing.shown(ui)
+    if seen is not None:
+        return c.comparing.names(seen[0], seen[1])
+    method = c.frame.settings.method if c.frame is not None else ""
+    return method if Method.parse(method).culls else "no culling", "reference"
+
+
+def _place(ui: Ui, area: Area) -> float:
+    """Where the line is on the screen: at an edge where it lies beyond what is shown."""
+    return min(max(area.to_screen(ui.controller.session.wipe, 0.0).x, area.corner.x), area.end.x)
+
+
+def _near(ui: Ui, area: Area) -> bool:
+    return abs(imgui.get_io().mouse_pos.x - _place(ui, area)) <= em(_REACH)
+
+
+def show(ui: Ui, area: Area) -> None:
     """The line, its handle, and the names of both sides near the picture's upper edge, below the text there."""
     c = ui.controller
-    if c.tracing.drawn_view is not View.WIPE or c.frame is None:
+    if not _there(ui) or c.frame is None:
         return
-    x = corner.x + c.session.wipe * (end.x - corner.x)
-    dark, light, held = (imgui.get_color_u32(color) for color in (_DARK, _LIGHT, _HELD))
+    x, corner, end = _place(ui, area), area.corner, area.end
+    dark, light, held, ground = (imgui.get_color_u32(color) for color in (_DARK, _LIGHT, _HELD, _GROUND))
     bright = held if ui.wiping else light
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(corner, end, True)
@@ -52,15 +78,15 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     draw.add_rect_filled(ImVec2(x - 2.0 * half, corner.y), ImVec2(x + 2.0 * half, end.y), dark)
     draw.add_rect_filled(ImVec2(x - half, corner.y), ImVec2(x + half, end.y), bright)
     _knob(draw, ImVec2(x, (corner.y + end.y) / 2.0), bright, dark)
-    left = c.frame.settings.method if Method.parse(c.frame.settings.method).culls else "no culling"
+    left, right = _names(ui)
     pad, text = em(0.35), imgui.get_text_line_height()
     top = corner.y + text + 4.0 * pad
-    for name, side in ((left, -1.0), ("reference", 1.0)):
+    for name, side in ((left, -1.0), (right, 1.0)):
         width = imgui.calc_text_size(name).x + 2.0 * pad
         start = x + 2.0 * pad if side > 0.0 else x - 2.0 * pad - width
         if corner.x <= start and start + width <= end.x:
             lower = ImVec2(start + width, top + text + 2.0 * pad)
-            draw.add_rect_filled(ImVec2(start, top), lower, dark, em(0.3))
+            draw.add_rect_filled(ImVec2(start, top), lower, dark if c.session.zoom.fits else ground, em(0.3))
             draw.add_text(ImVec2(start + pad, top + pad), light, name)
     draw.pop_clip_rect()
 

@@ -1,0 +1,182 @@
+"""A picture that was kept, or a second method, beside the live one."""
+
+from __future__ import annotations
+
+import numpy as np
+from imgui_bundle import imgui
+from PIL import Image
+
+from tests.viewer.driver import Driver
+from tests.viewer.scenarios.fitting import check_fit
+from viewer.output.compared import GAP, composed, signed_picture
+from viewer.output.pictures import picture
+from viewer.state.comparison import Source, Way
+from viewer.state.marks import wipe_column
+from viewer.state.tone import Curve, Tone
+from viewer.state.views import View
+from viewer.window import comparing as seen
+
+KEY = imgui.Key
+CTRL, SHIFT = int(KEY.mod_ctrl), int(KEY.mod_shift)
+SMALL = 1024, 620  # a window that is quickly drawn, and just does not fold its panels
+
+
+def comparing(d: Driver) -> None:
+    """What was kept stays as it was, and is seen in each way beside what is changed since; saved as it is seen."""
+    d.resize(*SMALL)
+    p = d.c.preferences
+    p.fixed_resolution, p.fixed_width, p.fixed_height = True, 160, 120
+    d.c.settings.change(method="none")
+    d.settle()
+    state = d.c.comparing.state
+    d.press(int(KEY.z) | SHIFT)
+    assert "Ctrl+A" in d.c.notices.message.text and seen.shown(d.ui) is None, "nothing is kept yet"
+    d.press(int(KEY.a) | CTRL | SHIFT)
+    d.press(int(KEY.a) | CTRL)
+    kept = d.c.frame
+    assert state.kept.frame is kept and state.kept.method == "none" and not state.on
+    d.hold(KEY.d, 0.2)
+    d.settle()
+    assert d.c.frame is not kept and d.c.session.camera != kept.camera, "Ctrl+A has flown, or D has not"
+    a, b = picture(kept), picture(d.c.frame)
+    for way in (Way.WIPE, Way.SIDE, Way.DIFFERENCE, Way.BLINK, Way.FLIP):
+        d.press(int(KEY.z) | SHIFT) if way is not Way.WIPE else d.c.comparing.start(way)
+        d.settle()
+        assert state.on and seen.shown(d.ui)[2] is state.way is way
+        assert d.c.frame.primitive.shape == kept.primitive.shape, "both can be compared pixel by pixel"
+        saved = _saved(d, f"{way.value}.png")
+        if way is Way.DIFFERENCE:
+            found = d.c.comparing.difference(*d.c.comparing.sides)
+            assert found.apart.pixels > 100 and np.array_equal(
+                found.pixels != 0.0, (kept.color != d.c.frame.color).any(-1)
+            )
+            assert np.abs(saved.astype(int) - signed_picture(found.pixels, found.apart.limit)).max() <= 1
+        elif way is not Way.BLINK:  # which may show either
+            assert np.array_equal(saved, composed(a, b, way, 0.5, shows_a=False))
+        if way is Way.SIDE:
+            assert saved.shape[1] == 2 * b.shape[1] + GAP
+            _watches_from_a(d)
+            for panel in ("Pixels", "Compare"):
+                d.ui.pixels.watched[:] = [(0.2, 0.3), (0.9, 0.6)]
+                d.ui.show_panel(panel)
+                d.frames(4)
+                check_fit(d, f"{panel}, comparing")
+            d.ui.pixels.watched.clear()
+    d.context.key_down(KEY.z)
+    d.frames(3)
+    assert seen.shows_a(d.ui) and seen.filling(d.ui) is d.ui.compared.a
+    assert np.array_equal(_saved(d, "held.png"), a)
+    d.context.key_up(KEY.z)
+    d.frames(3)
+    assert not seen.shows_a(d.ui) and seen.filling(d.ui) is d.ui.display
+    _line(d, a, b)
+    d.c.session.tone = Tone(-1.0, 1.0, Curve.SRGB)
+    d.frames(2)
+    expected = composed(
+        *(picture(f, tone=d.c.session.tone) for f in (kept, d.c.frame)), Way.WIPE, d.c.session.wipe, False
+    )
+    assert np.abs(_saved(d, "toned.png").astype(int) - expected).max() <= 1, "both have the tone"
+    d.press(KEY._9)
+    d.settle()
+    assert not state.on and d.ui.compared.a is None, "one line at a time"
+    d.press(KEY._1)
+    d.c.session.tone = Tone()
+    p.fixed_width, p.fixed_height = 80, 60
+    d.settle()
+    d.c.comparing.start(Way.FLIP)
+    d.settle()
+    assert "A is shown in B's size" in d.c.comparing.remark
+    d.c.comparing.forget()
+    assert not state.on and state.kept is None
+    _two_methods(d)
+
+
+def _saved(d: Driver, name: str) -> np.ndarray:
+    """The picture as it is saved now."""
+    path = d.folder / "pictures" / name
+    path.unlink(missing_ok=True)
+    d.c.preferences.screenshot_template = name
+    d.press(KEY.f12)
+    d.wait(lambda: path.exists() and not d.c.captures.busy, "the picture to be written")
+    with Image.open(path) as image:
+        return np.asarray(image)
+
+
+def _watches_from_a(d: Driver) -> None:
+    """A click on A inspects the pixel at the same place of B."""
+    area = d.context.item_info("//Picture/picture of A").rect_full
+    d.context.mouse_move_to_pos((0.25 * area.min.x + 0.75 * area.max.x, 0.4 * area.min.y + 0.6 * area.max.y))
+    d.context.mouse_click(0)
+    d.frames(3)
+    picked = d.c.selection.picked
+    assert picked is not None
+    assert abs(picked.x - 0.75 * d.c.frame.width) <= 3 and abs(picked.y - 0.6 * d.c.frame.height) <= 3
+    d.c.selection.picked = None
+    d.frames(2)
+
+
+def _line(d: Driver, a: np.ndarray, b: np.ndarray) -> None:
+    """The line between A and B is dragged as that of the other wipe; closely looked at, it waits at the edge."""
+    d.c.comparing.start(Way.WIPE)
+    d.c.session.wipe = 0.5
+    d.settle()
+    left, top, right, bottom = d.picture_edges()
+    camera, middle = d.c.session.camera, (top + bottom) / 2.0
+    d.drag(((left + right) / 2.0, middle), (0.2 * (right - left), 3.0))
+    assert abs(d.c.session.wipe - 0.7) < 0.02 and d.c.session.camera == camera
+    column = wipe_column(b.shape[1], d.c.session.wipe)
+    saved = _saved(d, "dragged.png")
+    assert np.array_equal(saved[:, :column], a[:, :column]) and np.array_equal(
+        saved[:, column + 1 :], b[:, column + 1 :]
+    )
+    d.c.session.zoom = type(d.c.session.zoom)(4.0, 0.2, 0.5)
+    d.frames(3)
+    d.drag((right - 1.0, middle), (-0.5 * (right - left), 0.0))
+    assert abs(d.c.session.wipe - 0.2) < 0.02 and d.c.session.camera == camera
+    d.press(int(KEY.f) | SHIFT)
+    assert d.c.session.zoom.fits
+
+
+def _two_methods(d: Driver) -> None:
+    """Each frame is traced by both, at rest and in motion, and each counts for itself."""
+    d.c.settings.change(method="paper+cache")
+    d.settle()
+    d.press(int(KEY.c) | SHIFT)
+    d.settle()
+    state = d.c.comparing.state
+    assert state.on and state.source is Source.METHOD and state.way is Way.SIDE and state.second == "none"
+    d.press(int(KEY.z) | CTRL)
+    d.settle()
+    assert not state.on and d.c.traced.second is None, "a comparison can be undone"
+    d.press(int(KEY.z) | CTRL | SHIFT)
+    d.settle()
+    assert state.on and d.c.traced.second.settings.method == "none"
+    d.press(KEY.t)
+    d.settle()
+    frame, second = d.c.frame, d.c.traced.second
+    assert (frame.settings.method, second.settings.method) == ("paper+cache", "none")
+    assert second.time == frame.time and second.camera == frame.camera
+    assert second.primitive.shape == frame.primitive.shape and (second.primitive == frame.primitive).all()
+    assert frame.statistics.shadow.dynamic_only > 0 == second.statistics.shadow.dynamic_only
+    assert frame.statistics.shadow.due == second.statistics.shadow.due
+    d.c.comparing.trace_by("certified")
+    d.press(KEY.h)
+    d.settle()
+    assert d.c.session.view is View.SAVED and d.c.traced.second.settings.method == "certified"
+    assert d.c.comparing.span(View.SAVED)[1] >= max(one.saved.max() for one in (d.c.frame, d.c.traced.second)) * 0.5
+    d.press(KEY.space)
+    moments = set()
+
+    def moved() -> bool:
+        traced = d.c.traced
+        assert traced.second is None or traced.second.time == traced.frame.time
+        if traced.second is not None:
+            moments.add(traced.frame.time)
+        return len(moments) >= 4
+
+    d.wait(moved, "frames by both while time goes on", 60.0)
+    d.press(KEY.space)
+    d.settle()
+    d.press(int(KEY.c) | SHIFT)
+    d.settle()
+    assert not state.on and d.c.traced.second is None and d.ui.compared.a is None, "what is not seen takes no memory"

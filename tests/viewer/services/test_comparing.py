@@ -1,0 +1,139 @@
+"""What is compared with what, without a window."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tests.viewer.desk import ELSEWHERE, Desk
+from viewer.state.comparison import Source, Way
+from viewer.state.views import View
+
+
+def keep(desk: Desk, method: str = "none") -> None:
+    desk.c.settings.change(method=method)
+    desk.rest()
+    desk.c.comparing.keep()
+
+
+def test_what_is_kept_stays_whatever_is_changed_since(desk: Desk) -> None:
+    comparing = desk.c.comparing
+    assert comparing.sides is None and comparing.b is not None and comparing.a is None
+    keep(desk)
+    kept, color = comparing.a.frame, comparing.a.frame.color.copy()
+    desk.c.settings.change(method="paper")
+    desk.c.motion.move(ELSEWHERE)
+    desk.rest()
+    comparing.start(Way.DIFFERENCE)
+    desk.rest()
+    a, b = comparing.sides
+    assert a.frame is kept and np.array_equal(a.frame.color, color)
+    assert (a.method, b.method) == ("none", "paper") and b.frame is desk.c.frame
+    assert comparing.names(a, b) == ("A  none", "B  paper")
+    found = comparing.difference(a, b)
+    assert comparing.difference(a, b) is found, "found out once"
+    assert np.array_equal(found.pixels != 0.0, (b.frame.color != color).any(axis=-1)) and found.apart.pixels
+    comparing.state.limit = 0.25
+    assert comparing.limit(found) == 0.25
+    comparing.forget()
+    assert comparing.sides is None and comparing.a is None
+
+
+def test_a_keeps_its_view_unless_it_is_to_follow(desk: Desk) -> None:
+    comparing = desk.c.comparing
+    keep(desk, "paper")
+    comparing.start(Way.FLIP)
+    desk.c.settings.set_view(View.COST)
+    desk.rest()
+    a, b = comparing.sides
+    assert (a.view, b.view) == (View.COLOR, View.COST)
+    comparing.state.same_view = True
+    assert comparing.a.view is View.COLOR, "what it has not recorded it cannot show"
+    comparing.start(Way.DIFFERENCE)
+    assert comparing.difference(*comparing.sides) is None and "keep A in this one" in comparing.remark
+    desk.c.settings.set_view(View.DEPTH)
+    desk.rest()
+    assert comparing.a.view is View.DEPTH and comparing.difference(*comparing.sides) is not None
+    assert comparing.remark == ""
+
+
+def test_maps_of_both_have_one_range(desk: Desk) -> None:
+    comparing, spans = desk.c.comparing, desk.c.session.spans
+    desk.c.settings.set_view(View.DEPTH)
+    keep(desk)
+    alone = comparing.span(View.DEPTH)
+    desk.c.motion.move(ELSEWHERE)
+    desk.rest()
+    comparing.start(Way.SIDE)
+    a, b = comparing.sides
+    both = comparing.span(View.DEPTH)
+    hit = [side.frame.depth[np.isfinite(side.frame.depth)] for side in (a, b)]
+    assert alone is None and both[0] <= min(np.median(d) for d in hit) and both[1] >= max(np.median(d) for d in hit)
+    spans[View.DEPTH] = (1.0, 2.0)
+    assert comparing.span(View.DEPTH) == (1.0, 2.0), "a range that was chosen is kept"
+    assert comparing.span(View.COLOR) is None
+
+
+def test_one_wipe_at_a_time(desk: Desk) -> None:
+    comparing = desk.c.comparing
+    keep(desk)
+    desk.c.settings.set_view(View.WIPE)
+    comparing.start(Way.WIPE)
+    assert desk.c.session.view is View.COLOR
+    desk.rest()
+    assert comparing.state.on
+    desk.c.settings.set_view(View.WIPE)
+    desk.rest()
+    assert not comparing.state.on and "right picture" in desk.said
+
+
+def test_all_ways_in_turn(desk: Desk) -> None:
+    comparing = desk.c.comparing
+    keep(desk)
+    comparing.start(Way.FLIP)
+    seen = []
+    for _ in Way:
+        seen.append(comparing.state.way)
+        comparing.next_way()
+    assert seen == list(Way) and comparing.state.way is Way.FLIP
+    comparing.toggle(Way.FLIP)
+    assert not comparing.state.on
+    comparing.next_way()
+    assert comparing.state.on and comparing.state.way is Way.FLIP, "where it was left"
+
+
+def test_a_second_method_is_traced_while_it_is_seen(desk: Desk) -> None:
+    comparing = desk.c.comparing
+    desk.c.settings.change(method="paper")
+    desk.rest()
+    assert desk.c.traced.second is None
+    comparing.toggle_methods()
+    assert comparing.sides is None and "none as well" in comparing.remark
+    desk.rest()
+    a, b = comparing.sides
+    assert (a.method, b.method) == ("none", "paper") and a.frame is desk.c.traced.second
+    assert np.array_equal(a.frame.primitive, b.frame.primitive) and comparing.state.way is Way.SIDE
+    comparing.trace_by("certified")
+    desk.rest()
+    assert desk.c.traced.second.settings.method == "certified"
+    came = len(desk.came)
+    desk.rest()
+    assert len(desk.came) == came, "both are there, and are traced again and again"
+    desk.c.settings.change(method="certified")
+    comparing.end()
+    desk.rest()
+    assert desk.c.traced.second is None and desk.c.tracing.second == ""
+    comparing.toggle_methods()
+    assert comparing.state.second == "none", "a method is not compared with itself"
+    keep(desk)
+    assert comparing.state.source is Source.KEPT and desk.c.tracing.second == ""
+
+
+def test_a_run_shows_its_frames_beside_what_was_kept(desk: Desk) -> None:
+    comparing = desk.c.comparing
+    keep(desk)
+    comparing.start(Way.WIPE)
+    desk.runs.start_experiment()
+    desk.until(lambda: desk.runs.current is not None and desk.c.frame is not comparing.state.kept.frame)
+    assert comparing.sides is not None and comparing.sides[1].frame.width == 32
+    assert "A is shown in B's size" in comparing.remark
+    desk.run_to_its_end()

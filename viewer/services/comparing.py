@@ -1,0 +1,232 @@
+"""Comparing the live picture, B, with A: one that was kept, or the same traced by a second method.
+
+What is drawn of the two, and what is told, is decided here; `viewer.state.comparison` says what the words mean.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.frame import Frame
+from tracer.method import Method, bases
+from viewer.services.settings_controller import SettingsController
+from viewer.services.tracing import Tracing
+from viewer.state.comparison import (
+    Apart,
+    Side,
+    Source,
+    Way,
+    apart,
+    named,
+    signed_difference,
+    sizes_in_words,
+)
+from viewer.state.methods import BY_MODES, NO_CULLING
+from viewer.state.notices import Notices
+from viewer.state.readings import can_draw, span_of
+from viewer.state.session import Session
+from viewer.state.values import Values, values_of
+from viewer.state.views import View
+
+
+@dataclass(frozen=True)
+class Difference:
+    """B - A at each pixel of B, (h, w) float32, of such values, and how far they are apart in all."""
+
+    pixels: NDArray[np.float32]
+    values: Values
+    apart: Apart
+
+
+class Comparing:
+    """`state` is what was chosen; panels and commands may change it by the methods here."""
+
+    def __init__(self, session: Session, tracing: Tracing, settings: SettingsController, notices: Notices) -> None:
+        self._session, self._tracing, self._settings, self._notices = session, tracing, settings, notices
+        self.state = session.comparison
+        self._difference: tuple[Side, Side, Difference | None] | None = None
+        self._span: tuple[Frame, Frame, dict[View, tuple[float, float]]] | None = None
+
+    # --- what is compared ------------------------------------------------------------------------
+
+    @property
+    def b(self) -> Side | None:
+        """The live picture."""
+        frame = self._tracing.frame
+        return None if frame is None else self._side(frame, self._tracing.drawn_view)
+
+    @property
+    def a(self) -> Side | None:
+        """What it is compared with, as far as it is there."""
+        state, session = self.state, self._session
+        if state.source is Source.METHOD:
+            second = self._tracing.traced.second if self._tracing.traced is not None else None
+            if second is None:
+                return None
+            view = self._tracing.drawn_view
+            return self._side(second, view if can_draw(second, view, session.light) else View.COLOR)
+        kept = state.kept
+        if kept is not None and state.same_view and can_draw(kept.frame, session.view, session.light):
+            return replace(kept, view=self._tracing.drawn_view, light=session.light)
+        return kept
+
+    def _side(self, frame: Frame, view: View) -> Side:
+        session = self._session
+        name = session.scene.path.stem if session.scene is not None else ""
+        return Side(frame, view, session.light, name, session.frame_at(frame.time))
+
+    @property
+    def sides(self) -> tuple[Side, Side] | None:
+        """A and B, while both are there and are to be compared."""
+        if not self.state.on:
+            return None
+        a, b = self.a, self.b
+        return None if a is None or b is None else (a, b)
+
+    def names(self, a: Side, b: Side) -> tuple[str, str]:
+        """What the picture calls the two."""
+        return f"A  {named(a, b)}", f"B  {named(b, a)}"
+
+    @property
+    def remark(self) -> str:
+        """What is to be known about the two, in a line: sizes that differ, or why nothing is compared."""
+        a, b, state = self.a, self.b, self.state
+        if a is None and state.source is Source.KEPT:
+            return "Nothing is kept as A yet: Ctrl+A keeps what is shown." if state.on else ""
+        if a is None or b is None:
+            return f"Tracing by {state.second} as well ..." if state.on else ""
+        if state.on and state.way is Way.DIFFERENCE and self.difference(a, b) is None:
+            return f"A has nothing for the view {b.view.label}: choose another view, or keep A in this one."
+        if state.on and state.source is Source.METHOD and a.view is not b.view:
+            return f"The frame by {a.method} has nothing for the view {b.view.label}: its picture is shown."
+        coarse = self._tracing.traced is not None and self._tracing.traced.request.divisor > 1
+        return "" if coarse and state.source is Source.KEPT else sizes_in_words(a.frame, b.frame)
+
+    def difference(self, a: Side, b: Side) -> Difference | None:
+        """B - A in the view of B; None where A has nothing for it."""
+        known = self._difference
+        same = known is not None and known[0].frame is a.frame and known[1].frame is b.frame
+        if known is not None and same and (known[1].view, known[1].light) == (b.view, b.light):
+            return known[2]
+        found = None
+        if can_draw(a.frame, b.view, b.light) and can_draw(b.frame, b.view, b.light):
+            values = values_of(b.frame, b.view, b.light)
+            pixels = signed_difference(values_of(a.frame, b.view, b.light), values)
+            found = Difference(pixels, values, apart(pixels))
+        self._difference = a, b, found
+        return found
+
+    def limit(self, found: Difference) -> float:
+        """The range of a difference, as chosen or as it fits."""
+        return self.state.limit or found.apart.limit
+
+    def span(self, view: View) -> tuple[float, float] | None:
+        """The range that maps of numbers have: chosen, or one for both pictures, so that a colour means the same in A
+        and in B; None for what each frame has."""
+        chosen, sides = self._session.spans.get(view), self.sides
+        if chosen is not None or sides is None or not view.has_range or {side.view for side in sides} != {view}:
+            return chosen
+        frames = sides[0].frame, sides[1].frame
+        if self._span is None or self._span[0] is not frames[0] or self._span[1] is not frames[1]:
+            self._span = (*frames, {})
+        spans = self._span[2]
+        if view not in spans:
+            both = [span_of(frame, view) for frame in frames]
+            spans[view] = min(low for low, _ in both), max(high for _, high in both)
+        return spans[view]
+
+    # --- what the user does ----------------------------------------------------------------------
+
+    def keep(self) -> None:
+        """Keep what is shown now as A."""
+        b = self.b
+        if b is None:
+            self._notices.say("there is no picture to keep yet", error=True)
+            return
+        self.state.kept, self.state.source = b, Source.KEPT
+        self._follow_second()
+        part = b.frame.statistics.part
+        coarse = f", of which {part:.0%} of the pixels are shaded yet" if part < 1.0 else ""
+        self._notices.say(f"kept as A: {b.method}, {b.view.label.lower()}, frame {b.number}{coarse}")
+
+    def forget(self) -> None:
+        """Let go of what was kept."""
+        self.state.kept = self._difference = None
+        if self.state.source is Source.KEPT:
+            self.end()
+
+    def start(self, way: Way) -> None:
+        """Compare in this way."""
+        self.state.on, self.state.way = True, way
+        if self._session.view is View.WIPE:  # one line is enough
+            self._settings.set_view(View.COLOR)
+        self._follow_second()
+        if self.state.source is Source.KEPT and self.state.kept is None:
+            self._notices.say(self.remark)
+
+    def toggle(self, way: Way) -> None:
+        """Compare in this way, or no longer if that is done already."""
+        if self.state.on and self.state.way is way:
+            self.end()
+        else:
+            self.start(way)
+
+    def next_way(self) -> None:
+        """Compare in the next of all ways; after the last in the first."""
+        ways = list(Way)
+        now = ways.index(self.state.way)
+        self.start(ways[(now + 1) % len(ways)] if self.state.on else self.state.way)
+
+    def end(self) -> None:
+        self.state.on = self.state.held = False
+        self._difference = self._span = None
+        self._follow_second()
+
+    def use(self, source: Source) -> None:
+        """Take A from here."""
+        self.state.source = source
+        self._follow_second()
+
+    def trace_by(self, method: str) -> None:
+        """Let this be the second method, and compare with it."""
+        self.state.second = method
+        self.use(Source.METHOD)
+
+    def toggle_methods(self) -> None:
+        """Trace each frame by a second method as well, side by side, or no longer."""
+        if self.state.on and self.state.source is Source.METHOD:
+            self.end()
+            return
+        if not self.state.second or self.state.second == self._session.settings.method:
+            self.state.second = self._other_method()
+        self.state.source = Source.METHOD
+        self.start(Way.SIDE)
+
+    def _other_method(self) -> str:
+        """What is worth comparing with the method that is chosen: none at all, or else the paper's."""
+        culls = Method.parse(self._session.settings.method).culls
+        names = [kind.name for kind in bases()]
+        return NO_CULLING if culls and NO_CULLING in names else BY_MODES
+
+    # --- one frame -------------------------------------------------------------------------------
+
+    def follow(self) -> None:
+        """Once per frame: where the wipe against the right picture is chosen, it takes the place of the comparison."""
+        if self.state.on and self._session.view is View.WIPE:
+            self.end()
+            self._notices.say("the comparison with A has ended: this wipe compares with the right picture")
+        if self.state.source is Source.METHOD and not self.state.second:
+            self.state.second = self._other_method()
+        self._follow_second()
+
+    def _follow_second(self) -> None:
+        """Have frames traced by a second method while that is to be seen."""
+        state = self.state
+        self._tracing.second = state.second if state.on and state.source is Source.METHOD else ""
+
+    def blinks(self) -> bool:
+        """Whether the window must be drawn again and again."""
+        return self.state.on and self.state.way is Way.BLINK and self.sides is not None

@@ -1,0 +1,229 @@
+"""Two pictures beside each other: A, which was kept or is traced by a second method, and B, the live one.
+
+`signed_difference` is what is drawn where one is taken from the other; sizes need not be the same.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.frame import Frame
+from viewer.state.values import Values
+from viewer.state.views import View
+
+RATES = (0.25, 3.0)
+"""Times a second, least and most, that pictures blink: no more, as faster flashes are dangerous to some people."""
+HIDDEN_SHARE = 0.5
+"""Per cent of the pixels that differ, at most, which lie beyond the range of a difference that is fitted."""
+
+
+class Way(StrEnum):
+    """How two pictures are compared."""
+
+    FLIP = "flip"
+    WIPE = "wipe"
+    SIDE = "side"
+    DIFFERENCE = "difference"
+    BLINK = "blink"
+
+    @property
+    def label(self) -> str:
+        return _LABELS[self]
+
+    @property
+    def meaning(self) -> str:
+        return _MEANINGS[self]
+
+
+_LABELS = {
+    Way.FLIP: "Flip",
+    Way.WIPE: "Wipe",
+    Way.SIDE: "Side by side",
+    Way.DIFFERENCE: "Signed difference",
+    Way.BLINK: "Blink",
+}
+
+_MEANINGS = {
+    Way.FLIP: "B is shown, and A while Z is held",
+    Way.WIPE: "A left of a line, B right of it; drag the line",
+    Way.SIDE: "A on the left, B on the right",
+    Way.DIFFERENCE: "B - A: orange where B has more, blue where it has less",
+    Way.BLINK: "A and B in turn",
+}
+
+
+class Source(StrEnum):
+    """Where A comes from."""
+
+    KEPT = "kept"
+    METHOD = "method"
+
+
+@dataclass(frozen=True)
+class Side:
+    """One of the two pictures: a frame in a view, of the scene of this name, at the frame number of its animation."""
+
+    frame: Frame
+    view: View
+    light: int
+    scene: str
+    number: int
+
+    @property
+    def method(self) -> str:
+        return self.frame.settings.method
+
+
+def named(side: Side, other: Side | None) -> str:
+    """The method that traced a picture, and what else sets it apart from the other."""
+    parts = [side.method]
+    if other is None:
+        return parts[0]
+    light = f", light {side.light}" if side.view.of_light else ""
+    if (side.view, side.light if side.view.of_light else 0) != (other.view, other.light if other.view.of_light else 0):
+        parts.append(side.view.label.lower() + light)
+    if side.scene != other.scene:
+        parts.append(side.scene)
+    if side.frame.time != other.frame.time or side.scene != other.scene:
+        parts.append(f"frame {side.number}")
+    mine, its = side.frame.settings, other.frame.settings
+    for name, text in (("depth", "depth {}"), ("samples", "{} samples"), ("lamp_samples", "{} lamp samples")):
+        if getattr(mine, name) != getattr(its, name) and getattr(mine, name) is not None:
+            parts.append(text.format(getattr(mine, name)))
+    if len(parts) == 1 and mine.method == its.method and side.frame.camera != other.frame.camera:
+        parts.append("another camera")
+    return ", ".join(parts)
+
+
+def sizes_in_words(a: Frame, b: Frame) -> str:
+    """What becomes of sizes that differ; empty where they do not."""
+    if a.primitive.shape == b.primitive.shape:
+        return ""
+    stretched = ""
+    if abs(a.width * b.height - b.width * a.height) > max(a.width, b.width, a.height, b.height):
+        stretched = ", stretched"
+    return f"A has {a.width} x {a.height} pixels, B {b.width} x {b.height}: A is shown in B's size{stretched}."
+
+
+def fitted(a: NDArray, size: tuple[int, int]) -> NDArray:
+    """(h, w, ...) of A at the pixels of a picture of this width and height: of each the nearest."""
+    width, height = size
+    rows = ((2 * np.arange(height) + 1) * a.shape[0]) // (2 * height)
+    columns = ((2 * np.arange(width) + 1) * a.shape[1]) // (2 * width)
+    return a if a.shape[:2] == (height, width) else a[rows[:, None], columns[None]]
+
+
+def signed_difference(a: Values, b: Values) -> NDArray[np.float32]:
+    """(h, w) float32, at the pixels of B: B - A, in the channel where they differ most; 1 where classes are others."""
+    height, width = b.numbers.shape[:2]
+    apart = b.numbers - fitted(a.numbers, (width, height))
+    if b.classes:
+        return (apart[..., 0] != 0.0).astype(np.float32)
+    if apart.shape[-1] == 1:
+        return apart[..., 0]
+    strongest = np.abs(apart).argmax(axis=-1)
+    return np.take_along_axis(apart, strongest[..., None], -1)[..., 0]
+
+
+def difference_words(difference: NDArray[np.float32], values: Values, x: int, y: int) -> tuple[str, ...]:
+    """What a signed difference says of one pixel."""
+    apart = float(difference[y, x])
+    if values.classes:
+        return ("other",) if apart else ("same",)
+    if abs(apart) > 1e29:
+        return ("miss", "in A" if apart < 0.0 else "in B")
+    return (f"{apart:+.3g}" if apart else "0",)
+
+
+@dataclass(frozen=True)
+class Apart:
+    """How far two pictures are apart: pixels that differ, of so many, the least, the largest and the mean difference;
+    `limit` is the range, to both sides of 0, that shows nearly all."""
+
+    pixels: int
+    of: int
+    least: float
+    largest: float
+    mean: float
+    limit: float
+
+
+def apart(difference: NDArray[np.float32]) -> Apart:
+    """Sum a difference up.  Where one of the two pictures has no depth, it counts as differing, and no further."""
+    finite = np.where(np.abs(difference) < 1e29, difference, np.float32(0.0))
+    changed = finite[finite != 0.0]
+    limit = float(np.percentile(np.abs(changed), 100.0 - HIDDEN_SHARE)) if len(changed) else 1.0
+    return Apart(
+        pixels=int(np.count_nonzero(difference)),
+        of=difference.size,
+        least=float(finite.min(initial=0.0)),
+        largest=float(finite.max(initial=0.0)),
+        mean=float(finite.mean(dtype=np.float64)) if finite.size else 0.0,
+        limit=limit,
+    )
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """What undo brings back of a comparison: whether and how there is one.  What was kept is no part of it."""
+
+    on: bool
+    way: Way
+    source: Source
+    second: str
+    same_view: bool
+    rate: float
+    limit: float | None
+
+    def changes(self, after: Chosen) -> dict[str, str]:
+        """What has changed since, in a few words for each."""
+        changed: dict[str, str] = {}
+        if (self.on, self.way) != (after.on, after.way):
+            changed["way"] = f"comparison: {after.way.label.lower()}" if after.on else "comparison off"
+        if self.source is not after.source:
+            changed["source"] = "A by a second method" if after.source is Source.METHOD else "A as it was kept"
+        if self.second and self.second != after.second:
+            changed["second"] = f"second method {after.second}"
+        if self.same_view != after.same_view:
+            changed["same_view"] = "A in the view of B" if after.same_view else "A in its own view"
+        if self.rate != after.rate:
+            changed["rate"] = f"blinking at {after.rate:.2f} Hz"
+        if self.limit != after.limit:
+            changed["limit"] = "range of the difference"
+        return changed
+
+
+@dataclass
+class Comparison:
+    """What is compared, and how: `kept` is A as it was kept; with `same_view` it is shown in the view of B; `limit` is
+    the range of the difference, None for one that fits; `held` says that A is to be seen while a key is held."""
+
+    on: bool = False
+    way: Way = Way.WIPE
+    source: Source = Source.KEPT
+    kept: Side | None = None
+    same_view: bool = False
+    rate: float = 1.5
+    limit: float | None = None
+    held: bool = False
+    second: str = ""
+
+    @property
+    def chosen(self) -> Chosen:
+        """What undo brings back."""
+        return Chosen(**{name.name: getattr(self, name.name) for name in fields(Chosen)})
+
+    def choose(self, chosen: Chosen) -> None:
+        """Bring it back."""
+        for name in fields(Chosen):
+            setattr(self, name.name, getattr(chosen, name.name))
+
+    def shows_a(self, seconds: float) -> bool:
+        """Whether, of the ways that show one picture at a time, it is A's turn at this time in seconds."""
+        if self.held:
+            return True
+        return self.way is Way.BLINK and int(2.0 * self.rate * seconds) % 2 == 1

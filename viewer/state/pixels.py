@@ -1,0 +1,106 @@
+"""Pixels that are watched, and regions of which the values are counted.
+
+Both are places of the picture, 0 to 1 from left and top, and so mean the same at every resolution.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.frame import Frame
+from viewer.state.picking import pixel_at
+from viewer.state.values import Values
+
+MOST_WATCHED = 16
+BINS = 64
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Region:
+    """A rectangle of the picture."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+
+    def pixels(self, frame: Frame) -> tuple[slice, slice]:
+        """Rows and columns of the pixels that it touches; one at least."""
+        left, top = pixel_at(frame, self.left, self.top)
+        right, bottom = pixel_at(frame, self.right, self.bottom)
+        return slice(top, bottom + 1), slice(left, right + 1)
+
+
+ALL = Region(0.0, 0.0, 1.0, 1.0)
+
+
+def region_between(start: Point, end: Point) -> Region:
+    """The rectangle from one corner to the other, as far as it lies in the picture."""
+    (left, right), (top, bottom) = (
+        sorted(min(max(place, 0.0), 1.0) for place in pair) for pair in zip(start, end, strict=True)
+    )
+    return Region(left, top, right, bottom)
+
+
+@dataclass
+class Pixels:
+    """`watched` are the middles of pixels, in the order in which they were pinned; `region` is None for all of it."""
+
+    watched: list[Point] = field(default_factory=list)
+    region: Region | None = None
+
+    def pin(self, frame: Frame, point: Point) -> str:
+        """Watch the pixel at a point, or no longer if it is watched already; says what was done."""
+        x, y = pixel_at(frame, *point)
+        for known in self.watched:
+            if pixel_at(frame, *known) == (x, y):
+                self.watched.remove(known)
+                return f"pixel {x}, {y} is no longer watched"
+        if len(self.watched) >= MOST_WATCHED:
+            return f"{MOST_WATCHED} pixels are watched, and no more can be: let go of one first"
+        self.watched.append(((x + 0.5) / frame.width, (y + 0.5) / frame.height))
+        return f"watching pixel {x}, {y}"
+
+
+@dataclass(frozen=True)
+class Histogram:
+    """How often values lie where: `counts` (k, BINS) for each of k numbers, between `low` and `high`; and of each
+    number the least, the largest and the mean.  `pixels` have a value, of so many."""
+
+    counts: NDArray[np.int64]
+    low: float
+    high: float
+    least: tuple[float, ...]
+    largest: tuple[float, ...]
+    mean: tuple[float, ...]
+    pixels: int
+    of: int
+
+
+def histogram(values: Values, rows: slice, columns: slice) -> Histogram | None:
+    """Of a region's values; None where no pixel of it has one."""
+    known = values.known[rows, columns]
+    numbers = values.numbers[rows, columns][known].astype(np.float64)
+    numbers = numbers[np.isfinite(numbers).all(axis=-1)]
+    if len(numbers) == 0:
+        return None
+    low, high = float(numbers.min()), float(numbers.max())
+    if low == high or (numbers == np.rint(numbers)).all():
+        low, high = low - 0.5, high + 0.5
+    bins = min(BINS, round(high - low)) if (numbers == np.rint(numbers)).all() and high - low <= BINS else BINS
+    counts = np.stack([np.histogram(column, bins, (low, high))[0] for column in numbers.T])
+    return Histogram(
+        counts,
+        low,
+        high,
+        tuple(numbers.min(axis=0)),
+        tuple(numbers.max(axis=0)),
+        tuple(numbers.mean(axis=0)),
+        len(numbers),
+        known.size,
+    )

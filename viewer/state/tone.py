@@ -1,0 +1,143 @@
+"""How colours as they were traced become colours of the screen: exposure, white point and tone curve.
+
+It changes what is shown and saved, never what was traced.  `toned` is the twin of the function of that name in
+`shaders/common.glsl`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+MOST_EXPOSURE = 16.0
+"""Stops of exposure, up and down."""
+WHITES = (0.01, 1000.0)
+"""The least and the highest white point."""
+
+# Hable's filmic curve, "Uncharted 2: HDR Lighting" (GDC 2010): shoulder, linear strength and angle, toe strength,
+# numerator and denominator.
+HABLE = (0.15, 0.50, 0.10, 0.20, 0.02, 0.30)
+
+
+class Curve(StrEnum):
+    """The curves, in the order of their numbers in the shader."""
+
+    NONE = "none"
+    REINHARD = "reinhard"
+    FILMIC = "filmic"
+    SRGB = "srgb"
+
+    @property
+    def label(self) -> str:
+        return _LABELS[self]
+
+    @property
+    def meaning(self) -> str:
+        return _MEANINGS[self]
+
+
+_LABELS = {Curve.NONE: "None", Curve.REINHARD: "Reinhard", Curve.FILMIC: "Filmic", Curve.SRGB: "sRGB"}
+
+_MEANINGS = {
+    Curve.NONE: "straight up to white; what is brighter is clipped",
+    Curve.REINHARD: "Reinhard's curve with a white point: compresses what is bright",
+    Curve.FILMIC: "Hable's filmic curve: compresses what is bright and deepens what is dark",
+    Curve.SRGB: "takes colours for linear light and encodes them as sRGB: brightens what is dark",
+}
+
+
+@dataclass(frozen=True)
+class Tone:
+    """`exposure` in stops, which doubles colours with each; `white` is the colour, once exposed, that becomes white."""
+
+    exposure: float = 0.0
+    white: float = 1.0
+    curve: Curve = Curve.NONE
+
+    @property
+    def neutral(self) -> bool:
+        """Whether colours are shown as they were traced, bit for bit."""
+        return self == NEUTRAL
+
+    @property
+    def gain(self) -> float:
+        return float(2.0**self.exposure)
+
+    def in_words(self) -> str:
+        """What differs from neutral, briefly; empty where nothing does."""
+        parts = [f"{self.exposure:+.3g} EV"] if self.exposure else []
+        parts += [f"white {self.white:.3g}"] if self.white != 1.0 else []
+        return ", ".join([*parts, self.curve.value] if self.curve is not Curve.NONE else parts)
+
+    def to_json(self) -> dict[str, Any]:
+        return {"exposure": self.exposure, "white": self.white, "curve": self.curve.value}
+
+    @staticmethod
+    def from_json(data: Any) -> Tone:
+        """The inverse of `to_json`, where what is missing has its default; raises ValueError, in one line."""
+        if not isinstance(data, Mapping):
+            raise ValueError("its tone is damaged")
+        try:
+            exposure, white = float(data.get("exposure", 0.0)), float(data.get("white", 1.0))
+            tone = Tone(exposure, white, Curve(data.get("curve", Curve.NONE)))
+        except (TypeError, ValueError):
+            raise ValueError("its tone is not understood") from None
+        if not (abs(exposure) <= MOST_EXPOSURE and WHITES[0] <= white <= WHITES[1]):
+            raise ValueError("its tone is out of range")
+        return tone
+
+
+NEUTRAL = Tone()
+
+
+def toned(color: NDArray[np.float32], tone: Tone) -> NDArray[np.float32]:
+    """Colours (..., 3) float32 for the screen, from 0; what exceeds 1 is clipped by whoever shows it.
+
+    Unchanged, and not even copied, by a neutral tone."""
+    if tone.neutral:
+        return color
+    x, white = np.maximum(color, np.float32(0.0)) * np.float32(tone.gain), np.float32(tone.white)
+    if tone.curve is Curve.REINHARD:
+        return (x * (1 + x / (white * white)) / (1 + x)).astype(np.float32, copy=False)
+    if tone.curve is Curve.FILMIC:
+        return (_hable(x) / _hable(white)).astype(np.float32)
+    if tone.curve is Curve.SRGB:
+        return _srgb(x / white)
+    return x / white
+
+
+def _hable(x: Any) -> Any:
+    a, b, c, d, e, f = (np.float32(v) for v in HABLE)
+    return (x * (a * x + c * b) + d * e) / (x * (a * x + b) + d * f) - e / f
+
+
+def _srgb(x: NDArray[np.float32]) -> NDArray[np.float32]:
+    """IEC 61966-2-1; values above 1 go on along the same curve, so that they can be told to be clipped."""
+    curved = np.float32(1.055) * np.maximum(x, np.float32(0.0031308)) ** np.float32(1 / 2.4) - np.float32(0.055)
+    return np.where(x <= np.float32(0.0031308), np.float32(12.92) * x, curved).astype(np.float32)
+
+
+@dataclass(frozen=True)
+class Clipped:
+    """Pixels (h, w) of which a channel is too bright for the screen, and those that are black."""
+
+    bright: NDArray[np.bool_]
+    black: NDArray[np.bool_]
+
+
+def clipped(color: NDArray[np.float32], tone: Tone) -> Clipped:
+    """What of colours (h, w, 3) is cut off by the screen."""
+    shown = toned(color, tone)
+    return Clipped(np.any(shown > 1.0, axis=-1), np.all(shown <= 0.0, axis=-1))
+
+
+def brighter(tone: Tone, stops: float) -> Tone:
+    """The tone with another exposure, within its limits."""
+    exposure = min(max(tone.exposure + stops, -MOST_EXPOSURE), MOST_EXPOSURE)
+    return Tone(0.0 if math.isclose(exposure, 0.0, abs_tol=1e-9) else exposure, tone.white, tone.curve)

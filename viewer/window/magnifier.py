@@ -1,0 +1,61 @@
+"""Pictures with crisp pixels, at the size at which they are shown: ImGui itself always smooths what it enlarges."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import moderngl
+
+from viewer.state.zooming import Zoom
+from viewer.window.passes import Passes
+
+
+class Magnifier:
+    """Enlarged copies of pictures, by name; each stays until another is asked for under its name."""
+
+    def __init__(self, passes: Passes) -> None:
+        self._passes = passes
+        self._targets: dict[str, Any] = {}
+        self._shown: dict[str, tuple[Any, ...]] = {}
+
+    def draw(self, name: str, source: Any, version: object, zoom: Zoom, size: tuple[int, int]) -> None:
+        """Enlarge as much of a texture as the zoom shows to a size in pixels, unless it is there; `version` is another
+        one whenever the texture's contents are."""
+        wanted = source.glo, source.size, version, zoom, size
+        if self._shown.get(name) == wanted:
+            return
+        context = self._passes.context
+        window = context.detect_framebuffer()
+        try:
+            target = self._targets.get(name)
+            if target is None or target.size != size:
+                self.drop(name)
+                texture = context.texture(size, 4)
+                texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+                target = self._targets[name] = context.framebuffer([texture])
+            program, triangle = self._passes.made("magnified", "", ("source",))
+            left, top, right, bottom = zoom.shown()
+            program["part"], program["size"] = (left, top, right - left, bottom - top), size
+            source.use(0)
+            self._passes.draw(triangle, target)
+        finally:
+            window.use()
+        self._shown[name] = wanted
+
+    def texture_of(self, name: str, source: int, zoom: Zoom, size: tuple[int, int]) -> int | None:
+        """Name of the GL texture with that part of that source in that size; None while there is none."""
+        shown = self._shown.get(name)
+        there = shown is not None and (shown[0], shown[3], shown[4]) == (source, zoom, size)
+        return self._targets[name].color_attachments[0].glo if there else None
+
+    def drop(self, name: str) -> None:
+        """Let go of a copy, if there is one."""
+        target = self._targets.pop(name, None)
+        self._shown.pop(name, None)
+        if target is not None:
+            target.color_attachments[0].release()
+            target.release()
+
+    def release(self) -> None:
+        for name in list(self._targets):
+            self.drop(name)

@@ -1,0 +1,216 @@
+"""Comparing the live picture, B, with A: what A is, how both are shown, and the statistics of both in columns."""
+
+from __future__ import annotations
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from tracer.method import Method, additions, bases
+from viewer.state.columns import Row, rows
+from viewer.state.comparison import RATES, Side, Source, Way
+from viewer.state.methods import toggled, with_base
+from viewer.state.views import LESS, MORE
+from viewer.window.ui import Ui
+from viewer.window.widgets import (
+    QUIET,
+    WARNING,
+    checkbox,
+    clipped,
+    count,
+    em,
+    paragraph,
+    properties,
+    right,
+    row,
+    swatch,
+    tooltip,
+    wide_button,
+)
+
+_WIDE = 44.0  # ems of a panel that has room for controls and columns beside each other
+_CONTROLS = 15.5  # ems of the controls there
+_NAMES = 8.0  # ems of the names of figures
+
+
+def show(ui: Ui) -> None:
+    """The panel."""
+    room = imgui.get_content_region_avail()
+    if room.x > em(_WIDE):
+        imgui.begin_child("controls", ImVec2(em(_CONTROLS), 0.0))
+        _controls(ui)
+        imgui.end_child()
+        imgui.same_line(0.0, em(1.0))
+        imgui.begin_child("columns", ImVec2(0.0, 0.0))
+        _columns(ui)
+        imgui.end_child()
+    else:
+        _controls(ui)
+        _columns(ui)
+
+
+def _controls(ui: Ui) -> None:
+    """What A is, and how the two are shown."""
+    c = ui.controller
+    comparing, state = c.comparing, c.comparing.state
+    if wide_button(f"{icons.ICON_FA_THUMBTACK}  Keep as A", "keep what is shown now, to compare with it (Ctrl+A)", 2):
+        comparing.keep()
+    imgui.same_line()
+    imgui.begin_disabled(not state.on)
+    if wide_button(f"{icons.ICON_FA_XMARK}  End", "show the live picture alone"):
+        comparing.end()
+    imgui.end_disabled()
+    with properties("comparison", 5.0) as shown:
+        if shown:
+            row("A is", "what the live picture, B, is compared with")
+            names = {Source.KEPT: "the kept picture", Source.METHOD: "by a second method"}
+            sources = list(Source)
+            changed, index = imgui.combo("##source", sources.index(state.source), [names[one] for one in sources])
+            if changed:
+                comparing.use(sources[index])
+            if state.source is Source.METHOD:
+                row("A's method", "traces each frame once more, with modes and counters of its own")
+                _second(ui)
+            row("Show", "how A and B are seen; Z shows A while it is held")
+            _way(ui)
+            if state.way is Way.BLINK:
+                row("Rate", "times a second that both are seen")
+                changed, rate = imgui.slider_float("##rate", state.rate, *RATES, "%.2f Hz")
+                state.rate = min(max(rate, RATES[0]), RATES[1]) if changed else state.rate
+            if state.way is Way.DIFFERENCE and state.on:
+                _limit(ui)
+    if state.source is Source.KEPT:
+        _kept(ui)
+    if comparing.remark:
+        paragraph(comparing.remark, WARNING)
+
+
+def _way(ui: Ui) -> None:
+    comparing, state = ui.controller.comparing, ui.controller.comparing.state
+    if not imgui.begin_combo("##way", state.way.label if state.on else "B alone"):
+        return
+    if imgui.selectable("B alone", not state.on)[0]:
+        comparing.end()
+    for way in Way:
+        if imgui.selectable(way.label, state.on and state.way is way)[0]:
+            comparing.start(way)
+        tooltip(way.meaning)
+    imgui.end_combo()
+
+
+def _second(ui: Ui) -> None:
+    """The second method: a base, and what is added to it."""
+    comparing, method = ui.controller.comparing, Method.parse(ui.controller.comparing.state.second or "none")
+    if imgui.begin_combo("##second", str(method)):
+        for kind in bases():
+            if imgui.selectable(kind.name, kind is method.kind)[0]:
+                comparing.trace_by(with_base(str(method), kind.name))
+            tooltip(kind.summary)
+        imgui.separator()
+        for kind in additions():
+            if imgui.menu_item(f"+{kind.name}", "", method.has(kind.name), True)[0]:
+                comparing.trace_by(toggled(str(method), kind.name))
+            tooltip(kind.summary)
+        imgui.end_combo()
+
+
+def _limit(ui: Ui) -> None:
+    """The range of the signed difference."""
+    comparing, state = ui.controller.comparing, ui.controller.comparing.state
+    sides = comparing.sides
+    found = comparing.difference(*sides) if sides is not None else None
+    if found is None or found.values.classes:
+        return
+    limit = comparing.limit(found)
+    row("Range", "to both sides of 0; drag, or Ctrl+click to type")
+    imgui.set_next_item_width(-em(4.2))
+    changed, limit = imgui.drag_float("##limit", limit, max(limit / 100.0, 1e-6), 1e-6, 1e9, "\u00b1 %.4g")
+    if changed and limit > 0.0:
+        state.limit = limit
+    imgui.same_line(0.0, em(0.3))
+    imgui.begin_disabled(state.limit is None)
+    if imgui.button("Fit##limit", (-1.0, 0.0)):
+        state.limit = None
+    imgui.end_disabled()
+
+
+def _kept(ui: Ui) -> None:
+    """What is kept, and whether it follows the view."""
+    state = ui.controller.comparing.state
+    kept = state.kept
+    if kept is None:
+        paragraph("Nothing is kept yet. Keep a picture, change anything, and compare.", QUIET)
+        return
+    light = f", light {kept.light}" if kept.view.of_light else ""
+    paragraph(
+        f"kept: {kept.scene}, frame {kept.number}, {kept.method}, {kept.view.label.lower()}{light}, "
+        f"{kept.frame.width} x {kept.frame.height}",
+        QUIET,
+    )
+    tip = "show A in the view of B, as far as A has what that needs, instead of the view in which it was kept"
+    checkbox("A in the view of B", state.same_view, lambda on: setattr(state, "same_view", on), tip)
+
+
+def _columns(ui: Ui) -> None:
+    """The statistics of A and B, and what B has more or less."""
+    comparing = ui.controller.comparing
+    a, b = comparing.a, comparing.b
+    if a is None or b is None:
+        return
+    found: list[Row] = ui.cached("columns", a.frame, id(b.frame), lambda: rows(a.frame, b.frame))
+    flags = int(
+        imgui.TableFlags_.sizing_stretch_same
+        | imgui.TableFlags_.row_bg
+        | imgui.TableFlags_.scroll_y
+        | imgui.TableFlags_.no_host_extend_x
+    )
+    if not imgui.begin_table(
+        "statistics of both", 5, flags, ImVec2(0.0, max(imgui.get_content_region_avail().y, em(9.0)))
+    ):
+        return
+    imgui.table_setup_scroll_freeze(0, 2)
+    imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_fixed), em(_NAMES))
+    for name, width in (("A", 1.0), ("B", 1.0), ("difference", 1.0), ("per cent", 0.75)):
+        imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch), width)
+    _heads(a, b, comparing.names(a, b))
+    for one in found:
+        _row(one)
+    imgui.end_table()
+
+
+def _heads(a: Side, b: Side, names: tuple[str, str]) -> None:
+    """Two rows: which is which, and how large they are."""
+    imgui.table_next_row(int(imgui.TableRowFlags_.headers))
+    imgui.table_next_column()
+    for name, color in ((names[0], LESS), (names[1], MORE)):
+        imgui.table_next_column()
+        swatch(color)
+        clipped(name)
+    for name in ("B - A", "of A"):
+        imgui.table_next_column()
+        right(name)
+    imgui.table_next_row(int(imgui.TableRowFlags_.headers))
+    imgui.table_next_column()
+    clipped("pixels", QUIET)
+    for side in (a, b):
+        imgui.table_next_column()
+        right(f"{side.frame.width} x {side.frame.height}", QUIET)
+    shaded = [side.frame.primitive.size * side.frame.statistics.part for side in (a, b)]
+    imgui.table_next_column()
+    imgui.table_next_column()
+    if round(shaded[0]) != round(shaded[1]):
+        right("not alike", WARNING)
+        tooltip(f"figures are of {count(shaded[0])} shaded pixels of A and {count(shaded[1])} of B")
+
+
+def _row(one: Row) -> None:
+    imgui.table_next_row()
+    imgui.table_next_column()
+    clipped(one.name, QUIET if not one.heading else None)
+    if one.tip:
+        tooltip(one.tip)
+    if one.heading:
+        return
+    texts = (one.written(one.a), one.written(one.b), one.written(one.difference, signed=True), one.written_share)
+    for text in texts:
+        imgui.table_next_column()
+        right(text)
