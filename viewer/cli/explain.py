@@ -25,6 +25,7 @@ from viewer.output.legend import light_in_words
 from viewer.output.pictures import lights_in_words
 from viewer.output.ray_json import ray_data
 from viewer.output.ray_rows import RayRows, Row, totals
+from viewer.state.earlier import Earlier
 from viewer.state.methods import DEFAULT
 from viewer.state.verdicts import Filter, Shown
 from viewer.util.messages import printable
@@ -46,10 +47,11 @@ def explain(path: Path, options: Namespace) -> None:
         time = moment(scene, options.frame, options.time)
         prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
         renderer = Renderer(scene, settings, work.progress)
-        before = times_before(scene, time, options.warmup, work)
+        times = times_before(scene, time, options.warmup, work)
+        before = [*options.before, *(Earlier(then, options.camera) for then in times)]
         for done, earlier in enumerate(before):
             work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
-            renderer.render(earlier, options.camera, work.cancelled)
+            renderer.render(earlier.time, earlier.camera, work.cancelled)
         work.count("tracing", len(before), len(before) + 1)
         frame = renderer.render(time, options.camera, work.cancelled)
         tree = ray_tree(renderer, frame, x, y, work.cancelled)

@@ -52,7 +52,7 @@ def film(path: Path, options: Namespace) -> bool:
         scene = edited_scene(read, options)
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
-        recipe = recipe_of(path, scene, settings, options)
+        recipe = replace(recipe_of(path, scene, settings, options), before=())  # modes are learnt from the film alone
         stills.check_light(recipe, scene)
         stills.with_caption_filled(recipe, scene)  # or say now what is wrong with it
         if not stills.lights_fit(recipe, scene):

@@ -37,7 +37,7 @@ def render() -> Parser:
     add("-o", "--output", type=Path, metavar="FILE", help=help_)
     parsers.add_moment(parser)
     _add_picture(parser)
-    add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
+    parsers.add_before(parser)
     add("--repeat", type=count(0, 1000), default=0, metavar="N", help="then trace the frame itself N times")
     add("--print-command", action="store_true", help="print the whole command for this picture, and trace nothing")
     help_ = "show the frame and its buffers in tev or HDRView, which is open there"
@@ -102,7 +102,7 @@ def film() -> Parser:
     parsers.add_tracing_options(parser, "bvh8")
     parsers.add_zoom_factor(parser)
     add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
-    parser.set_defaults(frame=None, time=None, warmup=0, repeat=0)
+    parser.set_defaults(frame=None, time=None, warmup=0, repeat=0, before=())
     return parser
 
 
@@ -124,7 +124,7 @@ def figure() -> Parser:
         help="which methods, in the order of the columns (default: none,paper,certified)",
     )
     add("--crops", type=crops, default=(), metavar="X,Y,W,H;...", help="rectangles of pixels that are shown enlarged")
-    add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
+    parsers.add_before(parser)
     parsers.add_moment(parser)
     _add_picture(parser)
     parsers.add_tracing_options(parser, "kdtree")  # whose steps are the paper's

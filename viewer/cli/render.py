@@ -128,7 +128,8 @@ def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) 
         history = f"what the method {settings.method} makes depends on time and threads"
     return Recipe(
         path, time, options.camera, settings, view, light, wipe, style, options.warmup, options.repeat, history,
-        folders=tuple(options.folder), meshes=mesh_options(options).of_file(path), edits=edits_of(options),
+        folders=tuple(options.folder), before=options.before, meshes=mesh_options(options).of_file(path),
+        edits=edits_of(options),
     )  # fmt: skip
 
 

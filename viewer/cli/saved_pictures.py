@@ -33,7 +33,8 @@ def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
     saved, size = read(path)
     kept: dict[str, Any] = {name: getattr(saved.settings, name) for name in _SETTINGS}
     kept |= {name: getattr(saved.style, name) for name in _STYLE}
-    kept |= {"warmup": saved.warmup, "repeat": saved.repeats, "no_marks": not saved.style.marked}
+    kept |= {"before": saved.before, "warmup": saved.warmup, "repeat": saved.repeats}
+    kept |= {"no_marks": not saved.style.marked}
     kept |= {"legend": saved.style.legend is not None, "legend_at": saved.style.legend}
     kept |= {"exposure": saved.style.tone.exposure, "white": saved.style.tone.white, "tone": saved.style.tone.curve}
     kept |= {"mark_clipped": saved.style.clipping, "range": saved.style.span}

@@ -1,8 +1,8 @@
 """All that a picture depends on: as the options of `shadowcull render` that make it again, and as JSON in the picture.
 
 Modes come from the frames before, and certificates and the caches as well.  A picture that shows them can be made again
-where those frames are known: so many frames of the path before it (`warmup`), or the same frame so many times
-(`repeats`).  Where they are not, `history` says why, in words.
+where those frames are known: any frames, each by its time and camera (`before`), then so many frames of the path before
+it (`warmup`), then the same frame so many times (`repeats`).  Where they are not, `history` says why, in words.
 """
 
 from __future__ import annotations
@@ -25,6 +25,9 @@ from viewer.output.pictures import SHADING
 from viewer.state import edits as scene_edits
 from viewer.state.annotations import Annotation
 from viewer.state.annotations import from_json as annotations_from_json
+from viewer.state.earlier import Earlier
+from viewer.state.earlier import from_json as earlier_from_json
+from viewer.state.earlier import to_json as earlier_to_json
 from viewer.state.marks import wipe_column
 from viewer.state.session import Snapshot, settings_to_json
 from viewer.state.tone import NEUTRAL, Tone
@@ -75,6 +78,7 @@ class Recipe:
     history: str = ""
     by_gpu: bool = False
     folders: tuple[Path, ...] = ()
+    before: tuple[Earlier, ...] = ()
     meshes: MeshOptions = AS_IN_FILE
     edits: Edits = NO_EDITS
 
@@ -116,6 +120,7 @@ class Recipe:
             "history": self.history,
             "by_gpu": self.by_gpu,
             "style": style,
+            **({"before": earlier_to_json(self.before)} if self.before else {}),
         }
 
 
@@ -158,6 +163,7 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Re
             repeats=_count(data, "repeats"),
             history=str(data.get("history", "")),
             by_gpu=bool(data.get("by_gpu", False)),
+            before=earlier_from_json(data.get("before", [])),
             meshes=snapshot.meshes,
             edits=snapshot.edits,
         )
@@ -242,6 +248,8 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         words += [f"--range={style.span[0]!r}:{style.span[1]!r}"]
     if style.caption:
         words += [f"--caption={style.caption.replace('{', '{{').replace('}', '}}')}"]
+    if recipe.before:
+        words += ["--before", json.dumps(earlier_to_json(recipe.before))]
     if style.annotations:
         words += ["--annotations", json.dumps([a.to_json() for a in style.annotations])]
     words += scene_edits.as_options(recipe.edits)

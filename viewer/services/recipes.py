@@ -82,6 +82,11 @@ class Recipes:
         repeats = self._tracing.learnt.repeats(frame)
         return replace(found, history=UNKNOWN) if repeats is None else replace(found, repeats=repeats)
 
+    @property
+    def folders(self) -> tuple[Path, ...]:
+        """Those that scenes may read files from besides their own."""
+        return tuple(self._loader.folders)
+
     def now(self) -> Recipe | None:
         """What makes the picture that the window shows, or will show when it has all its samples; None before one."""
         session, frame = self._session, self._tracing.frame

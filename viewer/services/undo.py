@@ -30,12 +30,14 @@ _STROKE = 0.6  # seconds from one to the next, at most, for both to be one step
 
 @dataclass(frozen=True)
 class Place:
-    """All that a step can bring back; `camera` is None while it follows the scene's own path."""
+    """All that a step can bring back; `camera` is None while it follows the scene's own path, `time` where the step is
+    not about going to another time."""
 
     choices: Choices
     camera: Camera | None
     meshes: MeshOptions
     edits: Edits = NO_EDITS
+    time: float | None = None
 
 
 @dataclass(frozen=True)
@@ -91,6 +93,7 @@ class Undo:
         self._changed_at = 0.0
         self._last: Place | None = None
         self._name = ""
+        self._time: float | None = None  # before what is about to change, if that goes to another time
 
     @property
     def undoes(self) -> str:
@@ -104,15 +107,17 @@ class Undo:
         """What would be done again; "" where there is nothing."""
         return self._undone[-1].name if self._undone and self._open is None else ""
 
-    def call_next(self, name: str) -> None:
-        """Give a name to what is about to change, which is a step of its own."""
+    def call_next(self, name: str, with_time: bool = False) -> None:
+        """Give a name to what is about to change, which is a step of its own; `with_time`, it brings back the time as
+        well."""
         self.follow()
         self._close()
-        self._name = name
+        self._name, self._time = name, self._session.time if with_time else None
 
     def clear(self) -> None:
         """Forget all steps, as another scene is open."""
         self._done, self._undone, self._open, self._last, self._name = [], [], None, None, ""
+        self._time = None
         self._coming = None
 
     def overlook(self, change: Callable[[], None]) -> None:
@@ -134,9 +139,14 @@ class Undo:
             return
         changed = _changes(self._last, now)
         name, self._name = self._name, ""
-        if name and changed:
+        before, self._time = self._time, None
+        moved = before is not None and before != self._session.time
+        if name and (changed or moved):
             self._close()
-            self._add(Step(name, self._last, now))
+            then, after = self._last, now
+            if moved:
+                then, after = replace(then, time=before), replace(now, time=self._session.time)
+            self._add(Step(name, then, after))
         elif changed:
             if self._open is not None and not changed.keys() <= self._open.fields.keys():
                 self._close()
@@ -222,6 +232,8 @@ class Undo:
     def _bring(self, place: Place, said: str) -> None:
         session = self._session
         place.choices.put_into(session, self._preferences)
+        if place.time is not None:
+            session.time, session.playing = place.time, False
         if place.camera != session.free_camera:
             start = session.camera
             self._motion.halt()
@@ -229,7 +241,7 @@ class Undo:
             if place.camera is not None:
                 self._motion.glide(place.camera, start)
         session.want(place.edits, place.choices.light)
-        self._last = replace(place, edits=session.edits)
+        self._last = replace(place, edits=session.edits, time=None)
         self._notices.say(said)
 
     def _place(self) -> Place | None:

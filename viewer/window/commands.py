@@ -268,6 +268,8 @@ def _run(ui: Ui) -> list[Command]:
     return [
         Command("Experiment", "Run", start("Experiment", runner.start_experiment), enabled=idle),
         Command("Zoom test", "Run", start("Zoom test", runner.start_zoom_test), enabled=idle),
+        Command("Hunt", "Run", start("Hunt", c.hunts.start), enabled=idle,
+                tip="search the path for the worst wrong pixels of a method"),
         Command("Film", "Run", lambda: ui.show_panel("Film"), enabled=idle,
                 tip="a path, or a flight through bookmarks, as pictures and video"),
         Command("Stop, or clear the selection", "Run", stop, "Escape", enabled=busy, separated=True),

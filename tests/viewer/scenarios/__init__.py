@@ -12,6 +12,7 @@ from tests.viewer.scenarios.film import filmstrip
 from tests.viewer.scenarios.filming import filming
 from tests.viewer.scenarios.finding import finding
 from tests.viewer.scenarios.fitting import fitting
+from tests.viewer.scenarios.hunting import hunting
 from tests.viewer.scenarios.lamps import lamps
 from tests.viewer.scenarios.legends import legends
 from tests.viewer.scenarios.moving import flying, orbiting, playing, resizing
@@ -28,7 +29,7 @@ SCENARIOS = {
     for scenario in (
         views, difference, wiping, comparing, closeup, legends, lamps, culling, certifying, explaining, rays,
         flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting,
-        zooming, asking, finding, filmstrip, filming, taking, failing,
+        zooming, asking, finding, filmstrip, filming, hunting, taking, failing,
         panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )

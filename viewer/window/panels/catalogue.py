@@ -15,6 +15,7 @@ from viewer.window.panels import (
     experiment,
     filming,
     find,
+    hunt,
     inspector,
     log,
     picture,
@@ -65,6 +66,7 @@ PANELS = {
         Panel(finding.PANEL, "Bottom", icons.ICON_FA_TABLE_LIST, find.show, wide=True),
         Panel("Experiment", "Bottom", icons.ICON_FA_FLASK, experiment.show, wide=True),
         Panel("Zoom test", "Bottom", icons.ICON_FA_MAGNIFYING_GLASS_PLUS, zoom.show, wide=True),
+        Panel("Hunt", "Bottom", icons.ICON_FA_CROSSHAIRS, hunt.show, wide=True),
         Panel("Film", "Bottom", icons.ICON_FA_FILM, filming.show, wide=True),
         Panel("Log", "Bottom", icons.ICON_FA_LIST, log.show, wide=True),
     )
