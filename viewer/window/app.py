@@ -295,8 +295,7 @@ class App:
         return params
 
     def _menus(self) -> None:
-        menus.show(self.ui)
-        self.layout.menu()
+        menus.show(self.ui, {menus.PANELS_MENU: self.layout.menu})
 
     def _ready(self) -> None:
         """The window and its GL context exist."""
