@@ -22,7 +22,7 @@ export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
 export MPLCONFIGDIR := $(CURDIR)/.cache/matplotlib
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz golden bench frames quickest lamps counters window motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help
+.PHONY: run kernels test quick test-all fuzz golden bench frames quickest lamps counters window table motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -73,6 +73,10 @@ counters:  ## time frames with and without counters of steps and tests (ARGS="--
 window:  ## time how soon the window shows a picture, and its own frames while tracing (ARGS="--seconds 20 SCENE")
 	@tools/environment.sh dev
 	@$(RUN) tools/with_screen.py $(RUN) -m tests.bench.window_times $(ARGS)
+
+table:  ## time the window with a table of 500,000 primitives, and how soon a click is seen (ARGS="--clicks 200")
+	@tools/environment.sh dev
+	@$(RUN) tools/with_screen.py $(RUN) -m tests.bench.table_times $(ARGS)
 
 motion:  ## how good pictures in motion are, and how soon they are whole (ARGS="--json motion.json SCENE")
 	@tools/environment.sh dev

@@ -12,6 +12,8 @@ uniform vec3 background;
 uniform float shading;                // how much of the picture's light and shade shows under flat colours, 0 to 1
 uniform bool outlines;                // draw the borders between primitives
 uniform int selected;                 // primitive drawn with a bright border, -1 for none
+uniform isampler2D part_table;        // per primitive: the named part of the scene that it belongs to
+uniform int selected_part;            // the part that has the border instead, -1 for none
 uniform usampler2D mark_buffer;       // of verified frames: NONE, RING around wrong pixels, WRONG
 uniform bool marked;                  // draw the rings
 uniform vec3 wrong_color;
@@ -96,13 +98,18 @@ bool on_border(int primitive) {
     return primitive_at(p + ivec2(1, 0)) != primitive || primitive_at(p + ivec2(0, 1)) != primitive;
 }
 
+bool is_selected(int primitive) {
+    if (selected_part < 0 || primitive < 0) return primitive == selected;
+    return texelFetch(part_table, table_entry(primitive), 0).r == selected_part;
+}
+
 bool on_selected_border() {
     if (selected < 0) return false;
     ivec2 p = pixel();
     int around = 0;
     for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x)
-            around += primitive_at(p + ivec2(x, y)) == selected ? 1 : 0;
+            around += is_selected(primitive_at(p + ivec2(x, y))) ? 1 : 0;
     return around > 0 && around < 9;
 }
 

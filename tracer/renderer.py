@@ -280,14 +280,14 @@ class Renderer:
         return Renderer(self.scene, self.settings, world=self.world)
 
     def follow(self, other: Renderer) -> None:
-        """Let the next picture that is refined begin with the pixels with which that of another renderer begins.
+        """Let the next picture that is refined be of the scene of another renderer, and begin with the same pixels.
 
         Parameters
         ----------
         other : Renderer
-            A renderer whose next picture has not begun yet.
+            A renderer of the same world, whose next picture has not begun yet.
         """
-        self._turn = other._turn
+        self.scene, self._turn = other.scene, other._turn
 
     def take_turn(self, time: float) -> None:
         """Place the world once more as the frame that this renderer has begun needs it.

@@ -11,11 +11,13 @@ from pathlib import Path
 import pytest
 from llvmlite import binding
 
+from tests.sweeps import cases
+
 ROOT = Path(__file__).resolve().parents[2]
 REPORT = "from numba.core.registry import cpu_target; print(cpu_target.target_context.codegen().magic_tuple()[1:])"
 
 
-@pytest.mark.parametrize("name, needs", [("haswell", "avx2"), ("x86-64", "sse2")])
+@pytest.mark.parametrize("name, needs", [("x86-64", "sse2"), *cases((), (("haswell", "avx2"),))])
 def test_vectors_are_the_same_on_a_lesser_processor(name: str, needs: str):
     """AVX2 with fused multiply-add, and nothing but SSE2: twice and four times as many registers to a vector."""
     if platform.machine().lower() not in ("x86_64", "amd64") or not binding.get_host_cpu_features().get(needs):

@@ -138,7 +138,7 @@ def _mirrors(matrix: Float64) -> bool:
     return bool(np.linalg.det(matrix[:3, :3]) < 0)
 
 
-def _placed(corners: Float64, normals: Float64 | None, matrix: Float64) -> tuple[Float64, Float64]:
+def under_matrix(corners: Float64, normals: Float64 | None, matrix: Float64) -> tuple[Float64, Float64]:
     """Corners and normals (..., 3, 3) under a matrix, still counter-clockwise from outside; no normals become zero."""
     corners = corners @ matrix[:3, :3].T + matrix[:3, 3]
     normals = np.zeros_like(corners) if normals is None else normals @ _normal_matrix(matrix).T
@@ -204,7 +204,7 @@ def _placed_in_runs(pieces: Iterable[tuple[Piece[Mesh], Float64]]) -> Iterator[t
     for (_, bare), run in groupby(pieces, key=lambda piece: (id(piece[1]), piece[0].shape.normals is None)):
         shapes, matrices = zip(*((piece.shape, baked) for piece, baked in run))
         normals = None if bare else np.concatenate([shape.normals for shape in shapes])
-        yield _placed(np.concatenate([shape.corners for shape in shapes]), normals, matrices[0])
+        yield under_matrix(np.concatenate([shape.corners for shape in shapes]), normals, matrices[0])
 
 
 def _triangles(
@@ -279,7 +279,7 @@ def _quadrics(
 
 
 def _deforming(pieces: list[tuple[Piece[Morph], Float64]], remarks: Remarks) -> tuple[Triangles, Deformation]:
-    placed = [_placed(piece.shape.corners, piece.shape.normals, baked) for piece, baked in pieces]
+    placed = [under_matrix(piece.shape.corners, piece.shape.normals, baked) for piece, baked in pieces]
     corners, normals = np.stack([c for c, _ in placed]), np.stack([n for _, n in placed])
     times = np.stack([piece.shape.times for piece, _ in pieces])
     origin = _Origin([piece.shape.place for piece, _ in pieces], [1] * len(pieces))

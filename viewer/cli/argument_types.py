@@ -14,6 +14,7 @@ from viewer.state.plans import parse_factors
 
 if TYPE_CHECKING:
     from viewer.state.annotations import Annotation
+    from viewer.state.earlier import Earlier
     from viewer.state.tone import Curve
     from viewer.state.views import View
 
@@ -145,6 +146,21 @@ def annotation_list(text: str) -> tuple[Annotation, ...]:
         if not text.lstrip().startswith("["):
             text = read_regular(Path(text), 1 << 20).decode("utf-8")
         return from_json(json.loads(text))
+    except OSError as error:
+        raise argparse.ArgumentTypeError(f"{text[:60]!r}: {error.strerror or error}") from None
+    except (ValueError, RecursionError) as error:
+        raise argparse.ArgumentTypeError(f"not understood: {error}") from None
+
+
+def before(text: str) -> tuple[Earlier, ...]:
+    """Frames before, as JSON, or a file that holds it."""
+    from tracer.scene.files import read_regular
+    from viewer.state import earlier
+
+    try:
+        if not text.lstrip().startswith("["):
+            text = read_regular(Path(text), 1 << 26).decode("utf-8")
+        return earlier.from_json(json.loads(text))
     except OSError as error:
         raise argparse.ArgumentTypeError(f"{text[:60]!r}: {error.strerror or error}") from None
     except (ValueError, RecursionError) as error:

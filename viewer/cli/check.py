@@ -18,6 +18,7 @@ from PIL import Image
 from tracer.frame import Frame
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
+from tracer.scene.edits import Edits, edited
 from tracer.scene.files import read_regular
 from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
@@ -53,7 +54,7 @@ class Checker:
 
     def __init__(self, options: Namespace, work: Work) -> None:
         self._options, self._work = options, work
-        self._scene: tuple[tuple[Path, MeshOptions], Scene] | None = None
+        self._scene: tuple[tuple[Path, MeshOptions, Edits], Scene] | None = None
         self._world: tuple[str, World] | None = None
 
     def check(self, path: Path) -> Verdict:
@@ -151,14 +152,10 @@ class Checker:
         found = find_scene(snapshot.scene, path)
         if found is None:
             raise ValueError(f"its scene is gone: {snapshot.scene}")
-        if self._scene is None or self._scene[0] != (found, snapshot.meshes):
-            self._scene, self._world = (
-                (
-                    (found, snapshot.meshes),
-                    load_visible_scene(found, self._work.progress, self._options.folder, snapshot.meshes),
-                ),
-                None,
-            )
+        if self._scene is None or self._scene[0] != (found, snapshot.meshes, wanted.edits):
+            read = load_visible_scene(found, self._work.progress, self._options.folder, snapshot.meshes)
+            self._scene = (found, snapshot.meshes, wanted.edits), edited(read, wanted.edits).scene
+            self._world = None
         scene = self._scene[1]
         prepare_kernels(self._work, len(scene.lights), wanted.settings.accelerator, *methods)
         settings = replace(wanted.settings, threads=wanted.settings.threads or self._options.threads)

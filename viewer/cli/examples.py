@@ -10,6 +10,7 @@ commands:
   shadowcull bench SCENE   measure, over a path of frames, what culling saves
   shadowcull zoom SCENE    move towards a primitive, and see whether its shadows stay right
   shadowcull explain SCENE say what became of each ray of one pixel
+  shadowcull hunt SCENE    search a path for the worst wrong pixels of a method
   shadowcull figure SCENE  draw a frame by several methods side by side
   shadowcull check FILE    render saved pictures and figures again, and say whether they are still true
   shadowcull info SCENE    say what a scene holds
@@ -159,6 +160,26 @@ that is not true is said to be wrong. Where a point has more than 12 lights, tho
 
 Modes are set and certificates made from frame to frame, so culling acts only after some frames: --warmup N first
 traces the N frames before the one that is explained.
+"""
+
+HUNT = """\
+examples:
+  shadowcull hunt kitchen.aff --frames 0-99 --size 256x256 --output wrong
+  shadowcull hunt kitchen.aff --method paper --step 10 --around 100 --radius 0.5 --seed 7
+  shadowcull hunt default --method certified --around 50
+  shadowcull check wrong/*.png
+  shadowcull explain kitchen.aff --frame 12 --pixel 147,125 --method paper --before '[[0, null]]' --only wrong
+
+The frames are traced one after another, as in bench, so that the method learns from each; every culled shadow ray is
+verified. Wrong pixels are ranked by how far their colour is from the right one, and of each primitive and light the
+worst is kept. Of the frames before it, the fewest are then looked for that make the pixel just as wrong: often the one
+that taught the mode. --around N traces N more pictures near the worst finds, after these frames; --radius says how far
+from the camera of a find, in parts of its distance to what is wrong there, and --seed draws other ones.
+
+--output writes for each find a figure that shows it beside the right picture, which `shadowcull check` can draw again,
+a JSON with all about it, whose frames before it --before of render, figure and explain takes, and hunt.json with all.
+For an exact method nothing is found, and the table says how many pixels were compared. Ctrl-C ends the hunt and keeps
+what was found; the exit code is then 130.
 """
 
 INFO = """\

@@ -17,6 +17,7 @@ from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
 from tracer.told_rays import RayTree
 from viewer.cli.console import working
+from viewer.cli.edit_options import edited_scene
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.render import times_before
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
@@ -24,6 +25,7 @@ from viewer.output.legend import light_in_words
 from viewer.output.pictures import lights_in_words
 from viewer.output.ray_json import ray_data
 from viewer.output.ray_rows import RayRows, Row, totals
+from viewer.state.earlier import Earlier
 from viewer.state.methods import DEFAULT
 from viewer.state.verdicts import Filter, Shown
 from viewer.util.messages import printable
@@ -38,16 +40,18 @@ def explain(path: Path, options: Namespace) -> None:
     if not (x < settings.width and y < settings.height):
         raise ValueError(f"--pixel {x},{y}: the picture is {settings.width} x {settings.height}")
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
+        read = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
+        scene = edited_scene(read, options)
         if options.light is not None and options.light >= len(scene.lights):
             raise ValueError(f"--light {options.light}: {lights_in_words(len(scene.lights))}")
         time = moment(scene, options.frame, options.time)
         prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
         renderer = Renderer(scene, settings, work.progress)
-        before = times_before(scene, time, options.warmup, work)
+        times = times_before(scene, time, options.warmup, work)
+        before = [*options.before, *(Earlier(then, options.camera) for then in times)]
         for done, earlier in enumerate(before):
             work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
-            renderer.render(earlier, options.camera, work.cancelled)
+            renderer.render(earlier.time, earlier.camera, work.cancelled)
         work.count("tracing", len(before), len(before) + 1)
         frame = renderer.render(time, options.camera, work.cancelled)
         tree = ray_tree(renderer, frame, x, y, work.cancelled)

@@ -11,6 +11,7 @@ from rich.table import Table
 from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file, load_visible_scene
 from viewer.cli.console import print_table, working
+from viewer.cli.edit_options import edited_scene
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.render import check_display, recipe_of, times_before
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
@@ -35,7 +36,8 @@ def figure(path: Path, options: Namespace) -> None:
     check_display(options)
     settings = replace(tracing_settings(options), samples=options.samples)
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
+        read = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
+        scene = edited_scene(read, options)
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
         recipe = recipe_of(path, scene, settings, options)

@@ -15,6 +15,7 @@ from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli.console import working
+from viewer.cli.edit_options import edited_scene
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.render import check_certificates, check_display, recipe_of
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
@@ -47,10 +48,11 @@ def film(path: Path, options: Namespace) -> bool:
         check_writable(video)
     stops = _stops(path, options)
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
+        read = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
+        scene = edited_scene(read, options)
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
-        recipe = recipe_of(path, scene, settings, options)
+        recipe = replace(recipe_of(path, scene, settings, options), before=())  # modes are learnt from the film alone
         stills.check_light(recipe, scene)
         stills.with_caption_filled(recipe, scene)  # or say now what is wrong with it
         if not stills.lights_fit(recipe, scene):

@@ -6,6 +6,7 @@
     shadowcull bench SCENE      the paper's table over a path of frames
     shadowcull zoom SCENE       towards a primitive, and whether its shadows keep up
     shadowcull explain SCENE    what became of the rays of one pixel
+    shadowcull hunt SCENE       the worst wrong pixels of a method
     shadowcull figure SCENE     a frame by several methods, side by side
     shadowcull check FILE       whether saved pictures and figures are still true
     shadowcull info SCENE       what a scene holds
@@ -24,7 +25,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from viewer.cli import parsers, picture_parsers
+from viewer.cli import hunt_parser, parsers, picture_parsers
 from viewer.cli.mesh_arguments import as_arguments, mesh_options
 from viewer.cli.parsers import MISUSED
 from viewer.util import resources
@@ -54,6 +55,7 @@ def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
         "film": _film,
         "figure": _figure,
         "check": _check,
+        "hunt": _hunt,
     }
     try:
         if arguments and arguments[0] in commands:
@@ -215,6 +217,15 @@ def _explain(arguments: list[str]) -> int:
     options.camera = saved_pictures.camera(options.camera)
     explain.explain(resources.scene_path(options.scene), options)
     return 0
+
+
+def _hunt(arguments: list[str]) -> int:
+    options = hunt_parser.hunt().parse_args(arguments)
+
+    from viewer.cli import hunt, saved_pictures
+
+    options.camera = saved_pictures.camera(options.camera)
+    return 0 if hunt.run(resources.scene_path(options.scene), options) else INTERRUPTED
 
 
 def _info(arguments: list[str]) -> int:

@@ -10,6 +10,7 @@ from typing import Any, NoReturn
 
 from viewer.cli import examples
 from viewer.cli.argument_types import (
+    before,
     count,
     factors,
     lamp_samples,
@@ -19,6 +20,7 @@ from viewer.cli.argument_types import (
     several,
     size,
 )
+from viewer.cli.edit_options import add_edits
 from viewer.cli.mesh_arguments import add_mesh_options, joined
 from viewer.util import resources
 from viewer.util.messages import ERROR, say
@@ -26,6 +28,7 @@ from viewer.util.version import program_version
 
 MISUSED = 2
 """Exit code where a command line is wrong."""
+WARMUP = "first trace the N frames before it"
 CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
 
 
@@ -142,7 +145,8 @@ def explain() -> Parser:
     add("--light", type=count(0, 2**31 - 1), metavar="N", help="only shadow rays to this light")
     add("--json", action="store_true", help="all rays as JSON on standard output")
     add("--camera", metavar="JSON", help=f"another camera: {CAMERA}")
-    add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
+    add_edits(parser)
+    add_before(parser)
     add_tracing_options(parser, "bvh8")
     add_zoom_factor(parser)
     parser.set_defaults(verify=False, samples=1)
@@ -168,6 +172,13 @@ def add_scene(parser: Parser, more: str = "") -> None:
     add("scene", nargs="?", metavar="SCENE", help=_scene_help() + more)
     help_ = "another folder than its own that the scene may read files from; may be given several times"
     add("--folder", type=Path, action="append", default=[], metavar="DIR", help=help_)
+
+
+def add_before(parser: Parser) -> None:
+    """The frames from which modes are learnt: those before on the path, or any."""
+    parser.add_argument("--warmup", type=count(0, 100_000), default=0, metavar="N", help=WARMUP)
+    help_ = "before these, trace the frames of this list of [time, camera], or of the JSON of a find of hunt"
+    parser.add_argument("--before", type=before, default=(), metavar="JSON", help=help_)
 
 
 def add_moment(parser: Parser) -> None:

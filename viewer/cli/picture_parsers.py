@@ -20,6 +20,7 @@ from viewer.cli.argument_types import (
     values,
     view,
 )
+from viewer.cli.edit_options import add_edits
 from viewer.cli.parsers import Parser
 
 
@@ -36,7 +37,7 @@ def render() -> Parser:
     add("-o", "--output", type=Path, metavar="FILE", help=help_)
     parsers.add_moment(parser)
     _add_picture(parser)
-    add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
+    parsers.add_before(parser)
     add("--repeat", type=count(0, 1000), default=0, metavar="N", help="then trace the frame itself N times")
     add("--print-command", action="store_true", help="print the whole command for this picture, and trace nothing")
     help_ = "show the frame and its buffers in tev or HDRView, which is open there"
@@ -75,6 +76,7 @@ def _add_picture(parser: Parser) -> None:
     add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
     _add_style(parser)
     add("--camera", metavar="JSON", help=f"another camera: {parsers.CAMERA}")
+    add_edits(parser)
 
 
 def film() -> Parser:
@@ -100,7 +102,7 @@ def film() -> Parser:
     parsers.add_tracing_options(parser, "bvh8")
     parsers.add_zoom_factor(parser)
     add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
-    parser.set_defaults(frame=None, time=None, warmup=0, repeat=0)
+    parser.set_defaults(frame=None, time=None, warmup=0, repeat=0, before=())
     return parser
 
 
@@ -122,7 +124,7 @@ def figure() -> Parser:
         help="which methods, in the order of the columns (default: none,paper,certified)",
     )
     add("--crops", type=crops, default=(), metavar="X,Y,W,H;...", help="rectangles of pixels that are shown enlarged")
-    add("--warmup", type=count(0, 100_000), default=0, metavar="N", help="first trace the N frames before it")
+    parsers.add_before(parser)
     parsers.add_moment(parser)
     _add_picture(parser)
     parsers.add_tracing_options(parser, "kdtree")  # whose steps are the paper's

@@ -21,6 +21,7 @@ from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
 from viewer.cli.console import Work, print_table, statistics_table, working
+from viewer.cli.edit_options import edited_scene, edits_of
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
 from viewer.output import exr, png, recipe, tev
@@ -62,7 +63,8 @@ def render(path: Path, options: Namespace) -> None:
     check_certificates(settings, view)
     check_display(options)
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
+        read = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
+        scene = edited_scene(read, options)
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
         wanted = stills.with_caption_filled(recipe_of(path, scene, settings, options), scene)
@@ -126,7 +128,8 @@ def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) 
         history = f"what the method {settings.method} makes depends on time and threads"
     return Recipe(
         path, time, options.camera, settings, view, light, wipe, style, options.warmup, options.repeat, history,
-        folders=tuple(options.folder), meshes=mesh_options(options).of_file(path),
+        folders=tuple(options.folder), before=options.before, meshes=mesh_options(options).of_file(path),
+        edits=edits_of(options),
     )  # fmt: skip
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from tracer.scene.files import read_regular
 from tracer.scene.model import Camera
+from viewer.cli import edit_options
 from viewer.cli.argument_types import ChosenView
 from viewer.output import capture, recipe
 from viewer.output.recipe import Recipe
@@ -32,7 +33,8 @@ def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
     saved, size = read(path)
     kept: dict[str, Any] = {name: getattr(saved.settings, name) for name in _SETTINGS}
     kept |= {name: getattr(saved.style, name) for name in _STYLE}
-    kept |= {"warmup": saved.warmup, "repeat": saved.repeats, "no_marks": not saved.style.marked}
+    kept |= {"before": saved.before, "warmup": saved.warmup, "repeat": saved.repeats}
+    kept |= {"no_marks": not saved.style.marked}
     kept |= {"legend": saved.style.legend is not None, "legend_at": saved.style.legend}
     kept |= {"exposure": saved.style.tone.exposure, "white": saved.style.tone.white, "tone": saved.style.tone.curve}
     kept |= {"mark_clipped": saved.style.clipping, "range": saved.style.span}
@@ -44,6 +46,7 @@ def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
     kept["view"] = ChosenView(saved.view, saved.light, saved.wipe, saved.style.shares)
     kept["moment"] = saved.time
     kept |= {"no_studio": not saved.meshes.studio, "up": saved.meshes.up, "crease": saved.meshes.crease}
+    kept |= edit_options.defaults(saved.edits)
     return saved.scene, kept
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import re
+import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 ENDINGS = (".png", ".pdf")
 _COLUMN, _LABELS, _BAR = 3.1, 1.7, 1.1  # inches of a method's column, of the names of rows, and of the colour bar
 _COUNT = 0.21  # inches of a line of counts
+_LINE, _LETTER = 0.19, 0.082  # inches of a line of words below the title, and of one of their letters
+_MARK = "#FF00FF"
 _LEAST = 1e-3  # the top of the colour range where nothing differs
 _IN_PDF = re.compile(rb"/Keywords \(shadowcull:([A-Za-z0-9+/=]+)\)")
 
@@ -49,14 +52,16 @@ class Crop(NamedTuple):
 
 @dataclass(frozen=True)
 class Shown:
-    """What a figure shows: the frames by their methods, that by "none" as the reference, and the crops; `warmed` is how
-    many frames were traced before each."""
+    """What a figure shows: the frames by their methods, that by "none" as the reference, the crops, the pixels (x, y)
+    that are marked in these, and words below the title; `warmed` is how many frames were traced before each."""
 
     scene: Scene
     recipe: Recipe
     frames: Mapping[str, Frame]
     reference: Frame
     crops: Sequence[Crop]
+    marks: Sequence[tuple[int, int]] = ()
+    words: str = ""
     warmed: int = 0
 
     @property
@@ -130,10 +135,13 @@ def _figure(shown: Shown) -> Figure:
     lines = len(shown.counts(next(iter(shown.frames))))
     rows.append(("counts", _COUNT * lines + 0.1))
     count = len(shown.frames)
-    size = _LABELS + count * _COLUMN + _BAR, sum(inches for _, inches in rows) + 0.14 * len(rows) + 1.15
+    across = _LABELS + count * _COLUMN + _BAR
+    words = textwrap.wrap(shown.words, int((across - 0.4) / _LETTER)) if shown.words else []
+    head = 0.95 + _LINE * len(words)
+    size = across, sum(inches for _, inches in rows) + 0.14 * len(rows) + 0.2 + head
     page = Figure(figsize=size)
     grid = GridSpec(
-        len(rows), count, page, left=_LABELS / size[0], right=1.0 - _BAR / size[0], top=1.0 - 0.95 / size[1],
+        len(rows), count, page, left=_LABELS / size[0], right=1.0 - _BAR / size[0], top=1.0 - head / size[1],
         bottom=0.2 / size[1], wspace=0.05, hspace=0.14 * len(rows) / sum(inches for _, inches in rows),
         height_ratios=[inches for _, inches in rows],
     )  # fmt: skip
@@ -151,9 +159,11 @@ def _figure(shown: Shown) -> Figure:
             elif kind == "crop":
                 crop_number += 1
                 panel.imshow(crops[crop_number].of(pictures[method]), interpolation="nearest")
+                _mark(panel, crops[crop_number], shown.marks)
                 _frame(panel, crop_number if shown.crops else None)
             elif kind == "difference":
                 _show_difference(panel, crops[crop_number].of(differences[method]), top, method)
+                _mark(panel, crops[crop_number], shown.marks if method != "none" else ())
                 _frame(panel, crop_number if shown.crops else None)
             else:
                 _show_counts(panel, shown.counts(method), first=column == 0)
@@ -161,6 +171,8 @@ def _figure(shown: Shown) -> Figure:
                 panel.set_ylabel(_row_name(kind, crop_number if shown.crops else None), fontsize=12.0)
     _color_bars(page, shown, top, size)
     page.suptitle(_title(shown), x=0.02, y=1.0 - 0.12 / size[1], ha="left", va="top", fontsize=14.0)
+    for number, line in enumerate(words):
+        page.text(0.02, 1.0 - (0.42 + _LINE * number) / size[1], line, ha="left", va="top", fontsize=10.5)
     return page
 
 
@@ -196,6 +208,16 @@ def _frame(panel: Axes, crop: int | None) -> None:
         side.set_visible(True)
         side.set_color("#888888" if crop is None else COLORS[crop % len(COLORS)])
         side.set_linewidth(0.8 if crop is None else 2.0)
+
+
+def _mark(panel: Axes, crop: Crop, marks: Sequence[tuple[int, int]]) -> None:
+    """A square around each marked pixel that the crop shows."""
+    from matplotlib.patches import Rectangle
+
+    for x, y in marks:
+        if 0 <= x - crop.x < crop.width and 0 <= y - crop.y < crop.height:
+            corner = x - crop.x - 0.5, y - crop.y - 0.5
+            panel.add_patch(Rectangle(corner, 1.0, 1.0, fill=False, edgecolor=_MARK, linewidth=1.6))
 
 
 def _show_picture(panel: Axes, pixels: NDArray[np.uint8], crops: Sequence[Crop]) -> None:

@@ -1,8 +1,8 @@
 """All that a picture depends on: as the options of `shadowcull render` that make it again, and as JSON in the picture.
 
 Modes come from the frames before, and certificates and the caches as well.  A picture that shows them can be made again
-where those frames are known: so many frames of the path before it (`warmup`), or the same frame so many times
-(`repeats`).  Where they are not, `history` says why, in words.
+where those frames are known: any frames, each by its time and camera (`before`), then so many frames of the path before
+it (`warmup`), then the same frame so many times (`repeats`).  Where they are not, `history` says why, in words.
 """
 
 from __future__ import annotations
@@ -16,13 +16,18 @@ from typing import Any
 
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
+from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.load import AFF_EXTENSIONS
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.output.pictures import SHADING
+from viewer.state import edits as scene_edits
 from viewer.state.annotations import Annotation
 from viewer.state.annotations import from_json as annotations_from_json
+from viewer.state.earlier import Earlier
+from viewer.state.earlier import from_json as earlier_from_json
+from viewer.state.earlier import to_json as earlier_to_json
 from viewer.state.marks import wipe_column
 from viewer.state.session import Snapshot, settings_to_json
 from viewer.state.tone import NEUTRAL, Tone
@@ -57,7 +62,8 @@ class Style:
 class Recipe:
     """See the module.  `camera` None is the scene's own; `settings` are those of the picture's own frame; `by_gpu` says
     that a GPU drew the view, which may round otherwise.  `folders` are those that the user lets the scene read: a
-    picture does not carry them, or it could name any."""
+    picture does not carry them, or it could name any.  `edits` are what is otherwise than in the scene's file; `light`
+    counts those that are on."""
 
     scene: Path
     time: float
@@ -72,7 +78,9 @@ class Recipe:
     history: str = ""
     by_gpu: bool = False
     folders: tuple[Path, ...] = ()
+    before: tuple[Earlier, ...] = ()
     meshes: MeshOptions = AS_IN_FILE
+    edits: Edits = NO_EDITS
 
     @property
     def size(self) -> tuple[int, int]:
@@ -97,7 +105,7 @@ class Recipe:
         follow, style = self.camera is None, self.style
         return Snapshot(
             path, self.time, camera, follow, settings, self.view, self.light, self.wipe,
-            tone=style.tone, span=style.span, meshes=self.meshes,
+            tone=style.tone, span=style.span, meshes=self.meshes, edits=self.edits,
         )  # fmt: skip
 
     def to_json(self) -> dict[str, Any]:
@@ -112,6 +120,7 @@ class Recipe:
             "history": self.history,
             "by_gpu": self.by_gpu,
             "style": style,
+            **({"before": earlier_to_json(self.before)} if self.before else {}),
         }
 
 
@@ -154,7 +163,9 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Re
             repeats=_count(data, "repeats"),
             history=str(data.get("history", "")),
             by_gpu=bool(data.get("by_gpu", False)),
+            before=earlier_from_json(data.get("before", [])),
             meshes=snapshot.meshes,
+            edits=snapshot.edits,
         )
     except (TypeError, AttributeError):
         raise ValueError("how it was drawn is damaged") from None
@@ -237,8 +248,11 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         words += [f"--range={style.span[0]!r}:{style.span[1]!r}"]
     if style.caption:
         words += [f"--caption={style.caption.replace('{', '{{').replace('}', '}}')}"]
+    if recipe.before:
+        words += ["--before", json.dumps(earlier_to_json(recipe.before))]
     if style.annotations:
         words += ["--annotations", json.dumps([a.to_json() for a in style.annotations])]
+    words += scene_edits.as_options(recipe.edits)
     for folder in recipe.folders:
         words += ["--folder", str(folder.absolute())]
     return words + _of_meshes(recipe)

@@ -70,9 +70,10 @@ class Bookmarks:
         self._settings.save()
 
     def find(self, index: int) -> Snapshot | None:
-        """Time, camera and view of a bookmark, without settings; None, and one line, where it is damaged."""
+        """Time, camera and view of a bookmark, without settings and edits; None, and one line, where it is damaged."""
         try:
-            return replace(Snapshot.from_json(self.all[index]["state"]), settings={})
+            found = Snapshot.from_json(self.all[index]["state"])
+            return replace(found, settings={}, edits=self._session.edits)
         except (ValueError, KeyError, TypeError, IndexError) as error:
             self._notices.say(f"this bookmark is damaged: {error}", error=True)
             return None

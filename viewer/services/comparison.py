@@ -23,11 +23,14 @@ MOST_METHODS, MOST_CROPS = 6, 6
 
 @dataclass(frozen=True)
 class Comparison:
-    """`recipe` is what all methods have in common; its own method does not count."""
+    """`recipe` is what all methods have in common; its own method does not count.  `marks` are pixels (x, y) that are
+    marked in the crops, and `words` stand below the title."""
 
     recipe: Recipe
     methods: tuple[str, ...]
     crops: tuple[Crop, ...]
+    marks: tuple[tuple[int, int], ...] = ()
+    words: str = ""
 
     def checked(self) -> Comparison:
         """The same; raises ValueError, in one line, for what cannot be drawn."""
@@ -47,7 +50,9 @@ class Comparison:
     def to_json(self) -> dict[str, Any]:
         """What a figure carries beside its state."""
         crops = [[c.x, c.y, c.width, c.height] for c in self.crops]
-        return self.recipe.to_json() | {"methods": list(self.methods), "crops": crops}
+        more: dict[str, Any] = {"marks": [list(mark) for mark in self.marks]} if self.marks else {}
+        more |= {"words": self.words} if self.words else {}
+        return self.recipe.to_json() | {"methods": list(self.methods), "crops": crops} | more
 
 
 def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Comparison:
@@ -55,8 +60,10 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Co
     common = recipe.from_json(snapshot, size, data)
     try:
         crops = tuple(Crop(*(int(side) for side in crop)) for crop in data["crops"])
-        return Comparison(common, tuple(str(method) for method in data["methods"]), crops).checked()
-    except (KeyError, TypeError):
+        marks = tuple((int(x), int(y)) for x, y in data.get("marks", []))
+        methods = tuple(str(method) for method in data["methods"])
+        return Comparison(common, methods, crops, marks, str(data.get("words", ""))).checked()
+    except (KeyError, TypeError, AttributeError):
         raise ValueError("its methods or crops are damaged") from None
 
 
@@ -81,11 +88,14 @@ def trace(
         def tell(done: int, total: int, method: str = method) -> None:
             on_frame(method, done, total)
 
+        if not (Method.parse(method).culls or settings.modes or wanted.view.of_modes):  # it learns nothing
+            wanted = replace(wanted, before=())
         frames[method] = stills.trace(renderer, wanted, on_frame=tell, cancelled=cancelled)
     reference = frames["none"]
     shown = {method: frames[method] for method in comparison.methods}
-    warmed = len(stills.times_before(scene, comparison.recipe.time, comparison.recipe.warmup))
-    return Shown(scene, comparison.recipe, shown, reference, comparison.crops, warmed)
+    common = comparison.recipe
+    warmed = len(common.before) + len(stills.times_before(scene, common.time, common.warmup))
+    return Shown(scene, common, shown, reference, comparison.crops, comparison.marks, comparison.words, warmed)
 
 
 def text(shown: Shown, comparison: Comparison) -> str:

@@ -13,12 +13,16 @@ from typing import Any
 
 from tracer.frame import Frame
 from tracer.renderer import Renderer
+from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
 from tracer.zoom import Step
+from viewer.services.before_edits import BeforeEdits
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
+from viewer.services.editing import Editing
 from viewer.services.film_controller import FilmController
+from viewer.services.hunt_controller import HuntController
 from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
 from viewer.services.pad_flight import PadFlight
@@ -27,13 +31,17 @@ from viewer.services.presets import Presets
 from viewer.services.questions import Questions
 from viewer.services.ray_inspector import RayInspector
 from viewer.services.recipes import Recipes
+from viewer.services.record import Record
 from viewer.services.render_thread import RenderThread, Traced
 from viewer.services.run_controller import RunController
 from viewer.services.scene_loader import Arrival, SceneLoader
+from viewer.services.scene_table import SceneTable
 from viewer.services.scene_watcher import SceneWatcher
 from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
 from viewer.services.shadow_inspector import ShadowInspector
+from viewer.services.teachers import Teachers
+from viewer.services.time_travel import TimeTravel
 from viewer.services.tracing import Conditions, Tracing
 from viewer.services.undo import Undo
 from viewer.state.history import History
@@ -58,6 +66,7 @@ class Controller:
         self.notices = notices = Notices(awaken)
         self.renderer = renderer = RenderThread(awaken)
         self.history = History()
+        self.record = Record(session, self.history)
         self.selection = Selection(session, lambda: self.frame)
         self.captures = CaptureService(session, preferences, notices, awaken)
         self.runs = RunController(session, self.selection, renderer, preferences, notices, self.captures, awaken)
@@ -76,13 +85,25 @@ class Controller:
         self.pads = PadFlight(session, preferences, self.motion, notices)
         self.inspector = ShadowInspector(self.selection, renderer)
         self.rays = RayInspector(session, self.selection, renderer)
+        self.teachers = Teachers(session, self.selection, self.record, renderer)
+        self.travel = TimeTravel(
+            session, preferences, self.record, self.tracing, self.runs, self.undo, self.selection, notices,
+            self.restore, awaken,
+        )  # fmt: skip
         self.recorder = LightRecorder(session, renderer, self.tracing)
+        refuses, overlook = self.runs.refuses, self.undo.overlook
+        self.editing = Editing(session, renderer, notices, refuses, self._show_edited, overlook)
+        self.table = SceneTable(session, self.selection, preferences, notices, self.captures, self.editing, awaken)
+        self.before_edits = BeforeEdits(session, self.editing, self.undo)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
         self.recipes = Recipes(session, preferences, self.tracing, self.loader, notices)
         films = FilmController(session, preferences, self.runs, self.recipes, self.bookmarks, notices, awaken)
         self.films = films
         self.pictures = PictureController(session, preferences, self.runs, self.recipes, notices, awaken)
+        self.hunts = HuntController(
+            session, preferences, self.runs, self.travel, self.recipes, notices, awaken
+        )  # fmt: skip
         self.watcher = SceneWatcher(
             preferences, lambda: self.loader.files, self._may_reload, self.loader.follow_change, awaken
         )
@@ -124,14 +145,25 @@ class Controller:
         traced, motion, run = self.traced, self.motion, self.runs.current
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
         self.undo.follow()
+        self.editing.follow(run is not None, self.tracing.shows_edits or not self.renderer.busy)
         self.rays.follow(traced if run is None else None)  # before the next frame is asked for
+        self.table.follow(traced if run is None else None, motion.lively)
         self.tracing.ask(Conditions(size, motion.under_way, run, self.loader.ready, self.selection.hovered))
         if run is None:
             self.recorder.follow()
+            self._follow_before_edits()
             if self.traced is not None and self.traced.whole:
                 self.bookmarks.follow(self.traced.frame, self.traced.request.divisor == 1)
         self.inspector.follow(self.frame if run is None else None, not motion.lively)
+        self.travel.follow(self.traced)
+        self.teachers.follow(self.traced if run is None and not motion.lively else None)
         return frame
+
+    def _follow_before_edits(self) -> None:
+        traced, tracing = self.traced, self.tracing
+        now = traced is not None and traced.whole and traced.request.divisor == 1 and not self.motion.lively
+        frame = traced.frame if traced is not None and now and tracing.shows_edits else None
+        self.before_edits.follow(frame, not (tracing.awaits or tracing.adds_samples or self.renderer.busy))
 
     def _take_scene(self) -> None:
         arrival = self.loader.follow()
@@ -171,18 +203,20 @@ class Controller:
         run = self.runs.follow()
         if run.ended:
             self.tracing.again()  # else the world might stay where the run has put it
-        before = self.traced
+        if self.travel.replay is not None:  # they teach the window's own modes
+            replayed = self.travel.replay.take_traced()
+            self.record.add(replayed, None, self.drawn_seconds)
+            for traced in replayed:
+                self.tracing.learnt.add(traced.frame)
         if run.picture is not None:
             self.tracing.show(run.picture)
             frame = run.picture.frame
         else:
-            traced = self.tracing.take()
-            if traced is None:
+            newest = self.tracing.take()
+            self.record.add(self.renderer.take_whole(), newest, self.drawn_seconds)
+            if newest is None:
                 return None
-            frame = traced.frame
-            if frame.settings.samples == 1:  # further samples count nothing
-                again = before is not None and before.request is traced.request
-                self.history.add(frame, self.drawn_seconds, again)
+            frame = newest.frame
         self.reloaded = False
         self.motion.look_around(frame)
         self.selection.refresh(frame)
@@ -198,12 +232,26 @@ class Controller:
         self.session.open(scene)
         self.info = info
         self.renderer.use(renderer)
-        self.history.clear()
+        self.editing.enter(renderer)
+        self.before_edits.forget()
+        self.record.forget()
         self.tracing.forget()
         self.selection.clear()
         self.motion.enter(info.get("bounds"))
         self.preferences.remember_scene(Path(scene.path).absolute())
         self.settings.save()
+
+    def _show_edited(self, now: Edited, renderer: Renderer) -> None:
+        """Show the scene that is open with other edits: where we are, and what was chosen, stays."""
+        before = self.session.edited
+        same = before is not None and before.made_as(now)
+        self.undo.overlook(lambda: self.session.take(now))
+        self.renderer.use(renderer, fresh=False)
+        self.record.follow_edits()
+        self.tracing.follow_edits(same)
+        if not same:
+            self.selection.follow_edits(before, now)
+            self.reloaded = True
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot of the open scene."""

@@ -125,7 +125,7 @@ class Motion:
             return
         self.halt()
         self._session.move(camera)
-        self._by_hand()
+        self.by_hand()
 
     def glide(self, camera: Camera, start: Camera | None = None) -> None:
         """Move the camera there in a moment's time, from where it is or from `start`."""
@@ -173,8 +173,8 @@ class Motion:
             return
         self._session.playing = False
         self._session.go_to_frame(self._session.frame + frames)
-        self._by_hand()  # a key that is held down is motion
+        self.by_hand()  # a key that is held down is motion
 
-    def _by_hand(self) -> None:
+    def by_hand(self) -> None:
         """Note that the picture is changing under the user's hand: coarse frames for a moment."""
         self._moving_until = time.monotonic() + IDLE_AFTER

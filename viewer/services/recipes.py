@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from tracer.frame import Frame, Settings
+from tracer.scene.edits import NO_EDITS
 from viewer.output import recipe
 from viewer.output.recipe import Recipe, Style
 from viewer.services.scene_loader import SceneLoader
@@ -51,6 +52,7 @@ class Recipes:
             by_gpu=view is not View.COLOR or style.outlines or not style.tone.neutral or style.clipping,
             folders=self._loader.folders,
             meshes=session.meshes,
+            edits=session.edited.edits if session.edited is not None else NO_EDITS,
         )
         return self._with_history(found, frame)
 
@@ -79,6 +81,11 @@ class Recipes:
             return replace(found, history=CHANCE)
         repeats = self._tracing.learnt.repeats(frame)
         return replace(found, history=UNKNOWN) if repeats is None else replace(found, repeats=repeats)
+
+    @property
+    def folders(self) -> tuple[Path, ...]:
+        """Those that scenes may read files from besides their own."""
+        return tuple(self._loader.folders)
 
     def now(self) -> Recipe | None:
         """What makes the picture that the window shows, or will show when it has all its samples; None before one."""

@@ -15,6 +15,7 @@ between two frames, while the world still stands as it did in the frame that it 
 from __future__ import annotations
 
 import threading
+from collections import deque
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
@@ -28,6 +29,8 @@ from viewer.services.jobs import TRACER, step_back
 from viewer.services.pair import Asked, Pair
 from viewer.util.failures import Failure, failure
 
+MOST_WHOLE = 16
+"""Whole frames that wait to be taken; the window asks for one at a time, and takes what has come before."""
 _KNOWN = (MemoryError, OSError)  # what may go wrong here without a mistake of the program's
 
 
@@ -89,12 +92,14 @@ class RenderRequest:
 
 @dataclass(frozen=True)
 class Traced:
-    """A frame and the request it answers, what the first part of this cost, and the same frame by a second method."""
+    """A frame and the request it answers, what the first part of this cost, and the same frame by a second method;
+    `fresh` says of a whole frame that all modes were forgotten before it, and none has become whole in between."""
 
     request: RenderRequest
     frame: Frame
     first: FrameStatistics
     second: Frame | None = None
+    fresh: bool = False
 
     @property
     def whole(self) -> bool:
@@ -156,15 +161,21 @@ class RenderThread:
         self._reset = False
         self._closing = False
         self._finished: Traced | None = None
+        self._became_whole: deque[Traced] = deque(maxlen=MOST_WHOLE)
+        self._fresh = True  # nothing is known of modes
         self._failure: Failure | None = None
         self._thread = threading.Thread(target=self._run, name="shadowcull render", daemon=True)
         self._thread.start()
 
-    def use(self, renderer: Traces | None) -> None:
-        """Trace this renderer's scene from now on; whatever was asked of the old one is dropped, and a task ended."""
+    def use(self, renderer: Traces | None, fresh: bool = True) -> None:
+        """Trace this renderer's scene from now on; whatever was asked of the old one is dropped, and a task ended.
+
+        `fresh` says that it knows nothing of modes yet."""
         with self._changed:
             self._renderer = renderer
             self._waiting = self._finished = self._failure = self._placed_at = None
+            self._became_whole.clear()
+            self._fresh = fresh
             self._questions.clear()
             self._cancel = True
             self._changed.notify_all()
@@ -218,6 +229,14 @@ class RenderThread:
         with self._changed:
             traced, self._finished = self._finished, None
             return traced
+
+    def take_whole(self) -> list[Traced]:
+        """The frames that have become whole since the last time, as they were before further samples, in their order:
+        each of them has set modes."""
+        with self._changed:
+            whole = list(self._became_whole)
+            self._became_whole.clear()
+            return whole
 
     def take_failure(self) -> Failure | None:
         """Why a frame, or an answer, did not come, once."""
@@ -313,6 +332,7 @@ class RenderThread:
         try:
             if reset:
                 renderer.reset_modes()
+                self._fresh = True
                 self._pair = None
             seconds = max(request.settings.certificate_seconds, request.refinement_seconds)
             patient = request.refinement_seconds > 0.0
@@ -351,6 +371,10 @@ class RenderThread:
             if renderer is self._renderer:
                 self._finished = traced
                 self._shown, self._whole = True, traced.whole
+                if traced.whole and traced.frame.settings.samples == 1:
+                    traced = self._finished = replace(traced, fresh=self._fresh)
+                    self._fresh = False
+                    self._became_whole.append(traced)
             newer = self._waiting is not None and self._waiting.supersedes(traced.request, shown=True)
             on = not (self._cancel or newer)
         self._wake()

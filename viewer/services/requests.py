@@ -26,7 +26,7 @@ def settings_for(session: Session, certificate_seconds: float, ready: bool, ligh
         session.settings,
         method=method,
         verify=session.settings.verify or view.needs_verify,
-        record_work=view.needs_work,
+        record_work=view.needs_work or session.counting,
         record_lights=lights,
         modes=True,
         certificate_seconds=certificate_seconds,

@@ -1,25 +1,41 @@
-"""The pixel that was clicked, and the point of the picture that the pointer is on."""
+"""The pixel that was clicked, or what was chosen by its name, and the point of the picture that the pointer is on."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from tracer.frame import Frame
+from tracer.scene.edits import Edited
 from viewer.state.picking import Pick, pick, pixel_of, refreshed
 from viewer.state.session import Session
+from viewer.state.whereabouts import pick_part, pick_primitive
 
 Point = tuple[float, float]
 """Of the picture, 0 to 1 from left and top."""
 
 
 class Selection:
-    """`picked` is what was clicked, `hovered` where the pointer is; None where there is nothing."""
+    """`picked` is what was clicked, `hovered` where the pointer is; None where there is nothing.  `part` is the part of
+    the scene (`viewer.state.parts`) that is selected as a whole, None for the primitive alone.  `serial` is another
+    number after each selection."""
 
     def __init__(self, session: Session, newest: Callable[[], Frame | None]) -> None:
         """`newest` returns the frame that the picture shows."""
         self._session, self._newest = session, newest
-        self.picked: Pick | None = None
+        self._picked: Pick | None = None
+        self.part: int | None = None
         self.hovered: Point | None = None
+        self.serial = 0
+
+    @property
+    def picked(self) -> Pick | None:
+        return self._picked
+
+    @picked.setter
+    def picked(self, found: Pick | None) -> None:
+        self._picked, self.part = found, None
+        self.serial += 1
 
     @property
     def frame(self) -> Frame | None:
@@ -42,10 +58,41 @@ class Selection:
         found = self.at(point)
         self.picked = found if found is not None and found.primitive >= 0 else None
 
+    def select_primitive(self, primitive: int) -> bool:
+        """Select a primitive by its number in the scene as it was read, seen or not; whether that could be done."""
+        frame, now = self.frame, self._session.edited
+        if frame is None or now is None or not 0 <= primitive < len(now.numbers):
+            return False
+        found = pick_primitive(frame, now.scene, int(now.numbers[primitive]))
+        if found is not None:
+            self.picked = found
+        return found is not None
+
+    def select_part(self, part: int) -> bool:
+        """Select a part of the scene, in the middle of what is seen of it; whether that could be done."""
+        frame, now = self.frame, self._session.edited
+        found = pick_part(frame, now, part) if frame is not None and now is not None else None
+        if found is not None:
+            self.picked, self.part = found, part
+        return found is not None
+
     def clear(self) -> None:
         self.picked = None
 
+    def follow_edits(self, before: Edited | None, now: Edited) -> None:
+        """The same primitive has another number now; one that is hidden is selected no more."""
+        kept = self.picked
+        if kept is not None and before is not None:
+            number = int(now.numbers[before.primitives[kept.primitive]])
+            lights = len(now.lights)
+            shadows = kept.shadows if len(kept.shadows) == lights else (None,) * lights
+            here = replace(kept, primitive=number, unit=number, in_cells=False, shadows=shadows, seen=None)
+            if number >= 0:
+                self._picked = here  # nothing else was selected
+            else:
+                self.picked = None
+
     def refresh(self, frame: Frame) -> None:
         """Take over modes and counts from a newer frame."""
-        if self.picked is not None:
-            self.picked = refreshed(self.picked, frame)
+        if self._picked is not None:
+            self._picked = refreshed(self._picked, frame)

@@ -23,6 +23,7 @@ from viewer.output.legend import Chosen, legend_of
 from viewer.output.legend_picture import with_legend
 from viewer.output.pictures import lights_in_words, picture
 from viewer.output.recipe import Recipe
+from viewer.state.earlier import Earlier
 from viewer.state.readings import can_record_lights, records_lights
 from viewer.state.session import Session
 from viewer.state.views import View
@@ -65,12 +66,13 @@ def trace(
     `on_frame` is told how many of these are done, before each.  Raises Cancelled."""
     scene, settings, view = renderer.scene, recipe.settings, recipe.view
     times = times_before(scene, recipe.time, recipe.warmup) + [recipe.time] * recipe.repeats
+    before = [*recipe.before, *(Earlier(time, recipe.camera) for time in times)]
     modes = settings.modes or view.of_modes or everything
     renderer.settings = replace(settings, samples=1, verify=False, modes=modes)
-    for done, time in enumerate(times):
-        on_frame(done, len(times) + 1)
-        renderer.render(time, recipe.camera, cancelled)
-    on_frame(len(times), len(times) + 1)
+    for done, earlier in enumerate(before):
+        on_frame(done, len(before) + 1)
+        renderer.render(earlier.time, earlier.camera, cancelled)
+    on_frame(len(before), len(before) + 1)
     lights = everything or records_lights(view, settings.width * settings.height, len(scene.lights))
     renderer.settings = replace(
         settings,

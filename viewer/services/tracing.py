@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 from tracer.frame import Frame, Settings
 from tracer.method import Method
+from tracer.scene.model import Camera
 from viewer.services import lamps, refinement
 from viewer.services.governor import AT_ONCE, Governor, Plan, divided
 from viewer.services.lamps import LampSteps
@@ -66,6 +67,7 @@ class Tracing:
         self.lamps = LampSteps(session)
         self.learnt = Learnt()
         self._serial = 0
+        self._held: tuple[float, Camera] | None = None  # the picture that no other is to follow
         self._refines = False  # whether the last picture was asked for to refine what is known
         self._asked: RenderRequest | None = None
         self._chosen: Settings | None = None
@@ -84,6 +86,22 @@ class Tracing:
         self.learnt.forget()
         self.refinement.forget()
         self.governor.forget()
+
+    def follow_edits(self, same: bool) -> None:
+        """The scene is edited otherwise; `same` says that primitives and lights have the numbers that they had.
+
+        If they have not, the newest frame means nothing any more."""
+        if not same:
+            self.traced = self._known = None
+        self._asked = None
+        self.learnt.confuse()
+        self.refinement.forget()
+        self.again()
+
+    @property
+    def shows_edits(self) -> bool:
+        """Whether some of a picture has come since the scene was edited, or was to be traced again."""
+        return self.traced is not None and self.traced.request.serial == self._serial
 
     def again(self) -> None:
         """Trace what was traced last once more."""
@@ -173,8 +191,20 @@ class Tracing:
         self._asked, self._chosen = wanted, session.settings
         self._renderer.submit(wanted)
 
+    def begin_replay(self) -> None:
+        """The modes are about to be forgotten, and learnt from other frames; of what is looked at now, one picture is
+        to come after these, and no further one that would know more."""
+        self.learnt.forget()
+        self._known = None
+        self.refinement.forget()
+        self._held = self._session.time, self._session.camera
+
     def _refine(self) -> None:
         """At idle, let one more frame of the same view follow where it will know more about shadows."""
+        if self._held is not None and not self._preferences.keep_tracing:
+            if self._held == (self._session.time, self._session.camera):
+                return
+            self._held = None
         if self.refinement.wants_another(self.traced, self._session.view, self._preferences.keep_tracing):
             self._serial += 1
             self._refines = True

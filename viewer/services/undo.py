@@ -1,4 +1,4 @@
-"""Undo and redo of settings, view, light, tone, comparison, zoom and camera.
+"""Undo and redo of settings, view, light, tone, comparison, zoom, camera and edits of the scene.
 
 Nobody has to announce a change: what holds is compared from one of the window's frames to the next.  Changes that
 belong together are one step: all of a drag, all of a flight until the camera rests, all turns of the wheel until it
@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Camera
 from viewer.services.motion import Motion
+from viewer.state import edits as scene_edits
 from viewer.state.choices import Choices, differences
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
@@ -28,11 +30,14 @@ _STROKE = 0.6  # seconds from one to the next, at most, for both to be one step
 
 @dataclass(frozen=True)
 class Place:
-    """All that a step can bring back; `camera` is None while it follows the scene's own path."""
+    """All that a step can bring back; `camera` is None while it follows the scene's own path, `time` where the step is
+    not about going to another time."""
 
     choices: Choices
     camera: Camera | None
     meshes: MeshOptions
+    edits: Edits = NO_EDITS
+    time: float | None = None
 
 
 @dataclass(frozen=True)
@@ -88,6 +93,7 @@ class Undo:
         self._changed_at = 0.0
         self._last: Place | None = None
         self._name = ""
+        self._time: float | None = None  # before what is about to change, if that goes to another time
 
     @property
     def undoes(self) -> str:
@@ -101,16 +107,25 @@ class Undo:
         """What would be done again; "" where there is nothing."""
         return self._undone[-1].name if self._undone and self._open is None else ""
 
-    def call_next(self, name: str) -> None:
-        """Give a name to what is about to change, which is a step of its own."""
+    def call_next(self, name: str, with_time: bool = False) -> None:
+        """Give a name to what is about to change, which is a step of its own; `with_time`, it brings back the time as
+        well."""
         self.follow()
         self._close()
-        self._name = name
+        self._name, self._time = name, self._session.time if with_time else None
 
     def clear(self) -> None:
         """Forget all steps, as another scene is open."""
         self._done, self._undone, self._open, self._last, self._name = [], [], None, None, ""
+        self._time = None
         self._coming = None
+
+    def overlook(self, change: Callable[[], None]) -> None:
+        """Let something change that follows from a step, and is none itself."""
+        self.follow()
+        change()
+        if self._last is not None:
+            self._last = self._place()
 
     def follow(self) -> None:
         """Take up what has changed since the last time."""
@@ -124,9 +139,14 @@ class Undo:
             return
         changed = _changes(self._last, now)
         name, self._name = self._name, ""
-        if name and changed:
+        before, self._time = self._time, None
+        moved = before is not None and before != self._session.time
+        if name and (changed or moved):
             self._close()
-            self._add(Step(name, self._last, now))
+            then, after = self._last, now
+            if moved:
+                then, after = replace(then, time=before), replace(now, time=self._session.time)
+            self._add(Step(name, then, after))
         elif changed:
             if self._open is not None and not changed.keys() <= self._open.fields.keys():
                 self._close()
@@ -212,13 +232,16 @@ class Undo:
     def _bring(self, place: Place, said: str) -> None:
         session = self._session
         place.choices.put_into(session, self._preferences)
+        if place.time is not None:
+            session.time, session.playing = place.time, False
         if place.camera != session.free_camera:
             start = session.camera
             self._motion.halt()
             session.free_camera = place.camera
             if place.camera is not None:
                 self._motion.glide(place.camera, start)
-        self._last = place
+        session.want(place.edits, place.choices.light)
+        self._last = replace(place, edits=session.edits, time=None)
         self._notices.say(said)
 
     def _place(self) -> Place | None:
@@ -227,7 +250,7 @@ class Undo:
             return None
         # On its way the camera is where it goes: a glide is one step, and one that undo began is none.
         camera = self._motion.destination or session.free_camera
-        return Place(Choices.of(session, self._preferences), camera, session.meshes)
+        return Place(Choices.of(session, self._preferences), camera, session.meshes, session.edits)
 
 
 def _changes(before: Place, after: Place) -> dict[str, str]:
@@ -237,7 +260,7 @@ def _changes(before: Place, after: Place) -> dict[str, str]:
     if before.camera != after.camera:
         onto = "camera onto the scene's path" if after.camera is None else "camera"
         changed[_CAMERA] = onto
-    return changed
+    return changed | scene_edits.differences(before.edits, after.edits)
 
 
 def _name_of(fields: dict[str, str]) -> str:

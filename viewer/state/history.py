@@ -44,7 +44,7 @@ class History:
 
     def __init__(self, capacity: int = CAPACITY) -> None:
         self.capacity = capacity
-        self.frames = 0
+        self.frames = self._hidden = 0
         self._values = {name: np.zeros(2 * capacity) for name in SERIES}
 
     def add(self, frame: Frame, drawn_seconds: float, again: bool = False) -> None:
@@ -77,10 +77,15 @@ class History:
         )
 
     def clear(self) -> None:
-        self.frames = 0
+        """Begin to count anew."""
+        self.frames = self._hidden = 0
+
+    def hide(self) -> None:
+        """Keep what comes from here on; frames keep their numbers."""
+        self._hidden = self.frames
 
     def __len__(self) -> int:
-        return min(self.frames, self.capacity)
+        return min(max(self.frames - self._hidden, 0), self.capacity)
 
     @property
     def first(self) -> int:

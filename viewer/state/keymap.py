@@ -63,6 +63,9 @@ HABITS = {
                 "Fly faster": ("Equal", "KeypadAdd"),
                 "Fly slower": ("Minus", "KeypadSubtract"),
                 "Copy camera for pbrt": ("Shift+C",),
+                "Two methods live": (),
+                "Zoom in": (),
+                "Zoom out": (),
             },
             drags={("left", ""): "look", ("right", ""): "look", ("middle", ""): "look"},
             wheel="speed",
@@ -80,6 +83,8 @@ HABITS = {
                 "Orbit down": ("Keypad2",),
                 "Nearer": ("KeypadAdd",),
                 "Farther": ("KeypadSubtract",),
+                "Zoom in": ("Equal", "Shift+Equal"),
+                "Zoom out": ("Minus",),
                 "Command palette": ("F3", "Ctrl+Shift+P"),
             },
             drags={

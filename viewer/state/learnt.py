@@ -17,6 +17,10 @@ class Learnt:
         """Modes were forgotten: nothing is known."""
         self._seen.clear()
 
+    def confuse(self) -> None:
+        """The scene is another now: what is known was learnt from other frames than can be traced again."""
+        self._seen = dict.fromkeys(self._seen, (None, 0))
+
     def add(self, frame: Frame) -> None:
         """A whole frame of one sample has set modes."""
         size, key = (frame.width, frame.height), _key(frame)

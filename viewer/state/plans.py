@@ -48,6 +48,23 @@ class FilmPlan:
     video: bool = False
 
 
+@dataclass
+class HuntPlan:
+    """What to search for wrong pixels of a method: the frames `first` to `last` of the path, to its end where that is
+    None, every `step`-th, and so many pictures `around` the worst finds, as far as `radius` and `seed` say; the worst
+    `keep` are kept."""
+
+    method: str = "paper"
+    first: int = 0
+    last: int | None = None
+    step: int = 1
+    around: int = 40
+    radius: float = 0.3
+    seed: int = 1
+    keep: int = 12
+    size: tuple[int, int] = (256, 256)
+
+
 MOST_MULTIPLE = 8
 
 

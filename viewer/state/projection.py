@@ -43,6 +43,14 @@ def place(frame: Frame, point: ArrayLike) -> tuple[float, float] | None:
     return 0.5 + 0.5 * x / (z * across), 0.5 - 0.5 * y / (z * half)
 
 
+def at_depth(frame: Frame, at: tuple[float, float], depth: float) -> tuple[float, float, float]:
+    """The point that is seen at a place of the picture, so far along the camera's view."""
+    across, half = _halves(frame)
+    seen = np.array([(2.0 * at[0] - 1.0) * across * depth, (1.0 - 2.0 * at[1]) * half * depth, depth])
+    x, y, z = frame.camera.position + seen @ frame.camera.basis()
+    return float(x), float(y), float(z)
+
+
 def strokes(frame: Frame, line: ArrayLike) -> list[Stroke]:
     """A line through points (n, 3) as it is drawn: what leaves the picture cut off, hidden parts in dashes."""
     corners = seen_from(frame.camera, line)

@@ -14,8 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from tracer.renderer import Settings
+from tracer.scene.edits import NO_EDITS, Edited, Edits, edited
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
+from viewer.state import edits as scene_edits
 from viewer.state.annotations import Annotation
 from viewer.state.comparison import Comparison
 from viewer.state.methods import DEFAULT
@@ -47,9 +49,12 @@ class Snapshot:
     tone: Tone = NEUTRAL
     span: tuple[float, float] | None = None
     meshes: MeshOptions = AS_IN_FILE
+    edits: Edits = NO_EDITS
 
     def to_json(self) -> dict[str, Any]:
-        data = asdict(self)
+        data = {name: value for name, value in asdict(self).items() if name != "edits"}
+        if self.edits:
+            data["edits"] = scene_edits.to_json(self.edits)
         return data | {"camera": self.camera.to_json(), "view": self.view.value, "tone": self.tone.to_json()}
 
     @staticmethod
@@ -73,6 +78,7 @@ class Snapshot:
                 tone=Tone.from_json(data.get("tone", {})),
                 span=_span(data.get("span")),
                 meshes=_meshes_from_json(data.get("meshes", {})),
+                edits=scene_edits.from_json(data.get("edits", {})),
             )
         except KeyError as error:
             raise ValueError(f"its saved state lacks {error}") from None
@@ -125,15 +131,21 @@ class Session:
     """The state behind the window; plain data and what it implies, no threads and no widgets.
 
     `spans` are the ranges that were chosen for views of numbers; `clipping` marks what the screen cuts off; `zoom` is
-    how closely the picture itself is looked at, `comparison` what is compared with it."""
+    how closely the picture itself is looked at, `comparison` what is compared with it.  `edits` are what is to be
+    otherwise than in the scene as it was read, `edited` is what is of that: `scene` is the scene with it, of whose
+    lights `light` is one, and `light_to_come` of those that are to be."""
 
     scene: Scene | None = None
+    edits: Edits = NO_EDITS
+    edited: Edited | None = None
+    light_to_come: int | None = None
     time: float = 0.0
     free_camera: Camera | None = None
     playing: bool = False
     settings: Settings = field(default_factory=lambda: Settings(method=DEFAULT))
     view: View = View.COLOR
     light: int = 0
+    counting: bool = False  # whether frames are to count the rays at each pixel, whatever the view
     wipe: float = 0.5
     tone: Tone = NEUTRAL
     clipping: bool = False
@@ -166,12 +178,35 @@ class Session:
             self.settings = replace(self.settings, lamp_radius=None)
             self.zoom = FIT
         self.scene = scene
+        self.edits, self.edited = NO_EDITS, edited(scene, NO_EDITS)
         self.time = scene.time_range[0]
         self.free_camera = None
         self.playing = False
         self.selected = None
         self.annotations = []
         self.light = min(self.light, max(len(scene.lights) - 1, 0))
+
+    @property
+    def original(self) -> Scene | None:
+        """The scene as it was read."""
+        return self.edited.original if self.edited is not None else self.scene
+
+    def take(self, now: Edited) -> None:
+        """Look at the same scene, edited otherwise; the chosen light stays, or becomes the one after it."""
+        before = self.edited
+        if self.light_to_come is not None:
+            self.light = self.light_to_come
+        elif before is not None and self.light < len(before.lights):
+            number = int(before.lights[self.light])
+            self.light = int((now.lights < number).sum())
+        self.scene, self.edited, self.light_to_come = now.scene, now, None
+        self.light = min(self.light, max(len(now.lights) - 1, 0))
+
+    def want(self, edits: Edits, light: int) -> None:
+        """Want other edits, and this light of those that are on then."""
+        if self.original is not None and self.edited is not None:
+            self.edits = edits.within(self.original)
+            self.light_to_come = light if self.edits != self.edited.edits else None
 
     @property
     def animated(self) -> bool:
@@ -231,6 +266,7 @@ class Session:
             tone=self.tone,
             span=self.spans.get(self.view),
             meshes=self.meshes,
+            edits=self.edits,
         )
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -248,3 +284,4 @@ class Session:
         self.spans.pop(snapshot.view, None)
         if snapshot.span is not None:
             self.spans[snapshot.view] = snapshot.span
+        self.want(snapshot.edits, snapshot.light)

@@ -13,6 +13,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,7 @@ from tracer.frame import Frame
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Scene
 from viewer.services.controller import Controller
+from viewer.state.parts import parts_of
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
@@ -177,7 +179,11 @@ class App:
         if display is None:
             return
         display.show(c.frame)
-        look = self._look(c.selection.picked.primitive if c.selection.picked is not None else -1)
+        picked, part, now = c.selection.picked, c.selection.part, c.session.edited
+        if part is not None and now is not None:
+            display.know_parts(self.ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives]))
+        look = self._look(picked.primitive if picked is not None else -1)
+        look = look if part is None else replace(look, selected_part=part)
         display.draw(look)
         comparing.draw(self.ui, look)
         comparing.magnify(self.ui, look)
@@ -289,8 +295,7 @@ class App:
         return params
 
     def _menus(self) -> None:
-        menus.show(self.ui)
-        self.layout.menu()
+        menus.show(self.ui, {menus.PANELS_MENU: self.layout.menu})
 
     def _ready(self) -> None:
         """The window and its GL context exist."""

@@ -10,9 +10,10 @@ from viewer.state.methods import toggled, with_base
 from viewer.state.picking import extent_at, point_at
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
-from viewer.window import camera_commands, edit_commands, mesh_commands
+from viewer.window import camera_commands, edit_commands, mesh_commands, what_if_commands
 from viewer.window.closer_commands import comparing, looking
 from viewer.window.command import Command, Condition
+from viewer.window.finding import finding, fly_to_selected
 from viewer.window.taking import drawing, taking
 from viewer.window.ui import CaptureKind, Ui
 
@@ -20,7 +21,8 @@ from viewer.window.ui import CaptureKind, Ui
 def build(ui: Ui) -> list[Command]:
     """All commands, in the order of the menus."""
     menus = (
-        _file, edit_commands.build, drawing, _view, looking, comparing, _camera, _time, _culling, _run, _help
+        _file, edit_commands.build, what_if_commands.build, drawing, _view, looking, comparing, _camera, _time,
+        _culling, _run, _help,
     )  # fmt: skip
     return [command for menu in menus for command in menu(ui)]
 
@@ -102,6 +104,7 @@ def _view(ui: Ui) -> list[Command]:
         Command("Mark wrong pixels", "View", toggle("mark_wrong"), "M", checked=lambda: p.mark_wrong),
         Command("Shares of rays", "View", toggle("work_shares"), "U", checked=lambda: p.work_shares),
         *_rays(ui),
+        *finding(ui),
         Command("Draw shadow rays", "View", toggle("draw_explanation"), "I", checked=lambda: p.draw_explanation),
         Command("Smooth upscaling", "View", toggle("smooth_upscaling"), checked=lambda: p.smooth_upscaling),
         *_looks(ui),
@@ -265,6 +268,8 @@ def _run(ui: Ui) -> list[Command]:
     return [
         Command("Experiment", "Run", start("Experiment", runner.start_experiment), enabled=idle),
         Command("Zoom test", "Run", start("Zoom test", runner.start_zoom_test), enabled=idle),
+        Command("Hunt", "Run", start("Hunt", c.hunts.start), enabled=idle,
+                tip="search the path for the worst wrong pixels of a method"),
         Command("Film", "Run", lambda: ui.show_panel("Film"), enabled=idle,
                 tip="a path, or a flight through bookmarks, as pictures and video"),
         Command("Stop, or clear the selection", "Run", stop, "Escape", enabled=busy, separated=True),
@@ -299,8 +304,8 @@ def focus(ui: Ui) -> None:
     pixel = c.selection.pixel
     if at is None and pixel is not None and c.frame is not None:
         at = (pixel[0] + 0.5) / c.frame.width, (pixel[1] + 0.5) / c.frame.height
-    if at is None and c.selection.picked is not None:
-        c.notices.say("what was clicked is not visible from here; point at something to focus on it")
+    if c.selection.picked is not None and c.selection.hovered is None and (at is None or c.selection.part is not None):
+        fly_to_selected(ui)
         return
     if at is None or c.frame is None:
         c.notices.say("point at something, or click it, to focus on it")

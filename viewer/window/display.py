@@ -49,6 +49,7 @@ class Look:
 
     `marked` draws rings around wrong pixels, sized for pixels that are shown `magnified` times,
     `wipe` is the place of the line, 0 to 1 from the left, and `line` whether it is drawn.
+    `selected` is the primitive that has a bright border, or, with `selected_part`, that whole part of the scene has it;
     `shares` makes shares of the counts in maps of work; `beneath` is the brightness of the picture
     beneath the difference.  Pictures have a `tone`, and stripes where they are cut off if that is to be seen
     (`clipping`); maps of numbers go over `span`, or, where that is None, over what the frame has."""
@@ -58,6 +59,7 @@ class Look:
     shading: float = 0.35
     outlines: bool = False
     selected: int = -1
+    selected_part: int = -1
     smooth: bool = True
     marked: bool = True
     magnified: int = 1
@@ -111,6 +113,10 @@ class Display:
     def show(self, frame: Frame | None) -> None:
         """Show this frame from now on, or none: a view brings to the GPU what it needs of it."""
         self._buffers.show(frame)
+
+    def know_parts(self, part_of: NDArray[np.int32] | None) -> None:
+        """Take (primitives,) the part of the scene that each primitive belongs to; needed while one is selected."""
+        self._buffers.part_of = part_of
 
     def draw(self, look: Look) -> None:
         """Draw the view of the frame into the target, unless it is there already.
@@ -205,6 +211,7 @@ class Display:
             "shading": look.shading,
             "outlines": look.outlines,
             "selected": look.selected,
+            "selected_part": look.selected_part if self._buffers.part_of is not None else -1,
             "light": look.light if has_shadow_mode(words, look.light) else -1,
             "range": look.span or ranges.span(view),
             "curve": list(Curve).index(look.tone.curve),

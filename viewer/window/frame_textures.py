@@ -22,7 +22,7 @@ TABLE_WIDTH = 2048
 NAMES = (
     "color_buffer", "primitive_buffer", "unit_buffer", "mode_table", "count_table", "depth_buffer", "normal_buffer",
     "color_map", "reference_buffer", "mark_buffer", "certificate_buffer", "cell_buffer", "saved_buffer", "cost_buffer",
-    "due_rays_buffer", "penumbra_buffer", "lights_buffer",
+    "due_rays_buffer", "penumbra_buffer", "lights_buffer", "part_table",
 )  # fmt: skip
 """Of all textures, in the order of their units."""
 # What lies on the GPU as a frame holds it: components, their kind, and the frame's attribute.
@@ -78,6 +78,7 @@ class FrameTextures:
         self._ranges: Ranges | None = None
         self._brought: dict[str, tuple[int, int]] = {}  # which frame's buffers, and of which light or size, are there
         self._textures: dict[str, Any] = {}
+        self.part_of: NDArray[np.int32] | None = None  # of each primitive, while a part is selected
         colors = np.round(color_map() * 255.0).astype(np.uint8)
         self._textures["color_map"] = context.texture((len(colors), 1), 3, colors.tobytes(), alignment=1)
         self._textures["color_map"].repeat_x = False
@@ -128,6 +129,8 @@ class FrameTextures:
         frame = self.frame
         assert frame is not None
         wanted = self.serial, {"penumbra_buffer": light, "mark_buffer": magnified}.get(name, 0)
+        if name == "part_table":  # it is the scene's, whatever the frame
+            wanted = id(self.part_of), 0
         if name == "color_map" or self._brought.get(name) == wanted:
             return
         if name in _PIXELS:
@@ -144,6 +147,8 @@ class FrameTextures:
             self._write(name, self.size, 1, "i4", self.ranges.lights)
         elif name == "unit_buffer":
             self._write(name, self.size, 1, "i4", units_of(frame))
+        elif name == "part_table":
+            self._write_list(name, self.part_of if self.part_of is not None else np.zeros(1, np.int32))
         elif name == "mode_table":
             self._write_table(name, "u4", _halves(frame.modes))
         elif name == "count_table":
@@ -169,6 +174,13 @@ class FrameTextures:
         table = np.zeros((rows * TABLE_WIDTH, 2), entries.dtype)
         table[: len(entries)] = entries
         self._write(name, (TABLE_WIDTH, rows), 2, dtype, table)
+
+    def _write_list(self, name: str, entries: NDArray[np.int32]) -> None:
+        """Upload (n,) entries, one per primitive, as rows of TABLE_WIDTH."""
+        rows = max(1, -(-len(entries) // TABLE_WIDTH))
+        table = np.zeros(rows * TABLE_WIDTH, np.int32)
+        table[: len(entries)] = entries
+        self._write(name, (TABLE_WIDTH, rows), 1, "i4", table)
 
 
 def _penumbra(frame: Frame, light: int) -> NDArray[np.uint16]:

@@ -69,9 +69,7 @@ class Layout:
         self._params.docking_params.layout_reset = True
 
     def menu(self) -> None:
-        """The menu of panels: a tick for each that is there."""
-        if not imgui.begin_menu("Panels"):
-            return
+        """What is in the menu of panels: a tick for each that is there."""
         for label in PANELS:
             if label == PICTURE:
                 continue
@@ -82,7 +80,6 @@ class Layout:
                 fold.drawer = label if wanted else ""
             elif clicked:
                 window.is_visible = wanted
-        imgui.end_menu()
 
     # --- one frame -------------------------------------------------------------------------------
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import partial
 
 from imgui_bundle import imgui
 
@@ -10,6 +11,8 @@ from viewer.window import escape
 from viewer.window.command import MENUS, Command
 from viewer.window.ui import Ui
 from viewer.window.widgets import tooltip
+
+PANELS_MENU, ALL_MENUS = "Panels", "Menu"
 
 
 def handle_keys(ui: Ui) -> None:
@@ -36,11 +39,23 @@ def run(ui: Ui, command: Command) -> None:
     ui.guard.step(f"The command {command.name}", command.run)
 
 
-def show(ui: Ui) -> None:
-    """All menus of the menu bar."""
-    for name in MENUS:
+def show(ui: Ui, others: Mapping[str, Callable[[], None]]) -> None:
+    """All menus of the menu bar, and `others` after them; within a single one where there is no room for their
+    names."""
+    contents = {name: partial(_menu, ui, name) for name in MENUS} | others
+    gap = imgui.get_style().item_spacing.x
+    needed = sum(imgui.calc_text_size(name).x + 2.0 * gap for name in contents)
+    if needed <= imgui.get_content_region_avail().x:
+        _menus(contents)
+    elif imgui.begin_menu(ALL_MENUS):
+        _menus(contents)
+        imgui.end_menu()
+
+
+def _menus(contents: Mapping[str, Callable[[], None]]) -> None:
+    for name, show_content in contents.items():
         if imgui.begin_menu(name):
-            _menu(ui, name)
+            show_content()
             imgui.end_menu()
 
 

@@ -5,15 +5,22 @@ Panels ask and get what is there; what they asked for is brought before the widg
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 import moderngl
 import numpy as np
-
-from viewer.output.film import Shot
+from numpy.typing import NDArray
 
 A_FRAME = 6  # pictures brought to the GPU in one of the window's frames, at most
 THUMBNAIL = 128  # pixels of height
+
+
+class Recorded(Protocol):
+    """A picture that is kept, (h, w, 3) uint8, and the same so many pixels high at most."""
+
+    def pixels(self) -> NDArray[np.uint8]: ...
+
+    def thumbnail(self, height: int) -> NDArray[np.uint8]: ...
 
 
 class Shots:
@@ -21,10 +28,10 @@ class Shots:
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
-        self._textures: dict[tuple[int, bool], tuple[Shot, Any]] = {}
-        self._wanted: dict[tuple[int, bool], Shot] = {}
+        self._textures: dict[tuple[int, bool], tuple[Recorded, Any]] = {}
+        self._wanted: dict[tuple[int, bool], Recorded] = {}
 
-    def texture_id(self, shot: Shot, small: bool) -> int | None:
+    def texture_id(self, shot: Recorded, small: bool) -> int | None:
         """Name of the GL texture of a picture, or of its thumbnail; None until it is there."""
         key = id(shot), small
         self._wanted[key] = shot

@@ -67,7 +67,12 @@ class Ui:
     that; `key_wanted` names the command that waits for a key to be pressed; `editing` is the list and the place in it
     of a name that is being edited, `edited` that name; `tour_height` is what the picture leaves free below it for the
     tour, `tour_place` where that is: left, top and width. `gesture` is what a drag does that moves no camera, from
-    `gesture_at` on, a point of the picture; `menu_at` is the point that the menu over the picture is about."""
+    `gesture_at` on, a point of the picture; `menu_at` is the point that the menu over the picture is about, and
+    `plot_frame` the frame that the menu of a plot is about; `plot_pointed` is the one that the pointer was on last.
+    `what_if_drawn` is the frame of ImGui's in which the panel What if was drawn last, `held_light` the light that the
+    pointer drags, and `changed_shown` says that changed pixels are to be seen. `find_focus` asks for the keyboard
+    above the table of what is in the scene, of which `find_drawn` rows were drawn last, each `find_height` pixels
+    high, in the order `find_order`."""
 
     controller: Controller
     display: Display | None = None
@@ -92,6 +97,8 @@ class Ui:
     copy_to: Callable[[str], None] = lambda text: None
     about_open: bool = False
     per_pixel: bool = True
+    plot_frame: int = 0
+    plot_pointed: int | None = None
     picture_area: tuple[int, int] = (0, 0)
     picture_focused: bool = False
     picture_shape: tuple[int, int] = (1, 1)
@@ -117,7 +124,14 @@ class Ui:
     log_errors_only: bool = False
     zoom_all_steps: bool = False
     pointed_light: int | None = None
+    what_if_drawn: int = -9
+    held_light: int | None = None
+    changed_shown: bool = False
     light_filters: dict[str, str] = field(default_factory=dict)
+    find_focus: bool = False
+    find_drawn: int = 0
+    find_height: float = 0.0
+    find_order: object = None
     shots: Shots | None = None
     screening: Screening | None = None
     compared: Compared | None = None

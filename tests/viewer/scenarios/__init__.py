@@ -10,7 +10,9 @@ from tests.viewer.scenarios.failing import failing
 from tests.viewer.scenarios.files import browsing, cancelling, capturing, dropping, reopening
 from tests.viewer.scenarios.film import filmstrip
 from tests.viewer.scenarios.filming import filming
+from tests.viewer.scenarios.finding import finding
 from tests.viewer.scenarios.fitting import fitting
+from tests.viewer.scenarios.hunting import hunting
 from tests.viewer.scenarios.lamps import lamps
 from tests.viewer.scenarios.legends import legends
 from tests.viewer.scenarios.moving import flying, orbiting, playing, resizing
@@ -20,14 +22,15 @@ from tests.viewer.scenarios.rays import rays
 from tests.viewer.scenarios.runs import asking, experimenting, zooming
 from tests.viewer.scenarios.taking import taking
 from tests.viewer.scenarios.touring import touring
+from tests.viewer.scenarios.what_if import what_if
 
 SCENARIOS = {
     scenario.__name__: scenario
     for scenario in (
         views, difference, wiping, comparing, closeup, legends, lamps, culling, certifying, explaining, rays,
         flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting,
-        zooming, asking, filmstrip, filming, taking, failing,
-        panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating,
+        zooming, asking, finding, filmstrip, filming, hunting, taking, failing,
+        panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip

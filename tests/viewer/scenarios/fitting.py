@@ -88,6 +88,8 @@ def _cut_text() -> tuple[int, list[str]]:
             inside = (left < command.clip_rect.z) & (right > command.clip_rect.x)
             seen = (high["at"][:, 1] > command.clip_rect.y) & (low["at"][:, 1] < command.clip_rect.w)
             number += int((letters & inside & seen).sum())
+            if window.scroll_max.x > 0.0:
+                continue  # what scrolls sideways is cut at its edge
             over = (left < command.clip_rect.x - 1.0) | (right > command.clip_rect.z + 1.0)
             cut += [f"{window.name} {at}" for at in low["at"][letters & inside & seen & over].astype(int).tolist()]
     return number, cut

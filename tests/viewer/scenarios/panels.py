@@ -208,7 +208,7 @@ def folding(d: Driver) -> None:
         d.press(KEY.tab)
         d.frames(3)
         assert d.ui.fold.drawer == "Statistics"
-        d.context.menu_click("//##MainMenuBar/Panels/Statistics")
+        d.context.menu_click(f"//##MainMenuBar/{'Menu/' if size[0] < 700 else ''}Panels/Statistics")
         d.frames(2)
         assert not d.ui.fold.drawer
         d.settle()

@@ -1,4 +1,6 @@
-"""The real window, driven by keyboard and pointer: the scenarios of `tests.viewer.scenarios`, at two sizes in turn."""
+"""The real window, driven by keyboard and pointer: the scenarios of `tests.viewer.scenarios`.
+
+All in the smaller of two sizes, and by `make test-all` at both in turn."""
 
 from __future__ import annotations
 
@@ -8,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.sweeps import cases
 from tests.viewer.driver import SIZES
 from tests.viewer.player import Player
 from tests.viewer.scenarios import SCENARIOS
@@ -22,10 +25,14 @@ def player() -> Iterator[Player]:
     player.close()
 
 
+def size_of(number: int) -> tuple[int, int]:
+    return cases(SIZES[0], SIZES[number % len(SIZES)])
+
+
 @pytest.mark.parametrize(
     ("name", "size"),
     [
-        pytest.param(name, SIZES[number % len(SIZES)], id=name, marks=() if name == "flying" else pytest.mark.slow)
+        pytest.param(name, size_of(number), id=name, marks=() if name == "flying" else pytest.mark.slow)
         for number, name in enumerate(SCENARIOS)
     ],
 )

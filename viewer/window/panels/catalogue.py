@@ -7,12 +7,15 @@ from dataclasses import dataclass
 
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from viewer.window import finding
 from viewer.window.panels import (
     camera,
     compare,
     culling,
     experiment,
     filming,
+    find,
+    hunt,
     inspector,
     log,
     picture,
@@ -24,6 +27,7 @@ from viewer.window.panels import (
     scene,
     statistics,
     view,
+    what_if,
     zoom,
 )
 from viewer.window.ui import Ui
@@ -54,12 +58,15 @@ PANELS = {
         Panel("Saving", "Right", icons.ICON_FA_CAMERA, saving.show),
         Panel("Culling", "RightMiddle", icons.ICON_FA_SCISSORS, culling.show),
         Panel("Inspector", "RightBottom", icons.ICON_FA_MAGNIFYING_GLASS, inspector.show),
+        Panel("What if", "LeftBottom", icons.ICON_FA_WAND_MAGIC_SPARKLES, what_if.show),
         Panel("Plots", "Bottom", icons.ICON_FA_CHART_LINE, plots.show, wide=True),
         Panel("Compare", "Bottom", icons.ICON_FA_CODE_COMPARE, compare.show, wide=True),
         Panel("Pixels", "Bottom", icons.ICON_FA_BORDER_ALL, pixels.show, wide=True),
         Panel("Rays", "Bottom", icons.ICON_FA_CODE_BRANCH, rays.show, wide=True),
+        Panel(finding.PANEL, "Bottom", icons.ICON_FA_TABLE_LIST, find.show, wide=True),
         Panel("Experiment", "Bottom", icons.ICON_FA_FLASK, experiment.show, wide=True),
         Panel("Zoom test", "Bottom", icons.ICON_FA_MAGNIFYING_GLASS_PLUS, zoom.show, wide=True),
+        Panel("Hunt", "Bottom", icons.ICON_FA_CROSSHAIRS, hunt.show, wide=True),
         Panel("Film", "Bottom", icons.ICON_FA_FILM, filming.show, wide=True),
         Panel("Log", "Bottom", icons.ICON_FA_LIST, log.show, wide=True),
     )

@@ -14,6 +14,7 @@ from viewer.output.reports import LINES, WRONG
 from viewer.services.runs import LONGEST_SIDE, Experiment
 from viewer.state.methods import in_order
 from viewer.state.plans import ExperimentPlan
+from viewer.window.panels import going_back
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
 from viewer.window.panels.runs import export_buttons, side_by_side, start_or_progress
 from viewer.window.ui import Ui
@@ -170,7 +171,10 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
         if len(frames) == 1:  # is no line
             spec.marker = int(implot.Marker_.circle)
         implot.plot_line(name, frames, values, spec)
+    place = going_back.pointed(0, len(results.frames) - 1, results.frames)
     implot.end_plot()
+    said = [f"{name}: {values[place]:.1f} % saved" for name, values in savings] if place is not None else []
+    going_back.of_experiment(ui, run, results, place, said)
 
 
 def _looks(curves: int) -> list[implot.Spec]:

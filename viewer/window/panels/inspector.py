@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from viewer.state.picking import Pick
 from viewer.state.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
-from viewer.window.panels import explanation
+from viewer.window.panels import explanation, teaching
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, fact, heading, highest_count, paragraph, properties, swatch, tooltip
 
@@ -59,7 +61,8 @@ def _details(ui: Ui, pick: Pick) -> None:
             if pick.wrong is not None:
                 answers = f"{count(pick.wrong)} shadow {'answer' if pick.wrong == 1 else 'answers'}"
                 fact("Wrong here", answers, "for any light, at any bounce: what is seen in mirrors counts too")
-            fact("Depth", f"{pick.depth:.5g}")
+            if math.isfinite(pick.depth):  # else nothing of it is seen
+                fact("Depth", f"{pick.depth:.5g}")
             if pick.point is not None:
                 fact("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
             if pick.normal is not None:
@@ -74,10 +77,12 @@ def _modes(ui: Ui, pick: Pick) -> None:
         if pick.occlusion is not None:
             mode = pick.occlusion
             _mode("occlusion", mode.name, OCCLUSION_COLORS[mode], OCCLUSION_MEANING[mode])
+            teaching.of_occlusion(ui, pick)
         moves = pick.occlusion is OcclusionMode.DYNAMIC
         for light, shadow in enumerate(() if moves else pick.shadows):
             if shadow is not None:
                 _mode(ui.light_name(light), shadow.name, SHADOW_COLORS[shadow], SHADOW_MEANING[shadow])
+                teaching.of_light(ui, pick, light, shadow)
     uncovered = sum(mode is None for mode in pick.shadows)
     if uncovered:
         paragraph(f"{uncovered} more {'light is' if uncovered == 1 else 'lights are'} not culled", QUIET)

@@ -12,6 +12,7 @@ from imgui_bundle import imgui
 
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.scene.lights import Light, as_lamps
+from tracer.scene.model import Scene
 from viewer.services.lamps import OFFERED
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, em, paragraph, row, tooltip
@@ -38,7 +39,7 @@ def lamp_rows(ui: Ui) -> None:
     scene = c.session.scene
     assert scene is not None
     row("Lamp radius", _RADIUS)
-    size = _diagonal(c.info.get("bounds"))
+    size = diagonal(c.info.get("bounds"))
     smallest, largest = _SMALLEST * size, _LARGEST * size
     button = imgui.get_frame_height() if s.lamp_radius is not None else 0.0
     imgui.set_next_item_width(-button - (em(0.2) if button else 0.0) - 1.0)
@@ -63,7 +64,7 @@ def lamp_rows(ui: Ui) -> None:
     imgui.end_disabled()
 
 
-def _diagonal(bounds: Sequence[Sequence[float]] | None) -> float:
+def diagonal(bounds: Sequence[Sequence[float]] | None) -> float:
     """How large a scene is; 1 where nothing is in it."""
     return (math.dist(*bounds) if bounds is not None else 0.0) or 1.0
 
@@ -90,9 +91,10 @@ def combo(ui: Ui) -> None:
         imgui.end_combo()
 
 
-def found(ui: Ui, place: str) -> Sequence[int]:
-    """The lights whose names have what is typed above them; all where they are few, and nothing is typed."""
-    scene = ui.controller.session.scene
+def found(ui: Ui, place: str, among: Scene | None = None) -> Sequence[int]:
+    """The lights whose names have what is typed above them, of the scene that is shown or of another; all where they
+    are few, and nothing is typed."""
+    scene = among or ui.controller.session.scene
     assert scene is not None
     number = len(scene.lights)
     if number <= FEW:

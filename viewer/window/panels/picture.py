@@ -22,6 +22,7 @@ from viewer.window.palette import ON_PICTURE_ERROR
 from viewer.window.panels import (
     annotating,
     closeup,
+    edited_picture,
     explanation,
     film,
     layers,
@@ -31,6 +32,7 @@ from viewer.window.panels import (
     sides,
     timeline,
     tour,
+    unseen,
     wipe,
 )
 from viewer.window.panels.area import Area
@@ -99,15 +101,18 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     if seen is not None:
         sides.draw_a(ui, area, seen)
     with _inside(area):
+        edited_picture.show_changed(ui, area.whole, area.whole_end)
         if c.rays.visible:  # it shows the same rays, and more
             ray_overlay.show(ui, area.whole, area.whole_end)
         else:
             explanation.show(ui, area.whole, area.whole_end)
+        unseen.show(ui, area.whole, area.whole_end)
     _pointer(ui, area)
     closeup.show(ui, area)
     wipe.show(ui, area)
     lower = _overlay(ui, area.corner, area.end)
     with _inside(area):
+        edited_picture.show_lights(ui, area.whole, area.whole_end)
         annotating.show(ui, area.whole, area.whole_end)
     if seen is not None:
         sides.show_names(ui, area, seen, lower)
@@ -171,6 +176,8 @@ def _pointer(ui: Ui, area: Area, takes_drawings: bool = True) -> None:
         if not closeup.wheel(ui, area):
             _wheel(ui, io.mouse_wheel)
     if takes_drawings and annotating.handle(ui, area.whole, area.whole_size):
+        return
+    if takes_drawings and edited_picture.handle(ui, area.whole, area.whole_size):
         return
     if wipe.handle(ui, area) or closeup.drag(ui, area):
         return

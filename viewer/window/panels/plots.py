@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from viewer.state import terms
 from viewer.window.palette import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
+from viewer.window.panels import going_back
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, checkbox, count, em, paragraph
+from viewer.window.widgets import QUIET, checkbox, count, em, paragraph, short
 
 _FATES = "What became of shadow rays"
 _LOGARITHMIC = "Milliseconds"
@@ -74,7 +75,7 @@ def show(ui: Ui) -> None:
     )
     imgui.same_line()
     if imgui.small_button("clear"):
-        history.clear()
+        history.hide()
         return
     imgui.same_line()
     imgui.text_colored(QUIET, f"the last {len(history)} frames" if len(history) > 1 else "one frame so far")
@@ -117,7 +118,13 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
     else:
         for label, values, color in curves:
             implot.plot_line(label, values, 1.0, float(history.first), implot.Spec(line_color=color, line_weight=1.6))
+    number = going_back.pointed(history.first, history.first + len(history) - 1)
     implot.end_plot()
+    at = 0 if number is None else number - history.first
+    said = [
+        f"{label}: {values[at]:.3g}" if per_pixel else f"{label}: {short(values[at])}" for label, values, _ in curves
+    ]
+    going_back.handle(ui, title, number, said)
 
 
 def _label_decades(highest: float, height: float) -> None:

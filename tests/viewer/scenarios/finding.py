@@ -1,0 +1,151 @@
+"""The table of objects and primitives: found, sorted, selected here and in the picture, hidden and shown."""
+
+from __future__ import annotations
+
+import numpy as np
+from imgui_bundle import imgui
+
+from tests.viewer.driver import Driver
+from viewer.services.scene_table import Listing
+from viewer.state.scene_rows import Level
+
+KEY = imgui.Key
+ROWS_SEEN = 60  # at most, in a window of these sizes
+WIDE, HIGH = 40, 30
+
+
+def finding(d: Driver) -> None:
+    """A user looks for things in a scene of thousands of primitives."""
+    d.settle()
+    c, table = d.c, d.c.table
+    path = d.folder / "wall.aff"
+    path.write_text(_wall())
+    c.loader.open(path)
+    d.wait(lambda: c.session.scene.primitive_count == 2 * WIDE * HIGH, "the larger scene")
+    d.settle()
+    assert not c.session.counting, "nobody looks at the table yet"
+
+    # Ctrl+F opens it, and what is typed goes into its filter.
+    d.press(int(KEY.f) | int(KEY.mod_ctrl))
+    _known(d)
+    assert c.frame.settings.record_work and table.level is Level.OBJECTS
+    d.context.item_click("//Find/Primitives")
+    listing = _known(d)
+    assert listing.table.rows == len(listing.rows) == c.session.scene.primitive_count
+    assert 2 < d.ui.find_drawn < ROWS_SEEN, "only rows that are seen are drawn"
+    d.press(int(KEY.f) | int(KEY.mod_ctrl))
+    d.context.key_chars("pixels>0")
+    listing = _known(d)
+    assert table.order.text == "pixels>0" and 0 < len(listing.rows) < listing.table.rows
+    d.context.key_press(KEY.enter)
+    d.frames(3)
+    first = int(listing.rows[0])
+    assert c.selection.picked.primitive == first, "Enter selects the first row"
+    d.context.item_input("//Find/##filterPrimitives")
+    d.context.key_chars("pixel")
+    d.context.key_press(KEY.enter)
+    assert "pixel" in table.order.text
+
+    # A row in the far middle selects in the picture; a click in the picture scrolls to its row.
+    table.filter("")
+    listing = _known(d)
+    frame = c.frame
+    y, x = _inside(frame.primitive)
+    left, top, right, bottom = d.picture_edges()
+    at = left + (x + 0.5) / frame.width * (right - left), top + (y + 0.5) / frame.height * (bottom - top)
+    d.context.mouse_move_to_pos(at)
+    d.context.mouse_click(0)
+    d.frames(4)
+    clicked = int(frame.primitive[y, x])
+    assert c.selection.picked.primitive == clicked == table.selected
+    d.context.mouse_move(f"//Find/**/{_id(clicked)}/##row")
+    assert 2 < d.ui.find_drawn < ROWS_SEEN
+    last = int(listing.rows[-1])
+    c.selection.select_primitive(last)
+    d.frames(4)
+    d.context.item_click(f"//Find/**/{_id(last)}/##row")
+    picked = c.selection.picked
+    assert picked.primitive == last and picked.x == -1, "what has no pixel can be selected"
+
+    # The headers sort.
+    before = listing.rows
+    d.context.item_click("//Find/**/Number")
+    listing = _known(d)
+    assert (np.diff(listing.rows) == 1).all() and not np.array_equal(before, listing.rows)
+
+    # F goes to what is selected, wherever it is.
+    camera = c.session.camera
+    d.press(KEY.f)
+    d.wait(lambda: not c.motion.handled, "the end of the flight", 20.0)
+    d.settle()
+    assert c.session.camera != camera and c.selection.pixel is not None
+    assert c.frame.primitive[c.selection.pixel[1], c.selection.pixel[0]] == last
+
+    # The eye hides it and shows it again.
+    d.context.item_click(f"//Find/**/{_id(last)}/eye")
+    d.wait(lambda: not c.editing.under_way and c.session.edits.hidden_primitives == {last}, "one primitive less", 60.0)
+    d.settle()
+    assert (c.session.edited.primitives != last).all()
+    d.context.item_click("//Find/Show everything")
+    d.wait(lambda: not c.editing.under_way and not c.session.edits, "all primitives", 60.0)
+    d.settle()
+
+    # An object's own list, and its outline.
+    d.context.item_click("//Find/Objects")
+    listing = _known(d)
+    part = int(listing.rows[0])
+    d.context.item_click(f"//Find/**/{_id(part)}/##row")
+    assert c.selection.part == part
+    shown = d.shown()
+    d.press(KEY.escape)
+    d.frames(3)
+    assert c.selection.part is None and (shown != d.shown()).any(), "the outline goes with the selection"
+    table.open_part(part)
+    assert len(_known(d).rows) == int(listing.table.columns["primitives"].numbers[part])
+    d.ui.show_panel("Plots")
+    d.frames(5)
+    assert not table.visible and not c.session.counting
+
+
+def _wall() -> str:
+    """As many triangles behind those that are seen as there are seen."""
+    lines = ["v", "from 20 15 40", "at 20 15 0", "up 0 1 0", "angle 40", "hither 0.1", "resolution 8 8", "l 1 9 30"]
+    lines.append("f 1 0 0 1 0 1 0 1")
+    for z in (0, -9):
+        for x, y in np.ndindex(WIDE, HIGH):
+            lines.append(f"p 3\n{x} {y} {z}\n{x + 1} {y} {z}\n{x} {y + 1} {z + 0.5}")
+    return "\n".join(lines) + "\n"
+
+
+def _known(d: Driver) -> Listing:
+    """The listing as it is asked for, of the newest picture."""
+    table = d.c.table
+    d.frames(3)
+    d.settle()
+    d.wait(
+        lambda: (
+            table.listing is not None
+            and not table.busy
+            and table.listing.order == table.order
+            and table.listing.table.columns["saved"] is not None
+        ),
+        "the table",
+        20.0,
+    )
+    d.frames(3)
+    return table.listing
+
+
+def _id(row: int) -> str:
+    """How the test engine writes a number that was pushed as an identity."""
+    return f"$${row}"
+
+
+def _inside(primitive: np.ndarray) -> tuple[int, int]:
+    """A pixel in the middle of those whose neighbours show the same primitive."""
+    here = primitive >= 0
+    for axis in (0, 1):
+        here &= (np.roll(primitive, 1, axis) == primitive) & (np.roll(primitive, -1, axis) == primitive)
+    found = np.argwhere(here if here.any() else primitive >= 0)
+    y, x = found[len(found) // 2]
+    return int(y), int(x)

@@ -1,0 +1,114 @@
+"""Back to frames that taught something, and to counterexamples that a hunt has found."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from tests.viewer.driver import Driver
+from tests.viewer.marbles import LAST, STEP, write_marbles
+
+KEY = imgui.Key
+CTRL = int(KEY.mod_ctrl)
+
+
+def hunting(d: Driver) -> None:
+    """A click in a plot, or on a frame in the inspector, goes back there; a hunt's finds are flown to and explained."""
+    d.settle()
+    d.drop(write_marbles(d.folder))
+    d.wait(lambda: d.c.session.scene.path.name == "marbles.aff", "the scene")
+    d.settle()
+    d.c.settings.change(method="paper", depth=2)
+    d.settle()
+    _from_a_plot(d)
+    _from_the_inspector(d)
+    _to_a_find(d)
+
+
+def _from_a_plot(d: Driver) -> None:
+    c = d.c
+    d.ui.show_panel("Plots")
+    for _ in range(3):
+        d.press(KEY.right_arrow)
+        d.settle()
+    here, number = c.session.time, c.history.frames - 1
+    moments = [c.record.moments.get(n) for n in range(number + 1)]
+    target = next(m.number for m in moments if m is not None and m.time == c.session.scene.frame_time(1))
+    _point_at_sample(d, target)
+    d.context.mouse_click(0)
+    d.settle()
+    assert c.session.time == c.session.scene.frame_time(1), "the click on the plot did not lead there"
+    d.press(int(KEY.z) | CTRL)
+    d.settle()
+    assert c.session.time == here
+
+    _point_at_sample(d, target)
+    d.context.mouse_click(1)
+    d.frames(3)
+    d.context.item_click(f"//$FOCUSED/Go to frame {target} with its modes")
+    d.wait(lambda: c.travel.replay is not None and c.runs.current is None, "the frames before it", 60.0)
+    d.settle()
+    assert c.travel.replay.whole and c.frame.time == c.session.scene.frame_time(1)
+
+
+def _point_at_sample(d: Driver, number: int) -> None:
+    """The pointer onto a frame of the first plot, whose axis is as wide as what is left of its panel's third."""
+    history = d.c.history
+    window = imgui.internal.find_window_by_name("Plots")
+    d.context.mouse_move_to_pos((window.pos.x + 0.2 * window.size.x, window.pos.y + 0.6 * window.size.y))
+    d.frames(2)
+    low, high = window.pos.x, window.pos.x + 0.35 * window.size.x
+    for _ in range(14):  # the plot says itself which frame the pointer is on
+        at = 0.5 * (low + high)
+        d.context.mouse_move_to_pos((at, window.pos.y + 0.6 * window.size.y))
+        d.frames(2)
+        pointed = d.ui.plot_pointed
+        if pointed == number:
+            return
+        low, high = (at, high) if pointed is None or pointed < number else (low, at)
+    raise AssertionError(f"frame {number} is not found in the plot of frames {history.first} to {history.frames - 1}")
+
+
+def _from_the_inspector(d: Driver) -> None:
+    c = d.c
+    c.preferences.fixed_resolution = False
+    d.ui.show_panel("Inspector")
+    d.press(KEY.right_arrow)
+    d.settle()
+    d.context.mouse_move_to_pos(d.picture_centre())
+    d.context.mouse_click(0)
+    d.frames(3)
+    picked = c.selection.picked
+    assert picked is not None
+    taught = c.record.taught(picked)
+    light, lesson = next((n, one) for n, one in enumerate(taught.lights) if one.lit >= 0)
+    d.wait(lambda: c.teachers.of(lesson.lit, light, True) is not None, "the pixel that taught", 30.0)
+    moment = c.record.moments.get(lesson.lit)
+    d.scroll_down("Inspector")
+    d.context.item_click(f"//Inspector/**/frame {lesson.lit}##taught {light} lit")
+    d.settle()
+    assert (c.session.time, c.session.camera) == (moment.time, moment.camera)
+
+
+def _to_a_find(d: Driver) -> None:
+    c, plan = d.c, d.c.hunts.plan
+    plan.size, plan.last, plan.step, plan.around, plan.keep = (96, 96), LAST, STEP, 4, 5
+    d.ui.show_panel("Hunt")
+    d.frames(3)
+    d.context.item_click(f"//Hunt/**/{icons.ICON_FA_PLAY}  Start")
+    d.wait(lambda: c.hunts.found is not None and c.runs.current is None, "the hunt", 120.0)
+    d.settle()
+    found = c.hunts.found
+    assert c.hunts.hunt.whole and found.finds and found.frames == LAST // STEP + 5
+    d.context.item_click("//Hunt/**/1##find")
+    find = found.finds[0]
+    d.wait(lambda: c.runs.current is None and c.selection.picked is not None, "the find", 60.0)
+    d.settle()
+    picked = c.selection.picked
+    assert (picked.x, picked.y) == (find.x, find.y) and picked.wrong > 0
+    assert tuple(c.frame.color[find.y, find.x].tolist()) == find.color
+    d.context.item_click(f"//Hunt/**/{icons.ICON_FA_CODE_BRANCH}  Rays")
+    d.wait(lambda: c.rays.tree is not None, "its rays", 20.0)
+    assert any(ray.shadows is not None and ray.shadows.wrong.any() for ray in c.rays.tree.rays)
+    d.ui.show_panel("Hunt")
+    d.frames(3)

@@ -1,0 +1,208 @@
+"""Edits brought about on the render thread, compared with what was before, undone, and made again by a command."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.commands import run
+from tests.viewer.desk import Desk
+from tracer.renderer import Renderer
+from tracer.scene.edits import Edits, things
+from viewer.services.before_edits import Lack
+
+SCENE = """
+b 0.3 0.4 0.5
+v
+from 0 1.5 6
+at 0 0.5 0
+up 0 1 0
+angle 45
+hither 0.01
+resolution 64 48
+l 3 5 4  0.6 0.6 0.6
+l -4 4 3  0.4 0.4 0.4
+f 0.8 0.3 0.2  0.7 0.2 10 0 1
+x ball { s 0 0.8 0 0.8 }
+x car { s 1.6 0.4 0.5 0.4 }
+k car { transl 4 0 0 0 0 0 0 0  1 0 0 0 0 0 0  2 1 0 0 0 0 0  3 1 0 0 0 0 0 }
+f 0.6 0.6 0.6  0.8 0 1 0 1
+p 4
+-4 0 -4
+-4 0 4
+4 0 4
+4 0 -4
+a 1 2 20
+"""
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Iterator[Desk]:
+    path = tmp_path / "parts.aff"
+    path.write_text(SCENE)
+    found = Desk(path, tmp_path)
+    yield found
+    assert found.c.close()
+
+
+def edit(desk: Desk, change) -> None:
+    """Make an edit, and wait for the picture of it."""
+    change()
+    desk.until(lambda: not desk.c.editing.under_way)
+    desk.rest()
+
+
+def fresh(desk: Desk, method: str = "none") -> np.ndarray:
+    """The picture of what is shown, by a renderer that knows nothing."""
+    c = desk.c
+    settings = c.frame.settings
+    made = Renderer(c.session.scene, settings.__class__(settings.width, settings.height, method=method))
+    return made.render(c.session.time, c.session.camera).color
+
+
+def test_edits_of_all_kinds_are_shown_and_undone(desk: Desk):
+    c = desk.c
+    assert [thing.name for thing in things(c.session.original)] == ["parts", "ball", "car"]
+    c.settings.change(method="certified")
+    desk.rest()
+    before, original = c.frame.color.copy(), c.session.scene
+    steps = {
+        "light 1 off": lambda: c.editing.switch(1, False),
+        "light 0 moved": lambda: c.editing.move_light(0, (-1.0, 6.0, 2.0)),
+        "ball hidden": lambda: c.editing.hide("ball"),
+        "car static": lambda: c.editing.make_static("car"),
+        "parts moving": lambda: c.editing.let_move("parts"),
+        "primitive 0 hidden": lambda: c.editing.hide_primitive(0),
+    }
+    pictures = []
+    for name, change in steps.items():
+        pictures.append(c.frame.color.copy())
+        edit(desk, change)
+        assert c.undo.undoes == name
+        assert np.array_equal(c.frame.color, fresh(desk)), name
+    assert [len(c.session.scene.objects), len(c.session.scene.lights)] == [2, 1]
+    for picture in reversed(pictures):
+        edit(desk, c.undo.undo)
+        assert np.array_equal(c.frame.color, picture)
+    assert c.session.scene is original and np.array_equal(c.frame.color, before) and not c.session.edits
+    assert c.undo.undoes == "method certified", "edits make no steps but their own"
+
+
+def test_hidden_objects_that_move_and_moved_lights_keep_the_renderer(desk: Desk):
+    c, renderer = desk.c, desk.c.renderer._renderer
+    edit(desk, lambda: c.editing.hide("car"))
+    edit(desk, lambda: c.editing.move_light(1, (2.0, 5.0, 2.0)))
+    assert c.renderer._renderer is renderer and np.array_equal(c.frame.color, fresh(desk))
+    edit(desk, lambda: c.editing.hide("ball"))
+    assert c.renderer._renderer is not renderer and np.array_equal(c.frame.color, fresh(desk))
+    edit(desk, c.editing.clear)
+    assert c.renderer._renderer is renderer, "with all that it knows"
+    assert np.array_equal(c.frame.color, fresh(desk))
+
+
+def test_what_changed_is_told_against_the_picture_before(desk: Desk):
+    c = desk.c
+    c.settings.change(method="paper")
+    desk.rest()
+    assert c.before_edits.lack is Lack.NO_EDITS
+    before = c.frame
+    edit(desk, lambda: c.editing.switch(1, False))
+    found = c.before_edits.effects
+    assert found.exact == int((c.frame.color != before.color).any(-1).sum()) > 0
+    assert found.most == int(np.abs(c.frame.pixels.astype(int) - before.pixels).max())
+    due = {one.name: one for one in found.counters}["due"]
+    assert (due.before, due.after) == (before.statistics.shadow.due, c.frame.statistics.shadow.due)
+    assert [one.light for one in found.shadows] == [0]
+    assert found.shadows[0].counts.sum() == c.session.scene.primitive_count
+    # From elsewhere there is nothing to compare with until that is traced.
+    c.session.go_to_frame(5)
+    desk.rest()
+    assert c.before_edits.lack is Lack.ELSEWHERE
+    steps = c.undo.undoes
+    c.before_edits.take_anew()
+    assert not c.session.edits
+    desk.until(lambda: not c.before_edits.taking and not c.editing.under_way)
+    desk.rest()
+    assert c.session.edits == Edits(lights_off=frozenset({1})) and c.undo.undoes == steps
+    assert c.before_edits.effects.exact > 0
+
+
+def test_a_hidden_occluder_changes_modes_to_unshadowed(desk: Desk):
+    c = desk.c
+    c.settings.change(method="paper")
+    desk.rest()
+    for _ in range(3):
+        c.tracing.trace_again()
+        desk.rest()
+    edit(desk, lambda: c.editing.hide("ball"))
+    for _ in range(3):
+        c.tracing.trace_again()
+        desk.rest()
+    changes = {(a, b) for one in c.before_edits.effects.shadows for a, b, _ in one.pairs()}
+    assert ("partial shadow", "non shadow") in changes
+
+
+def test_edits_stay_when_the_scene_is_read_again_as_far_as_it_has_their_targets(desk: Desk):
+    c = desk.c
+    edit(desk, lambda: c.editing.hide("ball"))
+    edit(desk, lambda: c.editing.switch(1, False))
+    path = Path(c.session.scene.path)
+    path.write_text(SCENE.replace("x ball", "x globe"))
+    c.loader.reload()
+    desk.until(lambda: c.loader.load_job is None and not c.editing.under_way)
+    desk.rest()
+    assert c.session.edits == Edits(lights_off=frozenset({1}))
+    assert np.array_equal(c.frame.color, fresh(desk))
+
+
+def test_the_command_makes_the_edited_picture_again(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+):
+    c = desk.c
+    c.settings.change(method="certified")
+    edit(desk, lambda: c.editing.switch(0, False))
+    edit(desk, lambda: c.editing.move_light(1, (-1.1, 4.7, 1e-6)))
+    edit(desk, lambda: c.editing.make_static("car"))
+    edit(desk, lambda: c.editing.hide_primitive(0))
+    edit(desk, lambda: c.editing.let_move("ball"))
+    words = shlex.split(c.recipes.command())
+    assert words[0] == "shadowcull" and "--without-light=0" in words
+    monkeypatch.chdir(tmp_path)
+    assert run(capfd, *words[1:], "--threads", 1)[0] == 0
+    made = Path(words[words.index("-o") + 1])
+    assert np.array_equal(np.asarray(Image.open(made)), c.frame.pixels)
+    # The picture remembers its edits.
+    assert run(capfd, "check", made)[0] == 0
+    here = c.session.edits
+    edit(desk, c.editing.clear)
+    c.loader.open(made.absolute())
+    desk.until(lambda: c.session.edits == here and not c.editing.under_way)
+    desk.rest()
+    assert np.array_equal(np.asarray(Image.open(made)), c.frame.pixels)
+
+
+@pytest.mark.parametrize(
+    ("option", "said"),
+    [
+        ("--without-light=7", "the scene has the lights 0 to 1"),
+        ("--hide=sofa", "no object of this name; there is parts, ball, car"),
+        ("--hide-primitive=99", "the primitives 0 to"),
+        ("--make-static=ball=1", "no object that moves of this name; there is car"),
+        ("--make-static=car", "give them like train=2.5"),
+        ("--make-moving=car", "no static object of this name"),
+        ("--move-light=0", "give them like 2=1.5,3,-0.5"),
+    ],
+)
+def test_edits_of_what_is_not_there_are_one_line(
+    option: str, said: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+):
+    path = tmp_path / "parts.aff"
+    path.write_text(SCENE)
+    code, _, err = run(capfd, "render", path, "-o", tmp_path / "out.png", option)
+    lines = err.strip().splitlines()
+    assert code != 0 and said in lines[-1] and not (tmp_path / "out.png").exists()

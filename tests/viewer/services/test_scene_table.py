@@ -1,0 +1,201 @@
+"""The table is made beside the window, stays in order, selects in the picture, and is saved."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.viewer.desk import Desk
+from tests.viewer.fakes import make_frame, make_scene
+from tracer.scene.edits import Edits, edited
+from viewer.output.rows_csv import write_rows
+from viewer.services.scene_table import Listing, Order, SceneTable, listed
+from viewer.state.scene_rows import COLUMNS, Level, Table, Values, tables_of
+
+
+def numbers(*values: float) -> Table:
+    """A table of primitives with so many pixels."""
+    of_rows = Values(np.arange(len(values), dtype=np.int32))
+    columns = {
+        "number": of_rows,
+        "pixels": Values(np.array(values)),
+        "object": Values(of_rows.numbers, tuple("dCaB")[: len(values)]),
+    }
+    return Table(Level.PRIMITIVES, len(values), columns)
+
+
+def rows(listing: Listing) -> list[int]:
+    return listing.rows.tolist()
+
+
+def test_rows_are_sorted_both_ways_and_what_is_not_known_comes_last() -> None:
+    table = numbers(3, 1, 2, 1)
+    assert rows(listed(table, Order(column="pixels"), None)) == [1, 3, 2, 0]
+    assert rows(listed(table, Order(column="pixels", descending=True), None)) == [0, 2, 1, 3]
+    assert rows(listed(table, Order(column="object"), None)) == [2, 3, 1, 0], "capitals come where their letters do"
+    words = Values(np.array([-1, 1, 0]), ("a", "b"))
+    with_none = Table(table.level, 3, {"share": Values(np.array([np.nan, 5.0, 7.0])), "texture": words})
+    for name in ("share", "texture"):
+        for descending in (False, True):
+            assert rows(listed(with_none, Order(column=name, descending=descending), None))[-1] == 0, name
+
+
+def test_equal_rows_keep_the_order_that_they_had() -> None:
+    first = listed(numbers(1, 2, 3, 4), Order(column="pixels", descending=True), None)
+    second = listed(numbers(1, 2, 2, 4), first.order, first)
+    assert rows(first) == [3, 2, 1, 0] and rows(second) == [3, 2, 1, 0], "1 and 2 would change places"
+    assert rows(listed(numbers(1, 2, 2, 4), first.order, None)) == [3, 1, 2, 0]
+
+
+def test_a_filter_that_is_not_understood_leaves_the_rows() -> None:
+    table = numbers(1, 2, 3, 4)
+    before = listed(table, Order("pixels>2", "pixels"), None)
+    after = listed(table, Order("pixels>2x", "pixels"), before)
+    assert rows(after) == rows(before) == [2, 3] and "2x is no number" in after.problem and not before.problem
+
+
+# --- in a controller ------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def table(desk: Desk) -> SceneTable:
+    """The table of the tiny scene, looked at."""
+    table = desk.c.table
+    tick = desk.tick
+
+    def watching() -> None:
+        table.watch()
+        tick()
+
+    desk.tick = watching  # type: ignore[method-assign]
+    known(desk)
+    return table
+
+
+def known(desk: Desk) -> Listing:
+    """The listing as it is asked for, of the newest picture."""
+    table = desk.c.table
+
+    def there() -> bool:
+        listing = table.listing
+        work = listing is not None and listing.table.columns["saved"] is not None
+        return work and not table.busy and listing.order == table.order and not desk.c.active
+
+    desk.until(there)
+    desk.tick()
+    desk.until(there)
+    assert table.listing is not None
+    return table.listing
+
+
+def test_nothing_is_counted_unless_somebody_looks(desk: Desk) -> None:
+    desk.rest()
+    assert desk.c.table.listing is None and not desk.c.frame.settings.record_work
+    desk.c.table.watch()
+    desk.until(lambda: desk.c.table.busy or desk.c.table.listing is not None)
+    assert desk.c.session.counting
+    desk.rest()
+    assert not desk.c.session.counting
+
+
+def test_pixels_and_rays_are_those_of_the_picture(desk: Desk, table: SceneTable) -> None:
+    listing, frame = known(desk), desk.c.frame
+    assert frame.settings.record_work, "rays are counted while the table is looked at, in any view"
+    columns = listing.table.columns
+    assert columns["pixels"].numbers.sum() == (frame.primitive >= 0).sum()
+    for name, buffer in (("saved", frame.saved), ("due", frame.due_rays)):
+        assert columns[name].numbers.sum() == buffer[frame.primitive >= 0].sum(), name
+    table.level = Level.PRIMITIVES
+    assert known(desk).table.rows == desk.c.session.scene.primitive_count
+    pixels = [int(listing.table.columns["pixels"].numbers[row]) for row in listing.rows]
+    assert pixels == sorted(pixels, reverse=True)
+
+
+def test_a_row_selects_in_the_picture_and_the_other_way_round(desk: Desk, table: SceneTable) -> None:
+    table.level = Level.PRIMITIVES
+    known(desk)
+    sphere = desk.c.session.scene.triangle_count
+    table.select(sphere)
+    picked, frame = desk.c.selection.picked, desk.c.frame
+    assert picked.primitive == sphere == frame.primitive[picked.y, picked.x] and table.selected == sphere
+    assert table.chosen == desk.c.selection.serial, "the list does not scroll to what was clicked in it"
+    y, x = np.argwhere(frame.primitive == 0)[0]
+    desk.c.selection.select(((x + 0.5) / frame.width, (y + 0.5) / frame.height))
+    assert table.selected == 0 and table.chosen != desk.c.selection.serial
+    table.level = Level.OBJECTS
+    part = table.selected
+    table.select(part)
+    assert desk.c.selection.part == part and desk.c.selection.picked.primitive >= 0
+
+
+def test_rows_stay_where_they_are_under_the_pointer(desk: Desk, table: SceneTable) -> None:
+    table.level = Level.PRIMITIVES
+    before = known(desk)
+    table.held = True
+    desk.c.motion.move(desk.c.session.camera.__class__((0.0, 0.9, 2.2), (0.0, 0.0, -1.0)))
+    desk.until(lambda: table.listing is not before and table.listing.table is not before.table and not desk.c.active)
+    held = known(desk)
+    assert held.rows is before.rows, "the pointer is on it"
+    assert held.table.columns["pixels"].numbers.tolist() != before.table.columns["pixels"].numbers.tolist()
+    table.sort("number", True)
+    assert known(desk).rows.tolist() == sorted(before.rows.tolist(), reverse=True), "a click counts at once"
+    table.sort("pixels", True)
+    table.held = False
+    pixels = known(desk).table.columns["pixels"].numbers[known(desk).rows]
+    assert (np.diff(pixels) <= 0).all()
+
+
+def test_things_are_hidden_and_shown_again(desk: Desk, table: SceneTable) -> None:
+    table.level = Level.PRIMITIVES
+    total = known(desk).table.rows
+    sphere = desk.c.session.scene.triangle_count
+    table.select(0)
+    table.hide(sphere)
+    assert table.is_hidden(sphere)
+    desk.until(lambda: not desk.c.editing.under_way)
+    listing = known(desk)
+    assert listing.table.rows == total and desk.c.session.scene.primitive_count == total - 1
+    assert listing.table.cell("hidden", sphere) == "hidden" and listing.table.cell("pixels", sphere) == "0"
+    assert table.selected == 0, "what is selected stays so"
+    table.select(sphere)
+    assert "hidden" in desk.said and table.selected == 0
+    table.hide(sphere, False)
+    desk.until(lambda: not desk.c.editing.under_way)
+    assert known(desk).table.cell("pixels", sphere) != "0" and not table.is_hidden(sphere)
+
+
+def test_an_object_opens_as_a_list_of_its_primitives(desk: Desk, table: SceneTable) -> None:
+    part = int(known(desk).rows[0])
+    size = int(known(desk).table.columns["primitives"].numbers[part])
+    table.open_part(part)
+    assert table.level is Level.PRIMITIVES and len(known(desk).rows) == size
+
+
+def test_rows_are_saved_as_they_are_seen(desk: Desk, table: SceneTable, tmp_path: Path) -> None:
+    table.level = Level.PRIMITIVES
+    table.filter("kind:triangle")
+    listing = known(desk)
+    table.save()
+    desk.until(lambda: not desk.c.captures.busy)
+    assert "saved" in desk.said
+    (path,) = (tmp_path / "pictures").glob("*.csv")
+    with path.open(newline="") as file:
+        read = list(csv.DictReader(file))
+    assert [int(row["number"]) for row in read] == listing.rows.tolist() and len(read) > 0
+    assert [int(row["pixels"]) for row in read] == listing.table.columns["pixels"].numbers[listing.rows].tolist()
+
+
+def test_names_and_what_is_not_known_are_written_so_that_they_are_read_again(tmp_path: Path) -> None:
+    now = edited(make_scene(), Edits())
+    table = tables_of(now, make_frame(), None)[Level.PRIMITIVES]
+    table.columns["object"] = Values(table.columns["object"].numbers, ('a, "quoted"\nname', "train"))
+    path = tmp_path / "rows.csv"
+    write_rows(table, np.arange(7, dtype=np.int32)[::-1], path)
+    with path.open(newline="") as file:
+        read = list(csv.DictReader(file))
+    assert [row["number"] for row in read] == list("6543210") and read[0]["object"] == 'a, "quoted"\nname'
+    assert {row["texture"] for row in read} == {""} and "saved" not in read[0]
+    assert set(read[0]) <= {column.name for column in COLUMNS[Level.PRIMITIVES]}

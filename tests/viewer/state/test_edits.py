@@ -1,0 +1,75 @@
+"""Edits in words, as JSON and as options; the session that is edited."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.viewer.fakes import make_scene
+from tracer.scene.edits import NO_EDITS, Edits, edited
+from viewer.state import edits as scene_edits
+from viewer.state.session import Session, Snapshot
+
+ALL_KINDS = Edits(
+    lights_off=frozenset({1}),
+    moved_lights=((0, (0.1, -2.0, 1e-7)), (2, (1.0, 2.0, 3.0))),
+    hidden=frozenset({"train"}),
+    hidden_primitives=frozenset({3, 0}),
+    static=(("train", 2.5),),
+    moving=frozenset({"static"}),
+)
+
+
+def test_edits_come_back_from_json():
+    assert scene_edits.from_json(scene_edits.to_json(ALL_KINDS)) == ALL_KINDS
+    assert scene_edits.to_json(NO_EDITS) == {} and scene_edits.from_json({}) == NO_EDITS
+
+
+@pytest.mark.parametrize(
+    "damaged",
+    [
+        [],
+        {"hidden": "train"},
+        {"lights_off": [-1]},
+        {"lights_off": ["1"]},
+        {"moved_lights": [[0, [1, 2]]]},
+        {"moved_lights": [[0, [1, 2, 1e300]]]},
+        {"static": [["train", "now"]]},
+        {"static": [["train", float("nan")]]},
+        {"hidden_primitives": [True]},
+    ],
+)
+def test_damaged_edits_are_one_line(damaged: object):
+    with pytest.raises(ValueError, match="edits of the scene are damaged"):
+        scene_edits.from_json(damaged)
+
+
+def test_each_edit_has_words_and_can_go_by_itself():
+    listed = scene_edits.one_by_one(ALL_KINDS)
+    words = [text for text, _ in listed]
+    assert sorted(words) == sorted(scene_edits.in_words(ALL_KINDS)) and "light 1 off" in words
+    for text, without in listed:
+        assert list(scene_edits.differences(without, ALL_KINDS).values()) == [text]
+
+
+def test_the_chosen_light_stays_whatever_lights_are_off():
+    session = Session()
+    session.open(make_scene(lights=3))
+    session.light = 2
+    session.take(edited(session.original, Edits(lights_off=frozenset({0}))))
+    assert session.light == 1 and len(session.scene.lights) == 2
+    session.take(edited(session.original, Edits(lights_off=frozenset({2}))))
+    assert session.light == 1, "the nearest that is on"
+    session.take(edited(session.original, NO_EDITS))
+    assert session.light == 1 and session.scene is session.original
+
+
+def test_a_snapshot_keeps_edits_and_gives_up_those_without_a_target():
+    session = Session()
+    session.open(make_scene(lights=3))
+    session.edits = Edits(lights_off=frozenset({2}), hidden=frozenset({"train"}))
+    kept = Snapshot.from_json(session.snapshot().to_json())
+    assert kept.edits == session.edits
+    other = Session()
+    other.open(make_scene(lights=2))
+    other.restore(kept)
+    assert other.edits == Edits(hidden=frozenset({"train"}))

@@ -1,0 +1,340 @@
+"""What if: a scene without some lights or objects, with lights elsewhere, with objects that are static or can move.
+
+`edited` makes another scene of a scene and leaves that as it is.  Objects go by the names of `things`, lights and
+primitives by the numbers that they have in the scene as it was read, so that edits mean the same whatever else is
+edited.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.scene.animation import Animation, TrackSet
+from tracer.scene.arrays import Float64, Int32
+from tracer.scene.assembly import under_matrix
+from tracer.scene.deformation import deformed
+from tracer.scene.lights import Vector
+from tracer.scene.model import Quadrics, Scene, SceneObject, Triangles
+from tracer.scene.normals import unit_normals
+
+NEVER = "(hidden)"
+"""The name of a track that shows nothing."""
+
+
+@dataclass(frozen=True)
+class Thing:
+    """What people call an object: a dynamic object of a scene, or a part of what never moves.
+
+    name is no other thing's; index is the object's in `Scene.objects`, part its number in `SceneObject.parts`, -1 for
+    all of an object."""
+
+    name: str
+    index: int
+    part: int = -1
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is an object that can move."""
+        return self.index > 0
+
+
+@dataclass(frozen=True)
+class Edits:
+    """What is otherwise than in the scene as it was read.
+
+    lights_off are numbers of lights, moved_lights where others are instead, as (number, (x, y, z)) in their order;
+    hidden are names of things, hidden_primitives numbers of primitives; static are things that could move and do not,
+    as (name, time in seconds) in their order: they stay where they are then; moving are names of static things that
+    can move, although they stay where they are."""
+
+    lights_off: frozenset[int] = frozenset()
+    moved_lights: tuple[tuple[int, Vector], ...] = ()
+    hidden: frozenset[str] = frozenset()
+    hidden_primitives: frozenset[int] = frozenset()
+    static: tuple[tuple[str, float], ...] = ()
+    moving: frozenset[str] = frozenset()
+
+    def __bool__(self) -> bool:
+        return self != NO_EDITS
+
+    def with_light(self, number: int, on: bool) -> Edits:
+        """With a light on or off."""
+        return replace(self, lights_off=self.lights_off - {number} if on else self.lights_off | {number})
+
+    def with_light_at(self, number: int, place: Vector | None) -> Edits:
+        """With a light elsewhere, None for where it was."""
+        places = {n: p for n, p in self.moved_lights if n != number}
+        if place is not None:
+            places[number] = place
+        return replace(self, moved_lights=tuple(sorted(places.items())))
+
+    def with_thing(self, name: str, shown: bool) -> Edits:
+        """With a thing shown or hidden."""
+        return replace(self, hidden=self.hidden - {name} if shown else self.hidden | {name})
+
+    def with_primitive(self, number: int, shown: bool) -> Edits:
+        """With a primitive shown or hidden."""
+        kept = self.hidden_primitives
+        return replace(self, hidden_primitives=kept - {number} if shown else kept | {number})
+
+    def with_static(self, name: str, time: float | None) -> Edits:
+        """With an object that stays where it is at a time, None for one that moves as in the scene."""
+        times = {n: t for n, t in self.static if n != name}
+        if time is not None:
+            times[name] = time
+        return replace(self, static=tuple(sorted(times.items())))
+
+    def with_moving(self, name: str, moving: bool) -> Edits:
+        """With a static thing that can move, or cannot."""
+        return replace(self, moving=self.moving | {name} if moving else self.moving - {name})
+
+    def light_place(self, number: int) -> Vector | None:
+        """Where a light is instead; None where it was not moved."""
+        return dict(self.moved_lights).get(number)
+
+    def within(self, scene: Scene) -> Edits:
+        """Those of these edits that mean something in a scene: whose lights, things and primitives it has."""
+        known = {thing.name: thing for thing in things(scene)}
+        lights = len(scene.lights)
+        return Edits(
+            frozenset(n for n in self.lights_off if 0 <= n < lights),
+            tuple((n, p) for n, p in self.moved_lights if 0 <= n < lights),
+            self.hidden & frozenset(known),
+            frozenset(n for n in self.hidden_primitives if 0 <= n < scene.primitive_count),
+            tuple((name, time) for name, time in self.static if name in known and known[name].moves),
+            frozenset(name for name in self.moving if name in known and not known[name].moves),
+        )
+
+
+NO_EDITS = Edits()
+
+
+@dataclass(frozen=True)
+class Edited:
+    """A scene as edits leave it, and which of the numbers of the scene as it was read its own are.
+
+    primitives (n,) int32 and lights (l,) int32 hold for each of its own the number in the `original`."""
+
+    original: Scene = field(repr=False)
+    edits: Edits
+    scene: Scene = field(repr=False)
+    primitives: Int32 = field(repr=False)
+    lights: Int32 = field(repr=False)
+
+    @cached_property
+    def numbers(self) -> Int32:
+        """(primitives of the original,) int32: the number that each has here, -1 for those that are not here."""
+        found = np.full(self.original.primitive_count, -1, np.int32)
+        found[self.primitives] = np.arange(len(self.primitives), dtype=np.int32)
+        return found
+
+    def made_as(self, other: Edited) -> bool:
+        """Whether the primitives and the lights of another edited scene have the same numbers."""
+        same = np.array_equal(self.primitives, other.primitives) and np.array_equal(self.lights, other.lights)
+        return same and self.original is other.original
+
+    def light_here(self, number: int) -> int:
+        """The number here of a light of the original; -1 where it is off."""
+        (found,) = np.nonzero(self.lights == number)
+        return int(found[0]) if len(found) else -1
+
+    @cached_property
+    def _things(self) -> dict[tuple[int, int], Thing]:
+        return {(thing.index, thing.part): thing for thing in things(self.original)}
+
+    def thing_of(self, primitive: int) -> Thing:
+        """The thing that holds a primitive of this scene."""
+        return self._things[_owner(self.original, int(self.primitives[primitive]))]
+
+
+def things(scene: Scene) -> tuple[Thing, ...]:
+    """All things of a scene: first the parts of what never moves, then the objects that can move."""
+    found: list[tuple[str, int, int]] = []
+    for index, one in enumerate(scene.objects):
+        if one.part_of is not None:
+            found += [(name or "static", index, part) for part, name in enumerate(one.parts)]
+        elif len(one.triangles) or len(one.quadrics):
+            found.append((one.name or f"object {index}", index, -1))
+    taken = Counter(name for name, _, _ in found)
+    seen: Counter[str] = Counter()
+    made = []
+    for name, index, part in found:
+        seen[name] += 1
+        number, unique = seen[name], name
+        while number > 1 and taken[unique := f"{name} #{number}"]:
+            number += 1
+        taken[unique] += 1
+        made.append(Thing(unique, index, part))
+    return tuple(made)
+
+
+def thing_of(scene: Scene, primitive: int) -> Thing:
+    """The thing that holds a primitive."""
+    owner = _owner(scene, primitive)
+    return next(thing for thing in things(scene) if (thing.index, thing.part) == owner)
+
+
+def _owner(scene: Scene, primitive: int) -> tuple[int, int]:
+    """The object that holds a primitive, and the part of it, -1 for all."""
+    index = scene.object_of(primitive)
+    part_of = scene.objects[index].part_of
+    return index, -1 if part_of is None else int(part_of[_place(scene, index, primitive)])
+
+
+def thing_numbers(scene: Scene) -> Int32:
+    """(primitives,) int32: the place of each primitive's thing among all `things`."""
+    places = {(thing.index, thing.part): n for n, thing in enumerate(things(scene))}
+    found = np.empty(scene.primitive_count, np.int32)
+    for index, one in enumerate(scene.objects):
+        held = np.concatenate(_held(scene, index))
+        if one.part_of is None:
+            found[held] = places.get((index, -1), -1)
+        else:
+            found[held] = np.array([places[index, part] for part in range(len(one.parts))], np.int32)[one.part_of]
+    return found
+
+
+def _place(scene: Scene, index: int, primitive: int) -> int:
+    """A primitive's place in its object: its triangles, then its quadrics."""
+    if primitive < scene.triangle_count:
+        return primitive - int(scene.triangle_offsets[index])
+    return len(scene.objects[index].triangles) + primitive - int(scene.quadric_offsets[index])
+
+
+def edited(scene: Scene, edits: Edits) -> Edited:
+    """A scene as edits leave it; what they name and the scene does not have changes nothing.
+
+    Objects that only become hidden stay in their places, so that a world of the one scene is one of the other."""
+    edits = edits.within(scene)
+    numbers = np.arange(scene.primitive_count, dtype=np.int32)
+    lights = np.array([n for n in range(len(scene.lights)) if n not in edits.lights_off], np.int32)
+    if not edits:
+        return Edited(scene, edits, scene, numbers, lights)
+    objects, held = _objects(scene, edits)
+    triangles, quadrics = ([numbers[part] for part in parts] for parts in zip(*held, strict=True))
+    animation = scene.animation
+    if any(isinstance(element, str) and element == NEVER for one in objects for element in one.chain[:1]):
+        never = TrackSet(visibility=np.array([[-np.inf, 0.0]]))
+        animation = Animation({**animation.tracks, NEVER: never})
+    made = replace(scene, objects=tuple(objects), lights=_lights(scene, edits, lights.tolist()), animation=animation)
+    return Edited(scene, edits, made, np.concatenate([*triangles, *quadrics]), lights)
+
+
+def _lights(scene: Scene, edits: Edits, kept: list[int]) -> tuple:
+    """The lights that are on, where they are; one that was moved stays there."""
+    places = dict(edits.moved_lights)
+    return tuple(
+        replace(light, position=places[n], track=None) if n in places else light
+        for n, light in enumerate(scene.lights)
+        if n in kept
+    )
+
+
+# --- objects -----------------------------------------------------------------------------------------
+
+Held = tuple[NDArray[np.intp], NDArray[np.intp]]
+"""The numbers of an object's triangles, and of its quadrics, in the scene as it was read."""
+
+
+def _objects(scene: Scene, edits: Edits) -> tuple[list[SceneObject], list[Held]]:
+    """The objects of the edited scene, and which primitives each holds."""
+    static, static_held = scene.objects[0], _held(scene, 0)
+    shown = ~np.isin(np.concatenate(static_held), list(edits.hidden_primitives))
+    freed: list[tuple[SceneObject, Held]] = []
+    for thing in things(scene):
+        if thing.index > 0 or not (thing.name in edits.hidden or thing.name in edits.moving):
+            continue
+        whole = np.ones(len(shown), np.bool_) if static.part_of is None else static.part_of == thing.part
+        if thing.name not in edits.hidden:
+            one = replace(_subset(static, whole & shown), name=thing.name, chain=(np.eye(4),), parts=(), part_of=None)
+            freed.append((one, _of(static_held, whole & shown)))
+        shown = shown & ~whole
+    if not shown.all():
+        static, static_held = _subset(static, shown), _of(static_held, shown)
+
+    dynamic: list[tuple[SceneObject, Held]] = []
+    names = {thing.index: thing.name for thing in things(scene)}
+    times = dict(edits.static)
+    for index, one in enumerate(scene.objects[1:], 1):
+        held, name = _held(scene, index), names.get(index, "")
+        there = ~np.isin(np.concatenate(held), list(edits.hidden_primitives))
+        if not there.all():
+            one, held = _subset(one, there), _of(held, there)
+        if name in times:
+            if name not in edits.hidden and scene.animation.visible(one.chain, times[name]):
+                static, static_held = _joined(static, static_held, _at_rest(scene, one, times[name]), held, name)
+            continue
+        dynamic.append((replace(one, chain=(NEVER, *one.chain)) if name in edits.hidden else one, held))
+    every = [(static, static_held), *dynamic, *freed]
+    return [one for one, _ in every], [held for _, held in every]
+
+
+def _held(scene: Scene, index: int) -> Held:
+    first, last = scene.triangle_offsets[index : index + 2]
+    begin, end = scene.quadric_offsets[index : index + 2]
+    return np.arange(first, last), np.arange(begin, end)
+
+
+def _of(held: Held, kept: NDArray[np.bool_]) -> Held:
+    return held[0][kept[: len(held[0])]], held[1][kept[len(held[0]) :]]
+
+
+def _subset(one: SceneObject, kept: NDArray[np.bool_]) -> SceneObject:
+    """An object with some of its primitives: kept (triangles, then quadrics) bool."""
+    t, q = kept[: len(one.triangles)], kept[len(one.triangles) :]
+    triangles = Triangles(*(getattr(one.triangles, name)[t] for name in _TRIANGLES))
+    deformation = one.deformation
+    if deformation is not None:
+        parts = {name: getattr(deformation, name)[t] for name in ("times", "corners", "normals")}
+        deformation = replace(deformation, **parts)
+    return replace(
+        one,
+        triangles=triangles,
+        quadrics=Quadrics(*(getattr(one.quadrics, name)[q] for name in _QUADRICS)),
+        deformation=deformation,
+        part_of=None if one.part_of is None else one.part_of[kept],
+    )
+
+
+def _at_rest(scene: Scene, one: SceneObject, time: float) -> SceneObject:
+    """An object in world space, as it is at a time."""
+    matrix, triangles = scene.animation.matrix(one.chain, time), one.triangles
+    if one.deformation is not None:
+        corners, normals = deformed(one.deformation, time)
+        triangles = replace(triangles, corners=corners, normals=normals)
+    wide, normals_there = (array.astype(np.float64) for array in (triangles.corners, triangles.normals))
+    there, turned = under_matrix(wide, normals_there, matrix)
+    uvs = triangles.uvs[:, [0, 2, 1]] if np.linalg.det(matrix[:3, :3]) < 0 else triangles.uvs
+    triangles = replace(triangles, corners=there.astype(np.float32), normals=unit_normals(turned, there), uvs=uvs)
+    square = np.concatenate([one.quadrics.to_object, np.tile([[[0.0, 0.0, 0.0, 1.0]]], (len(one.quadrics), 1, 1))], 1)
+    to_world: Float64 = (matrix @ square)[:, :3]
+    return SceneObject(one.name, triangles, replace(one.quadrics, to_object=to_world))
+
+
+def _joined(static: SceneObject, held: Held, one: SceneObject, more: Held, name: str) -> tuple[SceneObject, Held]:
+    """What never moves, and an object that does not any more as a further part of it."""
+    parts = static.parts if static.part_of is not None else (static.name,)
+    part_of = static.part_of if static.part_of is not None else np.zeros(len(held[0]) + len(held[1]), np.int32)
+    new = np.full(len(more[0]) + len(more[1]), len(parts), np.int32)
+    split = [part_of[: len(held[0])], new[: len(more[0])], part_of[len(held[0]) :], new[len(more[0]) :]]
+    joined = replace(
+        static,
+        triangles=_rows(Triangles, _TRIANGLES, static.triangles, one.triangles),
+        quadrics=_rows(Quadrics, _QUADRICS, static.quadrics, one.quadrics),
+        parts=(*parts, name),
+        part_of=np.concatenate(split).astype(np.int32),
+    )
+    return joined, (np.concatenate([held[0], more[0]]), np.concatenate([held[1], more[1]]))
+
+
+def _rows(kind, names, one, other):
+    return kind(*(np.concatenate([getattr(one, name), getattr(other, name)]) for name in names))
+
+
+_TRIANGLES = ("corners", "normals", "uvs", "material", "texture")
+_QUADRICS = ("kind", "to_object", "radii", "inside", "material")

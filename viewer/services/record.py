@@ -1,0 +1,124 @@
+"""The record of all frames that the window traces: their counters for the plots, what brings them back, and which of
+them taught each mode."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.frame import Frame
+from tracer.scene.edits import NO_EDITS
+from viewer.services.render_thread import RenderRequest, Traced
+from viewer.state.history import History
+from viewer.state.moments import MOST, Moment, Moments
+from viewer.state.picking import Pick
+from viewer.state.readings import has_modes_of_cells
+from viewer.state.session import Session, settings_to_json
+from viewer.state.teaching import Ledger, Taught
+
+LEDGERS = 4
+"""Mode histories, of resolutions and lamps, whose teachers are known."""
+Key = tuple[int, int, bool, float | None, int | None]
+
+
+class Record:
+    """`moments` are the frames that can be gone back to; `learnt_from` are the numbers of those that set modes since
+    these were last forgotten, in order, None where the first of them are not kept any more."""
+
+    def __init__(self, session: Session, history: History) -> None:
+        self._session, self._history = session, history
+        self.moments = Moments()
+        self.forget()
+
+    def forget(self) -> None:
+        """Another scene is open."""
+        self._history.clear()
+        self.moments.clear()
+        self._request: RenderRequest | None = None
+        self._shown: Key | None = None
+        self.forget_modes()
+
+    def forget_modes(self) -> None:
+        """Nothing is known of shadows any more."""
+        self._ledgers: dict[Key, Ledger] = {}
+        self._lights: dict[Key, NDArray[np.float64]] = {}
+        self._dropped: set[Key] = set()
+        self._blank = True  # whether modes are those of frames that were seen here
+        self.learnt_from: list[int] | None = []
+
+    def follow_edits(self) -> None:
+        """The scene is edited otherwise: what modes are left, or come back, were taught by frames of another."""
+        self.forget_modes()
+        self._blank, self.learnt_from = False, None
+
+    def add(self, whole: Sequence[Traced], newest: Traced | None, drawn_seconds: float) -> None:
+        """Take up the frames that have become whole since the last time, all of them and in their order, and the newest
+        that is shown, which may be one of them or not be whole yet; `drawn_seconds` is what the window needed last."""
+        for traced in whole:
+            number = self._count(traced, drawn_seconds)
+            self._learn(traced, number)
+        last = whole[-1].request if whole else None
+        if newest is not None and newest.request is not last and newest.frame.settings.samples == 1:
+            self._count(newest, drawn_seconds)
+
+    def _count(self, traced: Traced, drawn_seconds: float) -> int:
+        """Put a frame into the plots, and keep what brings it back; returns its number."""
+        again, self._request = traced.request is self._request, traced.request
+        self._history.add(traced.frame, drawn_seconds, again)
+        number = self._history.frames - 1
+        self.moments.put(self._moment(traced, number))
+        return number
+
+    def _moment(self, traced: Traced, number: int) -> Moment:
+        session, frame = self._session, traced.frame
+        scene = session.scene
+        follow = session.follow and scene is not None and frame.camera == scene.camera_at(frame.time)
+        chosen = settings_to_json(session.settings)
+        for name, value in settings_to_json(frame.settings).items():
+            if name not in ("samples", "lamp_samples", "verify", "method"):  # of these the picture may have had others
+                chosen[name] = value
+        return Moment(
+            number, frame.time, frame.camera, follow, frame.settings, chosen, session.view, session.light, session.wipe,
+            traced.full_size, traced.whole, session.edited.edits if session.edited is not None else NO_EDITS,
+        )  # fmt: skip
+
+    # --- who taught what --------------------------------------------------------------------------
+
+    def _learn(self, traced: Traced, number: int) -> None:
+        frame, scene = traced.frame, self._session.scene
+        if traced.fresh:
+            self.forget_modes()
+        if self.learnt_from is not None:
+            self.learnt_from.append(number)
+            if len(self.learnt_from) > MOST:
+                self.learnt_from = None
+        if scene is None or not frame.settings.keeps_modes:
+            return
+        key = _key(frame)
+        if traced.request.divisor == 1:
+            self._shown = key
+        ledger = self._ledgers.pop(key, None) or Ledger(frame.lights, blank=self._blank and key not in self._dropped)
+        self._ledgers[key] = ledger  # the newest last
+        if len(self._ledgers) > LEDGERS:
+            oldest = next(iter(self._ledgers))
+            del self._ledgers[oldest]
+            self._dropped.add(oldest)
+        lights, before = scene.light_positions(frame.time), self._lights.get(key)
+        moved = None if before is None or len(before) != len(lights) else (lights != before).any(axis=1)
+        self._lights[key] = lights
+        ledger.add(number, frame.modes, moved)
+
+    def taught(self, pick: Pick) -> Taught | None:
+        """Which frames taught what is known of the unit that was picked; None where that is not known."""
+        ledger = self._ledgers.get(self._shown) if self._shown is not None else None
+        if ledger is None or self._shown is None or self._shown[2] != pick.in_cells:
+            return None
+        return ledger.of(pick.unit)
+
+
+def _key(frame: Frame) -> Key:
+    """What tells mode histories apart."""
+    s = frame.settings
+    return s.width, s.height, has_modes_of_cells(frame), s.lamp_radius, s.lamp_samples

@@ -1,0 +1,305 @@
+"""The table of objects and primitives: what the newest whole picture knows of each, filtered and in order.
+
+All of it is worked out on a thread of its own, and only while somebody looks at the table; the window never waits.
+What is typed or clicked takes effect at once.  A newer picture brings newer numbers at once, but the rows stay in their
+places while the pointer is on them or something moves, and those that stand equal keep their order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.frame import Frame
+from tracer.scene.edits import Edited
+from tracer.scene.model import Progress
+from viewer.output import exports
+from viewer.output.rows_csv import write_rows
+from viewer.services.capture_service import CaptureService
+from viewer.services.jobs import Job
+from viewer.services.render_thread import Traced
+from viewer.services.selection import Selection
+from viewer.state.notices import Notices
+from viewer.state.parts import parts_of
+from viewer.state.preferences import Preferences
+from viewer.state.row_filter import FilterError, matching, quoted
+from viewer.state.scene_rows import Level, Table, tables_of
+from viewer.state.session import Session
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is asked of a level: the text of its filter, and the column that its rows are sorted by."""
+
+    text: str = ""
+    column: str = ""
+    descending: bool = False
+
+
+@dataclass(frozen=True)
+class Listing:
+    """A table, and the numbers of its rows that are seen, in their order, (rows,) int32; `problem` says why the filter
+    is not understood, "" where it is."""
+
+    table: Table
+    rows: NDArray[np.int32]
+    order: Order
+    problem: str = ""
+
+
+@dataclass(frozen=True)
+class _Source:
+    """What tables are made of."""
+
+    now: Edited
+    frame: Frame
+    light: int | None
+
+    def is_like(self, other: _Source | None) -> bool:
+        """Whether the tables of another would be the same: further samples of a picture count nothing."""
+        if other is None or other.now is not self.now or other.light != self.light:
+            return False
+        names = ("primitive", "modes", "cells", "saved", "due_rays", "wrong")
+        return all(getattr(self.frame, name) is getattr(other.frame, name) for name in names)
+
+
+@dataclass(frozen=True)
+class _Made:
+    """What a job has made."""
+
+    source: _Source
+    tables: dict[Level, Table]
+    level: Level
+    listing: Listing
+    in_order: bool
+
+
+@dataclass
+class _Shown:
+    """What is there to be seen; `current` says for which levels the order is that of the newest tables."""
+
+    source: _Source | None = None
+    tables: dict[Level, Table] = field(default_factory=dict)
+    listings: dict[Level, Listing] = field(default_factory=dict)
+    current: set[Level] = field(default_factory=set)
+
+
+class Hides(Protocol):
+    """The part of `Editing` that is used here."""
+
+    def hide(self, name: str) -> None: ...
+
+    def show(self, name: str) -> None: ...
+
+    def hide_primitive(self, number: int, hidden: bool = True) -> None: ...
+
+
+class SceneTable:
+    """`level` is what rows are, `orders` what is asked of each level; with `all_lights` shadow modes are those for all
+    lights together, else for the session's.  `held` says that the rows must not move under the pointer."""
+
+    def __init__(
+        self,
+        session: Session,
+        selection: Selection,
+        preferences: Preferences,
+        notices: Notices,
+        files: CaptureService,
+        editing: Hides,
+        wake: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._session, self._selection, self._wake = session, selection, wake
+        self._preferences, self._notices, self._files, self._editing = preferences, notices, files, editing
+        self.level = Level.OBJECTS
+        self.orders = {
+            Level.OBJECTS: Order(column="pixels", descending=True),
+            Level.PRIMITIVES: Order(column="pixels", descending=True),
+        }
+        self.all_lights = self.visible = self.held = self._seen = False
+        self.chosen = 0  # the serial of the selection that was made here last, or has been shown
+        self._shown = _Shown()
+        self._job: Job[_Made] | None = None
+
+    @property
+    def listing(self) -> Listing | None:
+        """What is known of the level that is looked at; None while nothing is."""
+        return self._shown.listings.get(self.level)
+
+    @property
+    def order(self) -> Order:
+        return self.orders[self.level]
+
+    @property
+    def busy(self) -> bool:
+        """Whether newer rows are on their way."""
+        return self._job is not None
+
+    # --- what the user does ----------------------------------------------------------------------
+
+    def filter(self, text: str) -> None:
+        """Show the rows that this finds."""
+        self.orders[self.level] = Order(text, self.order.column, self.order.descending)
+
+    def sort(self, column: str, descending: bool) -> None:
+        """Sort by a column."""
+        self.orders[self.level] = Order(self.order.text, column, descending)
+
+    def open_part(self, part: int) -> None:
+        """List the primitives of a part."""
+        original = self._session.original
+        if original is not None:
+            self.level = Level.PRIMITIVES
+            self.filter(f"object={quoted(parts_of(original).names[part])}")
+
+    def select(self, row: int) -> None:
+        """Select a row's object or primitive in the picture."""
+        selection = self._selection
+        done = selection.select_part(row) if self.level is Level.OBJECTS else selection.select_primitive(row)
+        if not done:
+            self._notices.say("it is hidden" if self.is_hidden(row) else "it is nowhere in the world at this moment")
+        self.chosen = selection.serial
+
+    @property
+    def selected(self) -> int:
+        """The row of what is selected in the picture, -1 for none."""
+        picked, now = self._selection.picked, self._session.edited
+        if picked is None or now is None or not 0 <= picked.primitive < len(now.primitives):
+            return -1
+        number = int(now.primitives[picked.primitive])
+        return int(parts_of(now.original).part_of[number]) if self.level is Level.OBJECTS else number
+
+    def is_hidden(self, row: int) -> bool:
+        """Whether a row's object or primitive is hidden, or is to be."""
+        edits, original = self._session.edits, self._session.original
+        if original is None:
+            return False
+        parts = parts_of(original)
+        part = row if self.level is Level.OBJECTS else int(parts.part_of[row])
+        return parts.names[part] in edits.hidden or (self.level is Level.PRIMITIVES and row in edits.hidden_primitives)
+
+    def hide(self, row: int, hidden: bool = True) -> None:
+        """Hide a row's object or primitive, or show it again, with the object that it belongs to."""
+        original = self._session.original
+        if original is None:
+            return
+        parts = parts_of(original)
+        if self.level is Level.OBJECTS:
+            (self._editing.hide if hidden else self._editing.show)(parts.names[row])
+            return
+        if not hidden:
+            self._editing.show(parts.names[int(parts.part_of[row])])
+        self._editing.hide_primitive(row, hidden)
+
+    @property
+    def selection_serial(self) -> int:
+        """The number of the newest selection, here or in the picture."""
+        return self._selection.serial
+
+    def place_of(self, row: int) -> int | None:
+        """How many rows are seen above a row; None where it is not among them."""
+        listing = self.listing
+        if listing is None or row < 0:
+            return None
+        found = np.flatnonzero(listing.rows == row)
+        return int(found[0]) if len(found) else None
+
+    def save(self) -> None:
+        """Write the rows that are seen as CSV into the folder of the pictures."""
+        listing, scene = self.listing, self._session.scene
+        if listing is None or scene is None:
+            self._notices.say("there is no table to save yet: open the panel Find")
+            return
+        name = f"{scene.path.stem}-{listing.table.level.value.lower()}"
+
+        folder, table, rows = self._preferences.picture_folder, listing.table, listing.rows
+        self._files.write(lambda: exports.save(folder, name, ".csv", lambda path: write_rows(table, rows, path)))
+
+    # --- one frame of the window -----------------------------------------------------------------
+
+    def watch(self) -> None:
+        """Somebody looks at the table in this frame of the window."""
+        self._seen = True
+
+    def follow(self, traced: Traced | None, moving: bool) -> None:
+        """Take up what has been made, and have made what is missing; `traced` is the newest picture, None where it is
+        none of the session's, and `moving` says that another follows soon."""
+        self.visible, self._seen = self._seen, False
+        self._session.counting = self.visible
+        if self._job is not None and self._job.done:
+            self._take(self._job)
+            self._job = None
+        now = self._session.edited
+        if self._shown.source is not None and (now is None or self._shown.source.now.original is not now.original):
+            self._shown = _Shown()
+        if not self.visible or now is None or self._job is not None:
+            return
+        source = self._shown.source
+        if traced is not None and traced.whole and traced.request.divisor == 1:
+            newest = _Source(now, traced.frame, None if self.all_lights else self._session.light)
+            source = source if source is not None and newest.is_like(source) else newest
+        if source is not None and self._lacks(source, moving):
+            self._start(source, moving)
+
+    def _lacks(self, source: _Source, moving: bool) -> bool:
+        listing, shown = self.listing, self._shown
+        if source is not shown.source or listing is None or listing.order != self.order:
+            return True
+        return self.level not in shown.current and not self.held and not moving
+
+    def _start(self, source: _Source, moving: bool) -> None:
+        shown, level, order, before = self._shown, self.level, self.order, self.listing
+        kept = before is not None and before.order == order and (self.held or moving)
+
+        def work(_: Progress) -> _Made:
+            made = shown.tables if source is shown.source else tables_of(source.now, source.frame, source.light)
+            table = made[level]
+            if kept and before is not None and len(before.rows) and before.table.rows == table.rows:
+                return _Made(source, made, level, Listing(table, before.rows, order, before.problem), False)
+            return _Made(source, made, level, listed(table, order, before), True)
+
+        self._job = Job("The table", work, self._wake)
+
+    def _take(self, job: Job[_Made]) -> None:
+        if job.failure is not None:
+            self._notices.report(job.failure)
+        made = job.result
+        if made is None or made.source.now.original is not self._session.original:
+            return
+        shown = self._shown
+        if made.source is not shown.source:
+            shown.current = set()
+            for level, listing in shown.listings.items():  # their numbers are those of the newest picture, too
+                shown.listings[level] = Listing(made.tables[level], listing.rows, listing.order, listing.problem)
+        shown.source, shown.tables = made.source, made.tables
+        shown.listings[made.level] = made.listing
+        if made.in_order:
+            shown.current.add(made.level)
+
+
+def listed(table: Table, order: Order, before: Listing | None) -> Listing:
+    """The rows of a table in this order.  Those that stand equal keep the order that they had before; where the filter
+    is not understood, those are seen that were before."""
+    try:
+        found, problem = matching(table, order.text), ""
+    except FilterError as error:
+        found, problem = np.ones(table.rows, np.bool_), str(error)
+        if before is not None and before.table.rows == table.rows:
+            found = np.zeros(table.rows, np.bool_)
+            found[before.rows] = True
+    rows = np.flatnonzero(found).astype(np.int32)
+    values = table.columns.get(order.column)
+    same = before is not None and before.order.column == order.column and before.order.descending == order.descending
+    if same and before is not None and len(before.rows) == len(rows) and found[before.rows].all():
+        rows = before.rows
+    if values is None:
+        return Listing(table, rows, order, problem)
+    keys = values.keys[rows]
+    if order.descending:
+        keys = -keys.astype(np.int64) if keys.dtype.kind in "iu" else -keys  # NaN stays last
+        if values.words is not None:
+            keys[values.numbers[rows] < 0] = len(values.words)
+    return Listing(table, rows[np.argsort(keys, kind="stable")], order, problem)

@@ -1,0 +1,151 @@
+"""The pixels that taught a mode: those of the clicked primitive in the frames that set its modes.
+
+The frames were not kept.  So when somebody clicks a primitive, their primary rays are traced once more, with shadow
+rays to all lights and without culling: what the primitive's pixels meet is what they met then.  A mode that none of
+them can have set was taught by reflected or refracted rays."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Protocol, cast
+
+import numpy as np
+
+from tracer.culling.modes import FULL_SHADOW, NON_SHADOW, shadow_mode
+from tracer.explanation import explain
+from tracer.frame import Frame
+from tracer.renderer import Renderer
+from viewer.services.record import Record
+from viewer.services.render_thread import Question, Traced, Traces
+from viewer.services.selection import Selection
+from viewer.state.moments import Moment
+from viewer.state.picking import Pick
+from viewer.state.readings import can_record_lights
+from viewer.state.session import Session
+from viewer.state.teaching import NEVER
+
+_LOOKED_INTO = 6  # pixels in shadow of which one may be in that of something static
+MOST_PIXELS = 1 << 22
+"""Of frames that are looked into; larger ones are not."""
+
+
+@dataclass(frozen=True)
+class Teacher:
+    """The pixels of a frame that met one answer of one light: how many, and one of them (x, y), None where only
+    reflected or refracted rays did."""
+
+    count: int
+    pixel: tuple[int, int] | None
+
+
+Answers = dict[tuple[int, bool], Teacher]
+"""By light, and whether it is lit."""
+
+
+class TeacherQuestion:
+    """What the pixels of a unit met in a frame that was traced before; `found` is set once there is an answer.
+
+    `time` is that of the frame that is shown now, for which the world stands again afterwards."""
+
+    def __init__(self, time: float, moment: Moment, pick: Pick) -> None:
+        self._time, self.moment, self.pick = time, moment, pick
+        self.found: Answers | None = None
+
+    @property
+    def time(self) -> float:
+        return self._time
+
+    def answer(self, renderer: Traces) -> None:
+        real, moment = cast(Renderer, renderer), self.moment
+        settings = replace(
+            moment.settings, method="cells" if self.pick.in_cells else "paper", depth=0, samples=1, verify=False,
+            modes=False, record_lights=True, record_work=False, certificate_seconds=math.inf,
+        )  # fmt: skip
+        try:
+            alone = Renderer(real.scene, settings, world=real.world)
+            frame = alone.render(moment.time, moment.camera)
+            self.found = answers_in(alone, frame, self.pick)
+        finally:
+            real.world.place(self._time, real.state.rest.now.since > 0)
+
+
+def answers_in(renderer: Renderer, frame: Frame, pick: Pick) -> Answers:
+    """What the pixels of a unit met in a frame that was traced without knowing anything before."""
+    assert frame.asked is not None and frame.reached is not None
+    here, found = frame.cell == pick.unit, Answers()
+    moves = renderer.world.placed.has_dynamic
+    for light in range(frame.lights):
+        mode = int(shadow_mode(frame.modes[pick.unit], light))
+        for lit, bit in ((False, FULL_SHADOW), (True, NON_SHADOW)):
+            if not mode & bit:
+                continue
+            asked, reached = frame.asked[..., light], frame.reached[..., light]
+            met = here & (asked > 0) & ((reached > 0) if lit else (reached == 0))
+            rows, columns = np.nonzero(met)
+            if not len(rows):
+                continue
+            order = np.argsort(np.hypot(rows - rows.mean(), columns - columns.mean()), kind="stable")
+            at = [(int(columns[i]), int(rows[i])) for i in order[:_LOOKED_INTO]]
+            static = at if lit or not moves else [p for p in at if _is_static(renderer, frame, *p, light)]
+            found[light, lit] = Teacher(len(rows), (static or at)[0])
+    return found
+
+
+def _is_static(renderer: Renderer, frame: Frame, x: int, y: int, light: int) -> bool:
+    """Whether what blocks a light first there never moves."""
+    blocker = explain(renderer, frame, x, y)[light].blocker
+    return blocker is not None and renderer.scene.object_of(blocker) == 0
+
+
+class Asks(Protocol):
+    """The part of `RenderThread` that is used here."""
+
+    def ask(self, question: Question) -> None: ...
+
+
+class Teachers:
+    """Asks about the primitive that was clicked, frame after frame; `of` is what is known."""
+
+    def __init__(self, session: Session, selection: Selection, record: Record, renderer: Asks) -> None:
+        self._session, self._selection, self._record, self._renderer = session, selection, record, renderer
+        self._asked: TeacherQuestion | None = None
+        self._subject: object = None
+        self._known: dict[int, Answers] = {}
+
+    def of(self, number: int, light: int, lit: bool) -> Teacher | None:
+        """Who met an answer of a light in a frame, by its number; None while that is not known."""
+        known = self._known.get(number)
+        return None if known is None else known.get((light, lit), Teacher(0, None))
+
+    def follow(self, shown: Traced | None) -> None:
+        """Take up an answer, and ask about the next frame that taught; `shown` is None where nothing may be asked."""
+        pick = self._selection.picked
+        subject = None if pick is None else (pick.unit, pick.in_cells, id(self._session.scene))
+        if subject != self._subject:
+            self._subject, self._asked, self._known = subject, None, {}
+        asked = self._asked
+        if asked is not None and asked.found is not None:
+            self._known[asked.moment.number] = asked.found
+            self._asked = asked = None
+        if pick is None or shown is None or not shown.whole:
+            return
+        if asked is not None and asked.time == shown.request.time:
+            return
+        moment = self._next(pick)
+        if moment is not None:
+            self._asked = TeacherQuestion(shown.request.time, moment, pick)
+            self._renderer.ask(self._asked)
+
+    def _next(self, pick: Pick) -> Moment | None:
+        """A frame that taught the unit, and has not been asked about."""
+        taught = self._record.taught(pick)
+        if taught is None:
+            return None
+        for number in sorted({n for lesson in taught.lights for n in lesson if n != NEVER} - self._known.keys()):
+            moment = self._record.moments.get(number)
+            pixels = 0 if moment is None else moment.settings.width * moment.settings.height
+            fits = pixels <= MOST_PIXELS and can_record_lights(pixels, len(pick.shadows))
+            if moment is not None and fits:
+                return moment
+        return None

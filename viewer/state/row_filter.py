@@ -1,0 +1,182 @@
+"""Which rows of a table are to be seen, by what is typed above it.
+
+All that is typed must hold.  A word finds rows that have it in a name, a number alone the primitive of that number.
+`pixels>100`, `share<=50` and `number:10-20` compare; `object:wall`, `mode:full_shadow` and `is:dynamic` look into one
+column; `object="left wall"` is the whole name.  A `-` in front finds the others.
+"""
+
+from __future__ import annotations
+
+import operator
+import re
+from collections.abc import Callable, Sequence
+from difflib import get_close_matches
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viewer.state.scene_rows import COLUMNS, Level, Table, Values
+
+HINTS = {
+    Level.PRIMITIVES: "wall   pixels>100   mode:full_shadow   share<50   -is:dynamic",
+    Level.OBJECTS: "wall   pixels>100   rendered>0   share<50   -is:dynamic",
+}
+HELP = """All of what you type must hold:
+  wall    rows with this in a name
+  1234    the primitive with this number
+  pixels>100   share<=50   number:10-20    by number
+  object:wall   material:glass   kind:sphere    by word
+  mode:full_shadow   occlusion:init   shadow:non    by mode
+  is:seen   is:unseen   is:dynamic   is:wrong   is:hidden
+  object="left wall"    the whole name
+  -is:seen    all others"""
+_MODES = ("occlusion", "shadow")
+_TOKEN = re.compile(r'(?:[^\s"]|"[^"]*"?)+')
+_COMPARISON = re.compile(r"^([a-zA-Z_]+)(>=|<=|!=|>|<|=|:)(.*)$", re.DOTALL)
+_RANGE = re.compile(r"^([\d.]+)-([\d.]+)$")
+_OPERATORS: dict[str, Callable[[NDArray, float], NDArray]] = {
+    ">": operator.gt, "<": operator.lt, ">=": operator.ge, "<=": operator.le, "=": operator.eq, ":": operator.eq,
+    "!=": operator.ne,
+}  # fmt: skip
+_ALSO = {"name": "object", "id": "number", "primitive": "number", "lit": "non_shadow", "in_shadow": "full_shadow"}
+_WHEN_KNOWN = {
+    "wrong": "wrong answers are known while frames are verified (V)",
+    "occlusion": "this picture has no modes",
+    "shadow": "this picture has no modes for this light",
+}
+
+
+class FilterError(ValueError):
+    """What was typed is not understood; the message is one line that says what, and what to do."""
+
+
+def matching(table: Table, text: str) -> NDArray[np.bool_]:
+    """(rows,) the rows that are to be seen; raises FilterError."""
+    found = np.ones(table.rows, np.bool_)
+    for token in _TOKEN.findall(text):
+        turned = len(token) > 1 and token[0] == "-"
+        one = _holds(table, token[1:] if turned else token)
+        found &= ~one if turned else one
+    return found
+
+
+def quoted(name: str) -> str:
+    """A name as a filter takes it whole."""
+    return '"' + name.replace('"', "") + '"'
+
+
+def _holds(table: Table, token: str) -> NDArray[np.bool_]:
+    comparison = _COMPARISON.match(token)
+    if comparison is None:
+        return _anywhere(table, token.replace('"', ""))
+    name, comparing, wanted = comparison[1].lower(), comparison[2], comparison[3].replace('"', "")
+    if not wanted:
+        raise FilterError(f"{name}{comparing} what? Type what it is compared with")
+    if name == "is":
+        return _state(table, wanted.lower())
+    if name == "mode" and table.level is Level.PRIMITIVES:
+        return _mode(table, wanted)
+    values = _column(table, name)
+    return _words(name, values, comparing, wanted) if values.words is not None else _number(values, comparing, wanted)
+
+
+def _column(table: Table, name: str) -> Values:
+    name = _ALSO.get(name, name)
+    known = [column.name for column in COLUMNS[table.level]]
+    if name not in known:
+        close = get_close_matches(name, [*known, *(word for word in _ALSO if _ALSO[word] in known)], 1)
+        hint = f"do you mean {close[0]}?" if close else f"there are {', '.join(known)}"
+        raise FilterError(f"no column is called {name}: {hint}")
+    values = table.columns.get(name)
+    if values is None:
+        raise FilterError(_WHEN_KNOWN.get(name, "the rays at its pixels are not counted yet"))
+    return values
+
+
+def _anywhere(table: Table, word: str) -> NDArray[np.bool_]:
+    """The primitive of this number, or rows with the word in a name."""
+    if table.level is Level.PRIMITIVES and word.isdecimal():
+        return np.arange(table.rows) == int(word)
+    found = np.zeros(table.rows, np.bool_)
+    for name in ("object", "kind", "material", "texture"):
+        values = table.columns.get(name)
+        if values is not None and values.words:
+            found |= _with(values, [word.casefold() in one.casefold() for one in values.words])
+    return found
+
+
+def _with(values: Values, wanted: Sequence[bool]) -> NDArray[np.bool_]:
+    """Rows whose word is one of those wanted."""
+    return np.array([*wanted, False], np.bool_)[values.numbers]  # -1 finds the last of them
+
+
+def _words(name: str, values: Values, comparing: str, wanted: str) -> NDArray[np.bool_]:
+    assert values.words is not None
+    if comparing not in (":", "=", "!="):
+        raise FilterError(f"{name} is a word: write {name}:{wanted}")
+    if name in _MODES:
+        like = _modes_like(wanted, values.words)
+        if not any(like):
+            raise _no_mode(wanted, values.words)
+        return ~_with(values, like) if comparing == "!=" else _with(values, like)
+    folded = wanted.casefold()
+    if comparing == ":":
+        return _with(values, [folded in word.casefold() for word in values.words])
+    same = _with(values, [folded == word.replace('"', "").casefold() for word in values.words])
+    return same if comparing == "=" else ~same
+
+
+def _mode(table: Table, wanted: str) -> NDArray[np.bool_]:
+    """Rows with an occlusion mode or a shadow mode like this."""
+    known = [(name, values) for name in _MODES if (values := table.columns.get(name)) is not None]
+    if not known:
+        raise FilterError(_WHEN_KNOWN["occlusion"])
+    found, understood = np.zeros(table.rows, np.bool_), False
+    for _, values in known:
+        like = _modes_like(wanted, values.words or ())
+        understood |= any(like)
+        found |= _with(values, like)
+    if not understood:
+        raise _no_mode(wanted, [word for _, values in known for word in values.words or ()])
+    return found
+
+
+def _modes_like(wanted: str, words: Sequence[str]) -> list[bool]:
+    plain = re.sub(r"[_-]", " ", wanted.casefold())
+    return [plain in re.sub(r"[_-]", " ", word) for word in words]
+
+
+def _no_mode(wanted: str, words: Sequence[str]) -> FilterError:
+    return FilterError(f"no mode is called {wanted}: there are {', '.join(dict.fromkeys(words))}")
+
+
+def _number(values: Values, comparing: str, wanted: str) -> NDArray[np.bool_]:
+    between = _RANGE.match(wanted)
+    if between is not None and comparing in (":", "="):
+        low, high = _as_number(between[1]), _as_number(between[2])
+        return (values.numbers >= low) & (values.numbers <= high)
+    return np.asarray(_OPERATORS[comparing](values.numbers, _as_number(wanted)), np.bool_)
+
+
+def _as_number(text: str) -> float:
+    try:
+        return float(text.rstrip("%"))
+    except ValueError:
+        raise FilterError(f"{text} is no number") from None
+
+
+def _state(table: Table, wanted: str) -> NDArray[np.bool_]:
+    """Rows of which something is true."""
+    if wanted in ("seen", "unseen"):
+        return np.asarray((_column(table, "pixels").numbers > 0) == (wanted == "seen"))
+    if wanted == "wrong":
+        return np.asarray(_column(table, "wrong").numbers > 0)
+    if wanted in ("dynamic", "static"):
+        motion = table.columns["motion"]
+        assert motion is not None
+        return np.asarray(motion.numbers == (wanted == "dynamic"))
+    if wanted in ("hidden", "shown"):
+        hidden = table.columns["hidden"]
+        assert hidden is not None
+        return np.asarray(hidden.numbers == (wanted == "hidden"))
+    raise FilterError(f"is:{wanted} is not known: there are seen, unseen, dynamic, static, wrong, hidden and shown")

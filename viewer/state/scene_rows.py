@@ -1,0 +1,290 @@
+"""Tables of a scene's objects and of its primitives, with what the newest frame found out about them.
+
+A table is a column of numbers, or of codes for words, for each thing that is told; never an object for a row, as there
+may be millions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling import modes
+from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.frame import Frame
+from tracer.scene.edits import Edited
+from viewer.state.parts import KINDS, Parts, parts_of
+from viewer.state.readings import has_modes_of_cells, units_of
+from viewer.util.numbers import count
+
+UNKNOWN, SEVERAL = -1, 4  # beside the four modes
+SEVERAL_WORD = "several"
+NOTHING = "-"  # in the place of what is not known
+
+
+class Level(Enum):
+    """What the rows of a table are."""
+
+    OBJECTS = "Objects"
+    PRIMITIVES = "Primitives"
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column's name, as filters write it too, its title, and what it tells."""
+
+    name: str
+    title: str
+    tip: str
+    numeric: bool = True
+
+
+_LIGHT = "for the chosen light, or for all of them together"
+_AT_PIXELS = "at the pixels that show it, of all bounces"
+_DUE = Column("due", "Due", f"shadow rays that are due {_AT_PIXELS}")
+_SAVED = Column("saved", "Saved", f"shadow rays saved {_AT_PIXELS}: they did not traverse static geometry")
+_SHARE = Column("share", "Share", "part of the shadow rays that are due which is saved, in per cent")
+_WRONG = Column("wrong", "Wrong", "wrong shadow answers at its pixels; known while frames are verified (V)")
+_PIXELS = Column("pixels", "Pixels", "pixels that show it now")
+COLUMNS: dict[Level, tuple[Column, ...]] = {
+    Level.PRIMITIVES: (
+        Column("number", "Number", "the primitive's number, which pictures and messages refer to"),
+        Column("object", "Object", "the object, or the part of the static geometry, that it belongs to", False),
+        _PIXELS,
+        Column("occlusion", "Occlusion", "its occlusion mode; of cells, that of all cells that are seen", False),
+        Column("shadow", "Shadow", f"its shadow mode {_LIGHT}; of cells, that of all cells that are seen", False),
+        _DUE, _SAVED, _SHARE, _WRONG,
+        Column("kind", "Kind", "triangle, sphere or cone", False),
+        Column("material", "Material", "its material", False),
+        Column("texture", "Texture", "its texture", False),
+    ),
+    Level.OBJECTS: (
+        Column("object", "Object", "its name in the scene", False),
+        Column("primitives", "Primitives", "how many it has"),
+        Column("seen", "Seen", "how many of these have a pixel"),
+        _PIXELS,
+        Column("rendered", "Rendered", "how many of its primitives are fully rendered, so that their rays are saved"),
+        Column("full_shadow", "In shadow", f"how many of its primitives have full shadow {_LIGHT}"),
+        Column("non_shadow", "Lit", f"how many of its primitives have non-shadow {_LIGHT}"),
+        _DUE, _SAVED, _SHARE, _WRONG,
+        Column("motion", "Motion", "whether it is static or dynamic", False),
+    ),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Values:
+    """One column: numbers, NaN where there is none, or codes for `words`, -1 where there is none."""
+
+    numbers: NDArray
+    words: tuple[str, ...] | None = None
+
+    def text(self, row: int) -> str:
+        """As a cell shows it."""
+        value = self.numbers[row]
+        if self.words is not None:
+            return self.words[value] if value >= 0 else NOTHING
+        if self.numbers.dtype.kind == "f":
+            return f"{value:.1f} %" if value == value else NOTHING
+        return count(value)
+
+    @cached_property
+    def keys(self) -> NDArray:
+        """What the column is sorted by: words by the alphabet, what is not known last."""
+        if self.words is None:
+            return self.numbers
+        folded = [word.casefold() for word in self.words]
+        ranks = np.full(len(folded) + 1, len(folded), np.int32)  # -1 finds the last of them
+        ranks[sorted(range(len(folded)), key=folded.__getitem__)] = np.arange(len(folded), dtype=np.int32)
+        return ranks[self.numbers]
+
+
+@dataclass(frozen=True)
+class Table:
+    """`rows` rows with columns by name; what the frame does not know is None."""
+
+    level: Level
+    rows: int
+    columns: dict[str, Values | None]
+
+    def cell(self, name: str, row: int) -> str:
+        """The text of a cell."""
+        values = self.columns.get(name)
+        return NOTHING if values is None else values.text(row)
+
+
+def mode_words(kind: type[OcclusionMode] | type[ShadowMode]) -> tuple[str, ...]:
+    """The modes in words, by their numbers, and what is said where there are several."""
+    return (*(mode.name.replace("_", " ").lower() for mode in kind), SEVERAL_WORD)
+
+
+_MOTION, _HIDDEN = ("static", "dynamic"), ("shown", "hidden")
+_OCCLUSION, _SHADOW = mode_words(OcclusionMode), mode_words(ShadowMode)
+
+
+def tables_of(now: Edited, frame: Frame, light: int | None) -> dict[Level, Table]:
+    """Both tables as a frame of the edited scene knows them, with shadow modes for a light, or None for all.
+
+    Their rows are the parts and primitives of the scene as it was read, in its order."""
+    parts, total, here = parts_of(now.original), now.original.primitive_count, len(now.primitives)
+    shown = frame.primitive.reshape(-1)
+    hit = (shown >= 0) & (shown < here)
+    at = now.primitives[shown[hit]]
+
+    def summed(buffer: NDArray | None) -> NDArray | None:
+        if buffer is None:
+            return None
+        return np.bincount(at, buffer.reshape(-1)[hit], minlength=total).astype(np.int64)
+
+    pixels = np.bincount(at, minlength=total).astype(np.int32)
+    due, saved, wrong = summed(frame.due_rays), summed(frame.saved), summed(frame.wrong)
+    occlusion, shadow = (_by_original(now, codes) for codes in modes_of(frame, here, light))
+    of_primitives = _primitives(now, parts, pixels, due, saved, wrong, occlusion, shadow)
+    of_objects = _objects(now, parts, pixels, due, saved, wrong, occlusion, shadow)
+    return {Level.PRIMITIVES: of_primitives, Level.OBJECTS: of_objects}
+
+
+def _by_original(now: Edited, codes: NDArray[np.int8] | None) -> NDArray[np.int8] | None:
+    """Modes by the numbers of the scene as it was read."""
+    if codes is None or now.scene is now.original:
+        return codes
+    found = np.full(now.original.primitive_count, UNKNOWN, np.int8)
+    found[now.primitives] = codes
+    return found
+
+
+def moving_parts(now: Edited) -> NDArray[np.bool_]:
+    """(parts,) which can move, as the scene is edited."""
+    parts, resting = parts_of(now.original), dict(now.edits.static)
+    if not resting and not now.edits.moving:
+        return parts.moving
+    moving, named = now.edits.moving, zip(parts.names, parts.moving.tolist(), strict=True)
+    return np.array([name in moving or (moves and name not in resting) for name, moves in named], np.bool_)
+
+
+def hidden_parts(now: Edited) -> NDArray[np.bool_]:
+    """(parts,) which are hidden."""
+    return np.array([name in now.edits.hidden for name in parts_of(now.original).names], np.bool_)
+
+
+def _primitives(
+    now: Edited,
+    parts: Parts,
+    pixels: NDArray,
+    due: NDArray | None,
+    saved: NDArray | None,
+    wrong: NDArray | None,
+    occlusion: NDArray | None,
+    shadow: NDArray | None,
+) -> Table:
+    scene = now.original
+    textures = tuple(texture.name for texture in scene.textures)
+    hidden = hidden_parts(now)[parts.part_of]
+    hidden[list(now.edits.hidden_primitives)] = True
+    columns = {
+        "number": Values(np.arange(len(pixels), dtype=np.int32)),
+        "object": Values(parts.part_of, parts.names),
+        "kind": Values(parts.kind, KINDS),
+        "material": Values(parts.material, tuple(material.name for material in scene.materials)),
+        "texture": Values(parts.texture, textures),
+        "motion": Values(moving_parts(now)[parts.part_of].astype(np.int8), _MOTION),
+        "hidden": Values(hidden.astype(np.int8), _HIDDEN),
+        "pixels": Values(pixels),
+        "occlusion": None if occlusion is None else Values(occlusion, _OCCLUSION),
+        "shadow": None if shadow is None else Values(shadow, _SHADOW),
+        **_work(due, saved, wrong),
+    }
+    return Table(Level.PRIMITIVES, len(pixels), columns)
+
+
+def _objects(
+    now: Edited,
+    parts: Parts,
+    pixels: NDArray,
+    due: NDArray | None,
+    saved: NDArray | None,
+    wrong: NDArray | None,
+    occlusion: NDArray | None,
+    shadow: NDArray | None,
+) -> Table:
+    number = len(parts.names)
+
+    def summed(values: NDArray | None) -> NDArray | None:
+        return None if values is None else np.bincount(parts.part_of, values, minlength=number).astype(np.int64)
+
+    def having(codes: NDArray | None, mode: int) -> Values | None:
+        if codes is None:
+            return None
+        return Values(np.bincount(parts.part_of[codes == mode], minlength=number).astype(np.int32))
+
+    columns = {
+        "object": Values(np.arange(number, dtype=np.int32), parts.names),
+        "motion": Values(moving_parts(now).astype(np.int8), _MOTION),
+        "hidden": Values(hidden_parts(now).astype(np.int8), _HIDDEN),
+        "primitives": Values(parts.sizes),
+        "seen": Values(np.bincount(parts.part_of[pixels > 0], minlength=number).astype(np.int32)),
+        "pixels": Values(np.bincount(parts.part_of, pixels, minlength=number).astype(np.int64)),
+        "rendered": having(occlusion, OcclusionMode.FULLY_RENDERED),
+        "full_shadow": having(shadow, ShadowMode.FULL_SHADOW),
+        "non_shadow": having(shadow, ShadowMode.NON_SHADOW),
+        **_work(summed(due), summed(saved), summed(wrong)),
+    }
+    return Table(Level.OBJECTS, number, columns)
+
+
+def _work(due: NDArray | None, saved: NDArray | None, wrong: NDArray | None) -> dict[str, Values | None]:
+    """The columns of rays."""
+    share = None
+    if due is not None and saved is not None:
+        share = np.full(len(due), np.nan, np.float32)
+        np.divide(100.0 * saved, due, out=share, where=due > 0, casting="unsafe")
+    found = {"due": due, "saved": saved, "share": share, "wrong": wrong}
+    return {name: None if values is None else Values(values) for name, values in found.items()}
+
+
+def modes_of(frame: Frame, total: int, light: int | None) -> tuple[NDArray | None, NDArray | None]:
+    """(total,) int8 each: occlusion modes and shadow modes of primitives, for a light or None for all, `SEVERAL` where
+    they differ and `UNKNOWN` where there are none.  None for what the frame has not."""
+    if not frame.settings.keeps_modes:
+        return None, None
+    lights = [one for one in (range(frame.lights) if light is None else (light,)) if _covered(frame, one)]
+    occlusion = [modes.occlusion_mode(frame.modes)]
+    shadow = [modes.shadow_mode(frame.modes, one) for one in lights]
+    if has_modes_of_cells(frame):
+        return _of_cells(frame, total, occlusion), _of_cells(frame, total, shadow) if lights else None
+    if len(frame.modes) < total:
+        return None, None
+    return occlusion[0][:total].astype(np.int8), _together(shadow, total) if lights else None
+
+
+def _covered(frame: Frame, light: int) -> bool:
+    return light < frame.lights and modes.has_shadow_mode(frame.modes, light)
+
+
+def _together(planes: Sequence[NDArray], total: int) -> NDArray[np.int8]:
+    """One mode of several for each primitive."""
+    found = planes[0][:total].astype(np.int8)
+    for plane in planes[1:]:
+        found[found != plane[:total]] = SEVERAL
+    return found
+
+
+def _of_cells(frame: Frame, total: int, planes: Sequence[NDArray]) -> NDArray[np.int8]:
+    """The mode of all cells of a primitive that the frame shows."""
+    units, shown = units_of(frame).reshape(-1), frame.primitive.reshape(-1)
+    hit = (units >= 0) & (shown >= 0)
+    units, shown = units[hit], shown[hit]
+    has = np.zeros((4, total), np.bool_)
+    for plane in planes:
+        of_pixels = plane[units]
+        for mode in range(4):
+            has[mode, shown[of_pixels == mode]] = True
+    found = np.argmax(has, axis=0).astype(np.int8)
+    different = has.sum(axis=0)
+    found[different == 0], found[different > 1] = UNKNOWN, SEVERAL
+    return found

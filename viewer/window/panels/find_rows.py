@@ -1,0 +1,191 @@
+"""The rows of the table of objects and primitives: only those that are seen are drawn, however many there are."""
+
+from __future__ import annotations
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from tracer.culling.modes import OcclusionMode, ShadowMode
+from viewer.services.scene_table import Listing, SceneTable
+from viewer.state.scene_rows import COLUMNS, Column, Level
+from viewer.state.views import OCCLUSION_COLORS, SHADOW_COLORS
+from viewer.window.finding import fly_to_selected
+from viewer.window.ui import Ui
+from viewer.window.widgets import ERROR, QUIET, em, fitted, right, swatch, tooltip
+
+_WIDTHS = {
+    "number": 6.2, "kind": 4.4, "pixels": 4.8, "occlusion": 9.0, "shadow": 8.0, "due": 5.0, "saved": 5.0, "share": 4.6,
+    "wrong": 4.2, "motion": 4.6, "primitives": 5.4, "seen": 4.4, "rendered": 5.4, "full_shadow": 5.4, "non_shadow": 4.4,
+}  # fmt: skip
+_NAME = 9.0  # ems, at least, for what has a name
+_SHARES = {"object": 3.0, "material": 2.0, "texture": 2.0}
+_COLORS = {
+    "occlusion": {int(mode): color for mode, color in OCCLUSION_COLORS.items() if isinstance(mode, OcclusionMode)},
+    "shadow": {int(mode): color for mode, color in SHADOW_COLORS.items() if isinstance(mode, ShadowMode)},
+}
+
+
+def show(ui: Ui, table: SceneTable, listing: Listing) -> None:
+    """The table itself, which scrolls both ways."""
+    columns = COLUMNS[listing.table.level]
+    kinds = imgui.TableFlags_
+    flags = kinds.scroll_x | kinds.scroll_y | kinds.row_bg | kinds.resizable | kinds.reorderable | kinds.hideable
+    flags |= kinds.sortable | kinds.borders_inner_v
+    least = em(sum(_WIDTHS.get(column.name, _NAME) for column in columns) + 0.6 * len(columns))
+    width = max(least, imgui.get_content_region_avail().x - imgui.get_style().scrollbar_size)
+    ui.find_drawn = 0
+    name = f"table{listing.table.level.value}"
+    if not imgui.begin_table(name, len(columns), int(flags), ImVec2(0.0, 0.0), width):
+        return
+    imgui.table_setup_scroll_freeze(1, 1)
+    for number, column in enumerate(columns):
+        _set_up(ui, table, number, column)
+    _headers(columns)
+    _sort(table, columns)
+    _scroll(ui, table, listing)
+    table.held = imgui.is_window_hovered()
+    selected = table.selected
+    clipper = imgui.ListClipper()
+    # What it measures itself is a pixel too high for the first row, which shifts row 1000 out of sight.
+    clipper.begin(len(listing.rows), ui.find_height or -1.0)
+    while clipper.step():
+        above = 0.0
+        for row in listing.rows[clipper.display_start : clipper.display_end].tolist():
+            imgui.table_next_row()
+            imgui.table_set_column_index(0)
+            below = imgui.get_cursor_screen_pos().y
+            ui.find_height, above = (below - above if above else ui.find_height), below
+            _row(ui, table, listing, columns, row, row == selected)
+            ui.find_drawn += 1
+    clipper.end()
+    imgui.end_table()
+
+
+def _set_up(ui: Ui, table: SceneTable, number: int, column: Column) -> None:
+    kinds = imgui.TableColumnFlags_
+    scene = ui.controller.session.scene
+    flags = kinds.prefer_sort_descending if column.numeric and column.name != "number" else kinds.prefer_sort_ascending
+    if number == 0:
+        flags |= kinds.no_hide | kinds.no_reorder
+    if column.name == table.order.column:
+        flags |= kinds.default_sort
+    if column.name == "texture" and scene is not None and not scene.textures:
+        flags |= kinds.disabled
+    if column.name in _WIDTHS:
+        imgui.table_setup_column(column.title, int(flags | kinds.width_fixed), em(_WIDTHS[column.name]))
+    else:
+        imgui.table_setup_column(column.title, int(flags | kinds.width_stretch), _SHARES[column.name])
+
+
+def _headers(columns: tuple[Column, ...]) -> None:
+    imgui.table_next_row(int(imgui.TableRowFlags_.headers))
+    for number, column in enumerate(columns):
+        if imgui.table_set_column_index(number):
+            imgui.table_header(column.title)
+            tooltip(column.tip)
+
+
+def _sort(table: SceneTable, columns: tuple[Column, ...]) -> None:
+    """Take over what was clicked in the headers."""
+    specs = imgui.table_get_sort_specs()
+    if specs is None or not specs.specs_dirty:
+        return
+    if specs.specs_count:
+        one = specs.get_specs(0)
+        table.sort(columns[one.column_index].name, one.get_sort_direction() == imgui.SortDirection.descending)
+    specs.specs_dirty = False
+
+
+def _scroll(ui: Ui, table: SceneTable, listing: Listing) -> None:
+    """Bring the row of what was selected elsewhere to where it is seen, once it is there; in another order, too, whose
+    first rows are seen where nothing is selected."""
+    serial, height = table.selection_serial, ui.find_height
+    if listing.order != table.order or height <= 0.0:
+        return
+    another, ui.find_order = ui.find_order != listing.order, listing.order
+    if serial == table.chosen and not another:
+        return
+    table.chosen = serial
+    place = table.place_of(table.selected)
+    if place is None:
+        imgui.set_scroll_y(0.0 if another else imgui.get_scroll_y())
+        return
+    room = imgui.get_window_height() - 3.0 * height
+    top = place * height
+    if not imgui.get_scroll_y() <= top <= imgui.get_scroll_y() + room:
+        imgui.set_scroll_y(max(0.0, top - 0.5 * room))
+
+
+def _row(ui: Ui, table: SceneTable, listing: Listing, columns: tuple[Column, ...], row: int, selected: bool) -> None:
+    """The cells of a row, which has been begun."""
+    imgui.push_id(row)
+    flags = imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_double_click
+    flags |= imgui.SelectableFlags_.allow_overlap
+    if imgui.selectable("##row", selected, int(flags))[0]:
+        table.select(row)
+        if imgui.is_mouse_double_clicked(0) and table.level is Level.OBJECTS:
+            table.open_part(row)
+    if imgui.begin_popup_context_item("more"):
+        _menu(ui, table, listing, row)
+        imgui.end_popup()
+    imgui.same_line(0.0, 0.0)
+    hidden = table.is_hidden(row)
+    _eye(table, row, hidden)
+    if hidden:
+        imgui.push_style_color(imgui.Col_.text, QUIET)
+    for number, column in enumerate(columns):
+        if number == 0 or imgui.table_set_column_index(number):
+            _cell(listing, column, row)
+    if hidden:
+        imgui.pop_style_color()
+    imgui.pop_id()
+
+
+def _eye(table: SceneTable, row: int, hidden: bool) -> None:
+    """What hides a row's object or primitive, and shows it again."""
+    side = imgui.get_text_line_height()
+    if imgui.invisible_button("eye", ImVec2(1.4 * side, side)):
+        table.hide(row, not hidden)
+    on_it = imgui.is_item_hovered()
+    at = imgui.get_item_rect_min()
+    icon = icons.ICON_FA_EYE_SLASH if hidden else icons.ICON_FA_EYE
+    color = imgui.get_color_u32(imgui.Col_.text if on_it or hidden else imgui.Col_.text_disabled)
+    imgui.get_window_draw_list().add_text(at, color, icon)
+    if on_it:
+        tooltip("show it again" if hidden else "hide it: the picture is traced as if it were not there")
+    imgui.same_line(0.0, em(0.3))
+
+
+def _cell(listing: Listing, column: Column, row: int) -> None:
+    text = listing.table.cell(column.name, row)
+    if column.numeric:
+        wrong = column.name == "wrong" and text not in ("0", "-")
+        right(text, ERROR if wrong else None)
+        return
+    colors, values = _COLORS.get(column.name), listing.table.columns.get(column.name)
+    if colors is not None and values is not None:
+        color = colors.get(int(values.numbers[row]))
+        if color is not None:
+            swatch(color)
+    imgui.text_unformatted(fitted(text, imgui.get_content_region_avail().x))
+
+
+def _menu(ui: Ui, table: SceneTable, listing: Listing, row: int) -> None:
+    """What can be done with a row; whatever it is, it is selected first."""
+    if imgui.is_window_appearing():
+        table.select(row)
+    here = table.selected == row
+    if imgui.menu_item(f"{icons.ICON_FA_PLANE}  Go there", ui.key("Focus").strip(" ()"), False, here)[0]:
+        fly_to_selected(ui)
+    if table.level is Level.OBJECTS:
+        if imgui.menu_item(f"{icons.ICON_FA_LIST}  List its primitives", "", False)[0]:
+            table.open_part(row)
+        copied = listing.table.cell("object", row)
+    else:
+        copied = str(row)
+    hidden = table.is_hidden(row)
+    verb = f"{icons.ICON_FA_EYE}  Show" if hidden else f"{icons.ICON_FA_EYE_SLASH}  Hide"
+    if imgui.menu_item(verb, "", False)[0]:
+        table.hide(row, not hidden)
+    if imgui.menu_item(f"{icons.ICON_FA_COPY}  Copy {copied if len(copied) < 24 else 'its name'}", "", False)[0]:
+        ui.copy_to(copied)
