@@ -28,6 +28,8 @@ from viewer.output import exr, png, recipe, tev
 from viewer.output.buffers import buffers
 from viewer.output.recipe import Recipe, Style
 from viewer.services import stills
+from viewer.services.lamps import LampSamples
+from viewer.state import terms
 from viewer.state.methods import CERTIFIED, default_for
 from viewer.state.readings import MOST_RECORDED
 from viewer.state.tone import Tone
@@ -89,7 +91,8 @@ def render(path: Path, options: Namespace) -> None:
         if options.to_tev is not None:
             tev.send(options.to_tev, f"{scene.path.stem} {wanted.time:g} s {settings.method}", frame)
     title = f"{path.name}, {wanted.time:.3f} s, {frame.width} × {frame.height}, method {settings.method}"
-    print_table(statistics_table(frame.statistics, title, frame.settings.verify))
+    by_beams = terms.asks_by_beams(frame, LampSamples().any(scene.lights, frame.settings))
+    print_table(statistics_table(frame.statistics, title, frame.settings.verify, terms.BY_BEAMS if by_beams else ""))
     for written in (options.output, options.buffers):
         if written is not None:
             print(printable(written))
