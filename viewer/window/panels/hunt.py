@@ -43,9 +43,9 @@ def show(ui: Ui) -> None:
 
 
 def _controls(ui: Ui, hunts: HuntController) -> None:
+    start_or_progress(ui, hunts.hunt, hunts.start, "search the frames for the worst wrong pixels of the method")
     if ui.controller.runs.current is not hunts.hunt or hunts.hunt is None:
         _plan(ui, hunts)
-    start_or_progress(ui, hunts.hunt, hunts.start, "search the frames for the worst wrong pixels of the method")
 
 
 def _plan(ui: Ui, hunts: HuntController) -> None:
