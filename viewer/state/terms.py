@@ -52,4 +52,5 @@ PHASES = {
 
 def asks_by_beams(frame: Frame, lamps: bool) -> bool:
     """Whether beams have asked some of what is counted as tests of shadow rays; `lamps`: not all lights are points."""
-    return lamps and frame.certificates is not None
+    shadow = frame.statistics.shadow
+    return lamps and frame.certificates is not None and shadow.culled + shadow.dynamic_only > 0

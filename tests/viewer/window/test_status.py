@@ -29,4 +29,5 @@ def test_beams_are_named_where_they_ask() -> None:
     frame = make_frame()
     certified = with_certificates(frame)
     assert terms.asks_by_beams(certified, lamps=True)
+    assert certified.statistics.shadow.culled > 0
     assert not terms.asks_by_beams(certified, lamps=False) and not terms.asks_by_beams(frame, lamps=True)
