@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import ImVec2, imgui
 
 from viewer.output.ray_rows import Row, totals
 from viewer.services.ray_inspector import RayInspector
@@ -144,7 +144,10 @@ def _tip(row: Row, whole: bool) -> None:
     tip = "\n".join(([] if whole else [row.text]) + ([row.tip] if row.tip else []))
     if tip and imgui.is_mouse_down(0) is False and imgui.begin_tooltip():
         imgui.push_text_wrap_pos(em(28.0))
-        imgui.text_colored(ImVec4(*row.color, 1.0), row.text) if not whole else None
-        imgui.text_unformatted(row.tip)
+        if not whole:
+            swatch(row.color)
+            imgui.text_unformatted(row.text)
+        if row.tip:
+            imgui.text_unformatted(row.tip)
         imgui.pop_text_wrap_pos()
         imgui.end_tooltip()
