@@ -12,11 +12,11 @@ from viewer.output.ray_rows import Row
 from viewer.util.numbers import several
 
 _PACKETS = (
-    "The row of the ray says what tracing it takes in a packet: steps and tests are counted once for all rays of a "
-    "packet, and a block of triangles is one test. This list has the nodes that the ray itself enters, and every "
-    "primitive that it is tested against."
+    "The row says what tracing the ray takes, as a packet of its own: packets may enter other nodes than the ray "
+    "itself, and a block of triangles is one test. This list has the nodes that the ray enters, and every primitive "
+    "that it is tested against."
 )
-_OTHER = "The row of the ray says what tracing took, which went through the other structure, {traced}."
+_OTHER = "The row says what tracing took, which went through the other structure, {traced}."
 
 
 def summary(tree: RayTree, row: Row, visits: Sequence[Visit], structure: str) -> tuple[str, str]:
@@ -27,7 +27,7 @@ def summary(tree: RayTree, row: Row, visits: Sequence[Visit], structure: str) ->
     costs, traced = costs_of(tree, row), tree.frame.settings.accelerator
     if costs is None or costs == (len(visits), tests):
         return text, ""
-    how, why = ("in packets", _PACKETS) if structure == traced else (f"in {traced}", _OTHER.format(traced=traced))
+    how, why = ("as a packet", _PACKETS) if structure == traced else (f"in {traced}", _OTHER.format(traced=traced))
     return f"{text}; {how} {several(costs[0], 'step')}, {several(costs[1], 'test')}", why
 
 

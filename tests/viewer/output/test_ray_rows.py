@@ -116,7 +116,7 @@ def test_the_way_of_a_ray_is_told_as_its_row_counts_it(tmp_path: Path, accelerat
         shadow = bool(len(row.places))
         visits = visits_of(world, tree, row.ray, int(row.places[0]) if shadow else None)
         text, why = ray_way.summary(tree, row, visits, accelerator)
-        assert text.startswith(f"{len(visits)} node") and bool(why) == ("in packets" in text)
+        assert text.startswith(f"{len(visits)} node") and bool(why) == ("as a packet" in text)
         differ += bool(why)
         if shadow and costs is not None:
             assert f"; {costs[0]} step" in row.text or tree.rays[row.ray].shadows.asked_moving[row.places[0]]

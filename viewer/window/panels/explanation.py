@@ -139,7 +139,7 @@ def _certificate(name: str, used: bool) -> None:
     certificate = Certificate[name.upper()]
     swatch(CERTIFICATE_COLORS[certificate])
     told = certificate.name.lower() if used else f"{certificate.name.lower()}, {UNUSED}"
-    imgui.text_unformatted(f"proven: {told}")
+    paragraph(f"proven: {told}")
     tooltip(CERTIFICATE_MEANING[certificate] if used else WHY_TRACED[told])
 
 
