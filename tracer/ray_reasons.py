@@ -20,9 +20,12 @@ if TYPE_CHECKING:
     from tracer.frame_in_progress import FrameInProgress
     from tracer.methods.interface import ShadowMethod, Stage
 
-UNUSED = "unused"
-"""What is said of a certificate that nobody has looked up."""
 MOST_NAMED = 64  # lights of a point that are passed over and whose blockers are looked for
+
+
+def unused(state: str) -> str:
+    """What is said of a certificate that nobody has looked up."""
+    return f"proven {state}, unused"
 
 
 def primitive_of(seen: Seen, row: int) -> int:
@@ -40,8 +43,8 @@ def known_of(
 ) -> str:
     """What was known of a point and a light although its ray was traced, in a word or two, or nothing.
 
-    Of certificates that a method has, but does not look up as long as that takes longer than it saves (`auto`), it is
-    their state and "unused"."""
+    A certificate that a method has, but does not look up as long as that takes longer than it saves (`auto`), is
+    `unused`."""
     if Method.parse(work.settings.method).uses_modes and modes.has_shadow_mode(work.words, light):
         word = work.words[_unit(work, seen, row)]
         occlusion = modes.OcclusionMode(int(word) & 3)
@@ -52,7 +55,7 @@ def known_of(
         for method in work.methods:
             state = (method.explain(primitive_of(seen, row), end_of(seen, row), light) or (NO_CERTIFICATE,))[0]
             if method not in asked and state != NO_CERTIFICATE:
-                return f"{state}, {UNUSED}"
+                return unused(state)
             if state == "candidates":
                 return state
     return ""

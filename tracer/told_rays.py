@@ -61,7 +61,7 @@ class ShadowRays:
     known : dict of int to str
         For rays that were traced: what was known all the same, but did not do. That is a mode by its name: the
         primitive's occlusion mode unless it was fully rendered, else its shadow mode; or "candidates"; or the state of
-        a certificate that was not looked up, as "full, unused".
+        a certificate that was not looked up, as "proven full, unused".
     """
 
     light: NDArray[np.int32]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
-from tracer.ray_reasons import UNUSED
+from tracer.ray_reasons import unused
 from tracer.told_rays import AWAY, TRACED, ShadowRays
 from viewer.state.views import Color
 
@@ -55,7 +55,7 @@ WHY_TRACED: dict[str, str] = {
     "candidates": "Traced: only a few primitives can block the light here, but to trace the ray with its neighbours is "
     "quicker than to test these.",
     **{
-        f"{state}, {UNUSED}": f"Traced: a certificate says that {known}. But the method auto looks no certificates up "
+        unused(state): f"Traced: a certificate says that {known}. But the method auto looks no certificates up "
         "here, as it has measured that tracing every ray is quicker."
         for state, known in _PROVEN.items()
     },

@@ -9,7 +9,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.explanation import Explanation
 from tracer.frame import Frame
-from tracer.ray_reasons import UNUSED
+from tracer.ray_reasons import unused
 from viewer.services.shadow_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, Part, nearest_first, others_named
 from viewer.state.picking import kind_of, primitive_in_words
 from viewer.state.projection import place
@@ -138,8 +138,8 @@ def _certificate(name: str, used: bool) -> None:
         return
     certificate = Certificate[name.upper()]
     swatch(CERTIFICATE_COLORS[certificate])
-    told = certificate.name.lower() if used else f"{certificate.name.lower()}, {UNUSED}"
-    paragraph(f"proven: {told}")
+    told = unused(certificate.name.lower())
+    paragraph(f"proven {certificate.name.lower()}" if used else told)
     tooltip(CERTIFICATE_MEANING[certificate] if used else WHY_TRACED[told])
 
 
