@@ -19,7 +19,7 @@ from viewer.window.app import App
 PATIENCE = 240.0  # a first run compiles the kernels
 SIZES = ((1280, 800), (1600, 1000))  # of windows that people have
 FASTEST = 120.0  # frames a second
-SELDOM = 0.02  # seconds from frame to frame while others work, who need the processor more than the window does
+SELDOM = 0.02  # seconds from frame to frame while it waits: others need the processor more
 
 
 class Driver:
@@ -49,8 +49,7 @@ class Driver:
             said = self.c.notices.message
             assert self.c.frame is not None or said is None or not said.error, said.text
             assert time.monotonic() < end, f"waited in vain: {what}; the status says {said}"
-            if self.c.active:
-                time.sleep(SELDOM)
+            time.sleep(SELDOM)
             self.context.yield_()
         self.context.yield_()
 
@@ -60,6 +59,7 @@ class Driver:
     def pause(self, seconds: float) -> None:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
+            time.sleep(SELDOM)
             self.frames(1)
 
     def settle(self) -> None:

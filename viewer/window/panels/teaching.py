@@ -56,7 +56,7 @@ def _frame(ui: Ui, word: str, number: int, found: Teacher | None, key: str, tip:
     """A line: what was met, a button that leads to the frame, and the pixel."""
     c = ui.controller
     imgui.text_colored(QUIET, word)
-    imgui.same_line()
+    _beside(f"frame {number}", imgui.get_style().item_spacing.x)
     kept = c.record.moments.get(number) is not None
     imgui.begin_disabled(not kept)
     if imgui.small_button(f"frame {number}##taught {key}"):
@@ -64,12 +64,20 @@ def _frame(ui: Ui, word: str, number: int, found: Teacher | None, key: str, tip:
     imgui.end_disabled()
     tooltip(f"{tip}\n\nGo to frame {number}" if kept else f"{tip}\n\nThis frame is no longer kept.")
     if kept:
-        imgui.same_line(0.0, 0.2 * imgui.get_font_size())
+        _beside(icons.ICON_FA_CLOCK_ROTATE_LEFT, 0.2 * imgui.get_font_size())
         if imgui.small_button(f"{icons.ICON_FA_CLOCK_ROTATE_LEFT}##taught {key}"):
             c.travel.go(number, modes=True, point=_point(ui, number, found))
         tooltip(f"Go to frame {number} with its modes: those before it are forgotten, and learnt again")
     if found is not None:
         paragraph(pixels_in_words(found), QUIET)
+
+
+def _beside(label: str, gap: float) -> None:
+    """Go on in this line if a small button with such a label fits into what is left of it."""
+    width = imgui.calc_text_size(label).x + 2.0 * imgui.get_style().frame_padding.x
+    right = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
+    if imgui.get_item_rect_max().x + gap + width <= right:
+        imgui.same_line(0.0, gap)
 
 
 def _point(ui: Ui, number: int, found: Teacher | None) -> tuple[float, float] | None:
