@@ -42,7 +42,8 @@ def run(ui: Ui, command: Command) -> None:
 def show(ui: Ui, others: Mapping[str, Callable[[], None]]) -> None:
     """All menus of the menu bar, and `others` after them; within a single one where there is no room for their
     names."""
-    contents: dict[str, Callable[[], None]] = {**{name: partial(_menu, ui, name) for name in MENUS}, **others}
+    contents: dict[str, Callable[[], None]] = {name: partial(_menu, ui, name) for name in MENUS}
+    contents |= others
     gap = imgui.get_style().item_spacing.x
     needed = sum(imgui.calc_text_size(name).x + 2.0 * gap for name in contents)
     if needed <= imgui.get_content_region_avail().x:
