@@ -72,7 +72,7 @@ class Ui:
     `what_if_drawn` is the frame of ImGui's in which the panel What if was drawn last, `held_light` the light that the
     pointer drags, and `changed_shown` says that changed pixels are to be seen. `find_focus` asks for the keyboard
     above the table of what is in the scene, of which `find_drawn` rows were drawn last, each `find_height` pixels
-    high, in the order `find_order`."""
+    high, in the order `find_order`. `chorded` are the keys that steer which were pressed with Ctrl, Alt or Super."""
 
     controller: Controller
     display: Display | None = None
@@ -105,6 +105,7 @@ class Ui:
     pivot: tuple[float, float, float] | None = None
     pivot_scene: object = None
     modifiers: int = 0
+    chorded: set[str] = field(default_factory=set)
     pressed: int = 0
     pressed_with: str = ""
     pressed_at: tuple[float, float] = (0.0, 0.0)
