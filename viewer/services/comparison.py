@@ -94,7 +94,9 @@ def trace(
         frames[method] = stills.trace(renderer, wanted, on_frame=tell, cancelled=cancelled)
     reference = frames["none"]
     shown = {method: frames[method] for method in comparison.methods}
-    return Shown(scene, comparison.recipe, shown, reference, comparison.crops, comparison.marks, comparison.words)
+    common = comparison.recipe
+    warmed = len(common.before) + len(stills.times_before(scene, common.time, common.warmup))
+    return Shown(scene, common, shown, reference, comparison.crops, comparison.marks, comparison.words, warmed)
 
 
 def text(shown: Shown, comparison: Comparison) -> str:

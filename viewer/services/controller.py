@@ -201,11 +201,7 @@ class Controller:
         run = self.runs.follow()
         if run.ended:
             self.tracing.again()  # else the world might stay where the run has put it
-        if self.travel.replay is not None:  # they teach the window's own modes
-            replayed = self.travel.replay.take_traced()
-            self.record.add(replayed, None, self.drawn_seconds)
-            for traced in replayed:
-                self.tracing.learnt.add(traced.frame)
+        self._take_replayed()
         if run.picture is not None:
             self.tracing.show(run.picture)
             frame = run.picture.frame
@@ -219,6 +215,20 @@ class Controller:
         self.motion.look_around(frame)
         self.selection.refresh(frame)
         return frame
+
+    def _take_replayed(self) -> None:
+        """Take up what a replay has forgotten, and which frames have taught the window's own modes since."""
+        replay = self.travel.replay
+        if replay is None:
+            return
+        if replay.done:
+            self.travel.replay = None
+        if replay.take_reset():
+            self.record.forget_modes()
+        replayed = replay.take_traced()
+        self.record.add(replayed, None, self.drawn_seconds)
+        for traced in replayed:
+            self.tracing.learnt.add(traced.frame)
 
     # --- going elsewhere -------------------------------------------------------------------------
 

@@ -158,7 +158,7 @@ class HuntController:
         if hunt is None or found is None or not 0 <= number < len(found.finds) or self._runs.refuses():
             return None
         if not hunt.is_of(self._session.scene):
-            self._notices.say(f"this was found in {hunt.scene_path.name}; open that scene again to go there")
+            self._notices.say(f"this was found {hunt.made_in(self._session.scene)}")
             return None
         return found.finds[number]
 

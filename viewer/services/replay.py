@@ -38,6 +38,7 @@ class Replay(Run[int]):
         self._frames = tuple(frames)
         self._traced: list[Traced] = []
         self._taking = threading.Lock()
+        self._has_reset = False
 
     def lacks(self, view: View) -> str:
         return "traces what was seen before"
@@ -45,6 +46,12 @@ class Replay(Run[int]):
     @property
     def verifies(self) -> bool:
         return False
+
+    def take_reset(self) -> bool:
+        """Whether it has forgotten all modes since the last time; what it traced comes after that."""
+        with self._taking:
+            reset, self._has_reset = self._has_reset, False
+            return reset
 
     def take_traced(self) -> list[Traced]:
         """The frames that were traced since the last time, without their pictures."""
@@ -54,13 +61,15 @@ class Replay(Run[int]):
 
     def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[int]:
         renderer.reset_modes()
+        with self._taking:
+            self._has_reset = True
         for number, past in enumerate(self._frames):
             accelerator = renderer.world.accelerator
             renderer.settings = replace(past.settings, samples=1, accelerator=accelerator)
             frame = renderer.render(past.time, past.camera, cancelled)
             request = RenderRequest(frame.time, frame.camera, frame.settings)
             with self._taking:
-                self._traced.append(Traced(request, _without_picture(frame), frame.statistics, fresh=number == 0))
+                self._traced.append(Traced(request, _without_picture(frame), frame.statistics))
             self._count(f"frame {number + 1} of {len(self._frames)}")
             self._show(frame, wait=False)
             yield self.traced

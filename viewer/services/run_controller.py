@@ -170,7 +170,7 @@ class RunController:
         if test is None or test.results is None or self.refuses():
             return None
         if not test.is_of(session.scene):
-            self._notices.say(f"this test was made in {test.scene_path.name}; open that scene again to go there")
+            self._notices.say(f"this test was made {test.made_in(session.scene)}")
             return None
         session.playing = False
         session.time = test.results.time

@@ -95,6 +95,12 @@ class Run(ABC, Generic[Results]):
         """Whether it is (or was) made in this very scene, as it was loaded then."""
         return scene is not None and self._identity() is scene
 
+    def made_in(self, scene: Scene | None) -> str:
+        """In which scene it was made, in words, where that is not the one that is open."""
+        if scene is not None and Path(scene.path) == self.scene_path:
+            return f"in {self.scene_path.name} as it was before it was edited, or read again"
+        return f"in {self.scene_path.name}; open that scene again to go there"
+
     @property
     def done_of(self) -> tuple[int, int]:
         """Frames that the results are of, and how many they are to be of."""

@@ -83,12 +83,10 @@ class TimeTravel:
         if scene is None or self._runs.refuses():
             return
         if not run.is_of(scene):
-            self._notices.say(f"this was measured in {run.scene_path.name}; open that scene again to go there")
+            self._notices.say(f"this was measured {run.made_in(scene)}")
             return
-        session, settings = (
-            self._session,
-            replace(run.settings, method=run.shown, samples=self._session.settings.samples),
-        )
+        session = self._session
+        settings = replace(run.settings, method=run.shown, samples=session.settings.samples)
         time = run.times[number]
         snapshot = replace(
             session.snapshot(), time=time, camera=scene.camera_at(time), follow=True,
@@ -142,7 +140,6 @@ class TimeTravel:
         p, (width, height) = self._preferences, goal.size
         if goal.size != self._tracing.full_size:
             p.fixed_resolution, p.fixed_width, p.fixed_height = True, width, height
-        self._record.forget_modes()
         self._tracing.begin_replay()
         self.replay = Replay(scene, before, self._wake)
         self._runs.begin(self.replay)
@@ -161,10 +158,16 @@ class TimeTravel:
         time, camera, point = self._wanted
         if (self._session.time, self._session.camera) != (time, camera):
             self._wanted = None
-        elif traced is not None and traced.whole and traced.request.divisor == 1 and self._tracing.shows_edits:
+        elif traced is not None and traced.whole and traced.request.divisor == 1 and self._edits_are_shown:
             if (traced.request.time, traced.request.camera) == (time, camera):
                 self._selection.select(point)
                 self._wanted = None
+
+    @property
+    def _edits_are_shown(self) -> bool:
+        """Whether the newest picture is of the scene that is wanted."""
+        edited = self._session.edited
+        return self._tracing.shows_edits and edited is not None and edited.edits == self._session.edits
 
 
 def pasts(frames: Sequence[tuple[float, Camera]], settings: Settings) -> list[Past]:

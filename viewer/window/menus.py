@@ -7,12 +7,14 @@ from functools import partial
 
 from imgui_bundle import imgui
 
+from viewer.state.keymap import HELD
 from viewer.window import escape
 from viewer.window.command import MENUS, Command
 from viewer.window.ui import Ui
 from viewer.window.widgets import tooltip
 
 PANELS_MENU, ALL_MENUS = "Panels", "Menu"
+_CHORD = int(imgui.Key.mod_ctrl) | int(imgui.Key.mod_alt) | int(imgui.Key.mod_super)
 
 
 def handle_keys(ui: Ui) -> None:
@@ -22,6 +24,7 @@ def handle_keys(ui: Ui) -> None:
     ui.keyboard.follow()
     held, before = int(imgui.get_io().key_mods), ui.modifiers
     ui.modifiers = held
+    _follow_chords(ui, held | before)
     if imgui.get_io().want_text_input or ui.key_wanted:
         return
     if imgui.is_key_pressed(imgui.Key.escape, repeat=False) and escape.close_newest(ui):
@@ -34,6 +37,12 @@ def handle_keys(ui: Ui) -> None:
             run(ui, command)
 
 
+def _follow_chords(ui: Ui, modifiers: int) -> None:
+    """Remember which keys that steer are down as part of a chord: such a key steers only once it was let go."""
+    down = {name for name in HELD if ui.keyboard.is_down(ui.keymap.of(name))}
+    ui.chorded = down if modifiers & _CHORD else ui.chorded & down
+
+
 def run(ui: Ui, command: Command) -> None:
     """Do what a command does; a mistake in it ends nothing."""
     ui.guard.step(f"The command {command.name}", command.run)
@@ -42,7 +51,8 @@ def run(ui: Ui, command: Command) -> None:
 def show(ui: Ui, others: Mapping[str, Callable[[], None]]) -> None:
     """All menus of the menu bar, and `others` after them; within a single one where there is no room for their
     names."""
-    contents = {name: partial(_menu, ui, name) for name in MENUS} | others
+    contents: dict[str, Callable[[], None]] = {name: partial(_menu, ui, name) for name in MENUS}
+    contents |= others
     gap = imgui.get_style().item_spacing.x
     needed = sum(imgui.calc_text_size(name).x + 2.0 * gap for name in contents)
     if needed <= imgui.get_content_region_avail().x:

@@ -10,6 +10,7 @@ import pytest
 from tests.viewer.desk import ELSEWHERE, Desk
 from tracer.culling import modes
 from tracer.frame import Frame
+from tracer.scene.edits import NO_EDITS, Edits
 from viewer.state.teaching import NEVER
 from viewer.state.views import View
 
@@ -165,3 +166,42 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
                 assert here[y, x] and found.count == np.count_nonzero(here)
                 met += 1
     assert met >= 2, "no pixel was named: this shows nothing"
+
+
+def test_a_frame_of_other_edits_comes_back_with_them(desk: Desk) -> None:
+    """The picture, what is selected in it, and that nobody says who taught modes which an edit has left."""
+    c = desk.c
+    c.settings.change(method="none", depth=1)
+    desk.rest()
+    without_ball = NO_EDITS.with_primitive(c.selection.at((0.5, 0.45)).primitive, False)
+
+    def edit(edits: Edits) -> None:
+        c.editing.change(edits)
+        desk.until(lambda: not c.editing.under_way)
+        desk.rest()
+
+    whole, number = c.frame.color.copy(), c.history.frames - 1
+    edit(without_ball)
+    hidden, other = c.frame.color.copy(), c.history.frames - 1
+    assert not np.array_equal(whole, hidden)
+    for to, picture, edits in ((number, whole, NO_EDITS), (other, hidden, without_ball)):
+        c.travel.go(to, point=(0.5, 0.45))
+        desk.until(lambda: not c.editing.under_way)
+        desk.rest()
+        assert np.array_equal(c.frame.color, picture) and c.session.edits == edits
+        here = c.selection.at((0.5, 0.45))
+        picked = c.selection.picked
+        assert (picked is None) == (here.primitive < 0) == bool(edits)
+        assert picked is None or (picked.primitive == here.primitive and picked.seen)
+    c.travel.go(number, modes=True)
+    assert "cannot be learnt again" in desk.said
+
+
+def test_a_replay_that_never_began_has_forgotten_nothing(desk: Desk) -> None:
+    seen, c = flown(desk, "paper"), desk.c
+    numbers = list(c.record.learnt_from or [])
+    c.travel.go(list(seen)[2], modes=True)
+    assert c.record.learnt_from == numbers, "nothing has been forgotten yet"
+    desk.until(lambda: c.runs.current is None)
+    desk.rest()
+    assert c.record.learnt_from != numbers and c.travel.replay is None

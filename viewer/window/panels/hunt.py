@@ -96,7 +96,7 @@ def _finds(ui: Ui, hunts: HuntController, size: ImVec2) -> None:
                 QUIET,
             )
         elif scene is None or not hunts.hunt.is_of(scene):
-            paragraph(f"The last hunt was in {hunts.hunt.scene_path.name}.", QUIET)
+            paragraph(f"The last hunt was made {hunts.hunt.made_in(scene)}.", QUIET)
         else:
             clipped(in_window_style(found.summary), QUIET if found.wrong_pixels else GOOD)
             if found.finds:
