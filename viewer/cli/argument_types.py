@@ -95,13 +95,14 @@ def pixel(text: str) -> tuple[int, int]:
 
 
 def span(text: str) -> tuple[int, int]:
-    """The first and the last of some frames."""
-    match = re.fullmatch(r"(\d{1,9})-(\d{1,9})", text.strip(), re.ASCII)
+    """The first and the last of some frames; a single number is both."""
+    match = re.fullmatch(r"(\d{1,9})(?:-(\d{1,9}))?", text.strip(), re.ASCII)
     if not match:
-        raise argparse.ArgumentTypeError(f"{text!r} are not frames; give the first and the last, like 0-99")
-    if int(match[1]) > int(match[2]):
-        raise argparse.ArgumentTypeError(f"{text!r}: the last frame, {int(match[2])}, is before the first")
-    return int(match[1]), int(match[2])
+        raise argparse.ArgumentTypeError(f"{text!r} are not frames; give the first and the last, like 0-99, or one")
+    first, last = int(match[1]), int(match[2] or match[1])
+    if first > last:
+        raise argparse.ArgumentTypeError(f"{text!r}: the last frame, {last}, is before the first")
+    return first, last
 
 
 def crops(text: str) -> tuple[tuple[int, int, int, int], ...]:

@@ -106,7 +106,7 @@ def _table(found: Findings, scene: Scene) -> Table:
     size = f"{found.size[0]} × {found.size[1]}"
     title = f"{Path(found.scene).name}, {size}, method {found.method}: the worst wrong pixels"
     table = Table(title=title, title_justify="left", title_style="bold", caption_justify="left")
-    for heading in ("", "difference", "pixel", "wrong"):
+    for heading in ("", "difference", "pixel", "wrong pixels"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("where", no_wrap=True)
     for heading in ("primitive", "light", "culled by", "truly", "learnt"):
@@ -124,5 +124,5 @@ def _table(found: Findings, scene: Scene) -> Table:
             "blocked" if find.lit else "lit",
             finds.taught(find, scene),
         )
-    table.caption = "difference: of the colour, of 1; wrong: wrong pixels of the picture; light: (+ others)"
+    table.caption = "difference: of the colour, of 1; wrong pixels: of the picture; light: (+ others)"
     return table

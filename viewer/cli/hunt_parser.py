@@ -18,7 +18,7 @@ def hunt() -> parsers.Parser:
     add = parser.add_argument
     parsers.add_scene(parser)
     add("--method", type=method, default="paper", metavar="M", help=f"whose: {parsers.methods()} (default: paper)")
-    add("--frames", type=span, metavar="A-B", help="the frames A to B of the path (default: all)")
+    add("--frames", type=span, metavar="A-B", help="the frames A to B of the path, or one (default: all)")
     add("--step", type=count(1, 1_000_000), default=1, metavar="N", help="only every N-th of them (default: 1)")
     add("--camera", metavar="JSON", help=f"stand still, and let time pass: {parsers.CAMERA}")
     add("--around", type=count(0, 1_000_000), default=0, metavar="N", help="then N pictures beside it (default: 0)")

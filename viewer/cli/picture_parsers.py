@@ -91,7 +91,7 @@ def film() -> Parser:
     parsers.add_scene(parser, ", or a saved picture, for its scene, settings and view")
     help_ = "a folder for the pictures; or film.mp4, whose pictures go to film-frames"
     add("-o", "--output", type=Path, metavar="DIR|FILE.mp4", help=help_)
-    add("--frames", type=span, metavar="A-B", help="the frames A to B of the path (default: all)")
+    add("--frames", type=span, metavar="A-B", help="the frames A to B of the path, or one (default: all)")
     help_ = "fly through where these saved pictures were taken, at an even speed, in place of the path"
     add("--through", type=Path, nargs="+", metavar="PICTURE", help=help_)
     add("--bookmarks", action="store_true", help="fly through the scene's bookmarks, which the window keeps")

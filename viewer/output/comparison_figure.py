@@ -50,10 +50,15 @@ class Crop(NamedTuple):
         return f"{self.x},{self.y},{self.width},{self.height}"
 
 
+EDITION = 2
+"""Of the words in which a title says what came before: figures keep theirs, so that they can be drawn again."""
+
+
 @dataclass(frozen=True)
 class Shown:
     """What a figure shows: the frames by their methods, that by "none" as the reference, the crops, the pixels (x, y)
-    that are marked in these, and words below the title; `warmed` is how many frames were traced before each."""
+    that are marked in these, and words below the title; `warmed` is how many frames were traced before each, and
+    `edition` says in which words the title does."""
 
     scene: Scene
     recipe: Recipe
@@ -63,6 +68,7 @@ class Shown:
     marks: Sequence[tuple[int, int]] = ()
     words: str = ""
     warmed: int = 0
+    edition: int = EDITION
 
     @property
     def span(self) -> tuple[float, float] | None:
@@ -179,10 +185,16 @@ def _figure(shown: Shown) -> Figure:
 def _title(shown: Shown) -> str:
     recipe, (width, height) = shown.recipe, shown.recipe.size
     number = Session(shown.scene).frame_at(recipe.time)
-    before = "the frame" if shown.warmed == 1 else f"the {shown.warmed} frames"
-    warm = f", after {before} before it" if shown.warmed else ""
+    warm = _warm(shown.warmed, shown.edition) if shown.warmed else ""
     samples = f", {recipe.settings.samples} samples" if recipe.settings.samples > 1 else ""
     return f"{shown.scene.path.name}, frame {number}{warm}, {width} × {height}{samples}; {recipe.view.label.lower()}"
+
+
+def _warm(frames: int, edition: int) -> str:
+    """How many frames were traced before."""
+    if edition < 2:
+        return f", after {'the frame' if frames == 1 else f'the {frames} frames'} before it"
+    return f", with what {frames} earlier frame{'s' * (frames != 1)} taught"
 
 
 def _row_name(kind: str, crop: int | None) -> str:

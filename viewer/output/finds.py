@@ -26,13 +26,14 @@ VISIBLE = 0.5 / 255.0
 class Find:
     """A wrong pixel (x, y), and what is wrong there.
 
-    The pixel is `difference` (0 to 1, the largest of the three channels) from `reference`, the right colour; `color` is
-    what the method shows, both linear RGB.  A shadow ray from `primitive`, which the pixel shows after `bounces`, to
-    `light` got the answer `lit`, by `verdict`, the name of a `tracer.culling.verdicts.Verdict`; `blocker` is what is in
-    the way, -1 for nothing; `more_lights` are wrong there in the same way.  `taught` is the number, among the frames
-    before it, of that which taught it, -1 where that is not known, and `taught_time` its time.  `pixels` are all wrong
-    pixels of the frame.  `before` are the fewest frames before it that were found to make it, of `learnt_from`
-    that really came before."""
+    The pixel is `difference` (0 to 1, the largest of the three channels) from `reference`, the right colour; `color`
+    is what the method shows, both linear RGB.  A shadow ray from `primitive`, which the pixel shows after `bounces`,
+    to `light` got the answer `lit`, by `verdict`, the name of a `tracer.culling.verdicts.Verdict`; `blocker` is what
+    is in the way, -1 for nothing; `more_lights` are wrong there in the same way.  `taught` is the number, among the
+    frames before it, of that which taught it, -1 where that is not known, and `taught_time` its time.  Of the frame,
+    `pixels` counts the wrong pixels, with a wrong answer or another colour, `answers` the wrong answers and
+    `differing` the pixels whose colour is another.  `before` are the fewest frames before it that were found to make
+    it, of `learnt_from` that really came before."""
 
     place: str
     time: float
@@ -50,6 +51,8 @@ class Find:
     blocker: int
     bounces: int
     pixels: int
+    answers: int = 0
+    differing: int = 0
     more_lights: int = 0
     taught: int = -1
     taught_time: float | None = None
@@ -90,8 +93,8 @@ class Findings:
         if not self.wrong_pixels:
             return f"{compared}: none is wrong"
         frames = f"{self.wrong_frames:,} frame{'s' * (self.wrong_frames != 1)}"
-        verb = "is" if self.wrong_pixels == 1 else "are"
-        return f"{compared}: {self.wrong_pixels:,} {verb} wrong, in {frames}"
+        wrong = f"{self.wrong_pixels:,} wrong pixel{'s' * (self.wrong_pixels != 1)}"
+        return f"{compared}: {wrong}, in {frames}"
 
 
 def where(find: Find, scene: Scene) -> str:
@@ -153,6 +156,14 @@ def in_words(find: Find, scene: Scene) -> list[str]:
     return [*said, *_history(find)]
 
 
+def in_its_frame(find: Find) -> str:
+    """How many pixels and answers of its frame are wrong; a pixel has one answer for each light and bounce."""
+    pixels = f"{find.pixels:,} pixel{'s are' if find.pixels != 1 else ' is'} wrong"
+    answers = f"{find.answers:,} shadow answer{'s' * (find.answers != 1)}"
+    colors = f"{find.differing:,} pixel{'s differ' if find.differing != 1 else ' differs'} in colour"
+    return f"In this frame {pixels}, by {answers}; {colors}."
+
+
 def _history(find: Find) -> list[str]:
     few, every = len(find.before), find.learnt_from
     if not every:
@@ -160,8 +171,8 @@ def _history(find: Find) -> list[str]:
     if find.place == AROUND:
         return [f"The camera came there after {'that frame' if few == 1 else f'{few} frames'} of the path."]
     if few < every:
-        return [f"{few} of the {every} frames before it {'is' if few == 1 else 'are'} enough to show it."]
-    return [f"It takes {'the frame' if few == 1 else f'all {few} frames'} before it."]
+        return [f"The modes that {few} of {every} earlier frames left are enough to show it."]
+    return [f"It shows with the modes that {few} earlier frame{'s' * (few != 1)} left."]
 
 
 def _capital(text: str) -> str:
@@ -200,6 +211,8 @@ def to_json(find: Find, scene: Scene) -> dict[str, Any]:
         "bounces": find.bounces,
         "more_lights": find.more_lights,
         "wrong_pixels": find.pixels,
+        "wrong_answers": find.answers,
+        "differing_pixels": find.differing,
         "taught_time": find.taught_time,
         "learnt_from": find.learnt_from,
         "before": earlier.to_json(find.before),

@@ -12,7 +12,7 @@ from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from viewer.output import capture, fingerprint, recipe
-from viewer.output.comparison_figure import Crop, Shown
+from viewer.output.comparison_figure import EDITION, Crop, Shown
 from viewer.output.recipe import Recipe
 from viewer.services import stills
 from viewer.state.session import Session, Snapshot
@@ -25,13 +25,14 @@ MOST_METHODS, MOST_CROPS = 6, 6
 @dataclass(frozen=True)
 class Comparison:
     """`recipe` is what all methods have in common; its own method does not count.  `marks` are pixels (x, y) that are
-    marked in the crops, and `words` stand below the title."""
+    marked in the crops, and `words` stand below the title, which is of an `edition`."""
 
     recipe: Recipe
     methods: tuple[str, ...]
     crops: tuple[Crop, ...]
     marks: tuple[tuple[int, int], ...] = ()
     words: str = ""
+    edition: int = EDITION
 
     def checked(self) -> Comparison:
         """The same; raises ValueError, in one line, for what cannot be drawn."""
@@ -53,6 +54,7 @@ class Comparison:
         crops = [[c.x, c.y, c.width, c.height] for c in self.crops]
         more: dict[str, Any] = {"marks": [list(mark) for mark in self.marks]} if self.marks else {}
         more |= {"words": self.words} if self.words else {}
+        more |= {"edition": self.edition} if self.edition > 1 else {}
         return self.recipe.to_json() | {"methods": list(self.methods), "crops": crops} | more
 
 
@@ -63,7 +65,8 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Co
         crops = tuple(Crop(*(whole(side) for side in crop)) for crop in data["crops"])
         marks = tuple((whole(x), whole(y)) for x, y in data.get("marks", []))
         methods = tuple(str(method) for method in data["methods"])
-        return Comparison(common, methods, crops, marks, str(data.get("words", ""))).checked()
+        edition = int(data.get("edition", 1))
+        return Comparison(common, methods, crops, marks, str(data.get("words", "")), edition).checked()
     except (KeyError, TypeError, AttributeError):
         raise ValueError("its methods or crops are damaged") from None
 
@@ -96,7 +99,8 @@ def trace(
     shown = {method: frames[method] for method in comparison.methods}
     common = comparison.recipe
     warmed = len(common.before) + len(stills.times_before(scene, common.time, common.warmup))
-    return Shown(scene, common, shown, reference, comparison.crops, comparison.marks, comparison.words, warmed)
+    marked = comparison.marks, comparison.words, warmed, comparison.edition
+    return Shown(scene, common, shown, reference, comparison.crops, *marked)
 
 
 def text(shown: Shown, comparison: Comparison) -> str:

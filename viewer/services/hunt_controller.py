@@ -11,7 +11,7 @@ from tracer.renderer import Renderer
 from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene
-from viewer.output import exports
+from viewer.output import exports, finds
 from viewer.output.finds import Find, Findings
 from viewer.services import find_figures, hunting
 from viewer.services.hunting import Search
@@ -19,7 +19,7 @@ from viewer.services.recipes import Recipes
 from viewer.services.run_controller import RunController
 from viewer.services.runs import LONGEST_SIDE, Run
 from viewer.services.time_travel import Goal, TimeTravel, pasts
-from viewer.state import flight
+from viewer.state import flight, zooming
 from viewer.state.edits import as_options
 from viewer.state.notices import Notices
 from viewer.state.plans import HuntPlan
@@ -163,7 +163,8 @@ class HuntController:
         return found.finds[number]
 
     def go(self, number: int) -> None:
-        """Fly to a find: forget all modes, trace the frames before it, and select its pixel in the picture."""
+        """Fly to a find: forget all modes, trace the earlier frames that made it, and select its pixel, enlarged.
+        The picture stays as it was found, with one sample a pixel, until something moves."""
         find, hunt, scene = self.find(number), self.hunt, self._session.scene
         if find is None or hunt is None or scene is None:
             return
@@ -175,7 +176,8 @@ class HuntController:
         )  # fmt: skip
         point = (find.x + 0.5) / size[0], (find.y + 0.5) / size[1]
         before = pasts([(one.time, one.camera or scene.camera_at(one.time)) for one in find.before], settings)
-        self._travel.replay_to(Goal(snapshot, f"find {number + 1}", size, point), before)
+        zoom = zooming.around(*point, size[0] / finds.crop_of(find, size).width)
+        self._travel.replay_to(Goal(snapshot, f"find {number + 1}", size, point, zoom, True), before)
 
     def save_figure(self, number: int) -> None:
         """Trace and draw the figure of a find, into the folder of the pictures."""

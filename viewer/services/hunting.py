@@ -145,7 +145,8 @@ class _Hunter:
         """Count what is wrong in a picture that comes after others, and keep it where it is among the worst."""
         found = self._found
         assert frame.wrong is not None and frame.reference is not None
-        wrong = (frame.wrong > 0) | (frame.color != frame.reference).any(axis=-1)
+        differing = (frame.color != frame.reference).any(axis=-1)
+        wrong = (frame.wrong > 0) | differing
         pixels = int(np.count_nonzero(wrong))
         found.frames += 1
         found.pixels += wrong.size
@@ -164,6 +165,8 @@ class _Hunter:
                         color=triple(color),
                         reference=triple(right),
                         pixels=pixels,
+                        answers=int(frame.wrong.sum()),
+                        differing=int(np.count_nonzero(differing)),
                         before=tuple(lessons.frames),
                         learnt_from=len(lessons.frames),
                     )

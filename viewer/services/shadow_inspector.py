@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from tracer.explanation import Explanation, explain, outline
 from tracer.frame import Frame
 from tracer.renderer import Renderer
+from viewer.services.frame_answers import NONE_WRONG, WrongAnswers, wrong_answers
 from viewer.services.render_thread import Question, Traces
 from viewer.services.selection import Selection
 from viewer.state.picking import pixel_at, pixel_of
@@ -31,13 +32,15 @@ MOST_LIGHTS = 40  # that are drawn, and listed at once
 
 @dataclass(frozen=True)
 class Answer:
-    """What was found for a pixel of a frame: an explanation for each light, and outlines of what they name."""
+    """What was found for a pixel of a frame: an explanation for each light, outlines of what they name, and what the
+    frame itself has answered, where that is `wrong`."""
 
     frame: Frame
     x: int
     y: int
     lights: tuple[Explanation, ...]
     outlines: dict[int, tuple[NDArray[np.float64], ...]]
+    wrong: WrongAnswers = NONE_WRONG
 
     @cached_property
     def drawn(self) -> tuple[Explanation, ...]:
@@ -78,7 +81,8 @@ class PixelQuestion:
         lights = explain(real, self.frame, self.x, self.y)
         numbers = {number for one in drawn_lights(lights) for number in drawn_primitives(one)}
         outlines = {number: outline(real.world, number) for number in numbers}
-        self.found = Answer(self.frame, self.x, self.y, lights, outlines)
+        wrong = wrong_answers(real, self.frame, self.x, self.y)
+        self.found = Answer(self.frame, self.x, self.y, lights, outlines, wrong)
 
 
 class Answers(Protocol):

@@ -23,6 +23,7 @@ from viewer.state.moments import Moment
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session, Snapshot, settings_to_json
+from viewer.state.zooming import Zoom
 
 MOST_REPLAYED = 2000
 """Frames that are traced once more for one picture."""
@@ -30,12 +31,15 @@ MOST_REPLAYED = 2000
 
 @dataclass(frozen=True)
 class Goal:
-    """Where to go, what it is called, and which point of the picture is to be selected there, if any."""
+    """Where to go, what it is called, and which point of the picture is to be selected there, if any.  `zoom` is how
+    closely the picture is looked at then, None for as it is; it stays at `one_sample` a pixel if that is so."""
 
     snapshot: Snapshot
     name: str
     size: tuple[int, int]
     point: Point | None = None
+    zoom: Zoom | None = None
+    one_sample: bool = False
 
 
 class TimeTravel:
@@ -140,13 +144,15 @@ class TimeTravel:
         p, (width, height) = self._preferences, goal.size
         if goal.size != self._tracing.full_size:
             p.fixed_resolution, p.fixed_width, p.fixed_height = True, width, height
-        self._tracing.begin_replay()
+        self._tracing.begin_replay(goal.one_sample)
         self.replay = Replay(scene, before, self._wake)
         self._runs.begin(self.replay)
 
     def _arrive(self, goal: Goal) -> None:
         self._undo.call_next(f"going to {goal.name}", with_time=True)
         self._restore(goal.snapshot)
+        if goal.zoom is not None:
+            self._session.zoom = goal.zoom
         self._selection.clear()
         camera = self._session.camera
         self._wanted = (self._session.time, camera, goal.point) if goal.point is not None else None

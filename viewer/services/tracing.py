@@ -41,6 +41,17 @@ class Conditions:
     focus: tuple[float, float] | None = None
 
 
+@dataclass(frozen=True)
+class Held:
+    """A picture that no other is to follow: what it shows, by which method, and, where it is to have one sample a pixel
+    whatever is chosen, how many were chosen then."""
+
+    time: float
+    camera: Camera
+    method: str
+    samples: int | None
+
+
 class Tracing:
     """`traced` is the newest frame with the request it answers; `now` are the conditions of the last `ask`."""
 
@@ -67,7 +78,7 @@ class Tracing:
         self.lamps = LampSteps(session)
         self.learnt = Learnt()
         self._serial = 0
-        self._held: tuple[float, Camera] | None = None  # the picture that no other is to follow
+        self._held: Held | None = None  # the picture that no other is to follow
         self._refines = False  # whether the last picture was asked for to refine what is known
         self._asked: RenderRequest | None = None
         self._chosen: Settings | None = None
@@ -177,7 +188,7 @@ class Tracing:
         plan = self._plan(width, height, moving, lamp_samples)
         width, height = divided(width, height, plan.divisor)
         settings = replace(self.settings, width=width, height=height, samples=1)
-        samples = session.settings.samples
+        samples = self.samples_wanted
         if lamp_samples < self.lamps.wanted:
             settings, samples = replace(settings, lamp_samples=lamp_samples), 1
         seconds = refinement.SECONDS if self._refines else 0.0
@@ -191,18 +202,21 @@ class Tracing:
         self._asked, self._chosen = wanted, session.settings
         self._renderer.submit(wanted)
 
-    def begin_replay(self) -> None:
+    def begin_replay(self, one_sample: bool = False) -> None:
         """The modes are about to be forgotten, and learnt from other frames; of what is looked at now, one picture is
-        to come after these, and no further one that would know more."""
+        to come after these, and no further one that would know more.  It stays at `one_sample` a pixel if that is so,
+        until something else is looked at, or asked for."""
         self.learnt.forget()
         self._known = None
         self.refinement.forget()
-        self._held = self._session.time, self._session.camera
+        session = self._session
+        samples = session.settings.samples if one_sample else None
+        self._held = Held(session.time, session.camera, session.settings.method, samples)
 
     def _refine(self) -> None:
         """At idle, let one more frame of the same view follow where it will know more about shadows."""
         if self._held is not None and not self._preferences.keep_tracing:
-            if self._held == (self._session.time, self._session.camera):
+            if (self._held.time, self._held.camera) == (self._session.time, self._session.camera):
                 return
             self._held = None
         if self.refinement.wants_another(self.traced, self._session.view, self._preferences.keep_tracing):
@@ -347,7 +361,15 @@ class Tracing:
     @property
     def samples_wanted(self) -> int:
         """How many it should have at idle."""
-        return self._session.settings.samples
+        return 1 if self.holds_one_sample else self._session.settings.samples
+
+    @property
+    def holds_one_sample(self) -> bool:
+        """Whether the picture stays as it was found, with fewer samples than the user has chosen."""
+        held, s = self._held, self._session
+        if held is None or held.samples in (None, 1):
+            return False
+        return held == Held(s.time, s.camera, s.settings.method, s.settings.samples)
 
     @property
     def outdated(self) -> bool:

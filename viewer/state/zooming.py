@@ -56,6 +56,12 @@ def zoomed(zoom: Zoom, factor: float, at: tuple[float, float]) -> Zoom:
     return _inside(scale, u + (0.5 - at[0]) / scale, v + (0.5 - at[1]) / scale)
 
 
+def around(x: float, y: float, scale: float) -> Zoom:
+    """Enlarged so much, with a point of the picture in the middle, or as near to it as the borders let it."""
+    scale = min(max(scale, 1.0), MOST)
+    return FIT if scale == 1.0 else _inside(scale, x, y)
+
+
 def panned(zoom: Zoom, dx: float, dy: float) -> Zoom:
     """Moved along with a hand that goes so far, in widths and heights of the rectangle in which it is shown."""
     return zoom if zoom.fits else _inside(zoom.scale, zoom.x - dx / zoom.scale, zoom.y - dy / zoom.scale)

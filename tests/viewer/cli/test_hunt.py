@@ -61,6 +61,9 @@ def test_frames_before_are_part_of_a_picture(capfd: pytest.CaptureFixture[str]) 
 def test_an_exact_method_and_words_that_are_not_understood(capfd: pytest.CaptureFixture[str]) -> None:
     code, out, _ = run(capfd, "hunt", "marbles.aff", *SEARCH, "--method", "none")
     assert code == 0 and out.strip() == f"{5 * 96 * 96:,} pixels of 5 frames compared: none is wrong"
+    one = ("--frames", "5", "--size", "96x96", "--method", "none", "--threads", 1)
+    code, out, _ = run(capfd, "hunt", "marbles.aff", *one)
+    assert code == 0 and f"{96 * 96:,} pixels of 1 frame compared" in out, "a single frame"
     for arguments, said in (
         (("--frames", "50-99"), "the scene's frame numbers are 0 to 59"),
         (("--method", "luck"), "invalid choice: 'luck'"),

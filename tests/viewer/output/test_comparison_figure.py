@@ -58,5 +58,10 @@ def test_maps_of_work_have_one_range() -> None:
 def test_the_title_counts_the_frames_that_were_traced_before() -> None:
     drawn = shown(View.COLOR)
     asked = replace(drawn, recipe=replace(drawn.recipe, warmup=2))
-    for warmed, words in ((0, "frame 0, "), (1, ", after the frame before it"), (2, ", after the 2 frames before it")):
+    for warmed, words, of_old in (
+        (0, "frame 0, ", "frame 0, "),
+        (1, ", with what 1 earlier frame taught, ", ", after the frame before it, "),
+        (2, ", with what 2 earlier frames taught, ", ", after the 2 frames before it, "),
+    ):
         assert words in figure(replace(asked, warmed=warmed)).get_suptitle()
+        assert of_old in figure(replace(asked, warmed=warmed, edition=1)).get_suptitle(), "older figures keep theirs"

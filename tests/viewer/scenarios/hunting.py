@@ -100,15 +100,30 @@ def _to_a_find(d: Driver) -> None:
     d.settle()
     found = c.hunts.found
     assert c.hunts.hunt.whole and found.finds and found.frames == LAST // STEP + 5
-    d.context.item_click("//Hunt/**/1##find")
+    c.settings.change(samples=4)
+    d.settle()
+    d.context.item_click("//Hunt/**/##find 1")
     find = found.finds[0]
     d.wait(lambda: c.runs.current is None and c.selection.picked is not None, "the find", 60.0)
     d.settle()
     picked = c.selection.picked
     assert (picked.x, picked.y) == (find.x, find.y) and picked.wrong > 0
     assert tuple(c.frame.color[find.y, find.x].tolist()) == find.color
+    assert c.frame.settings.samples == 1 and c.session.settings.samples == 4, "refined, it is not as it was found"
+    left, top, right, bottom = c.session.zoom.shown()
+    assert right - left < 0.3 and left < find.x / 96 < right and top < find.y / 96 < bottom, "its pixel is too small"
+    d.wait(lambda: c.inspector.answer is not None, "what the lights do there", 20.0)
+    wrong = c.inspector.answer.wrong
+    assert wrong.count == c.frame.wrong[find.y, find.x]
+    if find.bounces == 0:
+        one, truth = wrong.lights[find.light], c.inspector.answer.lights[find.light]
+        assert (one.lit > 0) == find.lit and (truth.reached > 0) != find.lit
     d.context.item_click(f"//Hunt/**/{icons.ICON_FA_CODE_BRANCH}  Rays")
     d.wait(lambda: c.rays.tree is not None, "its rays", 20.0)
     assert any(ray.shadows is not None and ray.shadows.wrong.any() for ray in c.rays.tree.rays)
     d.ui.show_panel("Hunt")
     d.frames(3)
+    d.press(KEY.right_arrow)
+    d.settle()
+    assert c.frame.settings.samples == 4, "having moved, it gets its samples"
+    c.settings.change(samples=1)

@@ -16,7 +16,7 @@ def test_wrong_answers_are_those_of_the_method_that_is_shown():
         frame=make_frame(settings), tracing=SimpleNamespace(settings=settings), runs=SimpleNamespace(current=None)
     )
     text, color = wrong_answers(c)
-    assert text.startswith("3 wrong (") and color == ERROR
+    assert text.startswith("3 wrong answers (") and color == ERROR
     c.runs.current = SimpleNamespace(name="zoom test")
     text, color = wrong_answers(c)
     assert text == "wrong answers of the zoom test are in its own panel" and color != ERROR

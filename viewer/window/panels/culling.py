@@ -116,7 +116,8 @@ def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
         return None
     shadow = c.frame.statistics.shadow
     if shadow.wrong:
-        return f"{count(shadow.wrong)} wrong ({percent(shadow.wrong, shadow.due)})", ERROR
+        answers = f"{count(shadow.wrong)} wrong {'answer' if shadow.wrong == 1 else 'answers'}"
+        return f"{answers} ({percent(shadow.wrong, shadow.due)})", ERROR
     if not any((shadow.culled, shadow.candidates_only, shadow.dynamic_only, shadow.cache_hits, shadow.passed_over)):
         return "nothing culled", QUIET
-    return "none wrong", GOOD
+    return "no wrong answer", GOOD

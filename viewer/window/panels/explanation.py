@@ -10,6 +10,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from tracer.explanation import Explanation
 from tracer.frame import Frame
 from tracer.ray_reasons import unused
+from viewer.services.frame_answers import WrongAnswers, WrongLight
 from viewer.services.shadow_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, Part, nearest_first, others_named
 from viewer.state.picking import kind_of, primitive_in_words
 from viewer.state.projection import place
@@ -26,7 +27,7 @@ from viewer.state.views import (
 from viewer.window.panels import lights, marks
 from viewer.window.panels.marks import SHADE, with_alpha
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, checkbox, count, em, heading, paragraph, swatch, tooltip
+from viewer.window.widgets import ERROR, QUIET, checkbox, count, em, heading, paragraph, swatch, tooltip
 
 _LIT, _STOPPED = SHADOW_COLORS[ShadowMode.NON_SHADOW], (0.34, 0.71, 0.91)
 _BLOCKER = SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW]
@@ -56,15 +57,19 @@ def rows(ui: Ui) -> None:
         return
     if not answer.lights:
         paragraph("The scene has no lights.", QUIET)
+    if answer.wrong.count:
+        paragraph(wrong_in_words(answer.wrong), ERROR)
     receiver, listed = int(answer.frame.primitive[answer.y, answer.x]), answer.lights
     if len(listed) > lights.FEW:
         paragraph(summary(listed), QUIET)
         known, chosen = len(listed), lights.found(ui, "inspector")
-        listed = tuple(nearest_first([listed[light] for light in chosen if light < known])[:MOST_LIGHTS])
+        nearest = nearest_first([listed[light] for light in chosen if light < known])
+        nearest.sort(key=lambda one: one.light not in answer.wrong.lights)  # what is wrong comes first
+        listed = tuple(nearest[:MOST_LIGHTS])
     with light_rows("rays") as shown:
         for one in listed if shown else ():
             imgui.push_id(one.light)
-            _row(ui, one, receiver)
+            _row(ui, one, receiver, answer.wrong.lights.get(one.light))
             imgui.pop_id()
     if len(listed) == MOST_LIGHTS < len(answer.lights):
         paragraph(f"the nearest {MOST_LIGHTS} are listed and drawn", QUIET)
@@ -103,7 +108,24 @@ def light_rows(name: str) -> Iterator[bool]:
             imgui.end_table()
 
 
-def _row(ui: Ui, one: Explanation, receiver: int) -> None:
+def wrong_in_words(wrong: WrongAnswers) -> str:
+    """How much of what the picture shows at a pixel is not true, and where that is."""
+    here = wrong.count - wrong.beyond
+    text = f"The picture is wrong here: {here or wrong.beyond} shadow {'answer' if wrong.count == 1 else 'answers'}"
+    if not here:
+        return f"{text} at what is mirrored or seen through it (X lists the rays)."
+    return text + (f", and {wrong.beyond} at what is mirrored or seen through it (X)." if wrong.beyond else ".")
+
+
+def shown_in_words(wrong: WrongLight) -> str:
+    """What the picture has for a light, and that it is wrong."""
+    known = wrong.verdict.replace("_", " ").lower()
+    if wrong.samples == 1:
+        return f"{'lit' if wrong.lit else 'in shadow'} in the picture ({known}): wrong"
+    return f"{wrong.lit} of {wrong.samples} samples lit in the picture ({known}): {wrong.wrong} wrong"
+
+
+def _row(ui: Ui, one: Explanation, receiver: int, wrong: WrongLight | None) -> None:
     """A light; resting on it picks it out over the picture."""
     text, color = said(one)
     imgui.table_next_column()
@@ -112,7 +134,9 @@ def _row(ui: Ui, one: Explanation, receiver: int) -> None:
     if imgui.is_item_hovered():
         ui.pointed_light = one.light
     imgui.table_next_column()
-    paragraph(text)
+    if wrong is not None:
+        paragraph(shown_in_words(wrong), ERROR)
+    paragraph(text if wrong is None else f"truly {text}")
     _certificate(one.certificate, one.used)
     for sentence in sentences(ui, one, receiver):
         paragraph(sentence, QUIET)
@@ -187,14 +211,21 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(corner, end, True)
     lines = c.inspector.lines(frame)
+    point = place(frame, answer.lights[0].point) if answer.lights else None
+    centre = on_screen(point) if point is not None else None
+    radius = marks.radius_around_pixel(width / frame.width, height / frame.height)
     for shade in (True, False):
         for part, light, strokes in lines:
             alpha = _FADED if pointed not in (None, light) else 1.0
             color = imgui.get_color_u32(with_alpha(SHADE, alpha) if shade else ImVec4(*_COLORS[part], alpha))
             for stroke in strokes:
                 wide = em(_WIDTHS[part]) * (1.0 if stroke.seen else _UNSEEN) + (em(0.12) if shade else 0.0)
-                draw.add_line(on_screen(stroke.start), on_screen(stroke.end), color, max(1.0, wide))
+                ends = on_screen(stroke.start), on_screen(stroke.end)
+                for start, stop in [ends] if centre is None else marks.outside(*ends, centre, radius):
+                    draw.add_line(start, stop, color, max(1.0, wide))
     _ends(answer, frame, pointed, on_screen, draw)
+    if centre is not None:
+        marks.ring(draw, centre, radius)
     draw.pop_clip_rect()
 
 
@@ -205,7 +236,7 @@ def _ends(
     on_screen: Callable[[tuple[float, float]], ImVec2],
     draw: imgui.ImDrawList,
 ) -> None:
-    """A disc at each light that is drawn, a cross where its way ends before the point, and a ring around the point."""
+    """A disc at each light that is drawn, and a cross where its way ends before the point."""
     for one in answer.drawn:
         alpha = _FADED if pointed not in (None, one.light) else 1.0
         at = place(frame, one.light_position)
@@ -215,6 +246,3 @@ def _ends(
         stop = place(frame, one.blocked_at) if one.blocked_at is not None else None
         if stop is not None:
             marks.cross(draw, on_screen(stop), ImVec4(*_BLOCKER, alpha))
-    point = place(frame, answer.lights[0].point) if answer.lights else None
-    if point is not None:
-        marks.ring(draw, on_screen(point))

@@ -27,17 +27,25 @@ from viewer.window.widgets import (
     tooltip_above,
 )
 
-_COLUMNS = (("", 1.4), ("by", 2.6), ("pixel", 4.2), ("wrong", 2.8))
-_REST = ("frame", "primitive", "light")
+_COLUMNS = (  # the heading, whether it is at the right, and what it means
+    ("#", True, "the worst first"),
+    ("off by", True, "how far the colour is from the right one, of 1"),
+    ("pixel", True, "its column and row, from the upper left"),
+    ("frame", True, "of the path, or the one that it is near to"),
+    ("light", True, "whose answer is wrong, and how many others are wrong in the same way"),
+    ("primitive", False, "where that light is wrong: its number, and its object"),
+)
+_HEADINGS = tuple(heading for heading, _, _ in _COLUMNS)
 
 
 def show(ui: Ui) -> None:
     """The panel: what to search, the list of finds, and the one that was clicked."""
     hunts = ui.controller.hunts
+    chosen = _chosen(ui, hunts)
     side_by_side(
         lambda: _controls(ui, hunts),
         lambda size: _finds(ui, hunts, size),
-        lambda: _chosen(ui, hunts),
+        None if chosen is None else lambda: _details(ui, hunts, *chosen),
         em(16.0),
     )
 
@@ -98,64 +106,88 @@ def _finds(ui: Ui, hunts: HuntController, size: ImVec2) -> None:
         elif scene is None or not hunts.hunt.is_of(scene):
             paragraph(f"The last hunt was made {hunts.hunt.made_in(scene)}.", QUIET)
         else:
-            clipped(in_window_style(found.summary), QUIET if found.wrong_pixels else GOOD)
+            paragraph(in_window_style(found.summary), QUIET if found.wrong_pixels else GOOD)
             if found.finds:
                 _table(ui, hunts, found, scene)
     imgui.end_child()
 
 
 def _table(ui: Ui, hunts: HuntController, found: Findings, scene: Scene) -> None:
-    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_y | imgui.TableFlags_.sizing_stretch_prop
-    if not imgui.begin_table("finds", len(_COLUMNS) + len(_REST), int(flags)):
+    """As wide as its columns need, and scrolled where that is wider than the room."""
+    rows = [_cells(number, find, scene) for number, find in enumerate(found.finds)]
+    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_x | imgui.TableFlags_.scroll_y
+    flags |= imgui.TableFlags_.sizing_fixed_fit
+    if not imgui.begin_table("finds", len(_COLUMNS), int(flags)):
         return
-    imgui.table_setup_scroll_freeze(0, 1)
-    for heading, width in _COLUMNS:
-        imgui.table_setup_column(heading, int(imgui.TableColumnFlags_.width_fixed), em(width))
-    for heading, weight in zip(_REST, (0.9, 1.7, 0.7), strict=True):
-        imgui.table_setup_column(heading, int(imgui.TableColumnFlags_.width_stretch), weight)
-    imgui.table_headers_row()
-    for number, find in enumerate(found.finds):
+    imgui.table_setup_scroll_freeze(1, 1)
+    widths = [max(imgui.calc_text_size(text).x for text in column) for column in zip(_HEADINGS, *rows, strict=True)]
+    for (heading, _, _), width in zip(_COLUMNS, widths, strict=True):
+        imgui.table_setup_column(heading, int(imgui.TableColumnFlags_.width_fixed), width)
+    imgui.table_next_row(int(imgui.TableRowFlags_.headers))
+    for (heading, right, tip), width in zip(_COLUMNS, widths, strict=True):
+        imgui.table_next_column()
+        _cell(heading, width, right)
+        tooltip(tip)
+    for number, (find, row_) in enumerate(zip(found.finds, rows, strict=True)):
         imgui.table_next_row()
         imgui.table_next_column()
         spans = imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_overlap
-        if imgui.selectable(f"{number + 1}##find", hunts.chosen == number, int(spans))[0]:
+        start = imgui.get_cursor_pos()
+        if imgui.selectable(f"##find {number + 1}", hunts.chosen == number, int(spans))[0]:
             hunts.go(number)
             ui.show_panel("Inspector")
-        tooltip_above("fly there: the frames before it are traced again, and its pixel is selected")
-        more = f" (+{find.more_lights})" if find.more_lights else ""
-        for text in (
-            f"{find.difference:.3f}",
-            f"{find.x}, {find.y}",
-            f"{find.pixels}",
-            finds.frame_of(find, scene),
-            finds.primitive_of(find, scene),
-            f"{find.light}{more}",
-        ):
-            imgui.table_next_column()
-            clipped(text)
+        tooltip_above(f"Fly there. {finds.in_its_frame(find)}")
+        imgui.set_cursor_pos(start)
+        for place, (text, (_, right, _), width) in enumerate(zip(row_, _COLUMNS, widths, strict=True)):
+            if place:
+                imgui.table_next_column()
+            _cell(text, width, right)
     imgui.end_table()
 
 
-def _chosen(ui: Ui, hunts: HuntController) -> None:
-    """What is wrong at the find that was clicked, in words and colours, and its figure."""
+def _cells(number: int, find: Find, scene: Scene) -> tuple[str, ...]:
+    more = f" (+{find.more_lights})" if find.more_lights else ""
+    return (
+        f"{number + 1}",
+        f"{find.difference:.3f}",
+        f"{find.x}, {find.y}",
+        finds.frame_of(find, scene),
+        f"{find.light}{more}",
+        finds.primitive_of(find, scene),
+    )
+
+
+def _cell(text: str, width: float, right: bool) -> None:
+    """A text in a column of some width, at its right if it is a number."""
+    if right:
+        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(width - imgui.calc_text_size(text).x, 0.0))
+    imgui.text_unformatted(text)
+
+
+def _chosen(ui: Ui, hunts: HuntController) -> tuple[int, Find, Scene] | None:
+    """The find that was clicked, by its place and itself, with its scene."""
     found, scene = hunts.found, ui.controller.session.scene
     if found is None or hunts.hunt is None or scene is None or not hunts.hunt.is_of(scene):
-        return
+        return None
     if hunts.chosen is None or hunts.chosen >= len(found.finds):
-        if found.finds:
-            paragraph("Click a find to fly there.", QUIET)
-        return
-    find = found.finds[hunts.chosen]
+        return None
+    return hunts.chosen, found.finds[hunts.chosen], scene
+
+
+def _details(ui: Ui, hunts: HuntController, number: int, find: Find, scene: Scene) -> None:
+    """What is wrong at a find, in words and colours, and its figure."""
     _colors(find)
-    for sentence in finds.in_words(find, scene):
+    for sentence in (*finds.in_words(find, scene), finds.in_its_frame(find)):
         paragraph(in_window_style(sentence))
+    if ui.controller.tracing.holds_one_sample:
+        paragraph("The picture stays at 1 sample a pixel, as it was found, until you move.", QUIET)
     imgui.begin_disabled(ui.controller.runs.current is not None)
     if imgui.button(f"{icons.ICON_FA_PAPER_PLANE}  Fly there"):
-        hunts.go(hunts.chosen)
+        hunts.go(number)
         ui.show_panel("Inspector")
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK}  Figure"):
-        hunts.save_figure(hunts.chosen)
+        hunts.save_figure(number)
     tooltip_above("save it beside the right picture; shadowcull check draws it again")
     imgui.end_disabled()
     imgui.same_line()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer.window.widgets import em
@@ -19,6 +21,30 @@ def ring(draw: imgui.ImDrawList, at: ImVec2, radius: float = 0.4, alpha: float =
     """A white ring of so many ems around a point of the screen."""
     draw.add_circle(at, em(radius), imgui.get_color_u32(SHADE), 0, em(0.22))
     draw.add_circle(at, em(radius), imgui.get_color_u32(ImVec4(1.0, 1.0, 1.0, alpha)), 0, em(0.1))
+
+
+def radius_around_pixel(width: float, height: float) -> float:
+    """That of a ring, in ems, around a pixel of so many of the screen's, none of which it covers."""
+    return max(0.4, (0.5 * math.hypot(width, height)) / em(1.0) + 0.2)
+
+
+def outside(start: ImVec2, end: ImVec2, centre: ImVec2, radius: float) -> list[tuple[ImVec2, ImVec2]]:
+    """The parts of a line that are not within so many ems of a point."""
+    way = end.x - start.x, end.y - start.y
+    off = start.x - centre.x, start.y - centre.y
+    a = way[0] ** 2 + way[1] ** 2
+    b, c = off[0] * way[0] + off[1] * way[1], off[0] ** 2 + off[1] ** 2 - em(radius) ** 2
+    root = b * b - a * c
+    if a <= 0.0 or root <= 0.0:
+        return [] if c < 0.0 else [(start, end)]
+    first, last = (-b - math.sqrt(root)) / a, (-b + math.sqrt(root)) / a
+
+    def at(part: float) -> ImVec2:
+        return ImVec2(start.x + part * way[0], start.y + part * way[1])
+
+    if last <= 0.0 or first >= 1.0:
+        return [(start, end)]
+    return [(start, at(first))] * (first > 0.0) + [(at(last), end)] * (last < 1.0)
 
 
 def cross(draw: imgui.ImDrawList, at: ImVec2, color: ImVec4, arm: float = 0.28) -> None:

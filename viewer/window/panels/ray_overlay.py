@@ -49,12 +49,15 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     picked_out = [row for row in (rays.selected, rays.pointed) if row is not None]
     lines = rays.lines(frame)
     thin = 0.55 if len(lines) > _MANY else 1.0
+    clicked = place(frame, rays.tree.rays[0].end) if rays.tree.rays[0].shadows is not None else None
+    radius = marks.radius_around_pixel(width / frame.width, height / frame.height)
+    hole = (on_screen(clicked), radius) if clicked is not None else None
     for line in lines:
-        _line(draw, on_screen, line, _FADED if picked_out else 1.0, thin)
+        _line(draw, on_screen, line, hole, _FADED if picked_out else 1.0, thin)
     for row in picked_out:
         for line in _of_row(rays, frame, lines, row):
-            _line(draw, on_screen, line, 1.0)
-    _points(draw, on_screen, rays, frame, rays.pointed or rays.selected)
+            _line(draw, on_screen, line, hole, 1.0)
+    _points(draw, on_screen, rays, frame, rays.pointed or rays.selected, radius)
     _node(draw, on_screen, rays, frame)
     draw.pop_clip_rect()
 
@@ -72,22 +75,38 @@ def _of_row(rays: RayInspector, frame: Frame, lines: Sequence[RayLine], row: Row
     return found
 
 
-def _line(draw: imgui.ImDrawList, on_screen: Callable, line: RayLine, alpha: float, width: float = 1.0) -> None:
+def _line(
+    draw: imgui.ImDrawList,
+    on_screen: Callable,
+    line: RayLine,
+    hole: tuple[ImVec2, float] | None,
+    alpha: float,
+    width: float = 1.0,
+) -> None:
+    """All of it but what would cover the clicked pixel, within so many ems of a point."""
     around = _PALE if line.part is Part.DARK else SHADE
     for stroke in line.strokes:
         seen = alpha * (1.0 if stroke.seen else _BEHIND)
         a, b, color = on_screen(stroke.start), on_screen(stroke.end), ImVec4(*_COLORS[line.part], seen)
-        marks.line(draw, a, b, color, width * _WIDTHS[line.part], with_alpha(around, seen))
+        for start, end in [(a, b)] if hole is None else marks.outside(a, b, *hole):
+            marks.line(draw, start, end, color, width * _WIDTHS[line.part], with_alpha(around, seen))
 
 
-def _points(draw: imgui.ImDrawList, on_screen: Callable, rays: RayInspector, frame: Frame, chosen: Row | None) -> None:
+def _points(
+    draw: imgui.ImDrawList,
+    on_screen: Callable,
+    rays: RayInspector,
+    frame: Frame,
+    chosen: Row | None,
+    radius: float,
+) -> None:
     """A ring around each point that is shaded, a larger one at the clicked one; a cross where the chosen ray ends."""
     assert rays.tree is not None
     for ray in rays.tree.rays:
         at = place(frame, ray.end) if ray.shadows is not None else None
         if at is not None:
             alpha = 1.0 if chosen is None or chosen.ray == ray.number else 0.5
-            marks.ring(draw, on_screen(at), 0.4 if ray.parent < 0 else 0.26, alpha)
+            marks.ring(draw, on_screen(at), radius if ray.parent < 0 else 0.26, alpha)
     if chosen is None or len(chosen.places) != 1:
         return
     ray, one = rays.tree.rays[chosen.ray], int(chosen.places[0])

@@ -23,18 +23,22 @@ _TIPS = {
 def side_by_side(
     controls: Callable[[], None],
     plot: Callable[[ImVec2], None],
-    table: Callable[[], None],
+    table: Callable[[], None] | None,
     table_width: float,
     scrolls: bool = False,
 ) -> None:
     """Controls, plot and table in a row; one below the other where the panel is too narrow for that.
 
-    A table that `scrolls` does so in half of what the controls leave, where it is wider than that."""
+    Without a table, the plot has its room.  A table that `scrolls` does so in half of what the controls leave, where it
+    is wider than that."""
     room = imgui.get_content_region_avail()
     spacing = imgui.get_style().item_spacing.x
     left = em(14.0)
     if scrolls:
         table_width = min(table_width, max(0.5 * (room.x - left), em(18.0)))
+    if table is None:
+        _two(controls, plot, left, spacing, room)
+        return
     middle = room.x - left - table_width - 2.0 * spacing
     if middle < em(16.0):  # before they go one below the other, the table gives what it can
         table_width = max(em(11.0), table_width - (em(16.0) - middle))
@@ -55,6 +59,22 @@ def side_by_side(
     if imgui.begin_child("table", ImVec2(table_width, 0.0)):
         table()
     imgui.end_child()
+
+
+def _two(
+    controls: Callable[[], None], plot: Callable[[ImVec2], None], left: float, spacing: float, room: ImVec2
+) -> None:
+    """Controls and plot alone, side by side where there is room for that."""
+    middle = room.x - left - spacing
+    if middle < em(12.0):
+        controls()
+        plot(ImVec2(room.x, em(14.0)))
+        return
+    if imgui.begin_child("controls", ImVec2(left, 0.0)):
+        controls()
+    imgui.end_child()
+    imgui.same_line()
+    plot(ImVec2(middle, max(room.y, em(8.0))))
 
 
 def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: str) -> None:
