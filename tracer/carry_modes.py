@@ -8,8 +8,8 @@ The paper's modes speak of static occluders and of lights (§2.2), and so an edi
 - Where static geometry has gone, the half of a mode is dropped that says that rays were blocked, of every primitive and
   light between which it may have been: FULL_SHADOW becomes INIT, PARTIAL_SHADOW becomes NON_SHADOW.  Where some has
   come, it is the other half (`tracer.culling.dependence`).  These primitives must be seen whole anew.
-- What has become static has no modes yet, and what can move has none.  What is static elsewhere than before has both gone
-  and come, and has none yet.
+- What has become static has no modes yet, and what can move has none.  What is static elsewhere than before has gone
+  and come, and has none yet either.
 """
 
 from __future__ import annotations
