@@ -58,6 +58,8 @@ class Explanation:
         little above the surface.
     blocked_at : tuple of float or None
         Where the first primitive blocks the light.
+    used : bool
+        Whether the frame has looked the certificate up; the method "auto" does so only where that saves time.
     """
 
     light: int
@@ -71,6 +73,7 @@ class Explanation:
     blocked_at: Point | None
     samples: int = 1
     reached: int = 0
+    used: bool = True
 
 
 def explain(renderer: Renderer, frame: Frame, x: int, y: int) -> tuple[Explanation, ...]:
@@ -126,6 +129,7 @@ def explain(renderer: Renderer, frame: Frame, x: int, y: int) -> tuple[Explanati
                 blocked_at=_triple(lamps.samples[shown] + reach[shown] * ways[shown]) if len(blocked) else None,
                 samples=len(facing),
                 reached=len(facing) - len(blocked),
+                used=renderer.takes_part,
             )
         )
     return tuple(explanations)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tracer.culling import modes
 from tracer.culling.cells import units_of
 from tracer.culling.verdicts import Answered, Because, Verdict
+from tracer.explanation import NO_CERTIFICATE
 from tracer.method import Method
 from tracer.methods.watching import ANSWERED, LIT, Seen
 from tracer.scene.arrays import Float32
@@ -20,6 +21,11 @@ if TYPE_CHECKING:
     from tracer.methods.interface import ShadowMethod, Stage
 
 MOST_NAMED = 64  # lights of a point that are passed over and whose blockers are looked for
+
+
+def unused(state: str) -> str:
+    """What is said of a certificate that nobody has looked up."""
+    return f"proven {state}, unused"
 
 
 def primitive_of(seen: Seen, row: int) -> int:
@@ -35,16 +41,23 @@ def end_of(seen: Seen, row: int) -> Float32:
 def known_of(
     work: FrameInProgress, stages: list[tuple[ShadowMethod, Stage]], seen: Seen, row: int, light: int, is_point: bool
 ) -> str:
-    """What was known of a point and a light although its ray was traced, in a word, or nothing."""
+    """What was known of a point and a light although its ray was traced, in a word or two, or nothing.
+
+    A certificate that a method has, but does not look up as long as that takes longer than it saves (`auto`), is
+    `unused`."""
     if Method.parse(work.settings.method).uses_modes and modes.has_shadow_mode(work.words, light):
         word = work.words[_unit(work, seen, row)]
         occlusion = modes.OcclusionMode(int(word) & 3)
         whole = occlusion is modes.OcclusionMode.FULLY_RENDERED
         return modes.ShadowMode(int(modes.shadow_mode(word, light))).name if whole else occlusion.name
     if is_point:
-        for method in dict.fromkeys(method for method, _ in stages):
-            if (method.explain(primitive_of(seen, row), end_of(seen, row), light) or ("",))[0] == "candidates":
-                return "candidates"
+        asked = {method for method, _ in stages}
+        for method in work.methods:
+            state = (method.explain(primitive_of(seen, row), end_of(seen, row), light) or (NO_CERTIFICATE,))[0]
+            if method not in asked and state != NO_CERTIFICATE:
+                return unused(state)
+            if state == "candidates":
+                return state
     return ""
 
 

@@ -264,6 +264,11 @@ class Renderer:
         answers = (method.explain(primitive, point, light) for method in self._last)
         return next((answer for answer in answers if answer is not None), None)
 
+    @property
+    def takes_part(self) -> bool:
+        """Whether what the methods of the last frame know was asked for its shadow rays, and not only learnt."""
+        return all(method.takes_part for method in self._last)
+
     def beside(self) -> Renderer:
         """Make another renderer of the same world, with modes and counters of its own.
 

@@ -60,7 +60,8 @@ class ShadowRays:
         For rays that were culled: the primitives that this rests on, where it rests on some.
     known : dict of int to str
         For rays that were traced: what was known all the same, but did not do. That is a mode by its name: the
-        primitive's occlusion mode unless it was fully rendered, else its shadow mode; or "candidates".
+        primitive's occlusion mode unless it was fully rendered, else its shadow mode; or "candidates"; or the state of
+        a certificate that was not looked up, as "proven full, unused".
     """
 
     light: NDArray[np.int32]

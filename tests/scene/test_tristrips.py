@@ -9,6 +9,8 @@ import pytest
 import trimesh
 
 from tracer.scene.load import load_scene
+from tracer.scene.mesh_options import AS_IN_FILE, IN_STUDIO
+from tracer.scene.model import SceneError
 from tracer.scene.tristrips import triangles_of_strips
 
 HEIGHT, WIDTH = 5, 7
@@ -78,3 +80,69 @@ def test_a_strip_that_names_no_vertex_is_one_line(tmp_path):
     with pytest.raises(Exception, match="refers to a vertex that is not there") as error:
         load_scene(tmp_path / "a.ply")
     assert "\n" not in str(error.value)
+
+
+# --- as other programs write them -----------------------------------------------------------------------
+
+CORNERS = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (1.0, 1.0, 0.0), (0.0, 2.0, 1.0)]
+FACES = [(0, 1, 2), (2, 1, 3), (2, 3, 4)]
+"""Of the strips 0 1 2 3 and 2 3 4."""
+
+
+def lists(path, fmt, kind, strips, after="", tail=b"", vertices=CORNERS):
+    """Write a PLY file with a list for each strip, and what stands after them."""
+    head = f"ply\nformat {fmt} 1.0\ncomment strips\nelement vertex {len(vertices)}\n"
+    head += "property float x\nproperty float y\nproperty float z\n"
+    head += f"element tristrips {len(strips)}\nproperty list uchar {kind} vertex_indices\n{after}end_header\n"
+    if fmt == "ascii":
+        rows = [" ".join(map(str, row)) for row in (*vertices, *([len(s), *s] for s in strips))]
+        path.write_text(head + "\n".join(rows) + "\n")
+        return path
+    order, code = "<" if "little" in fmt else ">", {"int": "i", "uint": "I", "ushort": "H", "char": "b"}[kind]
+    body = b"".join(struct.pack(f"{order}3f", *v) for v in vertices)
+    body += b"".join(struct.pack(f"{order}B{len(s)}{code}", len(s), *s) for s in strips)
+    path.write_bytes(head.encode() + body + tail)
+    return path
+
+
+def corners_of(path):
+    return load_scene(path).objects[0].triangles.corners.tolist()
+
+
+@pytest.mark.parametrize("fmt", ["ascii", "binary_little_endian", "binary_big_endian"])
+@pytest.mark.parametrize(("kind", "end"), [("int", -1), ("uint", 2**32 - 1), ("ushort", 2**16 - 1), ("char", -1)])
+@pytest.mark.parametrize("strips", [[[0, 1, 2, 3, None, 2, 3, 4, None]], [[0, 1, 2, 3], [], [2, 3, 4, None]]])
+def test_strips_may_be_several_and_end_with_the_highest_number(tmp_path, fmt, kind, end, strips):
+    strips = [[end if vertex is None else vertex for vertex in strip] for strip in strips]
+    path = lists(tmp_path / "a.ply", fmt, kind, strips)
+    assert corners_of(path) == [[list(CORNERS[vertex]) for vertex in face] for face in FACES]
+
+
+def test_the_highest_number_may_be_a_vertex(tmp_path):
+    many = [(float(k), 0.0, 0.0) for k in range(2**16 - 1)] + [(0.0, 1.0, 0.0)]
+    path = lists(tmp_path / "a.ply", "binary_little_endian", "ushort", [[0, 1, 2**16 - 1], [1, 2]], vertices=many)
+    assert corners_of(path) == [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]]
+
+
+def test_what_stands_after_strips_of_different_lengths_is_kept(tmp_path):
+    after = "element face 1\nproperty list uchar int vertex_indices\n"
+    tail = struct.pack("<B3i", 3, 0, 1, 4)
+    path = lists(tmp_path / "a.ply", "binary_little_endian", "int", [[0, 1, 2, 3], [2, 3, 4]], after, tail)
+    assert corners_of(path) == [[list(CORNERS[vertex]) for vertex in (0, 1, 4)]], "its faces are the mesh"
+
+
+@pytest.mark.parametrize("kind", ["ascii", "binary_little_endian"])
+@pytest.mark.parametrize("strips", [[], [[]], [[0, 1]], [[], []]])
+def test_strips_without_a_triangle_are_one_line_that_names_the_file(tmp_path, kind, strips):
+    path = lists(tmp_path / "a.ply", kind, "int", strips)
+    for options in (AS_IN_FILE, IN_STUDIO):
+        scene = load_scene(path, meshes=options)
+        assert scene.warnings[0].startswith(f"{path}: ") and "has no triangles" in scene.warnings[0]
+
+
+@pytest.mark.parametrize("cut", [1, 9, 20])
+def test_strips_that_end_too_soon_are_one_line(tmp_path, cut):
+    path = lists(tmp_path / "a.ply", "binary_little_endian", "int", [[0, 1, 2, 3], [2, 3, 4]])
+    path.write_bytes(path.read_bytes()[:-cut])
+    with pytest.raises(SceneError, match=r"a\.ply: cannot be read as PLY: it is damaged or incomplete"):
+        load_scene(path)

@@ -12,13 +12,17 @@ from tests.tracing.brute import meet_all, primitives_there
 from tests.tracing.glassy import SCENE
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.verdicts import Verdict
+from tracer.explanation import explain
 from tracer.frame import Frame, Settings
 from tracer.geometry.rays import ray_batch
+from tracer.methods.payoff import Payoff, Plan
+from tracer.ray_reasons import unused
 from tracer.ray_tree import ray_tree
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Cancelled
 from tracer.told_rays import TRACED, RayKind, RayTree
+from viewer.state.verdicts import WHY_TRACED
 
 WIDTH, HEIGHT = 16, 12
 METHODS = ("none", "paper", "cells", "certified", "paper+cache", "auto")
@@ -67,7 +71,7 @@ def test_all_trees_together_are_the_frame(scene_file: Path, method: str, acceler
         assert sum(known.values()) == counts[Verdict.TRACED]
         assert set(known) <= {"INIT", "PARTIALLY_OCCLUDED", "DYNAMIC", "PARTIAL_SHADOW"} and len(known) > 1
     else:
-        assert set(known) <= {"candidates"}
+        assert set(known) <= {"candidates"} or method == "auto"
     culled = sum(number for verdict, number in counts.items() if verdict.culled)
     assert culled == shadow.due - counts[Verdict.TRACED] and (culled > 0 or method in ("none", "auto"))
     if accelerator == "kdtree" and method in ("none", "paper", "cells"):
@@ -76,6 +80,25 @@ def test_all_trees_together_are_the_frame(scene_file: Path, method: str, acceler
         assert sum(int(s.tests.sum()) for s in shadows) == shadow.intersection_tests
         others = [ray for tree in trees for ray in tree.rays if ray.kind is not RayKind.PRIMARY]
         assert sum(ray.steps for ray in others) == frame.statistics.secondary.traversal_steps
+
+
+def test_certificates_that_auto_does_not_look_up_are_told_as_in_the_inspector(
+    scene_file: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(Payoff, "plan", lambda self, *_: Plan(seconds=1.0))
+    renderer, frame = rendered(scene_file, "auto", "bvh8")
+    told: Counter[str] = Counter()
+    for tree in all_trees(renderer, frame)[::5]:
+        shadows = tree.rays[0].shadows
+        for one in explain(renderer, frame, tree.x, tree.y):
+            place = shadows.of_light(one.light).start
+            if one.due:
+                assert not one.used
+                assert shadows.verdict[place] == TRACED
+                expected = "" if one.certificate == "none" else unused(one.certificate)
+                assert shadows.known.get(place, "") == expected
+                told[expected] += 1
+    assert told[""] < told.total() and set(told) - {""} <= set(WHY_TRACED), told
 
 
 def test_a_tree_branches_where_the_surface_says(scene_file: Path):

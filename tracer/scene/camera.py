@@ -46,7 +46,7 @@ class Camera:
                 for key, default in (("position", ()), ("direction", ()), ("up", (0, 1, 0)))
             )
             angle = float(data.get("angle", 45.0))
-        except (TypeError, ValueError, AttributeError):
+        except (TypeError, ValueError, AttributeError, OverflowError):
             raise ValueError("a camera needs lists of numbers: position, direction, up; and an angle") from None
         vectors = (position, direction, up)
         if any(len(v) != 3 for v in vectors) or not np.all(np.isfinite([*position, *direction, *up, angle])):

@@ -32,7 +32,7 @@ from tracer.scene.pieces import Mesh, Piece
 from tracer.scene.punctual_lights import has_lights, punctual_lights
 from tracer.scene.studio import build_studio, with_floor
 from tracer.scene.textures import open_image
-from tracer.scene.tristrips import with_strips
+from tracer.scene.tristrips import one_strip, with_strips
 from tracer.scene.upright import guess
 
 MESH_EXTENSIONS = (".obj", ".ply", ".stl", ".gltf", ".glb")
@@ -81,7 +81,7 @@ def load_mesh(
         report(f"Reading {path.name}", 0.5 + 0.5 * i / len(nodes))
         matrix, name = model.graph[node]
         mesh = model.geometry[name]
-        if not hasattr(mesh, "faces"):
+        if not hasattr(mesh, "faces") or not len(mesh.faces):
             skipped.append(f"{path}: {name!a} has no triangles; it is left out")
             continue
         for shape, material, texture in _shapes(mesh, _MeshPlace(path, name), table, crease):
@@ -174,7 +174,8 @@ def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str], bytes]:
         raise SceneError(f"{path}: cannot be read: {error.strerror or error}; check it") from None
     try:
         with quiet(), only_known_images():
-            model = trimesh.load_scene(BytesIO(data), file_type=kind.lower(), resolver=Beside(), process=False)
+            readable = one_strip(data) if kind.lower() == "ply" else data
+            model = trimesh.load_scene(BytesIO(readable), file_type=kind.lower(), resolver=Beside(), process=False)
             model = with_strips(model)
             _check_nesting(model.graph.transforms.parents, path)
             triangles = 0

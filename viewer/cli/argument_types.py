@@ -97,8 +97,10 @@ def pixel(text: str) -> tuple[int, int]:
 def span(text: str) -> tuple[int, int]:
     """The first and the last of some frames."""
     match = re.fullmatch(r"(\d{1,9})-(\d{1,9})", text.strip(), re.ASCII)
-    if not match or int(match[1]) > int(match[2]):
+    if not match:
         raise argparse.ArgumentTypeError(f"{text!r} are not frames; give the first and the last, like 0-99")
+    if int(match[1]) > int(match[2]):
+        raise argparse.ArgumentTypeError(f"{text!r}: the last frame, {int(match[2])}, is before the first")
     return int(match[1]), int(match[2])
 
 

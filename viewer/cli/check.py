@@ -30,9 +30,11 @@ from viewer.output.recipe import Recipe
 from viewer.services import comparison, stills
 from viewer.services.scene_files import find_scene
 from viewer.state.session import Snapshot
-from viewer.util.messages import in_one_line, printable
+from viewer.util.messages import ERROR, in_one_line, printable
 from viewer.util.version import program_version
 
+KINDS = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", exr.ENDING: b"\x76\x2f\x31\x01"}
+"""How a file of each kind that is checked begins."""
 ROUNDING = 2  # of 255, by which a GPU may draw a view otherwise
 
 
@@ -56,10 +58,11 @@ class Checker:
         self._world: tuple[str, World] | None = None
 
     def check(self, path: Path) -> Verdict:
-        """Raises Cancelled; every other failure is a verdict."""
+        """Raises Cancelled, and ValueError or OSError for a file that cannot be read, or is of no kind that can be
+        checked; every other failure is a verdict."""
+        kind = _kind_of(path)
         try:
-            kinds = {".pdf": self._check_pdf, exr.ENDING: self._check_exr}
-            return kinds.get(path.suffix.lower(), self._check_png)(path)
+            return {".pdf": self._check_pdf, exr.ENDING: self._check_exr}.get(kind, self._check_png)(path)
         except Cancelled:
             raise
         except (SceneError, ValueError, OSError) as error:
@@ -89,7 +92,11 @@ class Checker:
         scene, wanted = self._prepared(path, snapshot, wanted, (wanted.settings.method,))
         stills.check_light(wanted, scene)
         renderer = Renderer(scene, wanted.settings, world=self._world_of(scene, wanted))
-        return stills.trace(renderer, wanted, cancelled=self._work.cancelled), wanted
+
+        def tell(done: int, frames: int) -> None:
+            self._work.count(f"{path.name}, frame {done + 1} of {frames}", done, frames)
+
+        return stills.trace(renderer, wanted, on_frame=tell, cancelled=self._work.cancelled), wanted
 
     @property
     def _open_scene(self) -> Scene:
@@ -127,7 +134,11 @@ class Checker:
         wanted = comparison.from_json(snapshot, size, data["figure"])
         scene, common = self._prepared(path, snapshot, wanted.recipe, wanted.methods)
         wanted = replace(wanted, recipe=common)
-        shown = comparison.trace(scene, wanted, self._world_of(scene, common), cancelled=self._work.cancelled)
+
+        def tell(method: str, done: int, frames: int) -> None:
+            self._work.count(f"{path.name}, {method}, frame {done + 1} of {frames}", done, frames)
+
+        shown = comparison.trace(scene, wanted, self._world_of(scene, common), tell, self._work.cancelled)
         with tempfile.TemporaryDirectory() as folder:
             again = Path(folder) / f"again{ending}"
             # What it carries is what the other carried: times and versions are of then.
@@ -209,14 +220,38 @@ def _counted(then: Any, now: Mapping[str, Any]) -> str:
     return f"; shadow rays {told}" if told else ""
 
 
+def _kind_of(path: Path) -> str:
+    """The ending of the kind that a file's first bytes say it is of.
+
+    Raises ValueError, in one line, for another kind, and OSError for a file that cannot be read."""
+    data = read_regular(path)
+    for ending, start in KINDS.items():
+        if data.startswith(start):
+            return ending
+    raise ValueError("not a file that can be checked; check reads PNG and EXR pictures, and figures as PNG or PDF")
+
+
+def _why(error: Exception) -> str:
+    """Why a file cannot be read."""
+    if isinstance(error, FileNotFoundError):
+        return "no such file"
+    return getattr(error, "strerror", None) or str(error)
+
+
 def check(options: Namespace) -> bool:
-    """Check all files and print a line for each; returns whether all are true."""
+    """Check all files and print a line for each, an error for those that cannot be read; returns whether all are
+    true."""
     good = True
     with working() as work:
         checker = Checker(options, work)
         for number, path in enumerate(options.pictures):
             work.count(f"checking {path.name}", number, len(options.pictures))
-            verdict = checker.check(path)
+            try:
+                verdict = checker.check(path)
+            except (ValueError, OSError) as error:
+                work.note(f"{ERROR}{path}: {_why(error)}")
+                good = False
+                continue
             good &= verdict.true is True
             print(printable(f"{path}: {verdict}"), flush=True)
     return good

@@ -110,9 +110,10 @@ def print_table(table: Table) -> None:
     console.print(table)
 
 
-def statistics_table(statistics: FrameStatistics, title: str, verified: bool = False) -> Table:
+def statistics_table(statistics: FrameStatistics, title: str, verified: bool = False, remark: str = "") -> Table:
     """The counters of a frame, primary, secondary and shadow rays apart; wrong answers where it was verified."""
-    table = Table(title=title, title_justify="left", title_style="bold", caption=statistics.decision or None)
+    caption = "\n".join(filter(None, (statistics.decision, remark))) or None
+    table = Table(title=title, title_justify="left", title_style="bold", caption=caption)
     table.caption_justify = "left"
     table.add_column("")
     for name in ("primary", "secondary", "shadow"):

@@ -32,14 +32,18 @@ def add_edits(parser: argparse.ArgumentParser) -> None:
 
 
 def _moved(text: str) -> tuple[int, tuple[float, float, float]]:
+    from tracer.scene.limits import LARGEST
+
     number, equals, place = text.partition("=")
     try:
         x, y, z = (float(part) for part in place.split(","))
         found = int(number), (x, y, z)
     except ValueError:
         found = -1, (0.0, 0.0, 0.0)
-    if not equals or found[0] < 0 or not all(abs(part) <= 1e12 for part in found[1]):
+    if not equals or found[0] < 0:
         raise argparse.ArgumentTypeError(f"{text!r} is no light and place; give them like 2=1.5,3,-0.5")
+    if not all(abs(part) <= LARGEST for part in found[1]):
+        raise argparse.ArgumentTypeError(f"{text!r}: a light is within {LARGEST:g} of the origin along each axis")
     return found
 
 

@@ -100,8 +100,8 @@ examples:
 
 A picture carries its scene, camera, time, settings, view and the frames that its modes came from. It is true if it
 is the same again, bit for bit; a view that a GPU has drawn may be off by rounding. Otherwise the line says how many
-pixels differ, and what has changed since: a part of the scene, the version, or the file itself. The exit code is 0
-only if all are true.
+pixels differ, and what has changed since: a part of the scene, the version, or the file itself. Files that are missing,
+or none of these kinds, are errors. The exit code is 0 only if all are true.
 """
 
 BENCH = """\

@@ -13,7 +13,7 @@ from tracer.scene.load import check_scene_file, load_visible_scene
 from viewer.cli.console import print_table, working
 from viewer.cli.edit_options import edited_scene
 from viewer.cli.mesh_arguments import mesh_options
-from viewer.cli.render import check_display, recipe_of
+from viewer.cli.render import check_display, recipe_of, times_before
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import comparison_figure
 from viewer.output.comparison_figure import ENDINGS, Crop, Shown
@@ -46,6 +46,7 @@ def figure(path: Path, options: Namespace) -> None:
         stills.check_light(recipe, scene)
         if not stills.lights_fit(recipe, scene):
             raise ValueError(f"--view {view.value}: too many lights for pictures of this size")
+        times_before(scene, recipe.time, recipe.warmup, work)
         prepare_kernels(work, len(scene.lights), options.accelerator, *wanted.methods)
         world = World(scene, recipe.time, options.accelerator, work.progress)
 

@@ -78,7 +78,7 @@ def bench() -> Parser:
     add_scene(parser)
     add(
         "--methods",
-        type=lambda text: [name.strip() for name in text.split(",")],
+        type=several(method),
         default=["paper"],
         metavar="M,...",
         help=f"which methods: {methods()}; none is always measured too (default: paper)",

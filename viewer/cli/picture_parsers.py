@@ -141,7 +141,8 @@ def check() -> Parser:
         epilog=examples.CHECK,
     )
     add = parser.add_argument
-    add("pictures", nargs="+", type=Path, metavar="FILE", help="a .png that this program saved, or a .pdf of figure")
+    help_ = "a .png or .exr that this program saved, or a .png or .pdf of figure"
+    add("pictures", nargs="+", type=Path, metavar="FILE", help=help_)
     help_ = "another folder than its own that a scene may read files from; may be given several times"
     add("--folder", type=Path, action="append", default=[], metavar="DIR", help=help_)
     add("--threads", type=count(0, 1024), default=0, metavar="N", help="0, the default: one per core")

@@ -28,6 +28,8 @@ from viewer.output import exr, png, recipe, tev
 from viewer.output.buffers import buffers
 from viewer.output.recipe import Recipe, Style
 from viewer.services import stills
+from viewer.services.lamps import LampSamples
+from viewer.state import terms
 from viewer.state.methods import CERTIFIED, default_for
 from viewer.state.readings import MOST_RECORDED
 from viewer.state.tone import Tone
@@ -89,7 +91,8 @@ def render(path: Path, options: Namespace) -> None:
         if options.to_tev is not None:
             tev.send(options.to_tev, f"{scene.path.stem} {wanted.time:g} s {settings.method}", frame)
     title = f"{path.name}, {wanted.time:.3f} s, {frame.width} × {frame.height}, method {settings.method}"
-    print_table(statistics_table(frame.statistics, title, frame.settings.verify))
+    by_beams = terms.asks_by_beams(frame, LampSamples().any(scene.lights, frame.settings))
+    print_table(statistics_table(frame.statistics, title, frame.settings.verify, terms.BY_BEAMS if by_beams else ""))
     for written in (options.output, options.buffers):
         if written is not None:
             print(printable(written))
@@ -137,7 +140,8 @@ def times_before(scene: Scene, time: float, warmup: int, work: Work) -> list[flo
     """Times of the frames of `--warmup`, with a note where there are not so many."""
     times = stills.times_before(scene, time, warmup)
     if len(times) < warmup:
-        work.note(f"--warmup {warmup}: only {len(times)} frames come before this one")
+        come = {0: "no frame comes", 1: "only one frame comes"}.get(len(times), f"only {len(times)} frames come")
+        work.note(f"--warmup {warmup}: {come} before this one")
     return times
 
 

@@ -53,7 +53,7 @@ class Crop(NamedTuple):
 @dataclass(frozen=True)
 class Shown:
     """What a figure shows: the frames by their methods, that by "none" as the reference, the crops, the pixels (x, y)
-    that are marked in these, and words below the title."""
+    that are marked in these, and words below the title; `warmed` is how many frames were traced before each."""
 
     scene: Scene
     recipe: Recipe
@@ -62,6 +62,7 @@ class Shown:
     crops: Sequence[Crop]
     marks: Sequence[tuple[int, int]] = ()
     words: str = ""
+    warmed: int = 0
 
     @property
     def span(self) -> tuple[float, float] | None:
@@ -178,8 +179,8 @@ def _figure(shown: Shown) -> Figure:
 def _title(shown: Shown) -> str:
     recipe, (width, height) = shown.recipe, shown.recipe.size
     number = Session(shown.scene).frame_at(recipe.time)
-    before = len(recipe.before) + recipe.warmup
-    warm = f", after {before} frame{'s' * (before != 1)} before it" if before else ""
+    before = "the frame" if shown.warmed == 1 else f"the {shown.warmed} frames"
+    warm = f", after {before} before it" if shown.warmed else ""
     samples = f", {recipe.settings.samples} samples" if recipe.settings.samples > 1 else ""
     return f"{shown.scene.path.name}, frame {number}{warm}, {width} × {height}{samples}; {recipe.view.label.lower()}"
 

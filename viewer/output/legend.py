@@ -293,7 +293,7 @@ def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
         Entry("largest difference", None, (f"{255.0 * found.largest:.0f} of 255",), _LARGEST),
     )
     if not Method.parse(frame.settings.method).culls:
-        note = Note("Culling is off (C): every shadow ray is traced, so nothing can be wrong.", Tone.WARNING)
+        note = Note("Culling is off: every shadow ray is traced, so nothing can be wrong.", Tone.WARNING)
     elif not any((shadow.culled, shadow.candidates_only, shadow.dynamic_only, shadow.cache_hits, shadow.passed_over)):
         note = Note("No shadow ray of this frame was culled, so none can be wrong.", Tone.WARNING)
     elif not found.pixels:

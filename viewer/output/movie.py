@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 VIDEO = ".mp4"
 QUALITY = "16"  # of x264: what the eye can hardly tell from the pictures
-NEEDS_PYAV = "a video needs PyAV; install shadowcull[video], or give a folder for the pictures alone"
+NEEDS_PYAV = "a video needs PyAV; install shadowcull[video] (pip install av), or give a folder for the pictures alone"
 
 
 def check_video() -> None:

@@ -33,6 +33,7 @@ from viewer.state.session import Snapshot, settings_to_json
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import BENEATH, View
 from viewer.util import resources
+from viewer.util.json_numbers import number, whole
 
 MOST_BEFORE = 100_000  # frames
 
@@ -167,7 +168,7 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Re
             meshes=snapshot.meshes,
             edits=snapshot.edits,
         )
-    except (TypeError, AttributeError):
+    except (TypeError, AttributeError, LookupError):
         raise ValueError("how it was drawn is damaged") from None
 
 
@@ -180,10 +181,10 @@ def _count(data: Mapping[str, Any], name: str) -> int:
 
 def _style(data: Mapping[str, Any]) -> Style:
     usual = Style()
-    magnified = int(data.get("magnified", 1))
-    shading, beneath = (float(data.get(name, getattr(usual, name))) for name in ("shading", "beneath"))
+    magnified = whole(data.get("magnified", 1))
+    shading, beneath = (number(data.get(name, getattr(usual, name))) for name in ("shading", "beneath"))
     legend = data.get("legend")
-    place = None if legend is None else (float(legend[0]), float(legend[1]))
+    place = None if legend is None else (number(legend[0]), number(legend[1]))
     if not all(0.0 <= part <= 1.0 for part in (shading, beneath, *(place or ()))) or not 1 <= magnified <= 100:
         raise ValueError("how it was drawn is not understood")
     return Style(

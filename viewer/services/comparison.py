@@ -16,6 +16,7 @@ from viewer.output.comparison_figure import Crop, Shown
 from viewer.output.recipe import Recipe
 from viewer.services import stills
 from viewer.state.session import Session, Snapshot
+from viewer.util.json_numbers import whole
 from viewer.util.version import program_version
 
 MOST_METHODS, MOST_CROPS = 6, 6
@@ -59,8 +60,8 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Co
     """The inverse of `to_json`; raises ValueError in one line."""
     common = recipe.from_json(snapshot, size, data)
     try:
-        crops = tuple(Crop(*(int(side) for side in crop)) for crop in data["crops"])
-        marks = tuple((int(x), int(y)) for x, y in data.get("marks", []))
+        crops = tuple(Crop(*(whole(side) for side in crop)) for crop in data["crops"])
+        marks = tuple((whole(x), whole(y)) for x, y in data.get("marks", []))
         methods = tuple(str(method) for method in data["methods"])
         return Comparison(common, methods, crops, marks, str(data.get("words", ""))).checked()
     except (KeyError, TypeError, AttributeError):
@@ -93,7 +94,9 @@ def trace(
         frames[method] = stills.trace(renderer, wanted, on_frame=tell, cancelled=cancelled)
     reference = frames["none"]
     shown = {method: frames[method] for method in comparison.methods}
-    return Shown(scene, comparison.recipe, shown, reference, comparison.crops, comparison.marks, comparison.words)
+    common = comparison.recipe
+    warmed = len(common.before) + len(stills.times_before(scene, common.time, common.warmup))
+    return Shown(scene, common, shown, reference, comparison.crops, comparison.marks, comparison.words, warmed)
 
 
 def text(shown: Shown, comparison: Comparison) -> str:

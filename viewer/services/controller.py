@@ -106,9 +106,7 @@ class Controller:
         films = FilmController(session, preferences, self.runs, self.recipes, self.bookmarks, notices, awaken)
         self.films = films
         self.pictures = PictureController(session, preferences, self.runs, self.recipes, notices, awaken)
-        self.hunts = HuntController(
-            session, preferences, self.runs, self.travel, self.recipes, notices, awaken
-        )  # fmt: skip
+        self.hunts = HuntController(session, preferences, self.runs, self.travel, self.recipes, notices, awaken)
         self.watcher = SceneWatcher(
             preferences, lambda: self.loader.files, self._may_reload, self.loader.follow_change, awaken
         )

@@ -149,7 +149,7 @@ class FilmController:
         if plan.through_bookmarks:
             places = [Snapshot.from_json(bookmark.get("state")) for bookmark in self._bookmarks.all]
             if len(places) < 2:
-                raise ValueError("a flight needs two bookmarks at least; Ctrl+B adds one")
+                raise ValueError("a flight needs two bookmarks at least; the menu Camera adds one")
             return flight.through([Stop(place.time, place.camera) for place in places], self.count)
         first, last = self.frames
         camera = self._session.camera if plan.from_here else None

@@ -109,6 +109,7 @@ class _Hunter:
         self._cancelled, self._found = cancelled, found
         self._renderer = Renderer(scene, settings, world=world)
         self._path = Lessons(scene)
+        self._short: set[Find] = set()  # whose frames before cannot be fewer
 
     def along_path(self, time: float) -> Frame:
         """The next frame of the path, judged."""
@@ -199,10 +200,13 @@ class _Hunter:
     # --- fewer frames before it -------------------------------------------------------------------
 
     def shorten(self) -> None:
-        """Look for the fewest frames before each find that still make it."""
+        """Look for the fewest frames before each find that still make it, once for each: the numbers of frames in a
+        find are those of all that came before it."""
         finds = self._found.finds
         for number, find in enumerate(finds):
-            finds[number] = self._shortened(find)
+            if find not in self._short:
+                finds[number] = self._shortened(find)
+                self._short.add(finds[number])
 
     def _shortened(self, find: Find) -> Find:
         for before in self._fewer(find):

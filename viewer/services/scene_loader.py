@@ -55,6 +55,7 @@ class SceneLoader:
         self._session, self._preferences, self._notices = session, preferences, notices
         self._ask_first, self._wake = ask_first, wake
         self.warm_up_job: Job[None] | None = None
+        self.compiles = False  # whether this is a first start, whose kernels are to be compiled
         self.load_job: Job[scene_files.Opened] | None = None
         self._cancelled_at = 0.0
         self._folders: tuple[Path, ...] = ()
@@ -99,7 +100,8 @@ class SceneLoader:
         self._folders, self.meshes = tuple(folders), meshes
         self._given = dict(settings or {})
         self._session.settings = replace(self._session.settings, **self._given)
-        title = "Loading the tracer" if compiled_before() else "Compiling the tracer (first start only)"
+        self.compiles = not compiled_before()
+        title = "Compiling the tracer (first start only)" if self.compiles else "Loading the tracer"
         self.warm_up_job = Job(title, warm_up, self._wake)
         if path is not None:
             self._from_shell = True

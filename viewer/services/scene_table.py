@@ -78,6 +78,21 @@ class _Made:
     in_order: bool
 
 
+@dataclass(frozen=True)
+class _Asked:
+    """What a job is to make."""
+
+    source: _Source
+    level: Level
+    order: Order
+
+    def is_like(self, other: _Asked | None) -> bool:
+        """Whether the same would come of another."""
+        if other is None or (other.level, other.order) != (self.level, self.order):
+            return False
+        return self.source.is_like(other.source)
+
+
 @dataclass
 class _Shown:
     """What is there to be seen; `current` says for which levels the order is that of the newest tables."""
@@ -123,6 +138,9 @@ class SceneTable:
         self.chosen = 0  # the serial of the selection that was made here last, or has been shown
         self._shown = _Shown()
         self._job: Job[_Made] | None = None
+        self._asked: _Asked | None = None  # what the newest job was started for
+        self._failed: _Asked | None = None  # what could not be made last, and is not tried again
+        self._told = ""  # and why
 
     @property
     def listing(self) -> Listing | None:
@@ -241,8 +259,11 @@ class SceneTable:
         if traced is not None and traced.whole and traced.request.divisor == 1:
             newest = _Source(now, traced.frame, None if self.all_lights else self._session.light)
             source = source if source is not None and newest.is_like(source) else newest
-        if source is not None and self._lacks(source, moving):
-            self._start(source, moving)
+        if source is None or not self._lacks(source, moving):
+            return
+        asked = _Asked(source, self.level, self.order)
+        if not asked.is_like(self._failed):
+            self._start(asked, moving)
 
     def _lacks(self, source: _Source, moving: bool) -> bool:
         listing, shown = self.listing, self._shown
@@ -250,8 +271,9 @@ class SceneTable:
             return True
         return self.level not in shown.current and not self.held and not moving
 
-    def _start(self, source: _Source, moving: bool) -> None:
-        shown, level, order, before = self._shown, self.level, self.order, self.listing
+    def _start(self, asked: _Asked, moving: bool) -> None:
+        shown, before = self._shown, self.listing
+        source, level, order = asked.source, asked.level, asked.order
         kept = before is not None and before.order == order and (self.held or moving)
 
         def work(_: Progress) -> _Made:
@@ -261,14 +283,18 @@ class SceneTable:
                 return _Made(source, made, level, Listing(table, before.rows, order, before.problem), False)
             return _Made(source, made, level, listed(table, order, before), True)
 
-        self._job = Job("The table", work, self._wake)
+        self._asked, self._job = asked, Job("The table", work, self._wake)
 
     def _take(self, job: Job[_Made]) -> None:
         if job.failure is not None:
-            self._notices.report(job.failure)
+            self._failed = self._asked
+            if job.failure.text != self._told:  # once, while pictures come that it fails for alike
+                self._notices.report(job.failure)
+            self._told = job.failure.text
         made = job.result
         if made is None or made.source.now.original is not self._session.original:
             return
+        self._failed, self._told = None, ""
         shown = self._shown
         if made.source is not shown.source:
             shown.current = set()

@@ -25,12 +25,16 @@ _PLACES = sorted(  # where a shadow is looked for, in parts of the picture's wid
 )
 
 
+Key = Callable[[str], str]
+"""The key of a command as the user reads it, by the command's name, or else where its menu is."""
+
+
 @dataclass(frozen=True)
 class Step:
     """`watch` ends when the step is done, `show` does it; `text` says what to do as things are."""
 
     title: str
-    text: Callable[[Controller], str]
+    text: Callable[[Controller, Key], str]
     watch: Callable[[Controller], Iterator[None]]
     show: Callable[[Controller, Callable[[str], None]], Iterator[float]]
 
@@ -39,9 +43,9 @@ class Tour:
     """`at` is the number of the step that is next, or None while no tour is being taken; `done` are those done so far,
     the others are watched for."""
 
-    def __init__(self, controller: Controller, show_panel: Callable[[str], None]) -> None:
+    def __init__(self, controller: Controller, show_panel: Callable[[str], None], key: Key) -> None:
         self._c = controller
-        self._show_panel = show_panel
+        self._show_panel, self._key = show_panel, key
         self.at: int | None = None
         self.done: set[int] = set()
         self._watches: list[Iterator[None]] = []
@@ -51,6 +55,10 @@ class Tour:
     @property
     def step(self) -> Step | None:
         return STEPS[self.at] if self.at is not None else None
+
+    def text(self, step: Step) -> str:
+        """What to do in a step, as things are, with the keys that do it now."""
+        return step.text(self._c, self._key)
 
     @property
     def showing(self) -> bool:
@@ -148,19 +156,21 @@ def _toggle_culling(c: Controller, show_panel: Callable[[str], None]) -> Iterato
         c.settings.change(method=before)
 
 
-def _how_to_toggle(c: Controller) -> str:
-    method = Method.parse(c.session.settings.method)
-    if c.frame is None or not method.culls or _culls(c):
-        return (
-            "Press C twice. The picture looks the same, but without culling every shadow ray is traced: compare the "
-            "row Traced in the Statistics panel."
-        )
+def _how_to_toggle(c: Controller, key: Key) -> str:
+    method, toggle = Method.parse(c.session.settings.method), key("Shadow culling")
+    seen = "The picture looks the same, but without culling every shadow ray is traced: compare the row Traced in the "
+    seen += "Statistics panel."
     if method.adaptive:
         return (
-            "The method auto culls nothing here: it culls only where it has measured that this is quicker. Choose "
-            "paper, the published method, in the Culling panel first."
+            f"Choose {BY_MODES}, the published method, at the top of the Culling panel, and then press {toggle} twice. "
+            f"{seen} (The method at the start, {method.base}, culls only where that is quicker.)"
         )
-    return f"The method {method.base} has culled nothing here yet. Press T to trace the picture once more."
+    if not method.culls:
+        return f"Press {toggle} once more to cull again. {seen}"
+    if c.frame is not None and not _culls(c):
+        again = key("Trace again")
+        return f"The method {method.base} has culled nothing here yet. Press {again} to trace the picture once more."
+    return f"Press {toggle} twice. {seen}"
 
 
 def _has_seen_modes(c: Controller) -> Iterator[None]:
@@ -223,23 +233,27 @@ def _run_a_zoom_test(c: Controller, show_panel: Callable[[str], None]) -> Iterat
 STEPS = (
     Step(
         "Fly",
-        lambda c: "Hold W, A, S or D to move, and drag the picture with the mouse to look around. R takes you back.",
+        lambda c, key: (
+            f"Hold {key('Fly forward')}, {key('Fly left')}, {key('Fly back')} or {key('Fly right')} to move, and drag "
+            f"the picture with the mouse to look around. {key('Reset camera')} takes you back."
+        ),
         _has_flown,
         _fly,
     ),
     Step("Turn culling off and on", _how_to_toggle, _has_toggled_culling, _toggle_culling),
     Step(
         "See the modes",
-        lambda c: (
-            "Press 2: green surfaces were fully rendered, orange ones are partly hidden. Press 3: what is in the "
-            "shadow of one light, lit by it, or both. L chooses the next light, 1 shows the picture again."
+        lambda c, key: (
+            f"Press {key(View.OCCLUSION.label)}: green surfaces were fully rendered, orange ones are partly hidden. "
+            f"Press {key(View.SHADOW.label)}: what is in the shadow of one light, lit by it, or both. "
+            f"{key('Next light')} chooses the next light, {key(View.COLOR.label)} shows the picture again."
         ),
         _has_seen_modes,
         _show_modes,
     ),
     Step(
         "Click a shadow",
-        lambda c: (
+        lambda c, key: (
             "Click a dark spot in the picture. The Inspector says which light is blocked there and by what, and "
             "lines show the shadow rays."
         ),
@@ -248,7 +262,7 @@ STEPS = (
     ),
     Step(
         "Run a zoom test",
-        lambda c: (
+        lambda c, key: (
             "Open the panel Zoom test and press Start. The camera moves towards the surface that you clicked, and "
             "the plot shows whether culling misses a shadow that can only be seen from close up."
         ),

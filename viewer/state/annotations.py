@@ -11,6 +11,8 @@ from dataclasses import asdict, dataclass
 from enum import StrEnum
 from typing import Any
 
+from viewer.util.json_numbers import number
+
 MOST = 200
 LONGEST_TEXT = 200
 
@@ -49,8 +51,8 @@ def _one(data: Any) -> Annotation:
     if not isinstance(data, Mapping) or data.get("kind") not in set(Kind):
         raise ValueError(f"an annotation needs a kind: {', '.join(Kind)}")
     try:
-        x0, y0, x1, y1 = (float(data.get(name, 0.0)) for name in ("x0", "y0", "x1", "y1"))
-    except (TypeError, ValueError):
+        x0, y0, x1, y1 = (number(data.get(name, 0.0)) for name in ("x0", "y0", "x1", "y1"))
+    except ValueError:
         raise ValueError("an annotation's x0, y0, x1 and y1 are numbers") from None
     if not all(math.isfinite(place) and -1.0 <= place <= 2.0 for place in (x0, y0, x1, y1)):
         raise ValueError("an annotation's x0, y0, x1 and y1 are parts of the picture, from 0 to 1")

@@ -16,6 +16,7 @@ from viewer.state.session import Session, settings_from_json, settings_to_json
 from viewer.state.tone import Tone
 from viewer.state.views import View
 from viewer.state.zooming import Zoom
+from viewer.util.json_numbers import number, whole
 
 LOOKS = {
     "outlines": "outlines",
@@ -105,8 +106,8 @@ class Choices:
             return Choices(
                 settings_from_json(data.get("settings", {})),
                 View(data.get("view", View.COLOR)),
-                max(0, int(data.get("light", 0))),
-                min(max(float(data.get("wipe", 0.5)), 0.0), 1.0),
+                max(0, whole(data.get("light", 0))),
+                min(max(number(data.get("wipe", 0.5)), 0.0), 1.0),
                 {name: checked(name, looks[name], getattr(defaults, name)) for name in LOOKS if name in looks},
                 Tone.from_json(data["tone"]) if "tone" in data else None,
                 bool(data["clipping"]) if "clipping" in data else None,

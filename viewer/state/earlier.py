@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from tracer.scene.model import Camera
+from viewer.util.json_numbers import finite
 
 MOST = 100_000
 """Frames before one picture."""
@@ -37,7 +37,9 @@ def from_json(data: Any) -> tuple[Earlier, ...]:
     for item in data:
         if not (isinstance(item, list) and len(item) == 2 and type(item[0]) in (int, float)):
             raise ValueError("a frame before is not understood: give [time, camera]")
-        if not math.isfinite(item[0]):
-            raise ValueError("the time of a frame before is not a finite number")
-        frames.append(Earlier(float(item[0]), None if item[1] is None else Camera.from_json(item[1])))
+        try:
+            time = finite(item[0])
+        except ValueError:
+            raise ValueError("the time of a frame before is not a finite number") from None
+        frames.append(Earlier(time, None if item[1] is None else Camera.from_json(item[1])))
     return tuple(frames)

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.limits import LARGEST
-
-MOST = 100_000
-"""Edits of a kind that a file may hold."""
+from viewer.util.json_numbers import finite, whole
 
 
 def to_json(edits: Edits) -> dict[str, Any]:
@@ -36,7 +33,7 @@ def from_json(data: Any) -> Edits:
             tuple(sorted({_number(n): _place(place) for n, place in data.get("moved_lights", ())}.items())),
             frozenset(_name(n) for n in data.get("hidden", ())),
             frozenset(_number(n) for n in data.get("hidden_primitives", ())),
-            tuple(sorted({_name(name): _finite(time) for name, time in data.get("static", ())}.items())),
+            tuple(sorted({_name(name): finite(time) for name, time in data.get("static", ())}.items())),
             frozenset(_name(n) for n in data.get("moving", ())),
         )
     except (TypeError, ValueError):
@@ -44,13 +41,13 @@ def from_json(data: Any) -> Edits:
 
 
 def _is_list(value: Any) -> bool:
-    return isinstance(value, Sequence) and not isinstance(value, str) and len(value) <= MOST
+    return isinstance(value, Sequence) and not isinstance(value, str)
 
 
 def _number(value: Any) -> int:
-    if type(value) is not int or value < 0:
-        raise ValueError(value)
-    return value
+    if whole(value) < 0:
+        raise ValueError("a number in it is below 0")
+    return whole(value)
 
 
 def _name(value: Any) -> str:
@@ -59,14 +56,8 @@ def _name(value: Any) -> str:
     return value
 
 
-def _finite(value: Any) -> float:
-    if type(value) not in (int, float) or not math.isfinite(value):
-        raise ValueError(value)
-    return float(value)
-
-
 def _place(value: Any) -> tuple[float, float, float]:
-    x, y, z = (_finite(part) for part in value)
+    x, y, z = (finite(part) for part in value)
     if max(abs(x), abs(y), abs(z)) > LARGEST:
         raise ValueError(value)
     return x, y, z

@@ -6,6 +6,7 @@ Both are places of the picture, 0 to 1 from left and top, and so mean the same a
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,10 +50,18 @@ def region_between(start: Point, end: Point) -> Region:
 
 @dataclass
 class Pixels:
-    """`watched` are the middles of pixels, in the order in which they were pinned; `region` is None for all of it."""
+    """`watched` are the middles of pixels, in the order in which they were pinned; `region` is None for all of it;
+    both are of the scene at `path`."""
 
     watched: list[Point] = field(default_factory=list)
     region: Region | None = None
+    path: Path | None = None
+
+    def follow(self, path: Path) -> None:
+        """Let go of the pixels and the region of another scene."""
+        if path != self.path:
+            self.watched.clear()
+            self.region, self.path = None, path
 
     def pin(self, frame: Frame, point: Point) -> str:
         """Watch the pixel at a point, or no longer if it is watched already; says what was done."""

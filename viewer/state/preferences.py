@@ -23,6 +23,7 @@ from tracer.scene.lights import MAX_SAMPLES
 from viewer.state.methods import DEFAULT, NO_CULLING, is_method
 from viewer.state.views import BENEATH, View
 from viewer.util.files import write_text
+from viewer.util.json_numbers import finite
 
 SETTINGS_FILE = "settings.json"
 RECENT_SCENES = 10
@@ -221,9 +222,10 @@ def checked(name: str, value: Any, default: Any) -> Any:
         return value if isinstance(value, bool) and isinstance(default, bool) else default
     if isinstance(default, int | float):
         low, high = _RANGES.get(name, (float("-inf"), float("inf")))
-        if not isinstance(value, int | float) or not low <= value <= high:
+        try:
+            return type(default)(value) if low <= finite(value) <= high else default
+        except ValueError:
             return default
-        return type(default)(value)
     if name == "method":
         return value if isinstance(value, str) and is_method(value) and Method.parse(value).culls else default
     listed = isinstance(value, list)

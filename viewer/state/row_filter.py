@@ -96,7 +96,7 @@ def _column(table: Table, name: str) -> Values:
 def _anywhere(table: Table, word: str) -> NDArray[np.bool_]:
     """The primitive of this number, or rows with the word in a name."""
     if table.level is Level.PRIMITIVES and word.isdecimal():
-        return np.arange(table.rows) == int(word)
+        return np.arange(table.rows) == _as_number(word)
     found = np.zeros(table.rows, np.bool_)
     for name in ("object", "kind", "material", "texture"):
         values = table.columns.get(name)

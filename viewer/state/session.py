@@ -7,7 +7,6 @@ all of that as plain JSON: it is what a bookmark keeps and what a captured pictu
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
@@ -24,6 +23,7 @@ from viewer.state.methods import DEFAULT
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
 from viewer.state.zooming import FIT, Zoom
+from viewer.util.json_numbers import finite, number, whole
 
 # Settings that say how a frame was asked for, not what the user chose; those of this machine and of the open scene.
 _NOT_RESTORED = {
@@ -63,9 +63,7 @@ class Snapshot:
         if not isinstance(data, Mapping):
             raise ValueError("no saved state in it")
         try:
-            time, wipe = float(data["time"]), float(data.get("wipe", 0.5))
-            if not math.isfinite(time):
-                raise ValueError("its time is not a finite number")
+            time, wipe = finite(data["time"]), number(data.get("wipe", 0.5))
             return Snapshot(
                 scene=str(data["scene"]),
                 time=time,
@@ -73,7 +71,7 @@ class Snapshot:
                 follow=bool(data.get("follow", False)),
                 settings=settings_from_json(data.get("settings", {})),
                 view=View(data.get("view", View.COLOR)),
-                light=max(0, int(data.get("light", 0))),
+                light=max(0, whole(data.get("light", 0))),
                 wipe=wipe if 0.0 <= wipe <= 1.0 else 0.5,
                 tone=Tone.from_json(data.get("tone", {})),
                 span=_span(data.get("span")),
@@ -91,10 +89,10 @@ def _span(data: Any) -> tuple[float, float] | None:
     if data is None:
         return None
     try:
-        low, high = (float(number) for number in data)
+        low, high = (finite(end) for end in data)
     except (TypeError, ValueError):
         raise ValueError("its range is damaged") from None
-    if not (math.isfinite(low) and math.isfinite(high) and low < high):
+    if not low < high:
         raise ValueError("its range is none")
     return low, high
 
@@ -114,6 +112,8 @@ def settings_from_json(data: Any) -> dict[str, Any]:
         kinds = (type(None), _OPTIONAL[name]) if name in _OPTIONAL else (type(getattr(Settings(), name)),)
         if type(value) not in kinds and not (type(value) is int and float in kinds):
             raise ValueError(f"its setting {name} is not understood")
+        if float in kinds and value is not None:
+            known[name] = number(value)
     replace(Settings(), **known).validated()
     return known
 
@@ -123,7 +123,7 @@ def _meshes_from_json(data: Any) -> MeshOptions:
     up, crease = (data.get(key) for key in ("up", "crease")) if isinstance(data, Mapping) else (0, 0)
     if not (up is None or isinstance(up, str)) or not (crease is None or type(crease) in (int, float)):
         raise ValueError("its options of meshes are not understood")
-    return MeshOptions(bool(data.get("studio", False)), up, crease)
+    return MeshOptions(bool(data.get("studio", False)), up, None if crease is None else number(crease))
 
 
 @dataclass

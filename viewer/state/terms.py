@@ -5,6 +5,8 @@ JSON and CSV have names of their own, which do not change.
 
 from __future__ import annotations
 
+from tracer.frame import Frame
+
 DUE = "due"
 CULLED = "culled"
 DYNAMIC_ONLY = "dynamic only"
@@ -13,6 +15,12 @@ CACHE_HITS = "cache hits"
 TRACED = "traced"
 WRONG = "wrong answers"
 PASSED_OVER = "passed over"
+
+BY_BEAMS = (
+    "The tests of shadow rays include those of beams: triangles that are asked about all samples of a lamp at once, "
+    "instead of tracing a ray to each."
+)
+"""What is said of the tests where certificates cull rays of lamps."""
 
 SAMPLES_DUE = "due"
 SAMPLES_REACHED = "reaching"
@@ -40,3 +48,9 @@ PHASES = {
     "mode setting": ("modes", "setting the modes of primitives by what this frame has found"),
 }
 """The phases of a frame, in their order: the name of each, and what happens in it."""
+
+
+def asks_by_beams(frame: Frame, lamps: bool) -> bool:
+    """Whether beams have asked some of what is counted as tests of shadow rays; `lamps`: not all lights are points."""
+    shadow = frame.statistics.shadow
+    return lamps and frame.certificates is not None and shadow.culled + shadow.dynamic_only > 0

@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from viewer.util.json_numbers import number
+
 MOST_EXPOSURE = 16.0
 """Stops of exposure, up and down."""
 WHITES = (0.01, 1000.0)
@@ -84,7 +86,7 @@ class Tone:
         if not isinstance(data, Mapping):
             raise ValueError("its tone is damaged")
         try:
-            exposure, white = float(data.get("exposure", 0.0)), float(data.get("white", 1.0))
+            exposure, white = number(data.get("exposure", 0.0)), number(data.get("white", 1.0))
             tone = Tone(exposure, white, Curve(data.get("curve", Curve.NONE)))
         except (TypeError, ValueError):
             raise ValueError("its tone is not understood") from None

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
+from tracer.ray_reasons import unused
 from tracer.told_rays import AWAY, TRACED, ShadowRays
 from viewer.state.views import Color
 
@@ -41,6 +42,11 @@ MEANING: dict[Verdict, str] = {
     Verdict.TRACED: "Nothing was known: the ray was traced through the scene.",
 }
 
+_PROVEN = {
+    "full": "the light is hidden from the whole cell",
+    "lit": "nothing static is in the way",
+    "candidates": "only a few primitives can block the light here",
+}
 WHY_TRACED: dict[str, str] = {
     "INIT": "Traced: nothing is known of the primitive yet, or not towards this light.",
     "PARTIALLY_OCCLUDED": "Traced: something hides a part of the primitive, so that its shadow modes are not trusted.",
@@ -48,6 +54,11 @@ WHY_TRACED: dict[str, str] = {
     "PARTIAL_SHADOW": "Traced: some shadow rays from the primitive to this light were blocked, and others were not.",
     "candidates": "Traced: only a few primitives can block the light here, but to trace the ray with its neighbours is "
     "quicker than to test these.",
+    **{
+        unused(state): f"Traced: a certificate says that {known}. But the method auto looks no certificates up "
+        "here, as it has measured that tracing every ray is quicker."
+        for state, known in _PROVEN.items()
+    },
 }
 """What tracing says where something was known all the same (`ShadowRays.known`)."""
 

@@ -14,3 +14,8 @@ def percent(part: float, whole: float) -> str:
         return "-"
     share = 100.0 * part / whole
     return f"{share:.2g} %" if 0.0 < share < 0.05 else f"{share:.1f} %"
+
+
+def several(number: int, name: str, names: str = "") -> str:
+    """So many of something: 1 node, 2 nodes."""
+    return f"{count(number)} {name if number == 1 else names or name + 's'}"

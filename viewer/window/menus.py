@@ -7,12 +7,14 @@ from functools import partial
 
 from imgui_bundle import imgui
 
+from viewer.state.keymap import HELD
 from viewer.window import escape
 from viewer.window.command import MENUS, Command
 from viewer.window.ui import Ui
 from viewer.window.widgets import tooltip
 
 PANELS_MENU, ALL_MENUS = "Panels", "Menu"
+_CHORD = int(imgui.Key.mod_ctrl) | int(imgui.Key.mod_alt) | int(imgui.Key.mod_super)
 
 
 def handle_keys(ui: Ui) -> None:
@@ -22,6 +24,7 @@ def handle_keys(ui: Ui) -> None:
     ui.keyboard.follow()
     held, before = int(imgui.get_io().key_mods), ui.modifiers
     ui.modifiers = held
+    _follow_chords(ui, held | before)
     if imgui.get_io().want_text_input or ui.key_wanted:
         return
     if imgui.is_key_pressed(imgui.Key.escape, repeat=False) and escape.close_newest(ui):
@@ -32,6 +35,12 @@ def handle_keys(ui: Ui) -> None:
         keys = ui.keymap.of(command.name)
         if any(_pressed(ui, command, key, held or before) for key in keys) and command.enabled():
             run(ui, command)
+
+
+def _follow_chords(ui: Ui, modifiers: int) -> None:
+    """Remember which keys that steer are down as part of a chord: such a key steers only once it was let go."""
+    down = {name for name in HELD if ui.keyboard.is_down(ui.keymap.of(name))}
+    ui.chorded = down if modifiers & _CHORD else ui.chorded & down
 
 
 def run(ui: Ui, command: Command) -> None:

@@ -32,7 +32,7 @@ from viewer.window.magnifier import Magnifier
 from viewer.window.screening import Screening
 from viewer.window.shots import Shots
 
-_KEY_AT_END = re.compile(r" \(([^()]+)\)$")
+_IN_BRACKETS = re.compile(r" \(([^()]+)\)")
 
 
 class CaptureKind(Enum):
@@ -72,7 +72,7 @@ class Ui:
     `what_if_drawn` is the frame of ImGui's in which the panel What if was drawn last, `held_light` the light that the
     pointer drags, and `changed_shown` says that changed pixels are to be seen. `find_focus` asks for the keyboard
     above the table of what is in the scene, of which `find_drawn` rows were drawn last, each `find_height` pixels
-    high, in the order `find_order`."""
+    high, in the order `find_order`. `chorded` are the keys that steer which were pressed with Ctrl, Alt or Super."""
 
     controller: Controller
     display: Display | None = None
@@ -105,6 +105,7 @@ class Ui:
     pivot: tuple[float, float, float] | None = None
     pivot_scene: object = None
     modifiers: int = 0
+    chorded: set[str] = field(default_factory=set)
     pressed: int = 0
     pressed_with: str = ""
     pressed_at: tuple[float, float] = (0.0, 0.0)
@@ -149,7 +150,7 @@ class Ui:
 
     def __post_init__(self) -> None:
         self.keymap = Keymap(self.controller.preferences, {})
-        self.tour = Tour(self.controller, lambda label: self.show_panel(label))
+        self.tour = Tour(self.controller, lambda label: self.show_panel(label), self.key_or_menu)
 
     def cached(self, name: str, of: object, chosen: object, compute: Callable[[], Any]) -> Any:
         """What was computed of this object (a frame, results) for what is chosen, computed now if it is new."""
@@ -179,16 +180,31 @@ class Ui:
 
     def key(self, name: str) -> str:
         """The key of a command as the user reads it on the keyboard, in brackets after a blank; "" without one."""
-        shown = self.keyboard.label(self.keymap.shown(name))
+        shown = self.key_label(name)
         return f" ({shown})" if shown else ""
 
+    def key_label(self, name: str) -> str:
+        """The same without brackets."""
+        return self.keyboard.label(self.keymap.shown(name))
+
+    def key_or_menu(self, name: str) -> str:
+        """The key of a command, or of what is done while one is held, as the user reads it; without one, where the
+        command is in the menus."""
+        menus = (f"{c.menu} > {c.name}".replace("/", " > ") for c in self.commands if c.name == name)
+        return self.key_label(name) or next(menus, name)
+
     def with_keys(self, text: str) -> str:
-        """A text that ends in the usual key of a command, in brackets, with the one that it has now."""
-        found = _KEY_AT_END.search(text)
-        for command in self.commands if found is not None else ():
-            if found is not None and command.key and key_label(command.key) == found[1]:
-                return text[: found.start()] + self.key(command.name)
-        return text
+        """A text with the usual keys of commands, each in brackets, or two with an "and", as they are now."""
+        usual = {key_label(command.key): command.name for command in self.commands if command.key}
+
+        def now(found: re.Match[str]) -> str:
+            names = [usual.get(key) for key in found[1].split(" and ")]
+            if None in names:
+                return found[0]
+            keys = [self.key_label(name) for name in names if name]
+            return f" ({' and '.join(filter(None, keys))})" if any(keys) else ""
+
+        return _IN_BRACKETS.sub(now, text) if " (" in text else text
 
     @property
     def default_folder(self) -> Path:

@@ -16,6 +16,7 @@ from viewer.window.palette import GOOD as GOOD
 from viewer.window.palette import QUIET as QUIET
 from viewer.window.palette import WARNING as WARNING
 
+_PALE = 0.85  # least channel of colours that need a border on a light panel
 _LABELS = 0.45  # of a panel's width, at most, is for the names of what is in it
 SIZES = ((128, 128), (256, 256), (512, 512), (800, 600), (1024, 1024), (1280, 720), (1920, 1080))
 
@@ -225,7 +226,10 @@ def swatch(color: tuple[float, float, float]) -> None:
     at = imgui.get_cursor_screen_pos()
     end = ImVec2(at.x + 0.8 * side, at.y + 0.9 * side)
     start = ImVec2(at.x, at.y + 0.1 * side)
-    imgui.get_window_draw_list().add_rect_filled(start, end, imgui.get_color_u32(ImVec4(*color, 1.0)), em(0.15))
+    draw = imgui.get_window_draw_list()
+    draw.add_rect_filled(start, end, imgui.get_color_u32(ImVec4(*color, 1.0)), em(0.15))
+    if min(color) > _PALE:
+        draw.add_rect(start, end, imgui.get_color_u32(QUIET), em(0.15))
     imgui.dummy(ImVec2(0.8 * side, side))
     imgui.same_line(0.0, em(0.4))
 

@@ -10,6 +10,7 @@ import pytest
 from PIL import Image
 
 from tests.commands import ROOM, complaint, run
+from viewer.cli.console import Work
 from viewer.output import capture, png
 
 SIZE = ("--size", "64x48", "--threads", 1)
@@ -94,7 +95,6 @@ def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> N
         "figure.png": "methods or crops are damaged",
         "plain.png": "not one captured",
         "other.pdf": "not a figure",
-        "none.png": "no such file",
     }
     code, lines = verdict(capfd, *said)
     assert code == 1 and len(lines) == len(said)
@@ -107,8 +107,25 @@ def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> N
     assert "one.png: true" in lines[0] and "two.png: unknown" in lines[1] and "threads" in lines[1]
 
 
+def test_files_that_cannot_be_checked_are_errors(capfd: pytest.CaptureFixture[str]) -> None:
+    assert run(capfd, "render", "room.aff", "-o", "good.png", *SIZE)[0] == 0
+    Path("folder").mkdir()
+    said = {
+        "none.png": "no such file",
+        "none.exr": "no such file",
+        "folder": "it is a folder, not a file",
+        "room.aff": "check reads PNG and EXR pictures, and figures as PNG or PDF",
+    }
+    code, out, errors = run(capfd, "check", *said, "good.png")
+    assert code == 1 and out.startswith("good.png: true") and out.count("\n") == 1, "one is checked"
+    for line, (name, words) in zip(errors.splitlines(), said.items(), strict=True):
+        assert line.startswith(f"shadowcull: error: {name}: ") and words in line, line
+
+
 @pytest.mark.parametrize("ending", [".png", ".pdf"])
-def test_a_figure_compares_methods_and_can_be_checked(capfd: pytest.CaptureFixture[str], ending: str) -> None:
+def test_a_figure_compares_methods_and_can_be_checked(
+    capfd: pytest.CaptureFixture[str], ending: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     options = ("--methods", "none,paper", "--crops", "4,4,20,8", "--frame", 3, "--warmup", 3, "--exposure", -1)
     if ending == ".pdf":
         options = ("--methods", "none,paper", "--view", "cost", "--range", "1:5", "--frame", 3)
@@ -116,6 +133,12 @@ def test_a_figure_compares_methods_and_can_be_checked(capfd: pytest.CaptureFixtu
     assert code == 0 and "shadow rays due" in out and "pixels that differ" in out
     code, (line,) = verdict(capfd, f"figure{ending}")
     assert code == 0 and line.startswith(f"figure{ending}: true"), line
+    heard: list[str] = []
+    with monkeypatch.context() as patch:
+        patch.setattr(Work, "count", lambda self, label, done, total: heard.append(label))
+        verdict(capfd, f"figure{ending}")
+    frames = 4 if ending == ".png" else 1
+    assert f"figure{ending}, paper, frame {frames} of {frames}" in heard
     Path("room.aff").write_text(ROOM.replace("l -3 4 2", "l -3 3 2"))
     code, (line,) = verdict(capfd, f"figure{ending}")
     assert code == 1 and "the scene's lights" in line

@@ -270,7 +270,7 @@ def test_warm_up_is_shorter_where_the_animation_starts(
 ) -> None:
     code, _, err = render(capfd, room, "-o", tmp_path / "x.png", "--frame", 1, "--warmup", 5)
     assert code == 0
-    assert "only 1 frames come before" in err
+    assert "--warmup 5: only one frame comes before this one" in err
 
 
 @pytest.mark.parametrize(

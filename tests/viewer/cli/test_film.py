@@ -95,6 +95,7 @@ def test_mistakes_are_one_line(capfd: pytest.CaptureFixture[str], monkeypatch: p
     cases = [
         ((), "nothing to write"),
         (("-o", "d", "--frames", "4-20"), "frame numbers are 0 to 9"),
+        (("-o", "d", "--frames", "9-3"), "argument --frames: '9-3': the last frame, 3, is before the first"),
         (("-o", "d", "--through", "one.png"), "needs two at least"),
         (("-o", "d", "--bookmarks"), "needs two at least"),
         (("-o", "d", "--bookmarks", "--frames", "0-3"), "give one of"),

@@ -53,3 +53,10 @@ def test_maps_of_work_have_one_range() -> None:
     words = [text.get_text() for axes in figure(drawn).axes for text in axes.texts]
     assert {"the reference", "A", "pixels that differ"} <= set(words)
     assert "no difference" not in words
+
+
+def test_the_title_counts_the_frames_that_were_traced_before() -> None:
+    drawn = shown(View.COLOR)
+    asked = replace(drawn, recipe=replace(drawn.recipe, warmup=2))
+    for warmed, words in ((0, "frame 0, "), (1, ", after the frame before it"), (2, ", after the 2 frames before it")):
+        assert words in figure(replace(asked, warmed=warmed)).get_suptitle()

@@ -36,6 +36,15 @@ def flying(d: Driver) -> None:
     d.drag((panel.pos.x + 60.0, panel.pos.y + panel.size.y - 20.0), (50.0, -30.0))
     assert d.c.session.camera == before, "a drag on a panel moved the camera"
 
+    d.context.key_down(KEY.mod_ctrl)
+    d.context.key_down(KEY.w)
+    d.frames(2)
+    d.context.key_up(KEY.mod_ctrl)
+    d.frames(6)
+    d.context.key_up(KEY.w)
+    d.frames(2)
+    assert d.c.session.camera == before, "a key of a chord, let go late, moved the camera"
+
     d.ui.show_panel("Camera")
     d.frames(3)
     d.context.item_click("//Camera/##bookmark")

@@ -51,8 +51,10 @@ def rays(d: Driver) -> None:
     d.context.mouse_move(f"//Rays/**/{row.key}/##row")
     d.frames(3)
     assert c.rays.pointed is not None and c.rays.pointed.key == row.key
+    places = _tops(d, "//Rays/wrong", f"//Rays/**/{row.key}/##row")
     d.context.item_click(f"//Rays/**/{row.key}/##row")
     d.wait(lambda: c.rays.walked, "the nodes that the ray enters", 20.0)
+    assert _tops(d, "//Rays/wrong", f"//Rays/**/{row.key}/##row") == places, "rows move when the steps come"
     assert c.rays.selected.key == row.key and c.rays.structure == "bvh8"
     shadows = tree.rays[row.ray].shadows
     place = int(row.places[0])
@@ -91,6 +93,12 @@ def _shaded(d: Driver) -> tuple[float, float]:
         here &= (np.roll(primitive, shift, 0) == primitive) & (np.roll(primitive, shift, 1) == primitive)
     y, x = np.argwhere(here)[here.sum() // 2]
     return (x + 0.5) / d.c.frame.width, (y + 0.5) / d.c.frame.height
+
+
+def _tops(d: Driver, *items: str) -> list[float]:
+    """How far down the window these begin."""
+    d.frames(2)
+    return [d.context.item_info(item).rect_full.min.y for item in items]
 
 
 def _lines_drawn(d: Driver) -> int:

@@ -35,7 +35,11 @@ def _tour(d: Driver) -> None:
     d.hold(KEY.w, 0.1)
     assert tour.at == 1 and STEPS[1].title == "Turn culling off and on"
     d.settle()
-    assert not d.c.frame.statistics.shadow.culled and "Choose paper" in tour.step.text(d.c)
+    assert not d.c.frame.statistics.shadow.culled and "Choose paper" in tour.text(tour.step)
+    d.ui.keymap.choose("Shadow culling", ["F7"])
+    assert "then press F7 twice" in tour.text(tour.step)
+    d.ui.keymap.reset("Shadow culling")
+    assert "then press C twice" in tour.text(tour.step)
     d.press(KEY._3)
     d.press(KEY._1)
     assert tour.at == 1 and tour.done == {0}
@@ -43,10 +47,10 @@ def _tour(d: Driver) -> None:
     assert tour.at == 1 and tour.done == {0, 2}, "a later step that is done early counts"
     d.c.settings.change(method="paper")
     d.settle()
-    assert tour.at == 1 and "Press C twice" in tour.step.text(d.c)
+    assert tour.at == 1 and "Press C twice" in tour.text(tour.step)
     d.press(KEY.c)
     d.settle()
-    assert tour.at == 1 and "Press C twice" in tour.step.text(d.c), "off, but not on again"
+    assert tour.at == 1 and "Press C once more" in tour.text(tour.step), "off, but not on again"
     d.press(KEY.c)
     d.settle()
     assert tour.at == 3

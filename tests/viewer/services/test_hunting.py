@@ -106,6 +106,21 @@ def test_the_frame_that_taught_has_set_the_mode(world: tracer.World, alone: Find
         assert has.index(True) == find.taught and search(world).times[find.taught] == find.taught_time
 
 
+def test_the_frames_before_a_find_are_looked_for_once(world: tracer.World, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before the pictures beside the path, or after them: a find that is short already is left alone."""
+    tried: list[tuple[object, object]] = []
+    makes = hunting._Hunter._makes
+
+    def watched(self, before, find):
+        assert len(find.before) == find.learnt_from and set(before) < set(find.before)
+        tried.append((find, before))
+        return len(before) > 1 and makes(self, before, find)  # so that some stay that have several
+
+    monkeypatch.setattr(hunting._Hunter, "_makes", watched)
+    result(world, search(world, around=1, keep=5))
+    assert tried and len(set(tried)) == len(tried), "none is tried twice"
+
+
 def test_the_same_seed_finds_the_same(world: tracer.World, found: Findings) -> None:
     assert result(world, search(world, around=8, keep=5)) == found
     assert result(world, search(world, around=8, keep=5, seed=2)).finds != found.finds

@@ -12,6 +12,7 @@ from tests.viewer.desk import Desk
 from tests.viewer.fakes import make_frame, make_scene
 from tracer.scene.edits import Edits, edited
 from viewer.output.rows_csv import write_rows
+from viewer.services import scene_table
 from viewer.services.scene_table import Listing, Order, SceneTable, listed
 from viewer.state.scene_rows import COLUMNS, Level, Table, Values, tables_of
 
@@ -146,6 +147,36 @@ def test_rows_stay_where_they_are_under_the_pointer(desk: Desk, table: SceneTabl
     table.held = False
     pixels = known(desk).table.columns["pixels"].numbers[known(desk).rows]
     assert (np.diff(pixels) <= 0).all()
+
+
+def test_what_cannot_be_made_is_told_once_and_not_tried_again(
+    desk: Desk, table: SceneTable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before, tried, told = known(desk), [], []
+    monkeypatch.setattr(scene_table, "listed", lambda *_: tried.append(1) or [][0])
+    monkeypatch.setattr(desk.c.notices, "report", lambda failure, *_: told.append(failure.text))
+    table.filter("wall")
+    desk.until(lambda: told)
+    for _ in range(20):
+        desk.tick()
+    assert len(tried) == len(told) == 1 and not table.busy and table.listing is before
+    desk.c.motion.move(desk.c.session.camera.__class__((0.0, 0.9, 2.2), (0.0, 0.0, -1.0)))
+    desk.until(lambda: len(tried) > 1 and not table.busy and not desk.c.active)
+    assert len(told) == 1, "another picture, the same trouble"
+    monkeypatch.undo()
+    table.filter("pixels>0")
+    assert known(desk).order.text == "pixels>0" and not table.listing.problem
+
+
+def test_a_number_of_any_length_finds_no_row(desk: Desk, table: SceneTable, monkeypatch: pytest.MonkeyPatch) -> None:
+    table.level = Level.PRIMITIVES
+    known(desk)
+    told: list[str] = []
+    monkeypatch.setattr(desk.c.notices, "report", lambda failure, *_: told.append(failure.text))
+    for text in ("9" * 5000, "-" + "9" * 5000, "number:" + "9" * 5000):
+        table.filter(text)
+        listing = known(desk)
+        assert len(listing.rows) == (listing.table.rows if text[0] == "-" else 0) and not told
 
 
 def test_things_are_hidden_and_shown_again(desk: Desk, table: SceneTable) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 
 from tests.viewer.fakes import make_frame
@@ -11,12 +12,27 @@ from viewer.services.tour import STEPS
 CULLING = next(step for step in STEPS if step.title == "Turn culling off and on")
 
 
-def test_nothing_is_said_of_what_culling_does_before_there_is_a_picture():
-    for method in ("auto", "paper", "none"):
-        settings = Settings(16, 8, method=method)
-        c = SimpleNamespace(frame=None, session=SimpleNamespace(settings=settings))
-        assert CULLING.text(c).startswith("Press C twice.")
-    c.session.settings, c.frame = Settings(16, 8, method="auto"), make_frame(Settings(16, 8, method="auto"))
+KEYS = {"Shadow culling": "Q", "Trace again": "T"}
+
+
+def test_the_way_to_see_culling_can_be_gone_in_order_from_every_method():
+    """With `auto`, which may cull nothing, `paper` comes first, whether there is a picture already or not."""
+    for frame in (None, make_frame(Settings(16, 8, method="auto"))):
+        c = SimpleNamespace(frame=frame, session=SimpleNamespace(settings=Settings(16, 8, method="auto")))
+        text = CULLING.text(c, KEYS.__getitem__)
+        assert text.index("Choose paper") < text.index("press Q twice")
+        for method, said in (("paper", "Press Q twice."), ("none", "Press Q once more")):
+            c.session.settings = Settings(16, 8, method=method)
+            assert CULLING.text(c, KEYS.__getitem__).startswith(said)
     shadow = c.frame.statistics.shadow
     shadow.culled = shadow.candidates_only = shadow.dynamic_only = shadow.cache_hits = 0
-    assert "only where it has measured" in CULLING.text(c) and "Choose paper" in CULLING.text(c)
+    c.session.settings = Settings(16, 8, method="paper")
+    assert "has culled nothing here yet. Press T" in CULLING.text(c, KEYS.__getitem__)
+
+
+def test_the_readme_takes_the_same_way():
+    """Its steps are the tour's, and it chooses `paper` before it presses the key, as the tour does."""
+    readme = " ".join((Path(__file__).parents[3] / "README.md").read_text(encoding="utf-8").split())
+    for number, step in enumerate(STEPS, 1):
+        assert f"{number}. **{step.title}.**" in readme
+    assert readme.index("Choose the method `paper` at the top of the Culling panel") < readme.index("press `C` twice")

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from argparse import ArgumentParser
+
 import pytest
 
 from tests.viewer.fakes import make_scene
 from tracer.scene.edits import NO_EDITS, Edits, edited
+from viewer.cli.edit_options import add_edits, edits_of
 from viewer.state import edits as scene_edits
 from viewer.state.session import Session, Snapshot
 
@@ -22,6 +25,19 @@ ALL_KINDS = Edits(
 def test_edits_come_back_from_json():
     assert scene_edits.from_json(scene_edits.to_json(ALL_KINDS)) == ALL_KINDS
     assert scene_edits.to_json(NO_EDITS) == {} and scene_edits.from_json({}) == NO_EDITS
+
+
+def test_edits_come_back_however_many_they_are():
+    many = Edits(hidden_primitives=frozenset(range(100_001)))
+    assert scene_edits.from_json(scene_edits.to_json(many)) == many
+
+
+@pytest.mark.parametrize("place", ["1e9,-1e9,0", "0.1,2,3"])
+def test_places_of_lights_that_options_take_come_back_from_json(place: str):
+    parser = ArgumentParser()
+    add_edits(parser)
+    asked = edits_of(parser.parse_args(["--move-light", f"0={place}"]))
+    assert scene_edits.from_json(scene_edits.to_json(asked)) == asked
 
 
 @pytest.mark.parametrize(

@@ -110,6 +110,14 @@ def test_tooltips_name_the_key_that_is_chosen(ui):
     assert ui.with_keys("go near it (F)") == "go near it (F)"
     ui.keymap.choose("Focus", ["Ctrl+J"])
     assert ui.with_keys("go near it (F)") == "go near it (Ctrl+J)"
+    assert ui.with_keys("near (F), or not (x); on") == "near (Ctrl+J), or not (x); on"
+    assert ui.with_keys("lights (L and Shift+L)") == "lights (L and Shift+L)"
+    ui.keymap.choose("Next light", ["F8"])
+    assert ui.with_keys("lights (L and Shift+L)") == "lights (F8 and Shift+L)"
+    assert ui.key_or_menu("Next light") == "F8" and ui.key_or_menu("Fly forward") == "W"
+    ui.keymap.choose("Next light", [])
+    assert ui.with_keys("lights (L and Shift+L)") == "lights (Shift+L)"
+    assert ui.key_or_menu("Next light") == "View > Next light"
     ui.keymap.choose("Focus", [])
     assert ui.with_keys("go near it (F)") == "go near it" and ui.with_keys("a (b) c") == "a (b) c"
     assert isinstance(ui.keymap, Keymap)

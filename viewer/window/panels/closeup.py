@@ -81,12 +81,12 @@ def menu(ui: Ui) -> None:
     if frame is not None:
         if imgui.menu_item("Inspect this pixel", "Click", False, True)[0]:
             c.selection.select(ui.menu_at)
-        if imgui.menu_item("Watch this pixel, or no longer", "Shift+P", False, True)[0]:
+        if imgui.menu_item("Watch this pixel, or no longer", ui.key_label("Watch pixel"), False, True)[0]:
             closer.pin(ui, ui.menu_at)
         imgui.separator()
     for name in ("Keep as A", "Fit picture", "Clear the region"):
         command = next((one for one in ui.commands if one.name == name), None)
-        if command is not None and imgui.menu_item(name, command.key, False, command.enabled())[0]:
+        if command is not None and imgui.menu_item(name, ui.key_label(name), False, command.enabled())[0]:
             ui.guard.step(f"The command {name}", command.run)
     imgui.end_popup()
 

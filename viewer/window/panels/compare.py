@@ -70,7 +70,8 @@ def _controls(ui: Ui) -> None:
             if state.source is Source.METHOD:
                 row("A's method", "traces each frame once more, with modes and counters of its own")
                 _second(ui)
-            row("Show", "how A and B are seen; Z shows A while it is held")
+            held = ui.key_label("Show A")
+            row("Show", f"how A and B are seen{f'; {held} shows A while it is held' if held else ''}")
             _way(ui)
             if state.way is Way.BLINK:
                 row("Rate", "times a second that both are seen")
@@ -81,7 +82,7 @@ def _controls(ui: Ui) -> None:
     if state.source is Source.KEPT:
         _kept(ui)
     if comparing.remark:
-        paragraph(comparing.remark, WARNING)
+        paragraph(ui.with_keys(comparing.remark), WARNING)
 
 
 def _way(ui: Ui) -> None:

@@ -9,9 +9,11 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.explanation import Explanation
 from tracer.frame import Frame
+from tracer.ray_reasons import unused
 from viewer.services.shadow_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, Part, nearest_first, others_named
 from viewer.state.picking import kind_of, primitive_in_words
 from viewer.state.projection import place
+from viewer.state.verdicts import WHY_TRACED
 from viewer.state.views import (
     ARRIVAL_COLORS,
     CERTIFICATE_COLORS,
@@ -111,7 +113,7 @@ def _row(ui: Ui, one: Explanation, receiver: int) -> None:
         ui.pointed_light = one.light
     imgui.table_next_column()
     paragraph(text)
-    _certificate(one.certificate)
+    _certificate(one.certificate, one.used)
     for sentence in sentences(ui, one, receiver):
         paragraph(sentence, QUIET)
 
@@ -130,14 +132,15 @@ def said(one: Explanation) -> tuple[str, tuple[float, float, float]]:
     return text, ARRIVAL_COLORS[Arrival.MOST if most else Arrival.FEW]
 
 
-def _certificate(name: str) -> None:
-    """The certificate and its colour."""
+def _certificate(name: str, used: bool) -> None:
+    """The certificate and its colour, and whether the frame has looked it up."""
     if name.upper() not in Certificate.__members__ or name.upper() == Certificate.NONE.name:
         return
     certificate = Certificate[name.upper()]
     swatch(CERTIFICATE_COLORS[certificate])
-    imgui.text_unformatted(f"proven: {certificate.name.lower()}")
-    tooltip(CERTIFICATE_MEANING[certificate])
+    told = unused(certificate.name.lower())
+    paragraph(f"proven {certificate.name.lower()}" if used else told)
+    tooltip(CERTIFICATE_MEANING[certificate] if used else WHY_TRACED[told])
 
 
 def sentences(ui: Ui, one: Explanation, receiver: int) -> list[str]:

@@ -27,7 +27,7 @@ def show(ui: Ui) -> None:
         if preparing is not None and job is opener.load_job and job.fraction >= 1.0:
             clipped(job.label, QUIET)  # it waits for the other
         else:
-            _job(job)
+            _job(job, _PREPARING[opener.compiles] if job is preparing else job.label or "starting")
     if opener.load_job is not None:
         if opener.load_job.stopping:
             imgui.text_colored(QUIET, "cancelling ...")
@@ -36,8 +36,14 @@ def show(ui: Ui) -> None:
     imgui.end()
 
 
-def _job(job: Job) -> None:
+_PREPARING = {
+    True: "Its kernels are compiled for this processor. They are kept, so that later starts only load them.",
+    False: "Its kernels were compiled before, and are loaded.",
+}
+
+
+def _job(job: Job, doing: str) -> None:
     passed = time.monotonic() - job.started
     paragraph(job.title)
     imgui.progress_bar(job.fraction, ImVec2(-1.0, 0.0), f"{100.0 * job.fraction:.0f} %, {passed:.0f} s so far")
-    paragraph(job.label or "starting", QUIET)
+    paragraph(doing, QUIET)

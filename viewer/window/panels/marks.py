@@ -29,7 +29,9 @@ def cross(draw: imgui.ImDrawList, at: ImVec2, color: ImVec4, arm: float = 0.28) 
         draw.add_line(start, end, shown, em(0.14))
 
 
-def line(draw: imgui.ImDrawList, start: ImVec2, end: ImVec2, color: ImVec4, width: float, around: ImVec4) -> None:
+def line(
+    draw: imgui.ImDrawList, start: ImVec2, end: ImVec2, color: ImVec4, width: float, around: ImVec4, rim: float = 0.06
+) -> None:
     """A line of so many ems, with a rim of another colour."""
-    draw.add_line(start, end, imgui.get_color_u32(around), em(width + 0.12))
+    draw.add_line(start, end, imgui.get_color_u32(around), em(width + 2.0 * rim))
     draw.add_line(start, end, imgui.get_color_u32(color), max(1.0, em(width)))

@@ -78,9 +78,10 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     if texture is not None and frame is None and c.reloaded:
         _last_picture(ui, room, texture)
         return
-    if frame is None or texture is None:
+    if frame is None or texture is None or c.session.scene is None:
         _placeholder(ui, room)
         return
+    ui.pixels.follow(c.session.scene.path)
     width, height = c.traced.full_size if c.traced is not None else (1, 1)
     ui.picture_shape = width, height
     seen, gap = comparing.shown(ui), em(sides.GAP)
@@ -158,7 +159,7 @@ def _placeholder(ui: Ui, room: ImVec2) -> None:
     c = ui.controller
     if c.loader.load_job is not None or c.loader.warm_up_job is not None or c.renderer.busy:
         return  # the progress window speaks
-    text = "Open a scene (Ctrl+O), or drop one on this window"
+    text = ui.with_keys("Open a scene (Ctrl+O), or drop one on this window")
     width = imgui.calc_text_size(text).x
     at = imgui.get_cursor_pos()
     imgui.set_cursor_pos(ImVec2(at.x + max(0.0, (room.x - width) / 2.0), at.y + room.y / 2.0))
@@ -249,9 +250,11 @@ def fly(ui: Ui) -> None:
     if imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup_id | imgui.PopupFlags_.any_popup_level)):
         return
 
+    def down(name: str) -> float:
+        return float(name not in ui.chorded and ui.keyboard.is_down(ui.keymap.of(name)))
+
     def axis(plus: str, minus: str) -> float:
-        down, of = ui.keyboard.is_down, ui.keymap.of
-        return float(down(of(plus))) - float(down(of(minus)))
+        return down(plus) - down(minus)
 
     wanted = pads.Push(
         axis("Fly right", "Fly left"), axis("Fly up", "Fly down"), axis("Fly forward", "Fly back"),

@@ -32,7 +32,7 @@ def show(ui: Ui) -> None:
             paragraph("None yet. A preset keeps method, quality, lamps, view and looks; not camera, time or scene.",
                       QUIET)  # fmt: skip
         _own(ui)
-        imgui.separator_text("Of the program")
+        imgui.separator_text("Built in")
         for preset in BUILT_IN:
             imgui.push_id(preset.name)
             if imgui.selectable(preset.name, False)[0]:

@@ -27,7 +27,9 @@ _BEHIND = 0.4  # opacity of what lies behind something
 _FADED = 0.16  # of rays other than the one that is pointed at or selected
 _BLOCKED = ImVec4(0.84, 0.37, 0.0, 1.0)
 _PALE = ImVec4(0.8, 0.86, 1.0, 0.35)  # around what is dark
-_BOX, _HIT_BOX, _WAY = (0.98, 0.55, 0.20), (0.90, 0.25, 0.30), (1.0, 1.0, 1.0)
+BOX, HIT_BOX, WAY = (1.0, 0.62, 0.10), (1.0, 0.25, 0.30), (1.0, 1.0, 1.0)
+"""A node's box, one in which the ray hits something, and the part of the ray in it."""
+_DARK = ImVec4(0.02, 0.02, 0.03, 0.9)  # around a box, which is to be seen on wood and on brick
 _MANY = 40  # lines, from which on they are thin
 _MOST_OF_A_ROW = 64  # shadow rays of a row that are picked out
 
@@ -44,15 +46,15 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
 
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(corner, end, True)
-    chosen = rays.pointed or rays.selected
+    picked_out = [row for row in (rays.selected, rays.pointed) if row is not None]
     lines = rays.lines(frame)
     thin = 0.55 if len(lines) > _MANY else 1.0
     for line in lines:
-        _line(draw, on_screen, line, 1.0 if chosen is None else _FADED, thin)
-    if chosen is not None:
-        for line in _of_row(rays, frame, lines, chosen):
+        _line(draw, on_screen, line, _FADED if picked_out else 1.0, thin)
+    for row in picked_out:
+        for line in _of_row(rays, frame, lines, row):
             _line(draw, on_screen, line, 1.0)
-    _points(draw, on_screen, rays, frame, chosen)
+    _points(draw, on_screen, rays, frame, rays.pointed or rays.selected)
     _node(draw, on_screen, rays, frame)
     draw.pop_clip_rect()
 
@@ -104,12 +106,12 @@ def _node(draw: imgui.ImDrawList, on_screen: Callable, rays: RayInspector, frame
         return
     visit, known = visits[rays.step], rays.tree
     one = int(row.places[0]) if len(row.places) else None
-    _strokes(draw, on_screen, box_strokes(frame, visit), _HIT_BOX if visit.hits else _BOX, 0.14)
-    _strokes(draw, on_screen, way_strokes(frame, known, row.ray, one, visit), _WAY, 0.22)
+    _strokes(draw, on_screen, box_strokes(frame, visit), HIT_BOX if visit.hits else BOX, 0.2)
+    _strokes(draw, on_screen, way_strokes(frame, known, row.ray, one, visit), WAY, 0.28)
 
 
 def _strokes(draw: imgui.ImDrawList, on_screen: Callable, pieces: Sequence[Stroke], color: Color, width: float) -> None:
     for stroke in pieces:
-        alpha = 1.0 if stroke.seen else 0.5
+        alpha = 1.0 if stroke.seen else 0.55
         a, b = on_screen(stroke.start), on_screen(stroke.end)
-        marks.line(draw, a, b, ImVec4(*color, alpha), width, with_alpha(SHADE, alpha))
+        marks.line(draw, a, b, ImVec4(*color, alpha), width, with_alpha(_DARK, alpha), rim=0.11)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import ImVec2, imgui
 
 from viewer.output.ray_rows import Row, totals
 from viewer.services.ray_inspector import RayInspector
@@ -13,7 +13,7 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, clipped, em, fitted, paragraph, same_line_for, swatch, tooltip
 
 _SIDE_BY_SIDE = 38.0  # ems of width that leave room for both
-_TREE_SHARE = 0.52
+_TREE_SHARE = 0.48
 _LIGHT = 7.0  # ems of width, at least, for the name of a light
 _SHOWN_TIPS = {
     Shown.ALL: "every shadow ray, and those that were not asked",
@@ -32,15 +32,16 @@ def show(ui: Ui) -> None:
     if rays.rows is None:
         paragraph(_why_nothing(ui), QUIET)
         return
+    _filters(ui, rays)  # across the whole panel, so that they stay where they are when the steps come
     room = imgui.get_content_region_avail()
     wide = room.x >= em(_SIDE_BY_SIDE)
     row = rays.selected
     if row is None or not row.single:
-        _tree(ui, rays)
+        _tree(rays)
         return
     size = ImVec2(_TREE_SHARE * room.x, 0.0) if wide else ImVec2(0.0, 0.5 * room.y)
     if imgui.begin_child("tree", size):
-        _tree(ui, rays)
+        _tree(rays)
     imgui.end_child()
     if wide:
         imgui.same_line()
@@ -60,9 +61,8 @@ def _why_nothing(ui: Ui) -> str:
     return "The rays are looked into when the picture is whole."
 
 
-def _tree(ui: Ui, rays: RayInspector) -> None:
+def _tree(rays: RayInspector) -> None:
     assert rays.tree is not None
-    _filters(ui, rays)
     clipped(totals(rays.tree), QUIET)
     if sum(rays.tree.counts.values()) > MOST_DRAWN:
         tooltip(f"{totals(rays.tree)}\n\nAt most {MOST_DRAWN} shadow rays are drawn at once, and the selected one.")
@@ -144,7 +144,10 @@ def _tip(row: Row, whole: bool) -> None:
     tip = "\n".join(([] if whole else [row.text]) + ([row.tip] if row.tip else []))
     if tip and imgui.is_mouse_down(0) is False and imgui.begin_tooltip():
         imgui.push_text_wrap_pos(em(28.0))
-        imgui.text_colored(ImVec4(*row.color, 1.0), row.text) if not whole else None
-        imgui.text_unformatted(row.tip)
+        if not whole:
+            swatch(row.color)
+            imgui.text_unformatted(row.text)
+        if row.tip:
+            imgui.text_unformatted(row.tip)
         imgui.pop_text_wrap_pos()
         imgui.end_tooltip()

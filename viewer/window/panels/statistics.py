@@ -52,6 +52,8 @@ def show(ui: Ui) -> None:
     _shadow_rays(frame, pixels, certifies)
     heading("Work")
     _work(ui)
+    if terms.asks_by_beams(frame, c.tracing.lamps.any):
+        paragraph(terms.BY_BEAMS, QUIET)
     heading("Time")
     with _amounts("time") as shown:
         if shown:

@@ -66,13 +66,14 @@ def doing(c: Controller) -> str:
     """What the program does now."""
     preparing, loading = c.loader.warm_up_job, c.loader.load_job
     if preparing is not None and c.frame is None:
-        return f"{preparing.title}: {preparing.label}"
+        return f"{preparing.title}: {100.0 * preparing.fraction:.0f} %"
     if loading is not None:
         return f"{loading.title}: {loading.label}" if loading.label else loading.title
     if c.runs.current is not None:
         return f"{c.runs.current.name}, traced: {c.runs.current.label}   (Escape stops it)"
     if preparing is not None:
-        return f"compiling certificates (first start only), not culled by them until then: {preparing.label}"
+        what = "compiling what makes certificates (first start only)"
+        return f"{what if c.loader.compiles else 'loading what makes certificates'}: {100.0 * preparing.fraction:.0f} %"
     if c.session.scene is None:
         return "no scene is open"
     if c.motion.under_way or c.session.playing:

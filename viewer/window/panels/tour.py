@@ -6,7 +6,7 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.services.tour import STEPS
+from viewer.services.tour import STEPS, Tour
 from viewer.window.ui import Ui
 from viewer.window.widgets import GOOD, QUIET, clipped, em, paragraph, tooltip_above
 
@@ -42,7 +42,7 @@ def _strip(ui: Ui, left: float, top: float, width: float) -> None:
     assert tour.step is not None and tour.at is not None
     padding = ImVec2(em(_PADDING.x), em(_PADDING.y))
     wrap = max(width - 2.0 * padding.x, em(4.0))
-    words = max(imgui.calc_text_size(step.text(ui.controller), False, wrap).y for step in STEPS)
+    words = max(imgui.calc_text_size(tour.text(step), False, wrap).y for step in STEPS)
     ui.tour_height = imgui.get_frame_height_with_spacing() + words + 2.0 * padding.y + em(0.2)
     imgui.set_next_window_pos(ImVec2(left, top))
     imgui.set_next_window_size(ImVec2(width, ui.tour_height - em(0.2)))
@@ -60,8 +60,8 @@ def _strip(ui: Ui, left: float, top: float, width: float) -> None:
     imgui.align_text_to_frame_padding()
     if imgui.begin_child("title", ImVec2(max(wrap - buttons, em(2.0)), imgui.get_frame_height())):
         imgui.align_text_to_frame_padding()
-        clipped(f"Tour, {tour.at + 1} of {len(STEPS)}:  {tour.step.title}")
-        _marks(len(tour.done))
+        clipped(f"Step {tour.at + 1} of {len(STEPS)}:  {tour.step.title}")
+        _marks(tour)
     imgui.end_child()
     imgui.same_line()
     imgui.begin_disabled(tour.showing)
@@ -70,7 +70,7 @@ def _strip(ui: Ui, left: float, top: float, width: float) -> None:
     imgui.end_disabled()
     tooltip_above("do this step for you")
     imgui.same_line()
-    text = tour.step.text(ui.controller)
+    text = tour.text(tour.step)
     if imgui.button(labels[1]):
         tour.skip()
     tooltip_above("end the tour; the menu Help has it again" if last else "go on to the next step")
@@ -82,12 +82,21 @@ def _strip(ui: Ui, left: float, top: float, width: float) -> None:
     imgui.end()
 
 
-def _marks(done: int) -> None:
-    """How many steps are done, where there is room for it."""
-    text = f"{icons.ICON_FA_CHECK} {done} done"
-    imgui.same_line()
-    if done and imgui.calc_text_size(text).x <= imgui.get_content_region_avail().x:
-        imgui.text_colored(GOOD, text)
+def _marks(tour: Tour) -> None:
+    """A dot for each step, full where it is done, where there is room for them."""
+    pitch, radius = em(0.75), em(0.22)
+    imgui.same_line(0.0, em(1.0))
+    if imgui.get_content_region_avail().x < pitch * len(STEPS):
+        return
+    corner, draw = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
+    for number in range(len(STEPS)):
+        at = ImVec2(corner.x + (number + 0.5) * pitch, corner.y + 0.5 * imgui.get_frame_height())
+        if number in tour.done:
+            draw.add_circle_filled(at, radius, imgui.get_color_u32(GOOD))
+        else:
+            draw.add_circle(at, radius, imgui.get_color_u32(QUIET), 0, em(0.08))
+    imgui.dummy(ImVec2(pitch * len(STEPS), imgui.get_frame_height()))
+    tooltip_above(f"{len(tour.done)} of {len(STEPS)} steps are done")
 
 
 def _all_steps(ui: Ui) -> None:
@@ -104,7 +113,7 @@ def _all_steps(ui: Ui) -> None:
         for number, step in enumerate(STEPS):
             paragraph(f"{number + 1}  {step.title}")
             if area.work_size.y > em(_HIGH):
-                paragraph(step.text(ui.controller), QUIET)
+                paragraph(tour.text(step), QUIET)
         paragraph("You can begin as soon as there is a picture.", QUIET)
     imgui.end()
     if not stays:

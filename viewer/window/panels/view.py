@@ -7,7 +7,7 @@ from imgui_bundle import imgui
 from viewer.state.views import View
 from viewer.window.panels import legend, lights, tone
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, row
+from viewer.window.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, right, row
 
 _FLAT = (View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT, View.CERTIFICATE, View.PENUMBRA)
 
@@ -16,16 +16,12 @@ def show(ui: Ui) -> None:
     """The panel."""
     c = ui.controller
     p = c.preferences
-    views = list(View)
     with properties("view", 5.0) as shown:
         if shown:
-            row("View", "keys 1 to 9, 0, H and J, the last two also with Shift")
-            chosen = views.index(c.session.view)
-            changed, index = imgui.combo("##view", chosen, [f"{v.label}" for v in views])
-            if changed:
-                c.settings.set_view(views[index])
+            row("View", "what is shown of the frame; the key of each view stands beside it in the list")
+            _views(ui)
             if c.session.view.of_light and c.session.scene is not None and c.session.scene.lights:
-                row("Light", "L and Shift+L")
+                row("Light", "the light that the view is about (L and Shift+L)")
                 lights.combo(ui)
             if c.session.view is View.WIPE:
                 row("Line", "where it is; or drag it in the picture")
@@ -52,6 +48,23 @@ def show(ui: Ui) -> None:
     tone.ticks(ui)
     legend.in_panel(ui)
     _explanation(ui)
+
+
+def _views(ui: Ui) -> None:
+    """All views to choose from, each with its key."""
+    chosen = ui.controller.session.view
+    if not imgui.begin_combo("##view", chosen.label, int(imgui.ComboFlags_.height_largest)):
+        return
+    for view in View:
+        if imgui.selectable(f"{view.label}##{view.value}", view is chosen)[0]:
+            ui.controller.settings.set_view(view)
+        if view is chosen:
+            imgui.set_item_default_focus()
+        key = ui.key_label(view.label)
+        if key:
+            imgui.same_line()
+            right(key, QUIET)
+    imgui.end_combo()
 
 
 def _explanation(ui: Ui) -> None:
