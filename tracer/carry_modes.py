@@ -8,7 +8,8 @@ The paper's modes speak of static occluders and of lights (§2.2), and so an edi
 - Where static geometry has gone, the half of a mode is dropped that says that rays were blocked, of every primitive and
   light between which it may have been: FULL_SHADOW becomes INIT, PARTIAL_SHADOW becomes NON_SHADOW.  Where some has
   come, it is the other half (`tracer.culling.dependence`).  These primitives must be seen whole anew.
-- What has become static has no modes yet, and what can move has none.
+- What has become static has no modes yet, and what can move has none.  What is static elsewhere than before has gone
+  and come, and has none yet either.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from tracer.geometry.primitives import Outlines
 from tracer.geometry.world import World
 from tracer.parallel import thread_count
 from tracer.renderer import Renderer
-from tracer.scene.edits import Edited, thing_numbers
+from tracer.scene.edits import Edited, thing_numbers, things
 from tracer.scene.lamps import LampTable
 from tracer.scene.lights import Light, as_lamps
 
@@ -39,7 +40,9 @@ def carry_modes(before: Renderer, shown: Edited, after: Renderer, now: Edited) -
 
     Both scenes are edits of one.  Modes of cells, and certificates, are not carried."""
     threads, outlines = thread_count(after.settings.threads), before.world.outlines()
-    gone, come = _changed_static(before.world, shown, after.world, now)
+    owners = thing_numbers(shown.original)
+    moved = _moved(shown, now)[owners]
+    gone, come = _changed_static(before.world, shown, after.world, now, moved, owners)
     for key, history in before.state.histories.items():
         if key[2] or history.light_positions is None:  # modes of cells, or of no frame yet
             continue
@@ -51,7 +54,7 @@ def carry_modes(before: Renderer, shown: Edited, after: Renderer, now: Edited) -
         lights = as_lamps(shown.scene.lights, key[3], key[4])
         if len(gone) or len(come):  # what lies between a unit and a lamp of several samples is not looked into
             modes.forget_lights(kept.words, [n for n, light in enumerate(lights) if light.samples > 1])
-        after.state.histories[key] = _renumbered(kept, lights, shown, after.world, now, key[3:])
+        after.state.histories[key] = _renumbered(kept, lights, shown, after.world, now, moved, key[3:])
 
 
 def _renumbered(
@@ -60,13 +63,14 @@ def _renumbered(
     shown: Edited,
     world: World,
     now: Edited,
+    moved: NDArray[np.bool_],
     lamps: tuple[float | None, int | None],
 ) -> ModeHistory:
     """A history with the numbers that primitives and lights have now."""
     assert kept.light_positions is not None
     made = ModeHistory(world.object_of, len(now.lights), 1, NO_UNITS)
     old = shown.numbers[now.primitives]
-    there = np.flatnonzero(old >= 0)
+    there = np.flatnonzero((old >= 0) & ~moved[now.primitives])
     made.pixel_count[there], made.highest_count[there] = kept.pixel_count[old[there]], kept.highest_count[old[there]]
     words = kept.words[old[there]].astype(np.uint64)
     occlusion = modes.occlusion_mode(words)
@@ -76,11 +80,13 @@ def _renumbered(
     shapes = list(as_lamps(now.scene.lights, *lamps))
     for light, number in enumerate(now.lights.tolist()):
         before = shown.light_here(number)
-        if before < 0:
-            found[occlusion == modes.FULLY_RENDERED] = 0
+        if before >= 0:
+            positions[light], shapes[light] = kept.light_positions[before], lights[before]
+        if not modes.has_shadow_mode(made.words, light):
             continue
-        positions[light], shapes[light] = kept.light_positions[before], lights[before]
-        if modes.has_shadow_mode(kept.words, before) and modes.has_shadow_mode(made.words, light):
+        if not modes.has_shadow_mode(kept.words, before):  # it was off, or one of too many
+            found[occlusion == modes.FULLY_RENDERED] &= ~np.uint64(3)
+        else:
             found |= modes.shadow_mode(words, before).astype(np.uint64) << np.uint64(2 + 2 * light)
     made.words[there[static]] = found[static].astype(made.words.dtype)
     if shapes:
@@ -88,28 +94,35 @@ def _renumbered(
     return made
 
 
+def _moved(shown: Edited, now: Edited) -> NDArray[np.bool_]:
+    """(things of the original,) bool: which are static at another time than before."""
+    then, times = dict(shown.edits.static), dict(now.edits.static)
+    names = [thing.name for thing in things(shown.original)]
+    elsewhere = [name in times and times[name] != then.get(name, times[name]) for name in names]
+    return np.array(elsewhere, np.bool_)
+
+
 def _changed_static(
-    before: World, shown: Edited, after: World, now: Edited
+    before: World, shown: Edited, after: World, now: Edited, moved: NDArray[np.bool_], owners: NDArray[np.int32]
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Boxes (k, 6) around static things, as far as these have gone; and around those that have come."""
     count = shown.original.primitive_count
     was, is_now = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
     was[shown.primitives[before.object_of == 0]] = True
     is_now[now.primitives[after.object_of == 0]] = True
-    things = thing_numbers(shown.original)
-    gone = _boxes(before.outlines(), shown.numbers, np.flatnonzero(was & ~is_now), things)
-    return gone, _boxes(after.outlines(), now.numbers, np.flatnonzero(is_now & ~was), things)
+    gone = _boxes(before.outlines(), shown.numbers, np.flatnonzero(was & (moved | ~is_now)), owners)
+    return gone, _boxes(after.outlines(), now.numbers, np.flatnonzero(is_now & (moved | ~was)), owners)
 
 
 def _boxes(
-    outlines: Outlines, numbers: NDArray[np.int32], which: NDArray[np.intp], things: NDArray[np.int32]
+    outlines: Outlines, numbers: NDArray[np.int32], which: NDArray[np.intp], owners: NDArray[np.int32]
 ) -> NDArray[np.float32]:
     """Boxes (k, 6) around those primitives of each thing, of static geometry, that have these numbers originally."""
     here, made = numbers[which], np.empty((len(which), 6), np.float32)
     triangle = here < len(outlines.triangles)
     made[triangle] = triangle_boxes(outlines.triangles[here[triangle]])
     made[~triangle] = outlines.boxes[here[~triangle] - len(outlines.triangles)]
-    owners = things[which]
-    each = [made[owners == owner] for owner in np.unique(owners)]
+    mine = owners[which]
+    each = [made[mine == owner] for owner in np.unique(mine)]
     around = [np.concatenate([boxes[:, :3].min(0), boxes[:, 3:].max(0)]) for boxes in each]
     return np.array(around, np.float32).reshape(-1, 6)

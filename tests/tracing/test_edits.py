@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -15,8 +16,9 @@ from tracer.carry_modes import carry_modes
 from tracer.culling import modes
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
+from tracer.scene.animation import Animation, Keys, TrackSet
 from tracer.scene.edits import NO_EDITS, Edits, edited, thing_numbers, thing_of, things
-from tracer.scene.model import Camera, Light, Scene
+from tracer.scene.model import Camera, Light, Scene, SceneObject, empty_quadrics
 from tracer.settings import Settings
 
 SMALL = Settings(width=40, height=30, threads=1, depth=2)
@@ -138,6 +140,58 @@ def test_a_light_that_is_switched_on_again_is_learnt_anew():
     assert (modes.shadow_mode(history.words, 1) == modes.ShadowMode.INIT).all()
     assert (modes.shadow_mode(history.words[:2], 2) == modes.ShadowMode.PARTIAL_SHADOW).all()
     assert not (modes.occlusion_mode(history.words) == modes.FULLY_RENDERED).any()
+
+
+def test_a_light_that_is_switched_on_again_leaves_those_before_it_their_modes():
+    original = lidded()
+    off = edited(original, Edits(lights_off=frozenset({1})))
+    before, now = learnt(off.scene), edited(original, NO_EDITS)
+    renderer = Renderer(now.scene, before.settings)
+    carry_modes(before, off, renderer, now)
+    (known,), (history,) = before.state.histories.values(), renderer.state.histories.values()
+    full = modes.occlusion_mode(known.words) == modes.FULLY_RENDERED
+    assert (modes.shadow_mode(known.words, 0)[full] == modes.ShadowMode.PARTIAL_SHADOW).any()
+    for light, other in ((0, 0), (2, 1)):
+        assert np.array_equal(modes.shadow_mode(history.words, light), modes.shadow_mode(known.words, other))
+
+
+def test_what_gets_room_for_modes_of_one_light_more_is_seen_whole_anew():
+    """A word holds modes of 31 lights: of those after them none are known, wherever they go."""
+    lights = tuple(Light(f"light {n}", (-1.0 + 0.05 * n, 0.1, 3.0)) for n in range(33))
+    _, words = after_edits(replace(lidded(), lights=lights), Edits(lights_off=frozenset({0})))
+    assert (modes.shadow_mode(words, 29)[:2] == modes.ShadowMode.PARTIAL_SHADOW).all()
+    assert (modes.shadow_mode(words, 30) == modes.ShadowMode.INIT).all()
+    assert not (modes.occlusion_mode(words) == modes.FULLY_RENDERED).any()
+
+
+def sliding() -> Scene:
+    """A floor of many triangles below one light, and a lid that goes aside after a second."""
+    steps = np.linspace(-2, 2, 17).tolist()
+    floor = [
+        row for x, right in pairwise(steps) for y, top in pairwise(steps)
+        for row in quad((x, y, 0), (right, y, 0), (right, top, 0), (x, top, 0))
+    ]  # fmt: skip
+    lid = SceneObject("lid", scene(np.array(LID, np.float32)).objects[0].triangles, empty_quadrics(), ("slide",))
+    places = np.zeros((5, 3))
+    places[3:, 0] = 1.2
+    keys = Keys(np.arange(-1.0, 4.0), places, np.zeros((5, 3)))
+    made = scene(np.array(floor, np.float32), dynamic=(lid,))
+    tracks = {**made.animation.tracks, "slide": TrackSet(translation=keys)}
+    return replace(made, lights=(Light("lamp", (0.0, 0.1, 3.0)),), animation=Animation(tracks))
+
+
+def test_what_is_static_elsewhere_leaves_no_modes_behind():
+    original = sliding()
+    first, then = (edited(original, Edits(static=(("lid", time),))) for time in (0.0, 2.0))
+    before = Renderer(first.scene, replace(SMALL, width=96, height=96, method="paper", verify=True))
+    for _ in range(3):
+        before.render(0.0, ABOVE)
+    renderer = Renderer(then.scene, before.settings)
+    carry_modes(before, first, renderer, then)
+    frames = [renderer.render(0.0, ABOVE) for _ in range(3)]
+    assert frames[-1].statistics.shadow.wrong == 0
+    fresh = Renderer(then.scene, replace(SMALL, width=96, height=96, method="none")).render(0.0, ABOVE)
+    assert np.array_equal(frames[-1].color, fresh.color) and frames[-1].statistics.shadow.dynamic_only > 0
 
 
 def test_a_renderer_beside_another_shows_the_same_edits():

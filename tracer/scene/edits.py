@@ -7,6 +7,7 @@ edited.
 
 from __future__ import annotations
 
+import weakref
 from collections import Counter
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -18,7 +19,7 @@ from tracer.scene.animation import Animation, TrackSet
 from tracer.scene.arrays import Float64, Int32
 from tracer.scene.assembly import under_matrix
 from tracer.scene.deformation import deformed
-from tracer.scene.lights import Vector
+from tracer.scene.lights import Light, Vector
 from tracer.scene.model import Quadrics, Scene, SceneObject, Triangles
 from tracer.scene.normals import unit_normals
 
@@ -152,8 +153,20 @@ class Edited:
         return self._things[_owner(self.original, int(self.primitives[primitive]))]
 
 
+_known: dict[int, tuple[weakref.ref[Scene], tuple[Thing, ...]]] = {}  # by the identity of scenes that are in use
+
+
 def things(scene: Scene) -> tuple[Thing, ...]:
-    """All things of a scene: first the parts of what never moves, then the objects that can move."""
+    """All things of a scene, named once: first the parts of what never moves, then the objects that can move."""
+    key = id(scene)
+    known = _known.get(key)
+    if known is None or known[0]() is not scene:
+        known = _known[key] = weakref.ref(scene, lambda _: _known.pop(key, None)), _named(scene)
+    return known[1]
+
+
+def _named(scene: Scene) -> tuple[Thing, ...]:
+    """Its things, each with a name that no other has."""
     found: list[tuple[str, int, int]] = []
     for index, one in enumerate(scene.objects):
         if one.part_of is not None:
@@ -212,7 +225,8 @@ def edited(scene: Scene, edits: Edits) -> Edited:
     Objects that only become hidden stay in their places, so that a world of the one scene is one of the other."""
     edits = edits.within(scene)
     numbers = np.arange(scene.primitive_count, dtype=np.int32)
-    lights = np.array([n for n in range(len(scene.lights)) if n not in edits.lights_off], np.int32)
+    on = set(range(len(scene.lights))) - edits.lights_off
+    lights = np.array(sorted(on), np.int32)
     if not edits:
         return Edited(scene, edits, scene, numbers, lights)
     objects, held = _objects(scene, edits)
@@ -221,17 +235,17 @@ def edited(scene: Scene, edits: Edits) -> Edited:
     if any(isinstance(element, str) and element == NEVER for one in objects for element in one.chain[:1]):
         never = TrackSet(visibility=np.array([[-np.inf, 0.0]]))
         animation = Animation({**animation.tracks, NEVER: never})
-    made = replace(scene, objects=tuple(objects), lights=_lights(scene, edits, lights.tolist()), animation=animation)
+    made = replace(scene, objects=tuple(objects), lights=_lights(scene, edits, on), animation=animation)
     return Edited(scene, edits, made, np.concatenate([*triangles, *quadrics]), lights)
 
 
-def _lights(scene: Scene, edits: Edits, kept: list[int]) -> tuple:
+def _lights(scene: Scene, edits: Edits, on: set[int]) -> tuple[Light, ...]:
     """The lights that are on, where they are; one that was moved stays there."""
     places = dict(edits.moved_lights)
     return tuple(
         replace(light, position=places[n], track=None) if n in places else light
         for n, light in enumerate(scene.lights)
-        if n in kept
+        if n in on
     )
 
 
@@ -244,16 +258,19 @@ Held = tuple[NDArray[np.intp], NDArray[np.intp]]
 def _objects(scene: Scene, edits: Edits) -> tuple[list[SceneObject], list[Held]]:
     """The objects of the edited scene, and which primitives each holds."""
     static, static_held = scene.objects[0], _held(scene, 0)
-    shown = ~np.isin(np.concatenate(static_held), list(edits.hidden_primitives))
+    never = [thing for thing in things(scene) if thing.index == 0]
+    part_of = static.part_of
+    if part_of is None:
+        part_of = np.full(len(static.triangles) + len(static.quadrics), -1, np.int32)
+    there = ~np.isin(np.concatenate(static_held), list(edits.hidden_primitives))
+    there &= ~np.isin(part_of, [thing.part for thing in never if thing.name in edits.hidden])
+    moves = [thing for thing in never if thing.name in edits.moving - edits.hidden]
     freed: list[tuple[SceneObject, Held]] = []
-    for thing in things(scene):
-        if thing.index > 0 or not (thing.name in edits.hidden or thing.name in edits.moving):
-            continue
-        whole = np.ones(len(shown), np.bool_) if static.part_of is None else static.part_of == thing.part
-        if thing.name not in edits.hidden:
-            one = replace(_subset(static, whole & shown), name=thing.name, chain=(np.eye(4),), parts=(), part_of=None)
-            freed.append((one, _of(static_held, whole & shown)))
-        shown = shown & ~whole
+    for thing in moves:
+        mine = there & (part_of == thing.part)
+        one = replace(_subset(static, mine), name=thing.name, chain=(np.eye(4),), parts=(), part_of=None)
+        freed.append((one, _of(static_held, mine)))
+    shown = there & ~np.isin(part_of, [thing.part for thing in moves])
     if not shown.all():
         static, static_held = _subset(static, shown), _of(static_held, shown)
 
@@ -262,9 +279,9 @@ def _objects(scene: Scene, edits: Edits) -> tuple[list[SceneObject], list[Held]]
     times = dict(edits.static)
     for index, one in enumerate(scene.objects[1:], 1):
         held, name = _held(scene, index), names.get(index, "")
-        there = ~np.isin(np.concatenate(held), list(edits.hidden_primitives))
-        if not there.all():
-            one, held = _subset(one, there), _of(held, there)
+        kept = ~np.isin(np.concatenate(held), list(edits.hidden_primitives))
+        if not kept.all():
+            one, held = _subset(one, kept), _of(held, kept)
         if name in times:
             if name not in edits.hidden and scene.animation.visible(one.chain, times[name]):
                 static, static_held = _joined(static, static_held, _at_rest(scene, one, times[name]), held, name)

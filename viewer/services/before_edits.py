@@ -5,9 +5,8 @@ from __future__ import annotations
 from enum import Enum
 
 from tracer.frame import Frame
-from tracer.scene.edits import NO_EDITS, Edited, Edits
+from tracer.scene.edits import NO_EDITS, Edited
 from viewer.services.editing import Editing
-from viewer.services.undo import Undo
 from viewer.state.edit_effects import Effects, effects, same_place
 from viewer.state.session import Session
 
@@ -24,45 +23,43 @@ class Lack(Enum):
 class BeforeEdits:
     """Keeps whole frames of the scene as it was read; `effects` compares the newest frame with them."""
 
-    def __init__(self, session: Session, editing: Editing, undo: Undo) -> None:
-        self._session, self._editing, self._undo = session, editing, undo
-        self._kept: dict[int, Frame] = {}  # by samples of a pixel: all of one moment, place and size
-        self._of: Edited | None = None
-        self._now: Frame | None = None
-        self._put_aside: Edits | None = None  # until a picture without them has come
-        self._found: tuple[Frame, Frame, Effects] | None = None
+    def __init__(self, session: Session, editing: Editing) -> None:
+        self._session, self._editing = session, editing
+        self.forget()
 
     def forget(self) -> None:
         """Another scene is open."""
-        self._kept, self._of, self._now, self._put_aside, self._found = {}, None, None, None, None
+        self._kept: dict[int, Frame] = {}  # by samples of a pixel: all of one moment, place and size
+        self._of: Edited | None = None
+        self._now: Frame | None = None
+        self._edits = NO_EDITS  # those that are put aside
+        self._found: tuple[Frame, Frame, Effects] | None = None
 
     def follow(self, whole: Frame | None, settled: bool) -> None:
-        """Take up the newest whole frame, None where that is not of what is wanted; `settled` says that no better one
-        is to come."""
-        edited = self._session.edited
-        self._now = whole if edited is not None and not self._editing.under_way else None
-        if self._now is None or edited is None:
+        """Take up the newest whole frame, None where that is not of the scene as it is edited now; `settled` says that
+        no better one is to come."""
+        session, editing, edited = self._session, self._editing, self._session.edited
+        if session.edits != self._edits:
+            editing.put_aside = False  # somebody wants others
+        self._now = whole if not editing.under_way else None
+        if whole is None or edited is None or edited.edits:
             return
-        if edited.edits:
-            self._put_aside = None  # somebody has brought them back, or made others
-        else:
-            if any(not same_place(kept, self._now) for kept in self._kept.values()):
-                self._kept = {}
-            self._kept[self._now.settings.samples], self._of = self._now, edited
-            if self._put_aside is not None and settled:
-                edits, self._put_aside = self._put_aside, None
-                self._undo.overlook(lambda: self._editing.change(edits))
+        if any(not same_place(kept, whole) for kept in self._kept.values()):
+            self._kept = {}
+        self._kept[whole.settings.samples], self._of = whole, edited
+        if settled:
+            editing.put_aside = False
 
     def take_anew(self) -> None:
-        """Put the edits aside until a picture without them has come from here."""
-        if self._session.edits and self._put_aside is None:
-            self._put_aside = self._session.edits
-            self._undo.overlook(lambda: self._editing.change(NO_EDITS))
+        """Put the edits aside until a picture without them has come from here, or other edits are wanted."""
+        if self._session.edits:
+            self._edits = self._session.edits
+            self._editing.show_without()
 
     @property
     def taking(self) -> bool:
         """Whether the edits are put aside for a moment."""
-        return self._put_aside is not None
+        return self._editing.put_aside
 
     @property
     def lack(self) -> Lack:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
+from tracer.scene.edits import NO_EDITS
 from tracer.scene.model import Progress
 from viewer.output import capture
 from viewer.output.annotations import annotated
@@ -87,10 +88,11 @@ class CaptureService:
             "height": height,
         }
         settings = replace(frame.settings, verify=session.settings.verify)  # a view may have verified by itself
-        now = session.snapshot()
+        edits = session.edited.edits if session.edited is not None else NO_EDITS
         snapshot = replace(
-            now, time=frame.time, camera=frame.camera, follow=follow, settings=settings_to_json(settings)
-        )
+            session.snapshot(), time=frame.time, camera=frame.camera, follow=follow,
+            settings=settings_to_json(settings), edits=edits,
+        )  # fmt: skip
         size = (frame.width, frame.height)
         text = capture.metadata(snapshot, number, size, frame.statistics.to_dict(), {"window": recipe is None})
         folder = preferences.picture_folder

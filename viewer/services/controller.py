@@ -69,8 +69,13 @@ class Controller:
         self.record = Record(session, self.history)
         self.selection = Selection(session, lambda: self.frame)
         self.captures = CaptureService(session, preferences, notices, awaken)
-        self.runs = RunController(session, self.selection, renderer, preferences, notices, self.captures, awaken)
-        self.tracing = Tracing(session, preferences, renderer, self.runs.refuses, awaken)
+        self.runs = RunController(
+            session, self.selection, renderer, preferences, notices, self.captures, awaken,
+            lambda: self.editing.under_way,
+        )  # fmt: skip
+        self.tracing = Tracing(
+            session, preferences, renderer, self.runs.refuses, awaken, forgotten=lambda: self.editing.forget_modes()
+        )
         self.settings = SettingsController(session, preferences, notices, self.runs.refuses)
         self.motion = Motion(session, preferences, notices, self.runs.refuses)
         self.comparing = Comparing(session, self.tracing, self.settings, notices)
@@ -94,7 +99,7 @@ class Controller:
         refuses, overlook = self.runs.refuses, self.undo.overlook
         self.editing = Editing(session, renderer, notices, refuses, self._show_edited, overlook)
         self.table = SceneTable(session, self.selection, preferences, notices, self.captures, self.editing, awaken)
-        self.before_edits = BeforeEdits(session, self.editing, self.undo)
+        self.before_edits = BeforeEdits(session, self.editing)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
         self.recipes = Recipes(session, preferences, self.tracing, self.loader, notices)
@@ -144,9 +149,11 @@ class Controller:
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
         self.undo.follow()
         self.editing.follow(run is not None, self.tracing.shows_edits or not self.renderer.busy)
-        self.rays.follow(traced if run is None else None)  # before the next frame is asked for
-        self.table.follow(traced if run is None else None, motion.lively)
-        self.tracing.ask(Conditions(size, motion.under_way, run, self.loader.ready, self.selection.hovered))
+        traced = self.traced if run is None else None  # edits may have left the newest frame behind
+        self.rays.follow(traced)  # before the next frame is asked for
+        self.table.follow(traced, motion.lively)
+        edits, focus = self.editing.at_work, self.selection.hovered
+        self.tracing.ask(Conditions(size, motion.under_way, run, edits, self.loader.ready, focus))
         if run is None:
             self.recorder.follow()
             self._follow_before_edits()

@@ -8,7 +8,6 @@ renderer of the scene as it was read is kept, with all that it knows, and so are
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from typing import cast
@@ -36,6 +35,7 @@ class Kept:
 
     first: Renderer
     others: dict[Hashable, Renderer]
+    outdated: bool = False  # whether all modes have been forgotten since, but those of the one in use
 
     def find(self, made_of: Hashable) -> Renderer | None:
         return self.first if made_of == NO_EDITS else self.others.get(made_of)
@@ -47,6 +47,14 @@ class Kept:
             while len(self.others) > KEPT:
                 del self.others[next(iter(self.others))]
 
+    def forget_modes(self, used: Renderer) -> None:
+        """Forget what renderers know that are not the one in use, if they are outdated."""
+        if self.outdated:
+            self.outdated = False
+            self.others = {made_of: renderer for made_of, renderer in self.others.items() if renderer is used}
+            if self.first is not used:
+                self.first.reset_modes()
+
 
 def makes(edits: Edits, scene: Scene) -> Hashable:
     """What decides which renderer a scene with these edits needs: all but places of lights and hidden objects that can
@@ -56,21 +64,18 @@ def makes(edits: Edits, scene: Scene) -> Hashable:
 
 
 class EditTask:
-    """Makes the edits on the render thread; then `found` is set, or `problem`, unless it was cancelled."""
+    """Makes the edits on the render thread; then `found` is set, or `problem`, unless it was cancelled.
+
+    From its beginning on the renderer's scene may be another than the session's: no picture must be asked for until it
+    is `done`, and what it has `found` is taken up."""
 
     def __init__(self, shown: Edited, edits: Edits, kept: Kept, settings: Settings) -> None:
         self.scene, self.edits, self._shown, self._kept, self._settings = shown.original, edits, shown, kept, settings
-        self._begins = threading.Lock()
-        self._begun = self._dropped = False
         self.done = False
         self.found: tuple[Edited, Renderer] | None = None
         self.problem: Failure | None = None
 
     def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None:
-        with self._begins:
-            if self._dropped:
-                return
-            self._begun = True
         try:
             self.found = self._made(cast(Renderer, renderer), cancelled)
         except Cancelled:
@@ -79,17 +84,12 @@ class EditTask:
             self.problem = failure(problem, "the scene could not be changed", KNOWN)
         self.done = True
 
-    def drop(self) -> bool:
-        """Never begin; whether that is so, as it had not begun yet."""
-        with self._begins:
-            self._dropped = not self._begun
-            return self._dropped
-
     def _made(self, before: Renderer, cancelled: Callable[[], bool]) -> tuple[Edited, Renderer]:
         def progress(_label: str, _fraction: float) -> None:
             if cancelled():
                 raise Cancelled("cancelled")
 
+        self._kept.forget_modes(before)
         made, made_of = edited(self.scene, self.edits), makes(self.edits, self.scene)
         renderer = self._kept.find(made_of)
         if renderer is None:
@@ -102,7 +102,8 @@ class EditTask:
 
 
 class Editing:
-    """See the module; nothing is changed while `locked()`, which says so itself."""
+    """See the module; nothing is changed while `locked()`, which says so itself.  While edits are `put_aside`, the
+    scene is shown as it was read."""
 
     def __init__(
         self,
@@ -119,16 +120,27 @@ class Editing:
         self._locked, self._show, self._overlook = locked, show, overlook
         self._kept: Kept | None = None
         self._task: EditTask | None = None
+        self.put_aside = False
 
     def enter(self, renderer: Renderer) -> None:
         """Begin with another scene, whose renderer this is."""
-        self._kept, self._task = Kept(renderer, {}), None
+        self._kept, self._task, self.put_aside = Kept(renderer, {}), None, False
+
+    @property
+    def at_work(self) -> bool:
+        """Whether the render thread makes edits, so that no picture may be asked for."""
+        return self._task is not None
 
     @property
     def under_way(self) -> bool:
-        """Whether what is shown is not yet what is wanted."""
+        """Whether what is shown is not what is wanted, or not for long."""
         shown = self._session.edited
-        return shown is not None and shown.edits != self._session.edits
+        return self.at_work or (shown is not None and shown.edits != self._session.edits)
+
+    def forget_modes(self) -> None:
+        """Let what is known of shadows in scenes with other edits than these be forgotten."""
+        if self._kept is not None:
+            self._kept.outdated = True
 
     # --- what can be changed ------------------------------------------------------------------------
 
@@ -141,7 +153,7 @@ class Editing:
         """Want these edits, as far as the scene has what they name."""
         original = self._session.original
         if original is not None and not self._locked():
-            self._session.edits = edits.within(original)
+            self._session.edits, self._session.light_to_come = edits.within(original), None
 
     def hide(self, name: str) -> None:
         """Hide an object, by the name of its thing (`tracer.scene.edits.things`)."""
@@ -183,11 +195,16 @@ class Editing:
         """Take all edits back."""
         self.change(NO_EDITS)
 
+    def show_without(self) -> None:
+        """Put all edits aside."""
+        self.put_aside = self.put_aside or not self._locked()
+
     # --- bringing it about --------------------------------------------------------------------------
 
     def _give_up(self) -> None:
+        self.put_aside = False
         if self._session.edited is not None:
-            self._session.edits = self._session.edited.edits
+            self._session.edits, self._session.light_to_come = self._session.edited.edits, None
 
     def follow(self, running: bool, seen: bool) -> None:
         """Take up what has been made, and have made what is wanted now: not while a run has the render thread, and once
@@ -200,9 +217,10 @@ class Editing:
                 self._overlook(self._give_up)
             elif task.found is not None and task.scene is session.original:
                 self._show(*task.found)
+                seen = False  # of this scene, nothing yet
         shown, kept = session.edited, self._kept
-        if running and self._task is not None and self._task.drop():
-            self._task = None  # the run has taken its place
-        if seen and not running and self._task is None and self.under_way and shown is not None and kept is not None:
-            self._task = EditTask(shown, session.edits, kept, session.settings)
-            self._renderer.perform(self._task)
+        wanted = NO_EDITS if self.put_aside else session.edits
+        if self._task is None and seen and not running and shown is not None and kept is not None:
+            if shown.edits != wanted:
+                self._task = EditTask(shown, wanted, kept, session.settings)
+                self._renderer.perform(self._task)

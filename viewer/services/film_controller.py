@@ -105,8 +105,10 @@ class FilmController:
     def start(self) -> None:
         """Begin to film what is planned, with the view, the method and the settings that are chosen now."""
         scene, recipe = self._session.scene, self._recipes.now()
-        if scene is None or recipe is None or self._runs.current is not None:
-            self._notices.say("there is nothing to film yet" if recipe is None else "something else is under way")
+        if self._runs.refuses_start():
+            return
+        if scene is None or recipe is None:
+            self._notices.say("there is nothing to film yet")
             return
         try:
             script = self._script(scene, recipe)

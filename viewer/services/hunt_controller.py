@@ -133,8 +133,7 @@ class HuntController:
     def start(self) -> None:
         """Begin to search what is planned, with the settings that are chosen now."""
         scene = self._session.scene
-        if scene is None or self._runs.current is not None:
-            self._notices.say("open a scene first" if scene is None else "something else is under way")
+        if self._runs.refuses_start() or scene is None:
             return
         try:
             self.hunt = HuntRun(scene, self._search(scene), self._wake)

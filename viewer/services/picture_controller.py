@@ -122,8 +122,7 @@ class PictureController:
             self._notices.say(str(error), error=True)
             return False
         run = PictureRun(scene, wanted, self._preferences.picture_folder, self.plan.ending, self._wake)
-        self._runs.begin(run)
-        return self._runs.current is run
+        return self._runs.begin(run)
 
     def _planned(self, recipe: Recipe, scene: Scene) -> Recipe:
         plan, p = self.plan, self._preferences

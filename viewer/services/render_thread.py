@@ -219,7 +219,7 @@ class RenderThread:
             self._changed.notify_all()
 
     def reset_modes(self) -> None:
-        """Forget all modes before the next frame."""
+        """Forget all modes before the next frame, or the next task."""
         with self._changed:
             self._reset = True
             self._cancel = self._cancel or not self._performing  # a task has modes of its own
@@ -284,7 +284,9 @@ class RenderThread:
                     (renderer, task), self._task = self._task, None
                     self._performing, self._cancel = True, renderer is not self._renderer
                     self._placed_at = None
-                    return partial(self._perform, renderer, task)
+                    reset = self._reset and renderer is self._renderer
+                    self._reset = self._reset and not reset
+                    return partial(self._perform, renderer, task, reset)
                 if self._renderer is not None and self._questions:
                     _, question = self._questions.popitem()
                     if question.time == self._placed_at:
@@ -300,8 +302,16 @@ class RenderThread:
                     self._changed.wait()
             return None
 
-    def _perform(self, renderer: Traces, task: Task) -> None:
+    def _forget(self, renderer: Traces) -> None:
+        """Forget all modes, as was asked."""
+        renderer.reset_modes()
+        self._fresh = True
+        self._pair = None
+
+    def _perform(self, renderer: Traces, task: Task, reset: bool) -> None:
         try:
+            if reset:
+                self._forget(renderer)
             task.work(renderer, lambda: self._cancel)
         finally:
             with self._changed:
@@ -331,9 +341,7 @@ class RenderThread:
         failed = None
         try:
             if reset:
-                renderer.reset_modes()
-                self._fresh = True
-                self._pair = None
+                self._forget(renderer)
             seconds = max(request.settings.certificate_seconds, request.refinement_seconds)
             patient = request.refinement_seconds > 0.0
             renderer.settings = replace(request.settings, certificate_seconds=seconds, patient=patient)

@@ -52,7 +52,10 @@ class RunController:
         notices: Notices,
         files: CaptureService,
         wake: Callable[[], None] = lambda: None,
+        edited: Callable[[], bool] = lambda: False,
     ) -> None:
+        """Nothing begins while `edited()`: the scene is being edited, and the next picture is of another."""
+        self._edited = edited
         self._session, self._selection, self._renderer = session, selection, renderer
         self._preferences, self._notices, self._files, self._wake = preferences, notices, files, wake
         self.experiment_plan = ExperimentPlan({BY_MODES, CERTIFIED})
@@ -71,8 +74,7 @@ class RunController:
     def start_experiment(self) -> None:
         """Begin what `experiment_plan` says, over the open scene's path."""
         scene = self._session.scene
-        if scene is None or self.current is not None:
-            self._refuse_start()
+        if self.refuses_start() or scene is None:
             return
         try:
             run = Experiment(scene, self._session.settings, self.experiment_plan, self._wake)
@@ -85,8 +87,10 @@ class RunController:
     def start_zoom_test(self) -> None:
         """Go towards the selected primitive, from where the picture shows it or, so planned, from the last start."""
         scene, frame, selected = self._session.scene, self._selection.frame, self._selection.picked
-        if scene is None or frame is None or self.current is not None:
-            self._refuse_start()
+        if self.refuses_start() or scene is None:
+            return
+        if frame is None:
+            self._notices.say("there is no picture yet")
             return
         start = self.last_start if self.zoom_plan.same_start else None
         if start is None and selected is None:
@@ -115,16 +119,24 @@ class RunController:
             return None
         return test.start if selected is None or selected.primitive == test.start.primitive else None
 
-    def _refuse_start(self) -> None:
-        run = self.current
-        self._notices.say(f"the {run.name} is still under way" if run is not None else "open a scene first")
-
-    def begin(self, run: Run) -> None:
-        """Begin a run that was made elsewhere; refused, in one line, where another is under way."""
+    def refuses_start(self) -> bool:
+        """Whether no run can begin now; says why."""
         if self.current is not None:
-            self._refuse_start()
+            self._notices.say(f"the {self.current.name} is still under way")
+        elif self._session.scene is None:
+            self._notices.say("open a scene first")
+        elif self._edited():
+            self._notices.say("the scene is being edited: start again when the picture shows it")
         else:
-            self._start(run)
+            return False
+        return True
+
+    def begin(self, run: Run) -> bool:
+        """Begin a run that was made elsewhere; whether it is not refused, in one line."""
+        if self.refuses_start():
+            return False
+        self._start(run)
+        return True
 
     def _start(self, run: Run) -> None:
         self.current = run

@@ -31,12 +31,13 @@ from viewer.state.views import View
 @dataclass(frozen=True)
 class Conditions:
     """What else decides how a picture is traced: the `size`, in pixels, that there is room for (0 where it is hidden),
-    whether anything is `moving`, the `run` that is under way, whether the kernels that make certificates are `ready`,
-    and the point of the picture that matters most, its `focus`."""
+    whether anything is `moving`, the `run` that is under way, whether the scene is being `edited`, whether the kernels
+    that make certificates are `ready`, and the point of the picture that matters most, its `focus`."""
 
     size: tuple[int, int] = (0, 0)
     moving: bool = False
     run: Run | None = None
+    edited: bool = False
     ready: bool = True
     focus: tuple[float, float] | None = None
 
@@ -63,12 +64,13 @@ class Tracing:
         locked: Callable[[], bool] = lambda: False,
         wake: Callable[[], None] = lambda: None,
         governor: Governor | None = None,
+        forgotten: Callable[[], None] = lambda: None,
     ) -> None:
-        """Nothing is traced again on the user's behalf while `locked()`, which says so itself.  `second` is the method
-        that traces each frame once more; none where it is empty."""
+        """Nothing is traced again on the user's behalf while `locked()`, which says so itself.  `forgotten()` is called
+        when all modes are to be.  `second` is the method that traces each frame once more; none where it is empty."""
         self.second = ""
         self._session, self._preferences, self._renderer = session, preferences, renderer
-        self._locked, self._wake = locked, wake
+        self._locked, self._wake, self._forgotten = locked, wake, forgotten
         self.now = Conditions()
         self.traced: Traced | None = None
         self._known: Frame | None = None  # the last that was whole and of the window's resolution
@@ -127,6 +129,7 @@ class Tracing:
         """Forget all that is known about shadows, and look again."""
         if not self._locked():
             self._renderer.reset_modes()
+            self._forgotten()
             self.learnt.forget()
             self._known = self._known_second = None
             self.refinement.forget()
@@ -169,7 +172,7 @@ class Tracing:
         """Ask for what should be seen now, unless it has been asked for, or is there."""
         self.now = now
         session, (width, height) = self._session, self.full_size
-        if now.run is not None:
+        if now.run is not None or now.edited:
             self._asked = None  # what was asked for has been dropped
             return
         if session.scene is None or width < 1 or height < 1:

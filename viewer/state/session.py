@@ -178,7 +178,7 @@ class Session:
             self.settings = replace(self.settings, lamp_radius=None)
             self.zoom = FIT
         self.scene = scene
-        self.edits, self.edited = NO_EDITS, edited(scene, NO_EDITS)
+        self.edits, self.edited, self.light_to_come = NO_EDITS, edited(scene, NO_EDITS), None
         self.time = scene.time_range[0]
         self.free_camera = None
         self.playing = False
@@ -194,12 +194,12 @@ class Session:
     def take(self, now: Edited) -> None:
         """Look at the same scene, edited otherwise; the chosen light stays, or becomes the one after it."""
         before = self.edited
-        if self.light_to_come is not None:
-            self.light = self.light_to_come
+        if self.light_to_come is not None and now.edits == self.edits:
+            self.light, self.light_to_come = self.light_to_come, None
         elif before is not None and self.light < len(before.lights):
             number = int(before.lights[self.light])
             self.light = int((now.lights < number).sum())
-        self.scene, self.edited, self.light_to_come = now.scene, now, None
+        self.scene, self.edited = now.scene, now
         self.light = min(self.light, max(len(now.lights) - 1, 0))
 
     def want(self, edits: Edits, light: int) -> None:

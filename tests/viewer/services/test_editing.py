@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -125,7 +126,8 @@ def test_what_changed_is_told_against_the_picture_before(desk: Desk):
     assert c.before_edits.lack is Lack.ELSEWHERE
     steps = c.undo.undoes
     c.before_edits.take_anew()
-    assert not c.session.edits
+    desk.tick()
+    assert c.before_edits.taking and c.editing.under_way
     desk.until(lambda: not c.before_edits.taking and not c.editing.under_way)
     desk.rest()
     assert c.session.edits == Edits(lights_off=frozenset({1})) and c.undo.undoes == steps
@@ -145,6 +147,129 @@ def test_a_hidden_occluder_changes_modes_to_unshadowed(desk: Desk):
         desk.rest()
     changes = {(a, b) for one in c.before_edits.effects.shadows for a, b, _ in one.pairs()}
     assert ("partial shadow", "non shadow") in changes
+
+
+def test_an_edit_made_while_the_others_are_put_aside_brings_them_back(desk: Desk):
+    c = desk.c
+    edit(desk, lambda: c.editing.hide("ball"))
+    c.session.go_to_frame(5)
+    desk.rest()
+    c.before_edits.take_anew()
+    desk.until(lambda: not c.session.edited.edits)
+    c.editing.switch(0, False)
+    desk.until(lambda: not c.editing.under_way)
+    desk.rest()
+    assert c.session.edits == Edits(hidden=frozenset({"ball"}), lights_off=frozenset({0}))
+    assert not c.before_edits.taking and np.array_equal(c.frame.color, fresh(desk))
+    edit(desk, c.undo.undo)
+    assert c.session.edits == Edits(hidden=frozenset({"ball"})) and c.undo.undoes == "ball hidden"
+
+
+def test_no_picture_of_an_edited_scene_comes_before_the_session_has_it(desk: Desk):
+    c = desk.c
+    c.editing.move_light(0, (1.0, 5.0, 4.0))
+    c.session.go_to_frame(5)  # so that there is something to ask for
+    desk.tick()
+    while c.renderer.busy:
+        time.sleep(0.001)
+    assert c.renderer.take() is None and c.session.scene is c.session.original
+    # A light that is dragged is seen on its way.
+    for n in range(4):
+        came, light = len(desk.came), (n % 4 - 2.0, 5.0, 4.0)
+
+        def drag(came: int = came) -> bool:
+            x, y, z = c.session.edits.light_place(0)
+            c.editing.move_light(0, (x + 1e-4, y, z))
+            return len(desk.came) > came
+
+        c.editing.move_light(0, light)
+        desk.until(drag)
+    desk.rest()
+    assert np.array_equal(c.frame.color, fresh(desk))
+
+
+def test_what_follows_the_newest_picture_gets_none_of_another_scene(desk: Desk):
+    c, given = desk.c, []
+    c.settings.change(method="paper")
+    desk.rest()
+    follow = c.table.follow
+
+    def watched(traced, moving):
+        if traced is not None:
+            given.append((len(traced.frame.modes), c.session.scene.primitive_count))
+        follow(traced, moving)
+
+    c.table.follow = watched
+    edit(desk, lambda: c.editing.hide("ball"))
+    edit(desk, c.editing.clear)
+    assert given and all(modes == primitives for modes, primitives in given)
+
+
+def test_no_run_begins_while_the_scene_is_being_edited(desk: Desk):
+    c, said = desk.c, "the scene is being edited: start again when the picture shows it"
+    c.editing.hide("ball")
+    desk.tick()
+    c.editing.show("ball")  # it is being hidden nevertheless
+    for start in (c.runs.start_experiment, c.hunts.start, c.films.start, c.runs.start_zoom_test):
+        c.notices.message = None
+        start()
+        assert desk.said == said and c.runs.current is None
+    assert c.runs.experiment is None and c.hunts.hunt is None and c.films.film is None
+    desk.until(lambda: not c.editing.under_way)
+    desk.rest()
+    c.runs.start_experiment()
+    run = c.runs.current
+    desk.run_to_its_end()
+    assert run.whole
+
+
+def test_what_is_forgotten_is_forgotten_of_all_scenes(desk: Desk):
+    c, first = desk.c, desk.c.renderer._renderer
+    c.settings.change(method="paper")
+    desk.rest()
+    ask = c.tracing.ask
+
+    def known() -> int:
+        """Histories of the scene as it was read, once it is back and before a frame of it is traced."""
+        c.tracing.ask = lambda now: None
+        c.editing.clear()
+        desk.until(lambda: not c.editing.under_way)
+        assert c.renderer._renderer is first
+        c.tracing.ask = ask
+        found = len(first.state.histories)
+        desk.rest()
+        return found
+
+    edit(desk, lambda: c.editing.hide("ball"))
+    assert known() > 0, "it is kept"
+    edit(desk, lambda: c.editing.hide("ball"))
+    c.tracing.reset_modes()
+    desk.rest()
+    assert known() == 0
+    c.tracing.reset_modes()
+    edit(desk, lambda: c.editing.hide("ball"))  # before a picture
+    assert known() == 0
+
+
+def test_a_light_chosen_after_a_step_was_taken_back_stays(desk: Desk):
+    session, editing = desk.c.session, desk.c.editing
+    session.want(Edits(hidden=frozenset({"ball"})), 0)  # as undo does
+    editing.show("ball")
+    session.light = 1
+    edit(desk, lambda: editing.hide("car"))
+    assert session.light == 1
+    session.want(Edits(), 0)
+    editing._give_up()
+    assert session.light_to_come is None and session.edits == Edits(hidden=frozenset({"car"}))
+    # It is for what was wanted, not for what is made on the way to that.
+    session.light = 1
+    editing.hide("ball")
+    desk.tick()
+    session.want(Edits(hidden_primitives=frozenset({0})), 0)
+    desk.until(lambda: "ball" in session.edited.edits.hidden)
+    assert session.light == 1
+    desk.until(lambda: not editing.under_way)
+    assert session.light == 0
 
 
 def test_edits_stay_when_the_scene_is_read_again_as_far_as_it_has_their_targets(desk: Desk):

@@ -49,7 +49,7 @@ def show(ui: Ui) -> None:
         paragraph("No scene is open.", QUIET)
         return
     ui.what_if_drawn = imgui.get_frame_count()
-    if not ui.controller.editing.now and not ui.controller.before_edits.taking:
+    if not ui.controller.editing.now:
         paragraph("Change the scene, not its file, and see what that changes. Undo brings all back.", QUIET)
     _object(ui, edited)
     _lights(ui, edited)
@@ -203,7 +203,7 @@ def _speed(ui: Ui) -> float:
 def _effects(ui: Ui) -> None:
     """From the picture before the edits to this one."""
     before = ui.controller.before_edits
-    if before.lack is Lack.NO_EDITS and not before.taking:
+    if before.lack is Lack.NO_EDITS:
         return
     heading("What has changed")
     if before.taking:
