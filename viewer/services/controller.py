@@ -228,8 +228,6 @@ class Controller:
         replay = self.travel.replay
         if replay is None:
             return
-        if replay.done:
-            self.travel.replay = None
         if replay.take_reset():
             self.record.forget_modes()
         replayed = replay.take_traced()

@@ -19,6 +19,7 @@ from viewer.state.views import View
 
 SECONDS = 2.0  # that a picture stays when it is shown
 PATIENCE = 20.0  # seconds that a picture or an answer may take to come
+REST = 1.0  # seconds without anything going on, after which no other picture comes
 _PLACES = sorted(  # where a shadow is looked for, in parts of the picture's width and height: from its middle on
     ((x / 14.0, y / 14.0) for x in range(1, 14) for y in range(1, 14)),
     key=lambda at: (at[0] - 0.5) ** 2 + (at[1] - 0.5) ** 2,
@@ -122,8 +123,26 @@ def _fly(c: Controller, _: Callable[[str], None]) -> Iterator[float]:
 def _has_toggled_culling(c: Controller) -> Iterator[None]:
     """Off, and then seen again what culling saves."""
     for off in (True, False):
-        while Method.parse(c.session.settings.method).culls is off or _culls(c) is off:
+        shown = _shows(c, culling=not off)
+        while Method.parse(c.session.settings.method).culls is off or not shown():
             yield
+
+
+def _shows(c: Controller, culling: bool) -> Callable[[], bool]:
+    """Whether the picture shows what culling saves, or that nothing is saved; where paper saves nothing, its picture
+    has to rest, as its modes are set by a whole picture first."""
+    rested_since = time.monotonic()
+
+    def shows() -> bool:
+        nonlocal rested_since
+        method, now = c.session.settings.method, time.monotonic()
+        if c.active or c.frame is None or c.frame.settings.method != method:
+            rested_since = now
+        if _culls(c) is culling:
+            return True
+        return culling and not Method.parse(method).adaptive and now > rested_since + REST
+
+    return shows
 
 
 def _until(met: Callable[[], bool]) -> Iterator[float]:
@@ -142,15 +161,15 @@ def _culls(c: Controller) -> bool:
 def _toggle_culling(c: Controller, show_panel: Callable[[str], None]) -> Iterator[float]:
     before = c.session.settings.method
     show_panel("Statistics")
-    if not _culls(c):
+    if Method.parse(before).adaptive or not _culls(c):
         c.settings.change(method=with_base(before, BY_MODES))
-    yield from _until(lambda: _culls(c))  # modes are set by a whole picture first
+    yield from _until(_shows(c, culling=True))
     yield SECONDS
     c.settings.toggle_culling()
-    yield from _until(lambda: not _culls(c))
+    yield from _until(_shows(c, culling=False))
     yield SECONDS
     c.settings.toggle_culling()
-    yield from _until(lambda: _culls(c))
+    yield from _until(_shows(c, culling=True))
     yield SECONDS
     if Method.parse(before).culls:
         c.settings.change(method=before)

@@ -53,7 +53,7 @@ def _tour(d: Driver) -> None:
     assert tour.at == 1 and "Press C once more" in tour.text(tour.step), "off, but not on again"
     d.press(KEY.c)
     d.settle()
-    assert tour.at == 3
+    d.wait(lambda: tour.at == 3, "culling, seen on again", 10.0)
     d.context.mouse_move_to_pos((d.picture_edges()[0] + 3.0, d.picture_edges()[1] + 30.0))
     d.context.mouse_click(0)  # the sky
     d.frames(5)

@@ -175,12 +175,7 @@ def _chosen(ui: Ui, hunts: HuntController) -> tuple[int, Find, Scene] | None:
 
 
 def _details(ui: Ui, hunts: HuntController, number: int, find: Find, scene: Scene) -> None:
-    """What is wrong at a find, in words and colours, and its figure."""
-    _colors(find)
-    for sentence in (*finds.in_words(find, scene), finds.in_its_frame(find)):
-        paragraph(in_window_style(sentence))
-    if ui.controller.tracing.holds_one_sample:
-        paragraph("The picture stays at 1 sample a pixel, as it was found, until you move.", QUIET)
+    """What can be done with a find, and what is wrong there, in colours and words."""
     imgui.begin_disabled(ui.controller.runs.current is not None)
     if imgui.button(f"{icons.ICON_FA_PAPER_PLANE}  Fly there"):
         hunts.go(number)
@@ -194,6 +189,11 @@ def _details(ui: Ui, hunts: HuntController, number: int, find: Find, scene: Scen
     if imgui.button(f"{icons.ICON_FA_CODE_BRANCH}  Rays"):
         ui.show_panel("Rays")
     tooltip_above("what became of each ray of the pixel (X)")
+    _colors(find)
+    for sentence in (*finds.in_words(find, scene), finds.in_its_frame(find)):
+        paragraph(in_window_style(sentence))
+    if ui.controller.tracing.holds_one_sample:
+        paragraph("The picture stays at 1 sample a pixel, as it was found, until you move.", QUIET)
 
 
 def _colors(find: Find) -> None:
