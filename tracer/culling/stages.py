@@ -1,9 +1,10 @@
 """Stages: how a method takes part in shadow testing, as kernels that are called by address.
 
-Shading knows no method.  It is given a table of stages, and calls up to five kernels of each:
+Shading knows no method.  It is given a table of stages, and calls up to six kernels of each:
 
     find(data, call, 0, count, counts)          once for a wave: what is known of these points?
     select(data, call, 0, count, counts)        once for a wave, after that: which lights must they look at?
+    approach(data, call, light, count, counts)  once for each light that is looked at, before its samples
     choose(data, call, light, count, counts)    for each sample of a light: answers rays, which are not traced then
     learn(data, call, light, count, counts)     for each sample of a light: learns from all answers
     finish(data, call, 0, count, counts)        once for a wave, after all lights
@@ -28,10 +29,10 @@ from tracer.kernels import inlined
 from tracer.simd import address_of, call_entry, load_i64, store
 from tracer.simd.records import I32, F32x2D, block_size, reading, writing
 
-# Columns of the table: addresses of the five kernels, 0 for none, and of the stage's data, and the first of its rows
+# Columns of the table: addresses of the six kernels, 0 for none, and of the stage's data, and the first of its rows
 # in the memory that stages work in.
-FIND, SELECT, CHOOSE, LEARN, FINISH, DATA, FIRST_ROW = range(7)
-COLUMNS = 7
+FIND, SELECT, APPROACH, CHOOSE, LEARN, FINISH, DATA, FIRST_ROW = range(8)
+COLUMNS = 8
 
 
 class Stages(NamedTuple):
@@ -79,7 +80,7 @@ CALL = block_size(Call)
 
 @inlined
 def run_stages(stages, which, call, light, count, counts):
-    """Call one of the five kernels of every stage that has it."""
+    """Call one of the six kernels of every stage that has it."""
     for k in range(len(stages.table)):
         entry = stages.table[k, which]
         if entry != 0:

@@ -15,17 +15,21 @@ from numpy.typing import NDArray
 from tracer.culling.certified.scheduler import Budget, Counts
 from tracer.culling.regions.lookup import look, want_around
 from tracer.culling.regions.store import RegionStore, RegionView
-from tracer.culling.stages import call_at
+from tracer.culling.stages import call_at, looked_at, scratch_of, vectors
+from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.certified.error_bounds import BLUR, BOX, ROW, SureHitLength
+from tracer.culling.certified.hidden_samples import HIDDEN_SAMPLE_ROWS, answer_hidden, hidden_samples_in
+from tracer.culling.certified.hiders import Hiders, find_hidden, is_lamp
 from tracer.culling.verdicts import Answered, Because, Verdict
 from tracer.geometry.camera import primary_direction
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import aligned_rows, borrowed
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.kernels import entry, kernel
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.parallel import for_each_chunk
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of
-from tracer.simd import address_of, any_lane, gather_f32x16, gather_i32x16, i32x16, maximum, to_f32
+from tracer.simd import address_of, any_lane, gather_f32x16, gather_i32x16, i32x16, i64_at, maximum, to_f32
 from tracer.simd import select as choose_lanes
 from tracer.simd.records import I64x2D, pack, reading
 from tracer.statistics import FrameStatistics
@@ -39,6 +43,7 @@ class Selection(NamedTuple):
 
     regions: RegionView
     looks: I64x2D
+    hiders: Hiders
 
 
 selection_at = reading(Selection)
@@ -49,6 +54,31 @@ def select(data, call, light, count, counts):
     """Which lights must each vector of points look at?"""
     given, selection = call_at(call), selection_at(data)
     look(selection.regions, points_in(given.points), count, selection.looks)
+
+
+@entry
+def approach(data, call, light, count, counts):
+    """Find from which points a lamp is hidden, and pass over it where that is all of them."""
+    given, selection = call_at(call), selection_at(data)
+    looks, hiders = selection.looks, selection.hiders
+    if not is_lamp(hiders, light):
+        return
+    points, batch = points_in(given.points), shadow_batch_in(given.shadows)
+    hidden, looked = hidden_samples_in(scratch_of(given)), looked_at(looks, light, count)
+    find_hidden(hiders, points, batch, hidden, light, looked, count, i64_at(counts))
+    if looked != 0:
+        for v in range(vectors(count)):
+            if hidden.some[v] < 0:
+                looks[light, v >> 6] &= ~(np.int64(1) << (v & 63))
+
+
+@entry
+def choose(data, call, light, count, counts):
+    """Answer those rays of a lamp's sample that are certainly blocked."""
+    given, selection = call_at(call), selection_at(data)
+    if is_lamp(selection.hiders, light):
+        hidden, batch = hidden_samples_in(scratch_of(given)), shadow_batch_in(given.shadows)
+        answer_hidden(hidden, given.nth, count, batch, i64_at(counts))
 
 
 @kernel
@@ -92,6 +122,10 @@ class CertifiedLights(ShadowMethod):
         if self.store is None:
             self.store = RegionStore(self.services.world, frame.shading.lamps, self.services.clock)
         self.store.follow(frame.shading.lamps)
+        if self.made_now:
+            triangles = self.services.world.triangles_of(0)
+            self._rows = aligned_rows(len(triangles.rows), ROW)
+            self._rows[:, :BLUR], self._rows[:, BLUR], self._rows[:, BOX:] = triangles
 
     def prepare(self, frame: FrameView) -> None:
         self.certify(frame, frame.settings.certificate_seconds)
@@ -103,7 +137,7 @@ class CertifiedLights(ShadowMethod):
         """Certify regions for so many seconds, at most."""
         store = self.store
         assert store is not None, "followed before"
-        selection = Selection(store.view(), np.zeros((0, WORDS), np.int64))
+        selection = Selection(store.view(), np.zeros((0, WORDS), np.int64), self._hiders(frame))
         block, shares = pack(selection), np.array_split(np.arange(len(frame.tiles)), 8 * frame.workers)
 
         def work(chunk: int, worker: int) -> None:
@@ -115,7 +149,26 @@ class CertifiedLights(ShadowMethod):
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
         assert self.store is not None, "followed before"
         looks = np.zeros((len(frame.lights), WORDS), np.int64)
-        return [Stage(Selection(self.store.view(), looks), select=select, looks=looks)]
+        data = Selection(self.store.view(), looks, self._hiders(frame))
+        if not len(data.hiders.rows):
+            return [Stage(data, select=select, looks=looks)]
+        kernels = {"select": select, "approach": approach, "choose": choose}
+        return [Stage(data, **kernels, rows=HIDDEN_SAMPLE_ROWS, looks=looks)]
+
+    def _hiders(self, frame: FrameView) -> Hiders:
+        assert self.store is not None
+        lamps, placed = frame.shading.lamps, self.services.world.placed
+        return Hiders(
+            self._rows,
+            SureHitLength(len(self._rows), self.store.longest_sure, 0.0),
+            lamps.places,
+            lamps.radii,
+            lamps.samples,
+            lamps.first,
+            self.services.cost_model.least_samples,
+            placed.any_hit,
+            placed.data,
+        )
 
     def keep(self, frame: FrameView) -> None:
         assert self.store is not None, "followed before"

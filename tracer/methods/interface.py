@@ -92,6 +92,7 @@ class Stage:
     _: KW_ONLY
     find: Entry | None = None
     select: Entry | None = None
+    approach: Entry | None = None
     choose: Entry | None = None
     learn: Entry | None = None
     finish: Entry | None = None
@@ -194,7 +195,7 @@ class StageTable:
         self._blocks = [np.zeros(1, np.int64) if stage.data is None else pack(stage.data) for stage in stages]
         table, rows = np.zeros((len(stages), COLUMNS), np.int64), 0
         for row, stage, block in zip(table, stages, self._blocks, strict=True):
-            kernels: list[Any] = [stage.find, stage.select, stage.choose, stage.learn, stage.finish]
+            kernels: list[Any] = [stage.find, stage.select, stage.approach, stage.choose, stage.learn, stage.finish]
             row[:] = *(0 if kernel is None else kernel.address for kernel in kernels), block.ctypes.data, rows
             rows += stage.rows
         looks = [stage.looks for stage in stages if stage.looks is not None]

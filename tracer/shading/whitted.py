@@ -16,6 +16,7 @@ from tracer.culling.counters import PASSED_OVER, PRIMARY, RAYS, SECONDARY, SHADO
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.shadow_testing import shadow_testing
 from tracer.culling.stages import (
+    APPROACH,
     CALL,
     FIND,
     FINISH,
@@ -120,6 +121,11 @@ def _add_lights(world, shading, wave, points, stages, counts, pixels, tile, boun
     if selects(stages.looks, wave.size):
         run_stages(stages, SELECT, call, 0, wave.size, counts)
     for light in range(len(lamps.places)):
+        if light >= stages.everything and not _is_looked_at(stages.looks, light, wave.size):
+            counts[PASSED_OVER] += wave.size * (lamps.first[light + 1] - lamps.first[light])
+            continue
+        write_sample(call, lamps.first[light], 0)
+        run_stages(stages, APPROACH, call, light, wave.size, counts)
         if light >= stages.everything and not _is_looked_at(stages.looks, light, wave.size):
             counts[PASSED_OVER] += wave.size * (lamps.first[light + 1] - lamps.first[light])
             continue

@@ -12,7 +12,7 @@ import numpy as np
 
 from tracer.culling.certified.beams import make_beam, passes_by, primitives_met, put_cone
 from tracer.culling.certified.error_bounds import LANES
-from tracer.culling.certified.prepared_triangles import PREPARED, prepare, prepared_met
+from tracer.culling.certified.prepared_triangles import PREPARED, prepare_in_tree, prepared_met
 from tracer.culling.certified.seen_by_lamp import (
     KEPT,
     MOST_SAMPLES,
@@ -126,7 +126,7 @@ def ask_vector(o, points, answers, v, lamp, beam, found, prepared, cost, room, c
             break
         made = room.prepared + PREPARED * batch * prepared
         if not prepared:
-            prepare(o, lamp, room.numbers + 64 * batch, made)
+            prepare_in_tree(o, lamp, room.numbers + 64 * batch, made)
         met = np.int64(prepared_met(made, beam)) & lanes_below(found, batch)
         while met != 0 and live & ~left != 0:
             lane = lowest_bit(met)
@@ -220,7 +220,7 @@ def _ask_point(o, lamp, end, lane, found, cost, room, counts):
     state, asked = i64_at(room.state), 0
     for batch in range(batches_of(found)):
         made = room.prepared
-        prepare(o, lamp, room.numbers + 64 * batch, made)
+        prepare_in_tree(o, lamp, room.numbers + 64 * batch, made)
         counts[TESTS] += ones(lanes_below(found, batch))
         state[EFFORT] += FOR_POINTS
         hidden, missed, can = ask_triangles(made, end, lamp.light, lamp.radius, room.kept)

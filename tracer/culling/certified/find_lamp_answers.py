@@ -29,7 +29,7 @@ from tracer.culling.certified.asking_lamps import (
 from tracer.culling.certified.beams import make_beam, passes_by, put_beam
 from tracer.culling.certified.error_bounds import LANES
 from tracer.culling.certified.lamp_answers import decided
-from tracer.culling.certified.prepared_triangles import PREPARED, Lamp, prepare
+from tracer.culling.certified.prepared_triangles import PREPARED, Lamp, prepare_in_tree
 from tracer.culling.certified.seen_by_lamp import put_samples
 from tracer.culling.stages import vectors
 from tracer.kernels import inlined, subkernel
@@ -66,7 +66,7 @@ def find_answers(certified, points, answers, samples, first, number, count, coun
         if some > 1 and put_beam(beam, points, answers.open, start, end, light, radius, lamps.within):
             found = find_primitives(o, number, beam, min(OF_GROUP, most), room, counts)
             for batch in range(batches_of(found)):
-                prepare(o, lamp, room.numbers + 64 * batch, room.prepared + PREPARED * batch)
+                prepare_in_tree(o, lamp, room.numbers + 64 * batch, room.prepared + PREPARED * batch)
         state[LATEST] = -1
         away = found >= 0 and passes_by(beam, lamps.moving)
         for v in range(start, end):

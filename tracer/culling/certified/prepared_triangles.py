@@ -64,10 +64,10 @@ class Lamp(NamedTuple):
 
 
 @subkernel
-def prepare(o, lamp, numbers, made):
+def prepare(rows, farthest, lamp, numbers, made):
     """Prepare sixteen primitives, whose numbers are at an address, for a `Lamp`: at the address `made`, PREPARED bytes.
-    o are the `Occluders`."""
-    row, radius = rows_at(o.rows, numbers), lamp.radius
+    rows and farthest are as in `Occluders`."""
+    row, radius = rows_at(rows, numbers), lamp.radius
     t = seen_from(lamp.light, radius, row)
     store_three(made + 64 * CORNER, 64, t.corner)
     store_three(made + 64 * FIRST, 64, t.e1)
@@ -92,9 +92,8 @@ def prepare(o, lamp, numbers, made):
     store(made + 64 * REACH, radius * t.across)
     store(made + 64 * HEIGHT, t.height)
     store(made + 64 * UNSURE, t.unsure)
-    store(made + 64 * SURE, sure_hit_length(o.farthest, numbers))
+    store(made + 64 * SURE, sure_hit_length(farthest, numbers))
     store(made + 64 * FIRM, select(t.firm, ONE, select(t.sane, ZERO, -ONE)))
-    store(made + 64 * RADIUS, gather_f32x16(address_of(o.error_radii[lamp.number]), load_i32x16(numbers)))
 
     # The box in which hits are reported, with room for rounding.
     box, room = row[BOX:ROW], _WIDE * t.away
@@ -103,6 +102,13 @@ def prepare(o, lamp, numbers, made):
     for axis in range(3):
         store(made + 64 * (LOW + axis), box[axis] - room)
         store(made + 64 * (HIGH + axis), box[3 + axis] + room)
+
+
+@inlined
+def prepare_in_tree(o, lamp, numbers, made):
+    """Prepare sixteen primitives of `Occluders`, with how far from each a hit may be reported."""
+    prepare(o.rows, o.farthest, lamp, numbers, made)
+    store(made + 64 * RADIUS, gather_f32x16(address_of(o.error_radii[lamp.number]), load_i32x16(numbers)))
 
 
 @inlined
