@@ -19,6 +19,8 @@ class ShadowBatch(NamedTuple):
     - lit: due, and nothing is in the way: the answer that shading uses;
     - truth: the same by tracing every due ray, where answers are verified.
 
+    `active` are the numbers of those vectors of sixteen in which any ray is due, in the first numbers of the row.
+
     Rays that are traced are packed, one after the other: origin and direction (3, n), t_min and t_max (n,); `blocked`
     has a byte for each, and `occluders` (n,) what blocks it, where somebody wants to know.  `asked` are the bits of
     the points whose rays these are."""
@@ -34,6 +36,7 @@ class ShadowBatch(NamedTuple):
     settled: IntRow
     lit: IntRow
     truth: IntRow
+    active: IntRow
     asked: IntRow
     blocked: Row
     occluders: IntRow

@@ -10,7 +10,8 @@ A shadow ray is *due* where the light is on the viewer's side of the surface.  T
 Shadow rays start at the light.  They end a little above the surface (`lifted`), so that it does not shadow itself.
 
 Points come in vectors of sixteen.  Rays are packed, so that batches shrink with what is not due and what is culled;
-what is found is kept as bits, one for each point.
+what is found is kept as bits, one for each point.  Once the due rays are found, only vectors that have
+any are gone through: `active` of them.
 """
 
 from __future__ import annotations
@@ -45,13 +46,14 @@ ZERO, ONE = np.float32(0), np.float32(1)
 @subkernel
 def shadow_testing(world, points, count, light, number, stages, call, batch, counts):
     """Which of `count` points are due to light `number` at light (3,), and which does it reach?  Into the batch."""
-    _find_due(points, light, count, looked_at(stages.looks, number, count), number < stages.everything, batch, counts)
+    looked, everything = looked_at(stages.looks, number, count), number < stages.everything
+    active = _find_due(points, light, count, looked, everything, batch, counts)
     run_stages(stages, CHOOSE, call, number, count, counts)
-    _ask_dynamic(world, points, light, count, batch, counts)
-    _trace_live(world, points, light, count, stages.occluders, batch, counts)
+    _ask_dynamic(world, points, light, active, batch, counts)
+    _trace_live(world, points, light, active, stages.occluders, batch, counts)
     run_stages(stages, LEARN, call, number, count, counts)
     if stages.verify:
-        _verify(world, points, light, count, batch, counts)
+        _verify(world, points, light, count, active, batch, counts)
 
 
 @inlined
@@ -64,11 +66,12 @@ def faces(points, light, v):
 
 @subkernel
 def _find_due(points, light, count, looked, everything, batch, counts):
-    """Find the rays that are due, about which nothing is known yet.
+    """Find the rays that are due, about which nothing is known yet; how many vectors have any.
 
     Vectors that need not look at the light (`looks_at`) are passed over, or culled where one asks for everything."""
+    active = 0
     for v in range(vectors(count)):
-        batch.lit[v] = batch.settled[v] = 0
+        batch.lit[v] = batch.settled[v] = batch.unblocked[v] = 0
         looks, there = looks_at(looked, v), lanes_below(count, v)
         if not looks and not everything:
             batch.due[v] = batch.live[v] = 0
@@ -79,14 +82,18 @@ def _find_due(points, light, count, looked, everything, batch, counts):
         batch.live[v] = due if looks else 0
         counts[DUE] += ones(due)
         counts[CULLED] += 0 if looks else ones(due)
+        batch.active[active] = v
+        active += due != 0
+    return active
 
 
 @subkernel
-def _ask_dynamic(world, points, light, count, batch, counts):
+def _ask_dynamic(world, points, light, active, batch, counts):
     """Note what is known to be lit by all that is static, and ask dynamic objects alone about it."""
     # Take note of what static geometry leaves unblocked, and of what is to be asked.
     some = np.int64(0)
-    for v in range(vectors(count)):
+    for a in range(active):
+        v = batch.active[a]
         lit = np.int64(batch.lit[v])
         batch.unblocked[v] = lit
         batch.asked[v] = lit & ~np.int64(batch.settled[v])
@@ -94,18 +101,19 @@ def _ask_dynamic(world, points, light, count, batch, counts):
     if some == 0 or not world.has_dynamic:
         return
     # Rays that miss the box around all that moves have their answer already.
-    for v in range(vectors(count)):
+    for a in range(active):
+        v = batch.active[a]
         asked = np.int64(batch.asked[v])
         counts[RAYS] += ones(asked)
         batch.asked[v] = 0 if asked == 0 else asked & _towards(world.moving_box, points, light, v)
-    _trace(world, points, light, count, batch.asked, DYNAMIC_OBJECTS, batch, counts)
-    _drop_blocked(batch.lit, batch.asked, count, batch)
+    _trace(world, points, light, active, batch.asked, DYNAMIC_OBJECTS, batch, counts)
+    _drop_blocked(batch.lit, batch.asked, active, batch)
 
 
 @subkernel
-def _trace_live(world, points, light, count, occluders, batch, counts):
+def _trace_live(world, points, light, active, occluders, batch, counts):
     """Ask everything about the points of which nothing is known."""
-    n = _rays_from_light(points, light, count, batch.live, batch)
+    n = _rays_from_light(points, light, active, batch.live, batch)
     counts[RAYS] += n
     if n == 0:
         return
@@ -115,7 +123,8 @@ def _trace_live(world, points, light, count, occluders, batch, counts):
         any_hits(world, shadow_rays(batch), EVERYTHING, batch.blocked, 0, n, counts)
     # Spread the answers of the packed rays to their points.
     n = 0
-    for v in range(vectors(count)):
+    for a in range(active):
+        v = batch.active[a]
         asked = np.int64(batch.live[v])
         if asked == 0:
             continue
@@ -126,14 +135,15 @@ def _trace_live(world, points, light, count, occluders, batch, counts):
 
 
 @subkernel
-def _verify(world, points, light, count, batch, counts):
+def _verify(world, points, light, count, active, batch, counts):
     """Trace every due ray, its steps uncounted, and count the answers that differ."""
     uncounted = np.zeros(RAYS, np.int64)  # steps and tests
     for v in range(vectors(count)):
         batch.truth[v] = batch.due[v]
-    _trace(world, points, light, count, batch.due, EVERYTHING, batch, uncounted)
-    _drop_blocked(batch.truth, batch.due, count, batch)
-    for v in range(vectors(count)):
+    _trace(world, points, light, active, batch.due, EVERYTHING, batch, uncounted)
+    _drop_blocked(batch.truth, batch.due, active, batch)
+    for a in range(active):
+        v = batch.active[a]
         counts[WRONG] += ones(np.int64(batch.truth[v] ^ batch.lit[v]))
 
 
@@ -144,12 +154,13 @@ def shadow_rays(batch):
 
 
 @subkernel
-def _rays_from_light(points, light, count, bits, batch):
+def _rays_from_light(points, light, active, bits, batch):
     """Pack the shadow rays from the light to the points that `bits` names; how many there are.
 
     At t = 1 is the point."""
     stride, n = 4 * batch.origin.shape[1], 0
-    for v in range(vectors(count)):
+    for a in range(active):
+        v = batch.active[a]
         live = np.int64(bits[v])
         if live == 0:
             continue
@@ -165,9 +176,9 @@ def _rays_from_light(points, light, count, bits, batch):
 
 
 @inlined
-def _trace(world, points, light, count, bits, which, batch, counts):
+def _trace(world, points, light, active, bits, which, batch, counts):
     """Ask `which` geometry is between the light and the points that `bits` names."""
-    n = _rays_from_light(points, light, count, bits, batch)
+    n = _rays_from_light(points, light, active, bits, batch)
     if n > 0:
         any_hits(world, shadow_rays(batch), which, batch.blocked, 0, n, counts)
 
@@ -180,10 +191,11 @@ def _blocked(batch, asked, n):
 
 
 @inlined
-def _drop_blocked(bits, asked, count, batch):
+def _drop_blocked(bits, asked, active, batch):
     """Clear the bits of those points, of the bits `asked`, whose rays were blocked."""
     n = 0
-    for v in range(vectors(count)):
+    for a in range(active):
+        v = batch.active[a]
         lanes = np.int64(asked[v])
         blocked, _ = _blocked(batch, lanes, n)
         bits[v] &= ~blocked

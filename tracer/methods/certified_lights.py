@@ -2,7 +2,9 @@
 
 This is what the method `certified` does where a scene has more lights than a cell's word has room for.  Before shading,
 the regions are certified that primary hits lie in, and those in which rays of the last frame have ended
-(`tracer.culling.regions`).  In shadow testing `select` says which lights each vector of points must look at.
+(`tracer.culling.regions`).  In shadow testing `select` says which lights each vector of points must look at.  Of the
+lamps that are left, `approach` finds out from which points they are hidden, sample by sample, by what hides them from
+neighbours (`tracer.culling.certified.hiders`); `choose` answers these rays.
 """
 
 from __future__ import annotations
@@ -12,14 +14,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.certified.error_bounds import BLUR, BOX, ROW, SureHitLength
+from tracer.culling.certified.hidden_samples import ALL, HIDDEN_SAMPLE_ROWS, answer_hidden, hidden_samples_in
+from tracer.culling.certified.hiders import Hiders, find_hidden, is_lamp
 from tracer.culling.certified.scheduler import Budget, Counts
 from tracer.culling.regions.lookup import look, want_around
 from tracer.culling.regions.store import RegionStore, RegionView
-from tracer.culling.stages import call_at, looked_at, scratch_of, vectors
 from tracer.culling.shadow_batch import shadow_batch_in
-from tracer.culling.certified.error_bounds import BLUR, BOX, ROW, SureHitLength
-from tracer.culling.certified.hidden_samples import HIDDEN_SAMPLE_ROWS, answer_hidden, hidden_samples_in
-from tracer.culling.certified.hiders import Hiders, find_hidden, is_lamp
+from tracer.culling.stages import call_at, looked_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, Because, Verdict
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import aligned_rows, borrowed
@@ -27,6 +29,7 @@ from tracer.geometry.offsets import RAY_OFFSET
 from tracer.kernels import entry, kernel
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.parallel import for_each_chunk
+from tracer.scene.lamps import Lamps
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of
 from tracer.simd import address_of, any_lane, gather_f32x16, gather_i32x16, i32x16, i64_at, maximum, to_f32
@@ -38,8 +41,12 @@ SET_UP = 1.5e-6  # seconds for each primitive
 WORDS = 16  # of 64 vectors: as many as the waves of four tiles have
 
 
+NO_TRIANGLES = aligned_rows(0, ROW)
+
+
 class Selection(NamedTuple):
-    """What a worker is given: all regions, and looks (lights, WORDS) int64, into which `select` puts its answer."""
+    """What a worker is given: all regions; looks (lights, WORDS) int64, into which `select` puts its answer; and what
+    is asked about lamps."""
 
     regions: RegionView
     looks: I64x2D
@@ -68,7 +75,7 @@ def approach(data, call, light, count, counts):
     find_hidden(hiders, points, batch, hidden, light, looked, count, i64_at(counts))
     if looked != 0:
         for v in range(vectors(count)):
-            if hidden.some[v] < 0:
+            if hidden.some[v] == ALL:
                 looks[light, v >> 6] &= ~(np.int64(1) << (v & 63))
 
 
@@ -111,6 +118,7 @@ class CertifiedLights(ShadowMethod):
     def __init__(self, services: Services) -> None:
         super().__init__(services)
         self.store: RegionStore | None = None
+        self._rows = NO_TRIANGLES  # what hiders are taken from, where there are lamps
         self.made_now = False  # whether the store has been set up in this frame
         self._counts = Counts()
 
@@ -122,10 +130,6 @@ class CertifiedLights(ShadowMethod):
         if self.store is None:
             self.store = RegionStore(self.services.world, frame.shading.lamps, self.services.clock)
         self.store.follow(frame.shading.lamps)
-        if self.made_now:
-            triangles = self.services.world.triangles_of(0)
-            self._rows = aligned_rows(len(triangles.rows), ROW)
-            self._rows[:, :BLUR], self._rows[:, BLUR], self._rows[:, BOX:] = triangles
 
     def prepare(self, frame: FrameView) -> None:
         self.certify(frame, frame.settings.certificate_seconds)
@@ -137,7 +141,7 @@ class CertifiedLights(ShadowMethod):
         """Certify regions for so many seconds, at most."""
         store = self.store
         assert store is not None, "followed before"
-        selection = Selection(store.view(), np.zeros((0, WORDS), np.int64), self._hiders(frame))
+        selection = Selection(store.view(), np.zeros((0, WORDS), np.int64), self._hiders(frame.shading.lamps))
         block, shares = pack(selection), np.array_split(np.arange(len(frame.tiles)), 8 * frame.workers)
 
         def work(chunk: int, worker: int) -> None:
@@ -149,15 +153,23 @@ class CertifiedLights(ShadowMethod):
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
         assert self.store is not None, "followed before"
         looks = np.zeros((len(frame.lights), WORDS), np.int64)
-        data = Selection(self.store.view(), looks, self._hiders(frame))
-        if not len(data.hiders.rows):
-            return [Stage(data, select=select, looks=looks)]
-        kernels = {"select": select, "approach": approach, "choose": choose}
-        return [Stage(data, **kernels, rows=HIDDEN_SAMPLE_ROWS, looks=looks)]
+        selection = Selection(self.store.view(), looks, self._hiders(frame.shading.lamps))
+        if not self._has_lamps(frame.shading.lamps):
+            return [Stage(selection, select=select, looks=looks)]
+        rows = HIDDEN_SAMPLE_ROWS
+        return [Stage(selection, select=select, approach=approach, choose=choose, rows=rows, looks=looks)]
 
-    def _hiders(self, frame: FrameView) -> Hiders:
-        assert self.store is not None
-        lamps, placed = frame.shading.lamps, self.services.world.placed
+    def _has_lamps(self, lamps: Lamps) -> bool:
+        """Whether any light has so many samples that hiders are asked about it."""
+        return bool((np.diff(lamps.first) >= self.services.cost_model.least_samples).any())
+
+    def _hiders(self, lamps: Lamps) -> Hiders:
+        assert self.store is not None, "followed before"
+        placed = self.services.world.placed
+        if not len(self._rows) and self._has_lamps(lamps):
+            triangles = self.services.world.triangles_of(0)
+            self._rows = aligned_rows(len(triangles.rows), ROW)
+            self._rows[:, :BLUR], self._rows[:, BLUR], self._rows[:, BOX:] = triangles
         return Hiders(
             self._rows,
             SureHitLength(len(self._rows), self.store.longest_sure, 0.0),
@@ -187,10 +199,11 @@ class CertifiedLights(ShadowMethod):
 
     def because(self, answered: Answered) -> Because:
         _, named = self.explain(answered.primitive, np.array(answered.point, np.float32), answered.light) or ("", ())
-        return Because(Verdict.PASSED_OVER, named)
+        # What no region hides was hidden, sample by sample, by what had hidden it from neighbours.
+        return Because(Verdict.PASSED_OVER if named else Verdict.BEAM, named)
 
     def forget(self) -> None:
-        self.store = None
+        self.store, self._rows = None, NO_TRIANGLES
 
     @property
     def price(self) -> float:
@@ -204,4 +217,4 @@ class CertifiedLights(ShadowMethod):
 
     @property
     def memory_bytes(self) -> int:
-        return 0 if self.store is None else self.store.bytes
+        return self._rows.nbytes + (0 if self.store is None else self.store.bytes)

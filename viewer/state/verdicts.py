@@ -29,14 +29,14 @@ SAID: dict[Verdict, str] = {
 
 MEANING: dict[Verdict, str] = {
     Verdict.AWAY: "The light is behind the surface, so that no shadow ray is due.",
-    Verdict.PASSED_OVER: "The light is proven to be hidden from the whole region around the point.",
+    Verdict.PASSED_OVER: "The light is proven to be hidden from all that is near the point.",
     Verdict.FULL_SHADOW: "The primitive is fully rendered, and every shadow ray from it to this light was blocked.",
     Verdict.NON_SHADOW: "The primitive is fully rendered, and nothing static blocked any shadow ray from it to this "
     "light: only objects that move are tested.",
     Verdict.CERTIFIED_FULL: "The whole cell is proven to be in the shadow of static geometry.",
     Verdict.CERTIFIED_LIT: "Nothing static is between the whole cell and the light: only objects that move are tested.",
     Verdict.CANDIDATES: "Only a few primitives can block the light here: these are tested, and objects that move.",
-    Verdict.BEAM: "What is between neighbouring points and the lamp was looked for once for all of its samples.",
+    Verdict.BEAM: "What is between the lamp and neighbouring points was asked about all of its samples at once.",
     Verdict.CACHED: "The primitive that blocked a ray there before was tested first, and blocks this one too.",
     Verdict.ANSWERED: "The method knew the answer.",
     Verdict.TRACED: "Nothing was known: the ray was traced through the scene.",

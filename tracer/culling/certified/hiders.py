@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tracer.culling.certified.error_bounds import LANES, SureHitLength
-from tracer.culling.certified.hidden_samples import BITS, hide_samples, keep_bits
+from tracer.culling.certified.hidden_samples import ALL, BITS, NOTHING, SOME, hide_samples, keep_bits
 from tracer.culling.certified.prepared_triangles import PREPARED, Lamp, prepare
 from tracer.culling.certified.seen_by_lamp import KEPT, SAMPLES, ask_points, ask_triangles, put_samples
 from tracer.culling.counters import RAYS, TESTS
@@ -24,12 +24,26 @@ from tracer.culling.shadow_testing import LIGHT_MARGIN, shadow_rays
 from tracer.culling.stages import looks_at, vectors
 from tracer.geometry.queries import STATIC_GEOMETRY, any_hits_by
 from tracer.kernels import inlined, subkernel
-from tracer.simd import bits_of, i32_at, i32x16, lanes_below, load_i32, load_three, local_memory, lowest_bit, ones, store
+from tracer.simd import (
+    bits_of,
+    i32_at,
+    i32x16,
+    i64_at,
+    lanes_below,
+    load_i32,
+    load_three,
+    local_memory,
+    lowest_bit,
+    maximum,
+    store,
+)
 from tracer.simd.records import F32, I32, F32x2D
 
 TRIES = 4  # points of a vector whose rays are traced to find what blocks them, at most
-NUMBERS = 4 * LANES
-ONE = np.float32(1)
+NUMBERS, STATE = 4 * LANES, 24  # bytes
+# Of a lamp's state: how many hiders are known; which is replaced next; and how many vectors in a row had no new one.
+KNOWN, NEXT, IN_VAIN = range(3)
+ONE, ROUNDED = np.float32(1), np.float32(1e-5)  # of lengths, more than what rounding may take
 
 
 class Hiders(NamedTuple):
@@ -56,14 +70,16 @@ class Hiders(NamedTuple):
 
 
 class _Room(NamedTuple):
-    """Addresses of memory: a lamp's samples; the numbers of hiders, NONE for none; these prepared; what is kept of one and a
-    vector of points, or of all and one point; and bits of sixteen points for each sample."""
+    """Addresses of memory: of a lamp's samples; of the numbers of hiders, int32; of these prepared; of what is kept of
+    one and a vector of points, or of all and one point; of bits of sixteen points for each sample; and of a lamp's
+    state, int64."""
 
     samples: int
     numbers: int
     prepared: int
     kept: int
     bits: int
+    state: int
 
 
 @inlined
@@ -74,91 +90,111 @@ def is_lamp(hiders, light):
 
 @subkernel
 def find_hidden(hiders, points, batch, hidden, number, looked, count, counts):
-    """Find from which of `count` points samples of lamp `number` are hidden, where vectors must look at it (`looks_at`)."""
-    place, radius, first = hiders.places[number], hiders.radii[number], np.int64(hiders.first[number])
+    """Find from which of `count` points samples of lamp `number` are hidden, into `HiddenSamples`.
+
+    Only vectors that must look at it are asked about, by bits at the address `looked` (`looks_at`).  The rays that are
+    traced have their place in batch, a `ShadowBatch`."""
+    place, first = hiders.places[number], np.int64(hiders.first[number])
     light, many = (place[0], place[1], place[2]), np.int64(hiders.first[number + 1]) - first
     room = _Room(
-        local_memory(SAMPLES), local_memory(NUMBERS), local_memory(PREPARED), local_memory(KEPT), local_memory(BITS)
+        local_memory(SAMPLES),
+        local_memory(NUMBERS),
+        local_memory(PREPARED),
+        local_memory(KEPT),
+        local_memory(BITS),
+        local_memory(STATE),
     )
-    lamp = Lamp(np.int64(number), light, radius, put_samples(hiders.samples, first, many, light, room.samples))
-    for k in range(LANES):
-        i32_at(room.numbers)[k] = 0
-    known, oldest, in_vain, traced = 0, 0, 0, np.zeros(RAYS + 1, np.int64)
+    groups = put_samples(hiders.samples, first, many, light, room.samples)
+    lamp, state = Lamp(np.int64(number), light, hiders.radii[number], groups), i64_at(room.state)
+    state[KNOWN], state[NEXT], state[IN_VAIN] = 0, 0, 0
+    store(room.numbers, i32x16(0))
+    uncounted = np.zeros(RAYS + 1, np.int64)
     for v in range(vectors(count)):
-        hidden.some[v] = 0
+        hidden.some[v] = NOTHING
         if not looks_at(looked, v):
             continue
-        open_ = _facing(points, light, radius, v) & lanes_below(count, v)
-        if open_ == 0:
-            hidden.some[v] = -1
+        facing = _facing(points, light, lamp.radius, v) & lanes_below(count, v)
+        if facing == 0:
+            hidden.some[v] = ALL
             continue
-        tries = TRIES
-        if in_vain > 1 and v % (4 if in_vain < 8 else 16) != 0:
-            tries = 0
-        if known == 0 and tries == 0:
-            continue
-        end = load_three(points.lifted, v)
-        for k in range(0, many, LANES):
-            store(room.bits + 4 * k, i32x16(0))
-        full, every, asked, found = np.int64(0), np.int64(0), np.int64(0), False
-        while open_ & ~(full | every) != 0:
-            lane = lowest_bit(open_ & ~(full | every))
-            new = np.int64(0)
-            if known > 0:
-                i = 16 * v + lane
-                point = points.lifted[0, i], points.lifted[1, i], points.lifted[2, i]
-                whole, missed, can = ask_triangles(room.prepared, point, light, radius, room.kept)
-                new = (np.int64(whole) | (np.int64(can) & ~np.int64(missed))) & ((np.int64(1) << known) - 1) & ~asked
-                if new & np.int64(whole) != 0:
-                    new &= np.int64(whole)
-            if new == 0:
-                if tries == 0:
-                    break
-                tries -= 1
-                new = _trace_point(hiders, points, batch, 16 * v + lane, lane, first, many, known, oldest, room, traced)
-                if new == 0:
-                    in_vain = in_vain if found else in_vain + 1
-                    break
-                found, in_vain = True, 0
-                oldest = (oldest + ones(new)) % LANES
-                known = min(LANES, known + ones(new))
-                prepare(hiders.rows, hiders.farthest, lamp, room.numbers, room.prepared)
-            while new != 0 and open_ & ~(full | every) != 0:
-                k = lowest_bit(new)
-                new &= new - 1
-                asked |= np.int64(1) << k
-                counts[TESTS] += 1
-                triangle = room.prepared + 4 * k
-                whole, missed, can = ask_points(triangle, end, light, radius, room.kept)
-                full |= np.int64(whole)
-                some = np.int64(can) & ~(np.int64(whole) | np.int64(missed)) & open_
-                if some != 0:
-                    every |= hide_samples(triangle, room.kept, some, room.samples, many, room.bits)
-        if asked != 0:
-            keep_bits(hidden, v, full, room.bits, many)
-            if open_ & ~(full | every) == 0:
-                hidden.some[v] = -1
+        often = 1 if state[IN_VAIN] < 2 else (4 if state[IN_VAIN] < 8 else 16)
+        tries = TRIES if v % often == 0 else 0
+        if state[KNOWN] > 0 or tries > 0:
+            _ask_vector(hiders, points, batch, hidden, v, lamp, first, many, facing, tries, room, uncounted)
     for k in range(RAYS + 1):
-        counts[k] += traced[k]
+        counts[k] += uncounted[k]
 
 
 @inlined
 def _facing(points, light, radius, v):
-    """Bits of the points of a vector that may be due to some sample of a lamp."""
+    """Bits of the points of a vector whose surface may face some sample of a lamp: of no others a ray is due."""
     px, py, pz = load_three(points.position, v)
     gx, gy, gz = load_three(points.geometric, v)
     x, y, z = light[0] - px, light[1] - py, light[2] - pz
-    room = np.float32(1.001) * radius + np.float32(1e-5) * (abs(light[0]) + abs(light[1]) + abs(light[2]))
-    return bits_of(gx * x + gy * y + gz * z > -room)
+    far = maximum(x, -x) + maximum(y, -y) + maximum(z, -z) + (abs(light[0]) + abs(light[1]) + abs(light[2]))
+    return bits_of(gx * x + gy * y + gz * z > -(np.float32(1.001) * radius + ROUNDED * far))
 
 
 @subkernel
-def _trace_point(hiders, points, batch, i, lane, first, many, known, oldest, room, counts):
-    """Trace rays to point i, in a lane, from up to sixteen samples that are not known to be hidden; bits of the hiders that
-    are new, which take the place of the oldest."""
+def _ask_vector(hiders, points, batch, hidden, v, lamp, first, many, facing, tries, room, counts):
+    """Ask hiders about those points of a vector that face the lamp, tracing rays to no more than so many of them."""
+    state, asked, found = i64_at(room.state), np.int64(0), False
+    for k in range(0, many, LANES):
+        store(room.bits + 4 * k, i32x16(0))
+    gone = np.int64(0)  # points from which all of the lamp is hidden
+    while facing & ~gone != 0:
+        lane = lowest_bit(facing & ~gone)
+        new = _that_may_hide(points, lamp, 16 * v + lane, room) & ~asked if state[KNOWN] > 0 else np.int64(0)
+        if new == 0:
+            if tries == 0:
+                break
+            tries -= 1
+            new = _trace_point(hiders, points, batch, 16 * v + lane, lane, first, many, room, counts)
+            if new == 0:
+                state[IN_VAIN] += 0 if found else 1
+                break
+            found, state[IN_VAIN] = True, 0
+            prepare(hiders.rows, hiders.farthest, lamp, room.numbers, room.prepared)
+        asked |= new
+        gone = _hide(load_three(points.lifted, v), lamp, new, facing, gone, many, room, counts)
+    if asked != 0:
+        keep_bits(hidden, v, gone, room.bits, many)
+        hidden.some[v] = SOME if facing & ~gone != 0 else ALL
+
+
+@inlined
+def _that_may_hide(points, lamp, i, room):
+    """Bits of the hiders that may hide the lamp from point i; if any hide all of it, of these alone."""
+    known = (np.int64(1) << i64_at(room.state)[KNOWN]) - 1
+    point = points.lifted[0, i], points.lifted[1, i], points.lifted[2, i]
+    whole, missed, can = ask_triangles(room.prepared, point, lamp.light, lamp.radius, room.kept)
+    whole = np.int64(whole) & known
+    return whole if whole != 0 else np.int64(can) & ~np.int64(missed) & known
+
+
+@subkernel
+def _hide(end, lamp, new, facing, gone, many, room, counts):
+    """Ask hiders, by their bits, about sixteen points `end`; the points from which the lamp is hidden as a whole, with
+    those for which that was known."""
+    while new != 0 and facing & ~gone != 0:
+        triangle = room.prepared + 4 * lowest_bit(new)
+        new &= new - 1
+        counts[TESTS] += 1
+        whole, missed, can = ask_points(triangle, end, lamp.light, lamp.radius, room.kept)
+        gone |= np.int64(whole)
+        some = np.int64(can) & ~np.int64(missed) & facing & ~gone
+        if some != 0:
+            gone |= hide_samples(triangle, room.kept, some, room.samples, many, room.bits)
+    return gone
+
+
+@subkernel
+def _trace_point(hiders, points, batch, i, lane, first, many, room, counts):
+    """Trace rays to point i, in a lane, from up to sixteen samples that are not known to be hidden; bits of the hiders
+    that are new, which take the place of the oldest."""
     step, k, n = (many + LANES - 1) // LANES, np.int64(0), 0
     while k < many:
-        if (load_i32(room.bits + 4 * k) >> lane) & 1 == 0:
+        if (np.int64(load_i32(room.bits + 4 * k)) >> lane) & 1 == 0:
             for axis in range(3):
                 start = hiders.samples[first + k, axis]
                 batch.origin[axis, n] = start
@@ -168,15 +204,14 @@ def _trace_point(hiders, points, batch, i, lane, first, many, known, oldest, roo
         k += step
     any_hits_by(hiders, shadow_rays(batch), STATIC_GEOMETRY, batch.blocked, batch.occluders, 0, n, counts)
     counts[RAYS] += n
-    numbers, new = i32_at(room.numbers), np.int64(0)
+    numbers, state, new = i32_at(room.numbers), i64_at(room.state), np.int64(0)
     for ray in range(n):
         which, there = batch.occluders[ray], False
-        if which < 0 or which >= len(hiders.rows):
-            continue
-        for k in range(known):
+        for k in range(state[KNOWN]):
             there |= numbers[k] == which
-        if not there:
-            numbers[oldest] = which
-            new |= np.int64(1) << oldest
-            oldest, known = (oldest + 1) % LANES, min(LANES, known + 1)
+        if there or which < 0 or which >= len(hiders.rows):  # or nothing, or no triangle, or one that rests
+            continue
+        numbers[state[NEXT]] = which
+        new |= np.int64(1) << state[NEXT]
+        state[NEXT], state[KNOWN] = (state[NEXT] + 1) % LANES, min(LANES, state[KNOWN] + 1)
     return new
