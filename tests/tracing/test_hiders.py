@@ -14,9 +14,7 @@ from tests.tracing.shades import going, kite
 from tests.tracing.test_regions import wall
 from tests.tracing.worlds import quad, scene
 from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.culling.verdicts import Verdict
 from tracer.geometry.world import ACCELERATORS
-from tracer.ray_tree import ray_tree
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation
 from tracer.scene.lights import Light
@@ -59,7 +57,7 @@ def test_every_sample_that_is_culled_is_blocked(accelerator: str, samples: int):
 
 
 def test_lamps_that_touch_and_cut_triangles_and_those_of_no_size():
-    """In the plane of the wall, through it, on a tile's corner, below the floor, around everything, and in one point."""
+    """In the plane of the wall, through it, on a tile's corner, below the floor, around all, and in one point."""
     given = tiled(12, lights=34)
     places = [(2.0, 1.4, 0.0), (2.0, 1.4, 0.05), (4.0 / 13.0, 3.0 / 11.0, 0.0), (1.0, -0.01, 2.0), (2.0, 1.0, 1.0)]
     radii = [0.2, 0.2, 1e-4, 0.05, 30.0]
@@ -76,12 +74,16 @@ def test_lamps_that_touch_and_cut_triangles_and_those_of_no_size():
 
 
 def test_moving_objects_are_asked_and_moving_lamps_followed():
-    animation = Animation({"kite": going([(0, -1.5), (1, 0.5), (2, 1.5)]), "flies": going([(0, 0.0), (1, 0.7), (2, 1.0)])})
+    flies, rests = going([(0, 0.0), (1, 0.7), (2, 1.0)]), going([(0, 0.5), (0.8, 2.0), (1, 2.0), (2, 3.5)])
+    animation = Animation({"kite": rests, "flies": flies})
     given = tiled(dynamic=(kite("kite", z=1.0),), animation=animation, time_range=(0.0, 2.0))
     given = replace(given, lights=tuple(replace(lamp, track="flies") for lamp in given.lights[:8]) + given.lights[8:])
     renderer, truth = (Renderer(given, replace(SETTINGS, method=m)) for m in ("certified+rest", "none"))
     for time in (0.0, 0.5, 1.0, 1.0, 1.0, 1.5):
-        assert renderer.render(time).color.tobytes() == truth.render(time).color.tobytes(), time
+        picture = truth.render(time).color
+        assert renderer.render(time).color.tobytes() == picture.tobytes(), time
+    alone = Renderer(replace(given, objects=given.objects[:1]), truth.settings).render(time).color
+    assert (alone != picture).any(axis=-1).sum() > 20, "the object is nowhere to be seen"
 
 
 def test_pictures_and_counters_repeat_for_any_number_of_threads():
