@@ -15,14 +15,17 @@ QUICK := tests/test_house.py tests/test_golden.py tests/scene \
     $(addprefix tests/tracing/test_,culling.py modes.py pictures.py intersect.py traversal.py waves.py zoom.py) \
     -m "not slow"
 
-# Compiled kernels, Mesa's compiled shaders and matplotlib's list of fonts stay in the project's folder.
+# Compiled kernels, Python's bytecode, Mesa's compiled shaders and matplotlib's list of fonts stay in the project's
+# folder.  Bytecode is written even where that is switched off: without it, each start takes seconds longer.
 export PYTHON
 export SHADOWCULL_CACHE_DIR := $(CURDIR)/.cache/kernels
 export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
 export MPLCONFIGDIR := $(CURDIR)/.cache/matplotlib
+export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
+export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz golden bench frames quickest lamps counters window table motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help
+.PHONY: run kernels test quick test-all fuzz soak golden bench frames quickest lamps counters window table motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -44,6 +47,10 @@ test-all:  ## run the tests with many times as many random scenes and frames as 
 fuzz:  ## read damaged files of all kinds, and trace what is left of them (ARGS="--seconds 600 --seed 1000")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.fuzz.readers $(ARGS)
+
+soak:  ## use the program for long, and watch memory, threads and files (ARGS="--seconds 3600 SCENE ...")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.fuzz.soak $(ARGS)
 
 golden:  ## render the golden pictures of the tests anew, and say what changed
 	@tools/environment.sh dev
