@@ -105,7 +105,7 @@ def find_hidden(hiders, points, batch, hidden, number, looked, count, counts):
         local_memory(STATE),
     )
     groups = put_samples(hiders.samples, first, many, light, room.samples)
-    lamp, state = Lamp(np.int64(number), light, hiders.radii[number], groups), i64_at(room.state)
+    lamp, state = Lamp(number, light, hiders.radii[number], groups), i64_at(room.state)
     state[KNOWN], state[NEXT], state[IN_VAIN] = 0, 0, 0
     store(room.numbers, i32x16(0))
     uncounted = np.zeros(RAYS + 1, np.int64)
@@ -192,7 +192,7 @@ def _hide(end, lamp, new, facing, gone, many, room, counts):
 def _trace_point(hiders, points, batch, i, lane, first, many, room, counts):
     """Trace rays to point i, in a lane, from up to sixteen samples that are not known to be hidden; bits of the hiders
     that are new, which take the place of the oldest."""
-    step, k, n = (many + LANES - 1) // LANES, np.int64(0), 0
+    step, k, n = (many + LANES - 1) // LANES, 0, 0
     while k < many:
         if (np.int64(load_i32(room.bits + 4 * k)) >> lane) & 1 == 0:
             for axis in range(3):
