@@ -11,8 +11,7 @@ from tests.sweeps import cases
 from tests.tracing.nasty_worlds import nasty_walk, with_lamps
 from tests.tracing.same import assert_same
 from tests.tracing.shades import going, kite
-from tests.tracing.test_regions import wall
-from tests.tracing.worlds import quad, scene
+from tests.tracing.worlds import quad, scene, wall
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.geometry.world import ACCELERATORS
 from tracer.renderer import Renderer
@@ -94,7 +93,7 @@ def test_pictures_and_counters_repeat_for_any_number_of_threads():
 
 def test_nasty_worlds_under_lamps_of_many_samples():
     culled = 0
-    for seed in range(cases(4, 80)):
+    for seed in range(cases(2, 80)):
         walk = with_lamps(nasty_walk(100 + seed, lights=MAX_CULLED_LIGHTS + 1, frames=2))
         for accelerator in ACCELERATORS:
             settings = Settings(
@@ -107,4 +106,4 @@ def test_nasty_worlds_under_lamps_of_many_samples():
                 assert frame.color.tobytes() == truth.color.tobytes(), (seed, accelerator, time)
                 assert frame.statistics.shadow.wrong == 0, (seed, accelerator, time)
                 culled += frame.statistics.shadow.culled
-    assert culled > 10_000
+    assert culled > 5_000

@@ -10,7 +10,7 @@ import pytest
 from tests.sweeps import cases
 from tests.tracing.nasty_worlds import nasty_walk, with_lamps
 from tests.tracing.same import assert_same
-from tests.tracing.worlds import quad, scene
+from tests.tracing.worlds import quad, scene, wall
 from tracer.culling.certified.scheduler import Budget
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.regions.blockers import find_blockers
@@ -32,18 +32,6 @@ from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 
 SETTINGS = Settings(width=64, height=48, depth=2, method="certified", threads=2)
-
-
-def wall(columns: int, rows: int, hole: tuple[int, int] | None = None, z: float = 0.0) -> list:
-    """A wall of 4 by 3 at z, cut into rectangles of two triangles each, perhaps without one of them."""
-    x, y = np.linspace(0.0, 4.0, columns + 1), np.linspace(0.0, 3.0, rows + 1)
-    return [
-        triangle
-        for i in range(columns)
-        for j in range(rows)
-        if (i, j) != hole
-        for triangle in quad((x[i], y[j], z), (x[i + 1], y[j], z), (x[i + 1], y[j + 1], z), (x[i], y[j + 1], z))
-    ]
 
 
 def rows_of(corners: list) -> np.ndarray:

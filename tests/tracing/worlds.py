@@ -44,6 +44,18 @@ def quad(a, b, c, d) -> list:
     return [[a, b, c], [a, c, d]]
 
 
+def wall(columns: int, rows: int, hole: tuple[int, int] | None = None, z: float = 0.0) -> list:
+    """A wall of 4 by 3 at z, cut into rectangles of two triangles each, perhaps without one of them."""
+    x, y = np.linspace(0.0, 4.0, columns + 1), np.linspace(0.0, 3.0, rows + 1)
+    return [
+        triangle
+        for i in range(columns)
+        for j in range(rows)
+        if (i, j) != hole
+        for triangle in quad((x[i], y[j], z), (x[i + 1], y[j], z), (x[i + 1], y[j + 1], z), (x[i], y[j + 1], z))
+    ]
+
+
 def quadrics(rows: list[tuple[int, np.ndarray, tuple[float, float]]], material: int = 0) -> Quadrics:
     """Spheres and cones from (kind, map to object space (3, 4), radii)."""
     return Quadrics(
