@@ -15,6 +15,7 @@ from tracer.method import Method, bases
 from viewer.services.settings_controller import SettingsController
 from viewer.services.tracing import Tracing
 from viewer.state.comparison import (
+    ENDLESS,
     Apart,
     Side,
     Source,
@@ -30,15 +31,23 @@ from viewer.state.readings import can_draw, span_of
 from viewer.state.session import Session
 from viewer.state.values import Values, values_of
 from viewer.state.views import View
+from viewer.state.worst import Spot, worst_spots
 
 
 @dataclass(frozen=True)
 class Difference:
-    """B - A at each pixel of B, (h, w) float32, of such values, and how far they are apart in all."""
+    """B - A at each pixel of B, (h, w) float32, of such values, how far they are apart in all, and where most."""
 
     pixels: NDArray[np.float32]
     values: Values
     apart: Apart
+    worst: tuple[Spot, ...]
+
+    def differing(self) -> Values:
+        """The differences as values, of the pixels that have one."""
+        size = np.abs(self.pixels)
+        known = (size > 0.0) & (size < ENDLESS)
+        return Values(self.pixels[..., None], ("B - A",), known, self.values.classes)
 
 
 class Comparing:
@@ -115,7 +124,7 @@ class Comparing:
         if can_draw(a.frame, b.view, b.light) and can_draw(b.frame, b.view, b.light):
             values = values_of(b.frame, b.view, b.light)
             pixels = signed_difference(values_of(a.frame, b.view, b.light), values)
-            found = Difference(pixels, values, apart(pixels))
+            found = Difference(pixels, values, apart(pixels), worst_spots(pixels, values.classes))
         self._difference = a, b, found
         return found
 

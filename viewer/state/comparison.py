@@ -17,6 +17,8 @@ from viewer.state.views import View
 
 RATES = (0.25, 3.0)
 """Times a second, least and most, that pictures blink: no more, as faster flashes are dangerous to some people."""
+ENDLESS = 1e29
+"""From here on a difference is one without end: one of the two pictures hits nothing there."""
 HIDDEN_SHARE = 0.5
 """Per cent of the pixels that differ, at most, which lie beyond the range of a difference that is fitted."""
 
@@ -134,7 +136,7 @@ def difference_words(difference: NDArray[np.float32], values: Values, x: int, y:
     apart = float(difference[y, x])
     if values.classes:
         return ("other",) if apart else ("same",)
-    if abs(apart) > 1e29:
+    if abs(apart) > ENDLESS:
         return ("miss", "in A" if apart < 0.0 else "in B")
     return (f"{apart:+.3g}" if apart else "0",)
 
@@ -154,7 +156,7 @@ class Apart:
 
 def apart(difference: NDArray[np.float32]) -> Apart:
     """Sum a difference up.  Where one of the two pictures has no depth, it counts as differing, and no further."""
-    finite = np.where(np.abs(difference) < 1e29, difference, np.float32(0.0))
+    finite = np.where(np.abs(difference) < ENDLESS, difference, np.float32(0.0))
     changed = finite[finite != 0.0]
     limit = float(np.percentile(np.abs(changed), 100.0 - HIDDEN_SHARE)) if len(changed) else 1.0
     return Apart(

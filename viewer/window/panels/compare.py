@@ -79,6 +79,7 @@ def _controls(ui: Ui) -> None:
                 state.rate = min(max(rate, RATES[0]), RATES[1]) if changed else state.rate
             if state.way is Way.DIFFERENCE and state.on:
                 _limit(ui)
+                _rings(ui)
     if state.source is Source.KEPT:
         _kept(ui)
     if comparing.remark:
@@ -132,6 +133,13 @@ def _limit(ui: Ui) -> None:
     if imgui.button("Fit##limit", (-1.0, 0.0)):
         state.limit = None
     imgui.end_disabled()
+
+
+def _rings(ui: Ui) -> None:
+    """Whether the signed difference marks where it is largest."""
+    p = ui.controller.preferences
+    row("Rings", f"around the pixels that differ most{ui.key('Mark wrong pixels')}")
+    checkbox("##rings", p.mark_wrong, lambda on: setattr(p, "mark_wrong", on))
 
 
 def _kept(ui: Ui) -> None:
