@@ -98,6 +98,17 @@ class Edits:
         """Where a light is instead; None where it was not moved."""
         return dict(self.moved_lights).get(number)
 
+    def light_number(self, index: int) -> int:
+        """The number in the scene as it was read of the light that is number `index` of those that are on."""
+        number = index
+        for off in sorted(self.lights_off):
+            number += off <= number
+        return number
+
+    def light_index(self, number: int) -> int | None:
+        """The inverse: which of the lights that are on it is; None for one that is off."""
+        return None if number in self.lights_off else number - sum(off < number for off in self.lights_off)
+
     def within(self, scene: Scene) -> Edits:
         """Those of these edits that mean something in a scene: whose lights, things and primitives it has."""
         known = {thing.name: thing for thing in things(scene)}
@@ -242,11 +253,13 @@ def edited(scene: Scene, edits: Edits) -> Edited:
 def _lights(scene: Scene, edits: Edits, on: set[int]) -> tuple[Light, ...]:
     """The lights that are on, where they are; one that was moved stays there."""
     places = dict(edits.moved_lights)
-    return tuple(
-        replace(light, position=places[n], track=None) if n in places else light
-        for n, light in enumerate(scene.lights)
-        if n in on
-    )
+    found: list[Light] = []
+    for n in sorted(on):
+        light = scene.lights[n]
+        if n in places:
+            light = replace(light, position=places[n], track=None)
+        found.append(light if n == len(found) else replace(light, number=n))
+    return tuple(found)
 
 
 # --- objects -----------------------------------------------------------------------------------------

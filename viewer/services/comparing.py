@@ -79,13 +79,14 @@ class Comparing:
             return self._side(second, view if can_draw(second, view, session.light) else View.COLOR)
         kept = state.kept
         if kept is not None and state.same_view and can_draw(kept.frame, session.view, session.light):
-            return replace(kept, view=self._tracing.drawn_view, light=session.light)
+            view, light = self._tracing.drawn_view, session.light
+            return replace(kept, view=view, light=light, light_number=session.light_number)
         return kept
 
     def _side(self, frame: Frame, view: View) -> Side:
         session = self._session
         name = session.scene.path.stem if session.scene is not None else ""
-        return Side(frame, view, session.light, name, session.frame_at(frame.time))
+        return Side(frame, view, session.light, name, session.frame_at(frame.time), session.light_number)
 
     @property
     def sides(self) -> tuple[Side, Side] | None:

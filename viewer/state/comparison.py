@@ -67,13 +67,21 @@ class Source(StrEnum):
 
 @dataclass(frozen=True)
 class Side:
-    """One of the two pictures: a frame in a view, of the scene of this name, at the frame number of its animation."""
+    """One of the two pictures: a frame in a view, of the scene of this name, at the frame number of its animation;
+    `light_number` is what people call its light."""
 
     frame: Frame
     view: View
     light: int
     scene: str
     number: int
+    light_number: int | None = None
+
+    @property
+    def of_light(self) -> str:
+        """Which light a view of one light is of, in words after a comma."""
+        number = self.light if self.light_number is None else self.light_number
+        return f", light {number}" if self.view.of_light else ""
 
     @property
     def method(self) -> str:
@@ -85,9 +93,8 @@ def named(side: Side, other: Side | None) -> str:
     parts = [side.method]
     if other is None:
         return parts[0]
-    light = f", light {side.light}" if side.view.of_light else ""
     if (side.view, side.light if side.view.of_light else 0) != (other.view, other.light if other.view.of_light else 0):
-        parts.append(side.view.label.lower() + light)
+        parts.append(side.view.label.lower() + side.of_light)
     if side.scene != other.scene:
         parts.append(side.scene)
     if side.frame.time != other.frame.time or side.scene != other.scene:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from viewer.output.capture import FIELDS
-from viewer.output.legend import light_in_words
+from viewer.output.legend import named_light
 from viewer.services.controller import Controller
 from viewer.services.file_browser import Browser
 from viewer.services.tour import Tour
@@ -162,11 +162,9 @@ class Ui:
         return known[2]
 
     def light_name(self, light: int) -> str:
-        """A light as every panel calls it: by the number that views and keys go by, and its name if it has one."""
+        """A light as every panel calls it: by its number in the scene as it was read, and its name if it has one."""
         scene = self.controller.session.scene
-        return light_in_words(
-            light, scene.lights[light].name if scene is not None and light < len(scene.lights) else ""
-        )
+        return named_light(scene.lights if scene is not None else (), light)
 
     def take_commands(self, commands: list[Command]) -> None:
         """Make these the commands, with the keys that the user has chosen for them."""

@@ -149,9 +149,8 @@ def _kept(ui: Ui) -> None:
     if kept is None:
         paragraph("Nothing is kept yet. Keep a picture, change anything, and compare.", QUIET)
         return
-    light = f", light {kept.light}" if kept.view.of_light else ""
     paragraph(
-        f"kept: {kept.scene}, frame {kept.number}, {kept.method}, {kept.view.label.lower()}{light}, "
+        f"kept: {kept.scene}, frame {kept.number}, {kept.method}, {kept.view.label.lower()}{kept.of_light}, "
         f"{kept.frame.width} x {kept.frame.height}",
         QUIET,
     )

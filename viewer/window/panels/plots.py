@@ -80,7 +80,9 @@ def show(ui: Ui) -> None:
         return
     imgui.same_line()
     said = f"the last {len(history)} pictures" if len(history) > 1 else "one picture so far"
-    clipped(f"{said}{'; on a grey ground: only some pixels are shaded' if (history.shaded() < 1.0).any() else ''}", QUIET)
+    if (history.shaded() < 1.0).any():
+        said += "; on a grey ground: only some pixels are shaded"
+    clipped(said, QUIET)
     room = imgui.get_content_region_avail()
     spacing = imgui.get_style().item_spacing.x
     plots = (_PLOTS[0], _OF_LIGHTS, *_PLOTS[1:]) if history.values("samples_due").any() else _PLOTS
@@ -137,7 +139,7 @@ def _mark_partly_shaded(first: float, shaded: NDArray[np.float64], heights: tupl
     look.flags = int(implot.ItemFlags_.no_legend)
     for begin, end in edges.reshape(-1, 2).tolist():
         across = np.array([first + begin - 0.5, first + end - 0.5])
-        implot.plot_shaded("##partly shaded", across, *(np.full(2, edge) for edge in heights), look)
+        implot.plot_shaded("##partly shaded", across, np.full(2, heights[0]), np.full(2, heights[1]), look)
 
 
 def _label_decades(highest: float, height: float) -> None:
