@@ -70,10 +70,11 @@ class Ui:
     `gesture_at` on, a point of the picture; `menu_at` is the point that the menu over the picture is about, and
     `plot_frame` the frame that the menu of a plot is about, `plot_named` its name; `plot_pointed` is the one that the
     pointer was on last.
-    `what_if_drawn` is the frame of ImGui's in which the panel What if was drawn last, `held_light` the light that the
-    pointer drags, and `changed_shown` says that changed pixels are to be seen. `find_focus` asks for the keyboard
-    above the table of what is in the scene, of which `find_drawn` rows were drawn last, each `find_height` pixels
-    high, in the order `find_order`. `chorded` are the keys that steer which were pressed with Ctrl, Alt or Super."""
+    `what_if_drawn` is the frame of ImGui's in which the panel What if was drawn last, `what_if_below` how high all is
+    below its list of lights, `held_light` the light that the pointer drags, and `changed_shown` says that changed
+    pixels are to be seen. `find_focus` asks for the keyboard above the table of what is in the scene, of which
+    `find_drawn` rows were drawn last, each `find_height` pixels high, in the order `find_order`. `chorded` are the keys
+    that steer which were pressed with Ctrl, Alt or Super."""
 
     controller: Controller
     display: Display | None = None
@@ -128,6 +129,7 @@ class Ui:
     zoom_all_steps: bool = False
     pointed_light: int | None = None
     what_if_drawn: int = -9
+    what_if_below: float = 0.0
     held_light: int | None = None
     changed_shown: bool = False
     light_filters: dict[str, str] = field(default_factory=dict)

@@ -9,6 +9,7 @@ from tracer.method import Method, additions, bases
 from viewer.state.columns import Row, rows
 from viewer.state.comparison import RATES, Side, Source, Way
 from viewer.state.methods import toggled, with_base
+from viewer.state.told_apart import told_apart
 from viewer.state.views import LESS, MORE
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -189,10 +190,10 @@ def _heads(a: Side, b: Side, names: tuple[str, str]) -> None:
     """Two rows: which is which, and how large they are."""
     imgui.table_next_row(int(imgui.TableRowFlags_.headers))
     imgui.table_next_column()
-    for name, color in ((names[0], LESS), (names[1], MORE)):
+    for name, other, color in ((*names, LESS), (*names[::-1], MORE)):
         imgui.table_next_column()
         swatch(color)
-        clipped(name)
+        _name(name, other)
     for name in ("B - A", "of A"):
         imgui.table_next_column()
         right(name)
@@ -208,6 +209,15 @@ def _heads(a: Side, b: Side, names: tuple[str, str]) -> None:
     if round(shaded[0]) != round(shaded[1]):
         right("not alike", WARNING)
         tooltip(f"figures are of {count(shaded[0])} shaded pixels of A and {count(shaded[1])} of B")
+
+
+def _name(name: str, other: str) -> None:
+    """What A or B is, so that one sees what sets it apart from the other."""
+    letter, room = name[:3], imgui.get_content_region_avail().x + 0.5
+    shown = letter + told_apart(name[3:], other[3:], lambda text: imgui.calc_text_size(letter + text).x <= room)
+    imgui.text_unformatted(shown)
+    if shown != name:
+        tooltip(name)
 
 
 def _row(one: Row) -> None:
