@@ -194,7 +194,7 @@ class Chosen:
         if (self.on, self.way) != (after.on, after.way):
             changed["way"] = f"comparison: {after.way.label.lower()}" if after.on else "comparison off"
         if self.source is not after.source:
-            changed["source"] = "A by a second method" if after.source is Source.METHOD else "A as it was kept"
+            changed["source"] = "A by another method" if after.source is Source.METHOD else "A as it was kept"
         if self.second and self.second != after.second:
             changed["second"] = f"second method {after.second}"
         if self.same_view != after.same_view:

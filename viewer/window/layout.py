@@ -168,7 +168,8 @@ class Layout:
         if panel.label in self._to_front:
             self._to_front.discard(panel.label)
             imgui.set_next_window_focus()
-        shown, stays = imgui.begin(panel.label, None if alone else True, flags)
+        # A tab in the back has no cross, nor room for one: so all are found by eye, and none is closed by mistake.
+        shown, stays = imgui.begin(panel.label, True if not alone and _in_front(panel.label) else None, flags)
         try:
             if shown:
                 self._ui.guard.panel(f"The panel {panel.label}", lambda: panel.show(self._ui))
@@ -216,6 +217,12 @@ def _seen(label: str) -> bool:
     """Whether a panel was drawn, and not behind another's tab."""
     window = imgui.internal.find_window_by_name(label)
     return window is not None and window.was_active and not window.hidden
+
+
+def _in_front(label: str) -> bool:
+    """Whether a panel is no tab behind another's."""
+    window = imgui.internal.find_window_by_name(label)
+    return window is None or not window.dock_is_active or window.dock_tab_is_visible
 
 
 def _node_of(label: str) -> Any:

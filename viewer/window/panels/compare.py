@@ -63,7 +63,7 @@ def _controls(ui: Ui) -> None:
     with properties("comparison", 5.0) as shown:
         if shown:
             row("A is", "what the live picture, B, is compared with")
-            names = {Source.KEPT: "the kept picture", Source.METHOD: "by a second method"}
+            names = {Source.KEPT: "a kept picture", Source.METHOD: "another method, live"}
             sources = list(Source)
             changed, index = imgui.combo("##source", sources.index(state.source), [names[one] for one in sources])
             if changed:
