@@ -208,8 +208,8 @@ def _splits() -> list[hello_imgui.DockingSplit]:
         split("MainDockSpace", "Right", imgui.Dir.right, 0.295),
         split("MainDockSpace", "Bottom", down, 0.30),
         split("Left", "LeftBottom", down, 0.52),
-        split("Right", "RightBottom", down, 0.40),
-        split("Right", "RightMiddle", down, 0.54),
+        split("Right", "RightBottom", down, 0.37),
+        split("Right", "RightMiddle", down, 0.515),
     ]
 
 
@@ -222,7 +222,10 @@ def _seen(label: str) -> bool:
 def _in_front(label: str) -> bool:
     """Whether a panel is no tab behind another's."""
     window = imgui.internal.find_window_by_name(label)
-    return window is None or not window.dock_is_active or window.dock_tab_is_visible
+    if window is None or window.dock_node is None:
+        return True
+    front = window.dock_node.visible_window
+    return front is None or front.id_ == window.id_
 
 
 def _node_of(label: str) -> Any:

@@ -30,7 +30,7 @@ from viewer.window.widgets import (
 
 _WIDE = 44.0  # ems of a panel that has room for controls and columns beside each other
 _CONTROLS = 15.5  # ems of the controls there
-_NAMES = 8.0  # ems of the names of figures
+_NAMES = 7.2  # ems of the names of figures
 
 
 def show(ui: Ui) -> None:
@@ -178,7 +178,7 @@ def _columns(ui: Ui) -> None:
         return
     imgui.table_setup_scroll_freeze(0, 2)
     imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_fixed), em(_NAMES))
-    for name, width in (("A", 1.0), ("B", 1.0), ("difference", 1.0), ("per cent", 0.75)):
+    for name, width in (("A", 1.25), ("B", 1.25), ("difference", 1.0), ("per cent", 0.85)):
         imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch), width)
     _heads(a, b, comparing.names(a, b))
     for one in found:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
@@ -31,8 +32,7 @@ def show(ui: Ui, table: SceneTable, listing: Listing) -> None:
     kinds = imgui.TableFlags_
     flags = kinds.scroll_x | kinds.scroll_y | kinds.row_bg | kinds.resizable | kinds.reorderable | kinds.hideable
     flags |= kinds.sortable | kinds.borders_inner_v
-    least = em(sum(_WIDTHS.get(column.name, _NAME) for column in columns) + 0.6 * len(columns))
-    width = max(least, imgui.get_content_region_avail().x - imgui.get_style().scrollbar_size)
+    width = _inner_width([_WIDTHS.get(column.name, _NAME) for column in columns])
     ui.find_drawn = 0
     name = f"table{listing.table.level.value}"
     if not imgui.begin_table(name, len(columns), int(flags), ImVec2(0.0, 0.0), width):
@@ -59,6 +59,16 @@ def show(ui: Ui, table: SceneTable, listing: Listing) -> None:
             ui.find_drawn += 1
     clipper.end()
     imgui.end_table()
+
+
+def _inner_width(columns: list[float]) -> float:
+    """Of a table with columns of so many ems: what it needs, and so much more, which goes to names, that no column is
+    cut by the right edge before the table is scrolled."""
+    room = imgui.get_content_region_avail().x - imgui.get_style().scrollbar_size
+    edges = np.cumsum([em(width + 0.5) + 1.0 for width in columns])
+    if edges[-1] <= room:
+        return room
+    return float(edges[-1] + room - max(edges[edges <= room], default=room))
 
 
 def _set_up(ui: Ui, table: SceneTable, number: int, column: Column) -> None:

@@ -37,7 +37,7 @@ _TIPS = {
     "tests": "rays of all kinds tested against primitives",
     "certified": "certificates made in this frame",
 }
-_ROWS = 4  # of the list of lights that are seen at least
+_ROWS = 12  # of the list of lights that are seen at least: a few need no scroll bar in the panel, which has its own
 _MOST_PAIRS = 4  # of transitions of a light that are listed
 _MOST_BLOCKERS = 4
 
