@@ -32,7 +32,7 @@ def show(ui: Ui, table: SceneTable, listing: Listing) -> None:
     kinds = imgui.TableFlags_
     flags = kinds.scroll_x | kinds.scroll_y | kinds.row_bg | kinds.resizable | kinds.reorderable | kinds.hideable
     flags |= kinds.sortable | kinds.borders_inner_v
-    width = _inner_width([_WIDTHS.get(column.name, _NAME) for column in columns])
+    width = _inner_width(columns)
     ui.find_drawn = 0
     name = f"table{listing.table.level.value}"
     if not imgui.begin_table(name, len(columns), int(flags), ImVec2(0.0, 0.0), width):
@@ -61,14 +61,16 @@ def show(ui: Ui, table: SceneTable, listing: Listing) -> None:
     imgui.end_table()
 
 
-def _inner_width(columns: list[float]) -> float:
-    """Of a table with columns of so many ems: what it needs, and so much more, which goes to names, that no column is
-    cut by the right edge before the table is scrolled."""
+def _inner_width(columns: tuple[Column, ...]) -> float:
+    """Of the table: what its columns need, and where only one has names, so much more for these that no column is cut
+    by the right edge before the table is scrolled."""
     room = imgui.get_content_region_avail().x - imgui.get_style().scrollbar_size
-    edges = np.cumsum([em(width + 0.5) + 1.0 for width in columns])
-    if edges[-1] <= room:
-        return room
-    return float(edges[-1] + room - max(edges[edges <= room], default=room))
+    least = em(sum(_WIDTHS.get(column.name, _NAME) for column in columns) + 0.6 * len(columns))
+    edges = np.cumsum([em(_WIDTHS.get(column.name, _NAME) + 0.5) + 1.0 for column in columns])
+    if least <= room or sum(column.name in _SHARES for column in columns) > 1:
+        return max(least, room)
+    seen = room - em(0.5)  # so that its border can be taken hold of
+    return float(edges[-1] + seen - max(edges[edges <= seen], default=seen))
 
 
 def _set_up(ui: Ui, table: SceneTable, number: int, column: Column) -> None:
