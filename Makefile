@@ -15,11 +15,14 @@ QUICK := tests/test_house.py tests/test_golden.py tests/scene \
     $(addprefix tests/tracing/test_,culling.py modes.py pictures.py intersect.py traversal.py waves.py zoom.py) \
     -m "not slow"
 
-# Compiled kernels, Mesa's compiled shaders and matplotlib's list of fonts stay in the project's folder.
+# Compiled kernels, Python's bytecode, Mesa's compiled shaders and matplotlib's list of fonts stay in the project's
+# folder.  Bytecode is written even where that is switched off: without it, each start takes seconds longer.
 export PYTHON
 export SHADOWCULL_CACHE_DIR := $(CURDIR)/.cache/kernels
 export MESA_SHADER_CACHE_DIR := $(CURDIR)/.cache/mesa
 export MPLCONFIGDIR := $(CURDIR)/.cache/matplotlib
+export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
+export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
 .PHONY: run kernels test quick test-all fuzz golden bench frames quickest lamps counters window table motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help

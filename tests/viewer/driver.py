@@ -14,6 +14,7 @@ import glfw  # after imgui_bundle, which brings the library that both must share
 
 from tests.sweeps import cases
 from tests.viewer.fakes import with_certificates
+from viewer.services.runs import Run
 from viewer.window.app import App
 
 PATIENCE = 240.0  # a first run compiles the kernels
@@ -105,6 +106,21 @@ class Driver:
                 yield more if frame.settings.record_work else replace(more, saved=None, cost=None, due_rays=None)
 
         renderer.refine = with_more
+
+    def fix_resolution(self, width: int, height: int) -> None:
+        """Pictures of this size from now on, whatever room the window has: smaller ones take less of everything."""
+        p = self.c.preferences
+        p.fixed_resolution, p.fixed_width, p.fixed_height = True, width, height
+
+    def slow_down(self, run: Run) -> None:
+        """Let a run take its time: it is to last, not to keep the processor busy."""
+        count = run._count
+
+        def count_slowly(label: str) -> None:
+            time.sleep(0.05)
+            count(label)
+
+        run._count = count_slowly  # type: ignore[method-assign]
 
     def resize(self, width: int, height: int) -> None:
         """Give the window another size, and wait until its panels have taken their places."""

@@ -156,6 +156,7 @@ class Session:
     selected: tuple[float, float] | None = None
     meshes: MeshOptions = AS_IN_FILE  # how the scene was read
     annotations: list[Annotation] = field(default_factory=list)
+    _on_path: tuple[Scene, float, Camera] | None = field(default=None, init=False, repr=False, compare=False)
 
     @property
     def follow(self) -> bool:
@@ -166,7 +167,12 @@ class Session:
     def camera(self) -> Camera:
         if self.free_camera is not None:
             return self.free_camera
-        return self.scene.camera_at(self.time) if self.scene is not None else Camera((0, 0, 5), (0, 0, -1))
+        if self.scene is None:
+            return Camera((0, 0, 5), (0, 0, -1))
+        kept = self._on_path
+        if kept is None or kept[0] is not self.scene or kept[1] != self.time:  # it is asked for many times a frame
+            kept = self._on_path = self.scene, self.time, self.scene.camera_at(self.time)
+        return kept[2]
 
     def move(self, camera: Camera) -> None:
         """Take the camera in hand."""

@@ -18,7 +18,7 @@ def closeup(d: Driver) -> None:
     """Ctrl and the wheel zoom around the pointer, and what is clicked then is the pixel that is seen there."""
     d.resize(*SMALL)
     p = d.c.preferences
-    p.fixed_resolution, p.fixed_width, p.fixed_height = True, 320, 240
+    d.fix_resolution(320, 240)
     p.pixel_values = p.legend = False
     d.settle()
     camera, traced, speed = d.c.session.camera, d.c.history.frames, d.c.preferences.speed

@@ -26,7 +26,7 @@ def comparing(d: Driver) -> None:
     """What was kept stays as it was, and is seen in each way beside what is changed since; saved as it is seen."""
     d.resize(*SMALL)
     p = d.c.preferences
-    p.fixed_resolution, p.fixed_width, p.fixed_height = True, 160, 120
+    d.fix_resolution(160, 120)
     d.c.settings.change(method="none")
     d.settle()
     state = d.c.comparing.state

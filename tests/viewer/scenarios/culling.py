@@ -48,7 +48,7 @@ def certifying(d: Driver) -> None:
     a method is chosen with its additions; key C is off."""
     d.settle()
     d.wait(lambda: d.c.loader.ready, "the kernels that make certificates")
-    d.c.preferences.fixed_resolution, d.c.preferences.fixed_width, d.c.preferences.fixed_height = True, 240, 180
+    d.fix_resolution(240, 180)
     for base in ("certified", "none"):
         d.c.settings.change(method=base)
         d.settle()

@@ -21,6 +21,7 @@ def views(d: Driver) -> None:
     """Every view by its key, each the same as what the command line would draw; only what must be verified, or
     counted, is traced for, once, and as little for the views after it."""
     d.c.settings.change(method="paper")
+    d.fix_resolution(320, 220)
     d.settle()
     d.certify()
     d.press(KEY.t)

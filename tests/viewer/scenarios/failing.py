@@ -59,7 +59,7 @@ def failing(d: Driver) -> None:
     expected = picture(frame, View.NORMAL, shading=d.c.preferences.shading)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     most, display.context.info["GL_MAX_TEXTURE_SIZE"] = display.context.info["GL_MAX_TEXTURE_SIZE"], 16
-    d.c.preferences.fixed_resolution, d.c.preferences.fixed_width, d.c.preferences.fixed_height = True, 120, 90
+    d.fix_resolution(120, 90)
     d.settle()
     assert "120 x 90 is too large for this GPU" in faults.notice.text
     display.context.info["GL_MAX_TEXTURE_SIZE"] = most

@@ -132,7 +132,7 @@ def resizing(d: Driver) -> None:
         d.settle()
         if min(d.c.tracing.now.size) > 0:
             assert (d.c.frame.width, d.c.frame.height) == d.c.tracing.now.size
-    d.c.preferences.fixed_resolution, d.c.preferences.fixed_width, d.c.preferences.fixed_height = True, 120, 90
+    d.fix_resolution(120, 90)
     d.settle()
     assert (d.c.frame.width, d.c.frame.height) == (120, 90)
     d.app._room_for_picture = lambda: (0, 0)  # as while minimised; without a window manager nothing minimises

@@ -107,6 +107,7 @@ def asking(d: Driver) -> None:
     def under_way() -> None:
         if runs.current is None:
             runs.start_experiment()
+            d.slow_down(runs.experiment)
         d.wait(lambda: runs.experiment.done_of[0] > 1, "frames of the experiment")
 
     def answer(name: str) -> None:

@@ -81,7 +81,7 @@ def taking(d: Driver) -> None:
 
 def _save_as(d: Driver) -> None:
     """A picture of twice the size, with a caption, through the dialog."""
-    d.c.preferences.fixed_resolution, d.c.preferences.fixed_width, d.c.preferences.fixed_height = True, 96, 64
+    d.fix_resolution(96, 64)
     d.c.settings.set_view(View.OCCLUSION)
     d.settle()
     d.press(int(KEY.s) | CTRL)

@@ -214,4 +214,4 @@ def test_a_replay_that_never_began_has_forgotten_nothing(desk: Desk) -> None:
     assert c.record.learnt_from == numbers, "nothing has been forgotten yet"
     desk.until(lambda: c.runs.current is None)
     desk.rest()
-    assert c.record.learnt_from != numbers and c.travel.replay is not None and c.travel.replay.done
+    assert c.record.learnt_from != numbers and c.travel.replay.whole
