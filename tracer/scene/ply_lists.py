@@ -201,8 +201,8 @@ def _triangles(data: bytes, element: _Element, starts: Places, lengths: Places) 
         columns += [np.full((len(face), 1), parts.shape[1], np.uint8)]
         columns += [_numbers(data, starts[face, n][:, None] + size * parts, one.kind)]
     rows = np.zeros(len(face), np.dtype([(str(n), (one.dtype, one.shape[1:])) for n, one in enumerate(columns)]))
-    for n, one in enumerate(columns):
-        rows[str(n)] = one
+    for n, column in enumerate(columns):
+        rows[str(n)] = column
     return lines, rows.tobytes()
 
 

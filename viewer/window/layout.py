@@ -222,10 +222,9 @@ def _seen(label: str) -> bool:
 def _in_front(label: str) -> bool:
     """Whether a panel is no tab behind another's."""
     window = imgui.internal.find_window_by_name(label)
-    if window is None or window.dock_node is None:
-        return True
-    front = window.dock_node.visible_window
-    return front is None or front.id_ == window.id_
+    node: Any = window.dock_node if window is not None else None
+    front = node.visible_window if node is not None else None
+    return window is None or front is None or front.id_ == window.id_
 
 
 def _node_of(label: str) -> Any:
