@@ -74,7 +74,7 @@ def _menu(ui: Ui, plot: str, number: int | None, name: str, said: list[str], go:
         if imgui.is_mouse_clicked(imgui.MouseButton_.left):
             go(number, False)
         elif imgui.is_mouse_clicked(imgui.MouseButton_.right):
-            ui.plot_frame, ui.plot_named = number, name
+            ui.plot_frame, ui.plot_named = number, name.split(",")[0]
             imgui.open_popup(_MENU)
         elif not imgui.is_popup_open(_MENU) and imgui.begin_tooltip():
             imgui.text_unformatted("\n".join([name, *said, "click: go there; right button: with its modes"]))
