@@ -163,6 +163,9 @@ class Soak:
 
     def _edit(self) -> None:
         rng, scene, editing = self.rng, self.c.session.scene, self.c.editing
+        if scene.primitive_count == 0:
+            editing.show_everything()
+            return
         light = int(rng.integers(max(len(scene.lights), 1)))
         edits: list[Callable[[], None]] = [
             lambda: editing.hide_primitive(int(rng.integers(scene.primitive_count))),
