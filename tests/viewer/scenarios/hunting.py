@@ -45,7 +45,7 @@ def _from_a_plot(d: Driver) -> None:
     _point_at_sample(d, target)
     d.context.mouse_click(1)
     d.frames(3)
-    d.context.item_click(f"//$FOCUSED/Go to frame {target} with its modes")
+    d.context.item_click(f"//$FOCUSED/Go to picture {target} with its modes")
     d.wait(lambda: c.travel.replay is not None and c.runs.current is None, "the frames before it", 60.0)
     d.settle()
     assert c.travel.replay.whole and c.frame.time == c.session.scene.frame_time(1)
@@ -85,7 +85,7 @@ def _from_the_inspector(d: Driver) -> None:
     d.wait(lambda: c.teachers.of(lesson.lit, light, True) is not None, "the pixel that taught", 30.0)
     moment = c.record.moments.get(lesson.lit)
     d.scroll_down("Inspector")
-    d.context.item_click(f"//Inspector/**/frame {lesson.lit}##taught {light} lit")
+    d.context.item_click(f"//Inspector/**/picture {lesson.lit}##taught {light} lit")
     d.settle()
     assert (c.session.time, c.session.camera) == (moment.time, moment.camera)
 
