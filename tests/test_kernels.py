@@ -216,6 +216,20 @@ def test_without_certificates_less_is_compiled_and_the_rest_later(tmp_path: Path
     assert done.returncode == 0, done.stderr
 
 
+def test_a_cache_is_compiled_for_its_processor_and_place(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """numba looks for kernels of these files and for this processor, so that a copy elsewhere is compiled again."""
+    monkeypatch.setattr(compilation, "cache_folder", lambda: tmp_path)
+    (tmp_path / "kernel.nbc").touch()
+    compilation._mark_kept("bvh8-uint32", certificates=True)
+    assert compilation.compiled_before() and compilation.compiled_before(certificates=False)
+    with monkeypatch.context() as elsewhere:
+        elsewhere.setattr(compilation, "__file__", str(tmp_path / "tracer" / "compilation.py"))
+        assert not compilation.compiled_before() and not compilation.compiled_before(certificates=False)
+    codegen = compilation.cpu_target.target_context.codegen()
+    monkeypatch.setattr(type(codegen), "magic_tuple", lambda self: ("a system", "a processor", "+its,+instructions"))
+    assert not compilation.compiled_before()
+
+
 def test_cancelling_ends_the_processes(monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[subprocess.Popen] = []
     make = compile_beside._worker

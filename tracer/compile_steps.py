@@ -223,6 +223,9 @@ class _Nowhere:
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
         self._primitives = primitives
 
+    def certain(self, poses: Poses) -> NDArray[np.bool_]:
+        return np.ones_like(poses.present)
+
     def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
         primitives = self._primitives
         to_object = poses.to_object.reshape(-1, 12).astype(np.float32)

@@ -121,12 +121,13 @@ class FrameInProgress:
         """Where is everything that moves?  Drop what is known of a light that moved, and what depends on an object that
         has come to rest, or rests no longer."""
         state = self._state
-        poses = state.world.pose(self._time)
+        world = state.world
+        poses = world.pose(self._time)
         if any([method.follows_rest() for method in self.methods]):
-            state.world.place(poses, state.rest.follow(poses, state.world.primitives))
+            world.place(poses, state.rest.follow(poses, world.primitives, world.certain(poses)))
         else:
             state.rest.forget()
-            state.world.place(poses)
+            world.place(poses)
         self._use_lamps(self._lamps.at(state.scene.light_positions(self._time)))
         self.resting = state.rest.now
         self.history.follow_lights(self.lights, self._lamps)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import trimesh
 
 import tracer
 from tests.tracing.random_worlds import MATERIALS
@@ -216,6 +217,48 @@ def nasty_walk(seed: int, lights: int = 0, frames: int = 5) -> NastyWalk:
     static.material[:] = rng.choice(len(MATERIALS), len(static), p=(0.8, 0.1, 0.05, 0.05))
     made = replace(made, lights=_lamps(lamps @ turn.T + move, bool(rng.random() < 0.5)))
     return NastyWalk(seed, made, _way(rng, turn, move, frames))
+
+
+def flattened_walk(seed: int, frames: int = 4) -> NastyWalk:
+    """Round and angular bodies that rest over a floor, under a transform that stretches or flattens them, turned."""
+    rng = np.random.default_rng(seed)
+    bodies = (
+        lambda: trimesh.creation.icosphere(int(rng.integers(2, 4))),
+        lambda: trimesh.creation.torus(1.0, 0.35),
+        lambda: trimesh.creation.cylinder(0.7, 1.5),
+        lambda: trimesh.creation.box((1.0, 1.4, 0.8)).subdivide().subdivide(),
+    )
+    corners = np.asarray(bodies[rng.integers(len(bodies))]().triangles)
+    corners = np.concatenate([corners, corners * 0.4 + rng.normal(size=3)])
+    turns = [np.linalg.qr(rng.normal(size=(3, 3)))[0] if rng.random() < 0.7 else np.eye(3) for _ in range(2)]
+    axes = np.ones(3)
+    axes[rng.integers(3)] = 10.0 ** rng.choice([rng.uniform(-6, 6), rng.uniform(-0.05, 0.05)], p=(0.8, 0.2))
+    matrix, scale = np.eye(4), 10.0 ** rng.choice([0.0, 0.0, rng.uniform(-4, 4)])
+    matrix[:3, :3] = turns[0] @ np.diag(axes) @ turns[1] * scale
+    matrix[:3, 3] = rng.normal(size=3) * scale * rng.choice([0.0, 1.0, 30.0])
+    thing = replace(moved("flat", corners, np.eye(4)), chain=("rests", matrix))
+    placed = corners.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+    middle, size = (placed.min(0) + placed.max(0)) / 2, float(np.linalg.norm(np.ptp(placed, axis=0))) / 2
+    low = placed.min(0)[2] - 0.05 * size
+    sides = ((-3, -3), (3, -3), (3, 3), (-3, 3))
+    floor = quad(*((middle[0] + x * size, middle[1] + y * size, low) for x, y in sides))
+    lights = [middle + size * rng.normal(size=3) * rng.choice([1.0, 3.0, 100.0]) for _ in range(3)]
+    made = scene(
+        floor,
+        dynamic=(thing,),
+        lights=lights,
+        materials=MATERIALS,
+        animation=Animation({"rests": _track(np.zeros((6, 3)))}),
+        background=(0.2, 0.3, 0.4),
+        time_range=(0.0, END),
+    )
+    made, way = replace(made, lights=tuple(replace(light, color=(0.5, 0.5, 0.5)) for light in made.lights)), []
+    for number in range(frames):
+        towards = rng.normal(size=3)
+        towards /= np.linalg.norm(towards)
+        place = middle - towards * size * rng.choice([1.2, 2.0, 5.0])
+        way += 2 * [(float(number // 2), Camera(tuple(place.tolist()), tuple(towards.tolist()), (0.1, 0.2, 1.0)))]
+    return NastyWalk(seed, made, tuple(way))
 
 
 def with_lamps(walk: NastyWalk) -> NastyWalk:

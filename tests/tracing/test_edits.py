@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from dataclasses import replace
 from itertools import pairwise
 
@@ -17,7 +18,7 @@ from tracer.culling import modes
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation, Keys, TrackSet
-from tracer.scene.edits import NO_EDITS, Edits, edited, thing_numbers, thing_of, things
+from tracer.scene.edits import NO_EDITS, Edits, Origin, edited, thing_numbers, thing_of, things
 from tracer.scene.model import Camera, Light, Scene, SceneObject, empty_quadrics
 from tracer.settings import Settings
 
@@ -238,3 +239,22 @@ def test_objects_that_are_made_static_are_where_they_were(made: Scene, time: flo
         assert np.abs(np.sort(placed, 0) - np.sort(now.scene.objects[0].triangles.corners[primitive], 0)).max() < 1e-5
     hidden = {t.index for t in moving if not there.present[t.index]}
     assert {made.object_of(n) for n in now.primitives.tolist()} == set(range(len(made.objects))) - hidden
+
+
+def test_the_same_edits_made_again_are_the_same_scene():
+    """What was measured of a scene is of it again once an edit was undone and redone; nothing holds on to scenes."""
+    floor, light = quad((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)), (0.5, 0.5, 2.0)
+    made = scene(floor, lights=(light,))
+    off, moved = (Edits(moved_lights=((0, place),)) for place in ((1.0, 2.0, 3.0), (1.0, 2.0, 4.0)))
+    first = edited(made, off).scene
+    whole, origin = Origin(made), Origin(first)
+    assert whole.is_of(made) and whole.is_of(edited(made, NO_EDITS).scene) and not whole.is_of(first)
+    again = edited(made, off).scene
+    assert again is not first and origin.is_of(again) and origin.is_of(first) and Origin(again).is_of(first)
+    del first, again
+    assert origin.is_of(edited(made, off).scene) and not origin.is_of(edited(made, moved).scene)
+    assert not origin.is_of(made) and not origin.is_of(None)
+    assert not origin.is_of(edited(replace(made), off).scene), "the file was read again"
+    del made
+    gc.collect()
+    assert not whole.is_of(scene(floor, lights=(light,)))

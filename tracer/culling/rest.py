@@ -64,9 +64,10 @@ class Rest:
         self._poses: Poses | None = None
         self._shapes: dict[int, NDArray[np.float32]] = {}
 
-    def follow(self, poses: Poses, primitives: Primitives) -> NDArray[np.bool_]:
-        """(n,) whether each object rests, as it is posed and shaped in a further frame."""
-        rests = poses.present.copy()
+    def follow(self, poses: Poses, primitives: Primitives, certain: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """(n,) whether each object rests, as it is posed and shaped in a further frame; only those that are `certain`
+        (n,) do (`World.certain`)."""
+        rests = poses.present & certain
         rests[0] = False  # what never moves is no object that rests
         before, shapes = self._poses, {i: primitives.corners_of(i).copy() for i in primitives.deformations}
         if before is not None:

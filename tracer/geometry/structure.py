@@ -37,6 +37,9 @@ class Structure(Protocol):
     def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
         """Move all present objects to their poses; `resting` (objects,) tells which count as static geometry."""
 
+    def certain(self, poses: Poses) -> NDArray[np.bool_]:
+        """Which objects (n,) rays meet where `triangles_of` has them, as closely as proofs about shadows need."""
+
     def triangles_of(self, index: int, to_world: Float64) -> WorldTriangles:
         """The triangles of the object of this number where to_world (3, 4) takes it, just as rays meet them."""
 

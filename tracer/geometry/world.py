@@ -123,6 +123,10 @@ class World:
         """The largest coordinate by which the boxes of dynamic objects are padded now; 0 where they are not."""
         return self.structure.extent
 
+    def certain(self, poses: Poses) -> NDArray[np.bool_]:
+        """Which objects (n,) rays meet where they are known to be, so that something can be proved of them."""
+        return self.structure.certain(poses)
+
     def triangles_of(self, index: int) -> WorldTriangles:
         """The triangles of an object that is present, just as rays meet them."""
         return self.structure.triangles_of(index, self._poses.to_world[index])

@@ -98,6 +98,17 @@ class Edits:
         """Where a light is instead; None where it was not moved."""
         return dict(self.moved_lights).get(number)
 
+    def light_number(self, index: int) -> int:
+        """The number in the scene as it was read of the light that is number `index` of those that are on."""
+        number = index
+        for off in sorted(self.lights_off):
+            number += off <= number
+        return number
+
+    def light_index(self, number: int) -> int | None:
+        """The inverse: which of the lights that are on it is; None for one that is off."""
+        return None if number in self.lights_off else number - sum(off < number for off in self.lights_off)
+
     def within(self, scene: Scene) -> Edits:
         """Those of these edits that mean something in a scene: whose lights, things and primitives it has."""
         known = {thing.name: thing for thing in things(scene)}
@@ -236,17 +247,46 @@ def edited(scene: Scene, edits: Edits) -> Edited:
         never = TrackSet(visibility=np.array([[-np.inf, 0.0]]))
         animation = Animation({**animation.tracks, NEVER: never})
     made = replace(scene, objects=tuple(objects), lights=_lights(scene, edits, on), animation=animation)
+    _know_origin(made, scene, edits)
     return Edited(scene, edits, made, np.concatenate([*triangles, *quadrics]), lights)
 
 
 def _lights(scene: Scene, edits: Edits, on: set[int]) -> tuple[Light, ...]:
     """The lights that are on, where they are; one that was moved stays there."""
     places = dict(edits.moved_lights)
-    return tuple(
-        replace(light, position=places[n], track=None) if n in places else light
-        for n, light in enumerate(scene.lights)
-        if n in on
-    )
+    found: list[Light] = []
+    for n in sorted(on):
+        light = scene.lights[n]
+        if n in places:
+            light = replace(light, position=places[n], track=None)
+        found.append(light if n == len(found) else replace(light, number=n))
+    return tuple(found)
+
+
+_origins: dict[int, tuple[weakref.ref[Scene], weakref.ref[Scene], Edits]] = {}  # of edited scenes that are in use
+
+
+def _know_origin(made: Scene, scene: Scene, edits: Edits) -> None:
+    key = id(made)
+    _origins[key] = weakref.ref(made, lambda _: _origins.pop(key, None)), weakref.ref(scene), edits
+
+
+class Origin:
+    """What a scene was made of, without holding on to it: of the scene as it was read, and of edits, none if it is that
+    scene itself.  The same edits, made once more, make a scene of the same origin."""
+
+    def __init__(self, scene: Scene) -> None:
+        made, original, edits = _origins.get(id(scene), (None, None, NO_EDITS))
+        known = made is not None and made() is scene
+        self._original = original if known and original is not None else weakref.ref(scene)
+        self._edits = edits if known else NO_EDITS
+
+    def is_of(self, scene: Scene | None) -> bool:
+        """Whether a scene is made of the same."""
+        if scene is None:
+            return False
+        other, original = Origin(scene), self._original()
+        return original is not None and other._original() is original and other._edits == self._edits
 
 
 # --- objects -----------------------------------------------------------------------------------------

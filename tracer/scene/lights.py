@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import math
 import zlib
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -46,6 +47,8 @@ class Light:
         dome.
     falloff : str
         "none", as in BART, or "inverse square".
+    number : int or None
+        Its number in the scene as it was read, where others of that scene are switched off.
     """
 
     name: str
@@ -57,6 +60,7 @@ class Light:
     edges: tuple[Vector, ...] = ()
     samples: int = 1
     falloff: str = "none"
+    number: int | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         edges = {"rectangle": 2, "dome": 1}.get(self.kind, 0)
@@ -140,3 +144,9 @@ def _as_lamp(light: Light, radius: float | None, samples: int | None) -> Light:
         count = light.samples if kind == light.kind else count
         light = replace(light, kind=kind, radius=radius, samples=count)
     return light if samples is None or light.kind == "point" else replace(light, samples=samples)
+
+
+def number_of(lights: Sequence[Light], light: int) -> int:
+    """The number that people know a scene's light by: that in the scene as it was read, whichever others are off."""
+    number = lights[light].number if light < len(lights) else None
+    return light if number is None else number

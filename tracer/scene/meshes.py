@@ -29,10 +29,11 @@ from tracer.scene.mesh_options import AS_IN_FILE, CREASE, MeshOptions
 from tracer.scene.mesh_reading import only_known_images, quiet
 from tracer.scene.model import Camera, Progress, Scene, SceneError
 from tracer.scene.pieces import Mesh, Piece
+from tracer.scene.ply_lists import with_even_lists
 from tracer.scene.punctual_lights import has_lights, punctual_lights
 from tracer.scene.studio import build_studio, with_floor
 from tracer.scene.textures import open_image
-from tracer.scene.tristrips import one_strip, with_strips
+from tracer.scene.tristrips import with_strips
 from tracer.scene.upright import guess
 
 MESH_EXTENSIONS = (".obj", ".ply", ".stl", ".gltf", ".glb")
@@ -174,7 +175,7 @@ def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str], bytes]:
         raise SceneError(f"{path}: cannot be read: {error.strerror or error}; check it") from None
     try:
         with quiet(), only_known_images():
-            readable = one_strip(data) if kind.lower() == "ply" else data
+            readable = with_even_lists(data) if kind.lower() == "ply" else data
             model = trimesh.load_scene(BytesIO(readable), file_type=kind.lower(), resolver=Beside(), process=False)
             model = with_strips(model)
             _check_nesting(model.graph.transforms.parents, path)

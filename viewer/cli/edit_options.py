@@ -94,6 +94,21 @@ def edited_scene(scene: Scene, options: Namespace) -> Scene:
     return edited(scene, edits).scene
 
 
+def light_index(options: Namespace, option: str, number: int, scene: Scene) -> int:
+    """Which of the lights of the scene, as it is edited, has this number in its file.
+
+    Raises ValueError, in one line, where none has."""
+    from viewer.output.pictures import lights_in_words
+
+    edits = edits_of(options)
+    index = edits.light_index(number)
+    if index is None:
+        raise ValueError(f"{option}{number}: this light is switched off (--without-light {number})")
+    if index >= len(scene.lights):
+        raise ValueError(f"{option}{number}: {lights_in_words(len(scene.lights) + len(edits.lights_off))}")
+    return index
+
+
 def _lights(number: int) -> str:
     return f"the lights 0 to {number - 1}" if number > 1 else "the light 0" if number else "no lights"
 

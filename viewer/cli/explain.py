@@ -17,12 +17,11 @@ from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
 from tracer.told_rays import RayTree
 from viewer.cli.console import working
-from viewer.cli.edit_options import edited_scene
+from viewer.cli.edit_options import edited_scene, light_index
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.render import times_before
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
-from viewer.output.legend import light_in_words
-from viewer.output.pictures import lights_in_words
+from viewer.output.legend import named_light
 from viewer.output.ray_json import ray_data
 from viewer.output.ray_rows import RayRows, Row, totals
 from viewer.state.earlier import Earlier
@@ -42,8 +41,7 @@ def explain(path: Path, options: Namespace) -> None:
     with working() as work:
         read = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
         scene = edited_scene(read, options)
-        if options.light is not None and options.light >= len(scene.lights):
-            raise ValueError(f"--light {options.light}: {lights_in_words(len(scene.lights))}")
+        light = None if options.light is None else light_index(options, "--light ", options.light, scene)
         time = moment(scene, options.frame, options.time)
         prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
         renderer = Renderer(scene, settings, work.progress)
@@ -59,7 +57,7 @@ def explain(path: Path, options: Namespace) -> None:
         print(json.dumps(ray_data(tree, scene), indent=2))
         return
     title = f"{path.name}, {time:.3f} s, pixel {x},{y} of {frame.width} × {frame.height}, method {settings.method}"
-    _print(tree, scene, Filter(Shown(options.only), options.light), title)
+    _print(tree, scene, Filter(Shown(options.only), light), title)
 
 
 def _print(tree: RayTree, scene: Scene, shown: Filter, title: str) -> None:
@@ -68,7 +66,7 @@ def _print(tree: RayTree, scene: Scene, shown: Filter, title: str) -> None:
         console = Console(width=100_000, soft_wrap=True)  # a line for each row, whatever reads it
     said = [printable(title), totals(tree)]
     if shown != Filter():
-        of = "" if shown.light is None else f" of {light_in_words(shown.light, scene.lights[shown.light].name)}"
+        of = "" if shown.light is None else f" of {named_light(scene.lights, shown.light)}"
         said.append(f"shadow rays shown: {shown.shown.value}{of}")
     drawn = Tree(Text("\n".join(said), "bold"), guide_style="dim")
     for row in RayRows(tree, scene, shown).top:

@@ -13,6 +13,7 @@ from rich.table import Table
 
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
+from tracer.scene.lights import number_of
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli.console import Work, print_table, working
@@ -119,7 +120,7 @@ def _table(found: Findings, scene: Scene) -> Table:
             f"{find.pixels:,}",
             finds.where(find, scene),
             printable(finds.primitive_of(find, scene)),
-            f"{find.light}" + (f" (+{find.more_lights})" if find.more_lights else ""),
+            f"{number_of(scene.lights, find.light)}" + (f" (+{find.more_lights})" if find.more_lights else ""),
             finds.verdict_of(find),
             "blocked" if find.lit else "lit",
             finds.taught(find, scene),

@@ -21,7 +21,7 @@ from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
 from viewer.cli.console import Work, print_table, statistics_table, working
-from viewer.cli.edit_options import edited_scene, edits_of
+from viewer.cli.edit_options import edited_scene, edits_of, light_index
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
 from viewer.output import exr, png, recipe, tev
@@ -111,6 +111,10 @@ def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) 
 
     Raises ValueError, in one line, for a moment that the scene does not have."""
     view, light, wipe, shares = options.view
+    if view.of_light:
+        light = light_index(options, f"--view {view.value}:", light, scene)
+    else:
+        light = edits_of(options).light_index(light) or 0
     style = Style(
         shares=shares,
         marked=not options.no_marks,

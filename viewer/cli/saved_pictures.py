@@ -43,7 +43,7 @@ def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
         kept["size"] = size
     if saved.camera is not None:
         kept["camera"] = saved.camera
-    kept["view"] = ChosenView(saved.view, saved.light, saved.wipe, saved.style.shares)
+    kept["view"] = ChosenView(saved.view, saved.edits.light_number(saved.light), saved.wipe, saved.style.shares)
     kept["moment"] = saved.time
     kept |= {"no_studio": not saved.meshes.studio, "up": saved.meshes.up, "crease": saved.meshes.crease}
     kept |= edit_options.defaults(saved.edits)

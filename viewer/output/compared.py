@@ -13,6 +13,7 @@ from viewer.state.comparison import Apart, Way, fitted
 from viewer.state.marks import wipe_column
 from viewer.state.values import AXES, CHANNELS, Values
 from viewer.state.views import LESS, MORE, SAME, WIPE_LINE
+from viewer.state.worst import RING
 from viewer.util.numbers import count, percent
 
 GAP = 4
@@ -52,12 +53,13 @@ def what_of(values: Values) -> str:
     return together.get(values.names, values.names[0])
 
 
-def difference_legend(found: Apart, values: Values, limit: float) -> Legend:
-    """What a signed difference shows, with its range, and how far the pictures are apart."""
+def difference_legend(found: Apart, values: Values, limit: float, ringed: int = 0) -> Legend:
+    """What a signed difference shows, with its range, and how far the pictures are apart; so many are `ringed`."""
     pixels = Entry("pixels that differ", None, (f"{count(found.pixels)} ({percent(found.pixels, found.of)})",))
     if not found.pixels:
         said = f"Nothing differs: {what_of(values)} is the same in both, bit for bit."
         return Legend("B - A", notes=(Note(said, Tone.GOOD),))
+    rings = (Entry("ringed: where they differ most", RING, (count(ringed),)),) if ringed else ()
     if values.classes:
         entries = (Entry("another one in B", MORE), Entry("the same in both", SAME))
         return Legend(f"B - A: {values.names[0]}", (), entries, facts=(pixels,))
@@ -68,4 +70,4 @@ def difference_legend(found: Apart, values: Values, limit: float) -> Legend:
         Entry("least and largest", None, (f"{_signed(found.least)}   {_signed(found.largest)}",)),
         Entry("mean", None, (_signed(found.mean),)),
     )
-    return Legend(f"B - A: {what}", (), (), scale, facts)
+    return Legend(f"B - A: {what}", (), rings, scale, facts)

@@ -9,7 +9,7 @@ from typing import Any
 
 from tracer.scene.model import Camera, Scene
 from viewer.output.comparison_figure import Crop
-from viewer.output.legend import light_in_words
+from viewer.output.legend import named_light
 from viewer.output.recipe import scene_word
 from viewer.state import earlier
 from viewer.state.earlier import Earlier
@@ -126,7 +126,7 @@ def taught(find: Find, scene: Scene) -> str:
 def light_of(find: Find, scene: Scene) -> str:
     """The light whose answer is wrong, and how many others are."""
     more = f" and {find.more_lights} more" if find.more_lights else ""
-    return f"{light_in_words(find.light, scene.lights[find.light].name)}{more}"
+    return f"{named_light(scene.lights, find.light)}{more}"
 
 
 def primitive_of(find: Find, scene: Scene) -> str:

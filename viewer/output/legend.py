@@ -6,7 +6,7 @@ parts lie.  Nothing here needs GL.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -14,6 +14,7 @@ import numpy as np
 
 from tracer.frame import Frame
 from tracer.method import Method
+from tracer.scene.lights import Light, number_of
 from viewer.output.legend_counts import (
     LegendRow,
     certificate_legend,
@@ -97,8 +98,8 @@ class Legend:
 
 @dataclass(frozen=True)
 class Chosen:
-    """What else is chosen of a view: its light, with a name, whether wrong pixels are marked, shares of rays, the range
-    of its numbers, the tone of its picture, and whether what this clips is marked."""
+    """What else is chosen of a view: its light, with its name and number, whether wrong pixels are marked,
+    shares of rays, the range of its numbers, the tone of its picture, and whether what this clips is marked."""
 
     light: int = 0
     light_name: str = ""
@@ -107,6 +108,11 @@ class Chosen:
     span: tuple[float, float] | None = None
     tone: DisplayTone = NEUTRAL
     clipping: bool = False
+    light_number: int | None = None
+
+    @property
+    def number(self) -> int:
+        return self.light if self.light_number is None else self.light_number
 
 
 def legend_of(frame: Frame, view: View, chosen: Chosen = Chosen()) -> Legend | None:
@@ -132,9 +138,14 @@ def legend_of(frame: Frame, view: View, chosen: Chosen = Chosen()) -> Legend | N
 
 
 def light_in_words(number: int, name: str) -> str:
-    """A light by the number that keys and views go by, and its name where that says more: light 2 (lamp)."""
+    """A light by its number, and its name where that says more: light 2 (lamp)."""
     said = f"light {number}"
     return said if name in ("", said) else f"{said} ({name})"
+
+
+def named_light(lights: Sequence[Light], light: int) -> str:
+    """The same of one of a scene's lights; its number is that in the scene as it was read, whichever are off now."""
+    return light_in_words(number_of(lights, light), lights[light].name if light < len(lights) else "")
 
 
 def _classes(rows: list[LegendRow], units: str) -> tuple[Entry, ...]:
@@ -153,13 +164,13 @@ def _units(frame: Frame) -> str:
     return "cells" if has_modes_of_cells(frame) else "primitives"
 
 
-def _by_modes(frame: Frame, light: int | None = None) -> tuple[Entry, ...]:
+def _by_modes(frame: Frame, light: int | None = None, number: int | None = None) -> tuple[Entry, ...]:
     """What the paper's method would cull of this frame's shadow rays: of one light, and of all."""
     said, columns = frame.statistics.by_modes, {"all lights": frame.statistics.by_modes_in_all}
     if not said:
         return ()
     if light is not None and light < len(said) > 1:
-        columns = {f"light {light}": said[light]} | columns
+        columns = {f"light {number}": said[light]} | columns
     culls = Method.parse(frame.settings.method).uses_modes
     parts = columns.values()
     return (
@@ -186,9 +197,13 @@ def _occlusion(frame: Frame, view: View, chosen: Chosen) -> Legend:
 
 
 def _of_light(frame: Frame, view: View, chosen: Chosen) -> Legend:
-    title = f"{view.label}, {light_in_words(chosen.light, chosen.light_name)}"
+    title = f"{view.label}, {light_in_words(chosen.number, chosen.light_name)}"
     if view is View.SHADOW:
-        rows, units, facts = shadow_legend(frame, chosen.light), _units(frame), _by_modes(frame, chosen.light)
+        rows, units, facts = (
+            shadow_legend(frame, chosen.light),
+            _units(frame),
+            _by_modes(frame, chosen.light, chosen.number),
+        )
     else:
         rows, units, facts = certificate_legend(frame, chosen.light), "cells", ()
     if not rows:
@@ -250,7 +265,7 @@ def _work(frame: Frame, view: View, chosen: Chosen) -> Legend:
 
 
 def _penumbra(frame: Frame, view: View, chosen: Chosen) -> Legend:
-    title = f"{view.label}, {light_in_words(chosen.light, chosen.light_name)}"
+    title = f"{view.label}, {light_in_words(chosen.number, chosen.light_name)}"
     found = penumbra_legend(frame, chosen.light)
     entries = tuple(
         Entry(_ARRIVALS[one], ARRIVAL_COLORS[one], (percent(pixels, found.seen),), f"{ARRIVAL_MEANING[one]}. "

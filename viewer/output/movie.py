@@ -26,9 +26,9 @@ def check_video() -> None:
         raise ValueError("PyAV was built without x264; give a folder for the pictures alone")
 
 
-def frame_name(number: int, count: int) -> str:
-    """The name of one of so many pictures, from 1 on, as long for all."""
-    return f"{number:0{max(4, len(str(count)))}d}.png"
+def frame_name(number: int, last: int) -> str:
+    """The name of a picture by its number; as long for all up to the last."""
+    return f"{number:0{max(4, len(str(last)))}d}.png"
 
 
 class Video:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tracer.culling.verdicts import Verdict
 from tracer.scene.model import Scene
 from tracer.told_rays import AWAY, VERDICTS, PathRay, RayTree, ShadowRays
-from viewer.output.legend import light_in_words
+from viewer.output.legend import named_light
 from viewer.state.picking import primitive_in_words
 from viewer.state.verdicts import MEANING, SAID, WHY_TRACED, Filter, color_of, color_of_all
 from viewer.state.views import Color
@@ -224,7 +224,7 @@ class RayRows:
         return primitive_in_words(self._scene, primitive)
 
     def _name_of_light(self, light: int) -> str:
-        return light_in_words(light, self._scene.lights[light].name)
+        return named_light(self._scene.lights, light)
 
     def _name_of_sample(self, s: ShadowRays, place: int, one: bool, light: str) -> str:
         whole = s.of_light(int(s.light[place]))

@@ -207,7 +207,7 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
     words = ["render", scene_word(recipe.scene), "-o", f"./{output}" if output.startswith("-") else output]
     words += ["--size", f"{settings.width}x{settings.height}", *_moment(recipe.time, scene)]
     words += ["--method", settings.method]
-    light = f":{recipe.light}" if view.of_light else ""
+    light = f":{recipe.edits.light_number(recipe.light)}" if view.of_light else ""
     wipe = f":{_wipe(recipe.wipe, settings.width)}" if view is View.WIPE else ""
     shares = ":share" if view.needs_work and style.shares else ""
     if view is not View.COLOR:

@@ -17,16 +17,16 @@ _AT_ONCE = 1 << 14
 
 
 def write_rows(table: Table, rows: NDArray[np.int32], path: Path) -> None:
-    """Write these rows of a table, in their order, with its columns' names; what is not known is left empty.
+    """Write these rows of a table, in their order, with its columns' titles; what is not known is left empty.
 
     Raises OSError in one line."""
-    columns = [(column.name, table.columns.get(column.name)) for column in COLUMNS[table.level]]
-    known = [(name, values) for name, values in columns if values is not None]
+    columns = [(column.title, table.columns.get(column.name)) for column in COLUMNS[table.level]]
+    known = [(title, values) for title, values in columns if values is not None]
 
     def write(file: BinaryIO) -> None:
         text = io.StringIO(newline="")
         writer = csv.writer(text, lineterminator="\n")
-        writer.writerow([name for name, _ in known])
+        writer.writerow([title for title, _ in known])
         for start in range(0, len(rows), _AT_ONCE):
             some = rows[start : start + _AT_ONCE]
             writer.writerows(zip(*(_cells(values, some) for _, values in known), strict=True))

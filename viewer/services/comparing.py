@@ -15,6 +15,7 @@ from tracer.method import Method, bases
 from viewer.services.settings_controller import SettingsController
 from viewer.services.tracing import Tracing
 from viewer.state.comparison import (
+    ENDLESS,
     Apart,
     Side,
     Source,
@@ -30,15 +31,23 @@ from viewer.state.readings import can_draw, span_of
 from viewer.state.session import Session
 from viewer.state.values import Values, values_of
 from viewer.state.views import View
+from viewer.state.worst import Spot, worst_spots
 
 
 @dataclass(frozen=True)
 class Difference:
-    """B - A at each pixel of B, (h, w) float32, of such values, and how far they are apart in all."""
+    """B - A at each pixel of B, (h, w) float32, of such values, how far they are apart in all, and where most."""
 
     pixels: NDArray[np.float32]
     values: Values
     apart: Apart
+    worst: tuple[Spot, ...]
+
+    def differing(self) -> Values:
+        """The differences as values, of the pixels that have one."""
+        size = np.abs(self.pixels)
+        known = (size > 0.0) & (size < ENDLESS)
+        return Values(self.pixels[..., None], ("B - A",), known, self.values.classes)
 
 
 class Comparing:
@@ -70,13 +79,14 @@ class Comparing:
             return self._side(second, view if can_draw(second, view, session.light) else View.COLOR)
         kept = state.kept
         if kept is not None and state.same_view and can_draw(kept.frame, session.view, session.light):
-            return replace(kept, view=self._tracing.drawn_view, light=session.light)
+            view, light = self._tracing.drawn_view, session.light
+            return replace(kept, view=view, light=light, light_number=session.light_number)
         return kept
 
     def _side(self, frame: Frame, view: View) -> Side:
         session = self._session
         name = session.scene.path.stem if session.scene is not None else ""
-        return Side(frame, view, session.light, name, session.frame_at(frame.time))
+        return Side(frame, view, session.light, name, session.frame_at(frame.time), session.light_number)
 
     @property
     def sides(self) -> tuple[Side, Side] | None:
@@ -115,7 +125,7 @@ class Comparing:
         if can_draw(a.frame, b.view, b.light) and can_draw(b.frame, b.view, b.light):
             values = values_of(b.frame, b.view, b.light)
             pixels = signed_difference(values_of(a.frame, b.view, b.light), values)
-            found = Difference(pixels, values, apart(pixels))
+            found = Difference(pixels, values, apart(pixels), worst_spots(pixels, values.classes))
         self._difference = a, b, found
         return found
 

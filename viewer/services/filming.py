@@ -48,11 +48,16 @@ def check_folder(folder: Path) -> None:
     """Make the folder; raise OSError, in one line, where that cannot be, or where it holds another film's pictures."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        taken = next((path.name for path in folder.iterdir() if _NUMBERED.fullmatch(path.name)), None)
+        taken = sorted((path.name for path in folder.iterdir() if _NUMBERED.fullmatch(path.name)), key=_by_number)
     except OSError as error:
         raise OSError(f"{folder}: no folder for the pictures: {error.strerror or error}") from None
-    if taken is not None:
-        raise OSError(f"{folder}: there are numbered pictures in it already, as {taken}; give another folder")
+    if taken:
+        which = taken[0] if len(taken) == 1 else f"{taken[0]} to {taken[-1]}"
+        raise OSError(f"{folder}: there are numbered pictures in it already, {which}; give another folder")
+
+
+def _by_number(name: str) -> int:
+    return int(Path(name).stem)
 
 
 def shoot(
@@ -65,7 +70,7 @@ def shoot(
 
     `on_frame` gets a frame's number, from 0, and the frame.  Raises Cancelled, with the pictures so far written and the
     video as long as these, and OSError, in one line, as when the disk is full."""
-    scene = renderer.scene
+    scene, numbers = renderer.scene, _numbers(script.takes)
     with ExitStack() as stack:
         video: Video | None = None
         for number, take in enumerate(script.takes):
@@ -75,12 +80,18 @@ def shoot(
             if video is None and script.video is not None:
                 height, width = pixels.shape[:2]  # with a caption, these are more than the frame's
                 video = stack.enter_context(Video(script.video, (width, height), script.fps))
-            path = script.folder / frame_name(number + 1, len(script.takes))
+            path = script.folder / frame_name(numbers[number], max(numbers))
             png.write(path, pixels, stills.text(pixels, frame, scene, recipe))
             if video is not None:
                 video.add(pixels)
             on_frame(number, frame)
             yield path
+
+
+def _numbers(takes: Sequence[Take]) -> list[int]:
+    """What numbers the pictures have: those of their frames, or else they are counted from 0."""
+    of_path = [take.number for take in takes if take.number is not None]
+    return of_path if len(of_path) == len(takes) else list(range(len(takes)))
 
 
 def _recipe(recipe: Recipe, take: Take) -> Recipe:

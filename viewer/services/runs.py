@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 import threading
 import time
-import weakref
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -20,6 +19,7 @@ from typing import Generic, TypeVar, cast
 from tracer import experiment, zoom
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
+from tracer.scene.edits import Origin
 from tracer.scene.model import Cancelled, Scene
 from viewer.output import exports
 from viewer.output.film import Film
@@ -54,7 +54,7 @@ class Run(ABC, Generic[Results]):
     def __init__(self, scene: Scene, frames: int, wake: Callable[[], None] = lambda: None) -> None:
         self.scene_path = scene.path
         self._scene: Scene | None = scene
-        self._identity = weakref.ref(scene)
+        self._origin = Origin(scene)
         self.frames = frames
         self.traced = 0
         self.label = self.label_shown = "starting"
@@ -92,8 +92,8 @@ class Run(ABC, Generic[Results]):
         return "does not verify" if view.needs_verify and not self.verifies else ""
 
     def is_of(self, scene: Scene | None) -> bool:
-        """Whether it is (or was) made in this very scene, as it was loaded then."""
-        return scene is not None and self._identity() is scene
+        """Whether it is (or was) made in this scene, as it was read and edited then."""
+        return self._origin.is_of(scene)
 
     def made_in(self, scene: Scene | None) -> str:
         """In which scene it was made, in words, where that is not the one that is open."""

@@ -135,6 +135,7 @@ class SceneTable:
             Level.PRIMITIVES: Order(column="pixels", descending=True),
         }
         self.all_lights = self.visible = self.held = self._seen = False
+        self._saves = False  # whether the table is to be saved as soon as it is that of the edited scene
         self.chosen = 0  # the serial of the selection that was made here last, or has been shown
         self._shown = _Shown()
         self._job: Job[_Made] | None = None
@@ -226,10 +227,29 @@ class SceneTable:
         return int(found[0]) if len(found) else None
 
     def save(self) -> None:
-        """Write the rows that are seen as CSV into the folder of the pictures."""
+        """Write the rows that are seen as CSV into the folder of the pictures, once they are those of the scene as it
+        is edited."""
+        if self.listing is None or self._session.scene is None:
+            self._notices.say("there is no table to save yet: open the panel Find")
+        elif self._is_stale:
+            self._saves = True
+            self._notices.say("the table is saved when the picture shows the scene as it is edited")
+        else:
+            self._write()
+
+    @property
+    def _is_stale(self) -> bool:
+        """Whether rows are of the scene before it was edited, or not in the order that is asked for."""
+        shown, listing = self._shown, self.listing
+        if shown.source is None or listing is None or self._session.edited is not shown.source.now:
+            return True
+        edits_wait = self._session.edits != shown.source.now.edits
+        return edits_wait or listing.order != self.order or self.level not in shown.current
+
+    def _write(self) -> None:
+        self._saves = False
         listing, scene = self.listing, self._session.scene
         if listing is None or scene is None:
-            self._notices.say("there is no table to save yet: open the panel Find")
             return
         name = f"{scene.path.stem}-{listing.table.level.value.lower()}"
 
@@ -251,6 +271,8 @@ class SceneTable:
             self._take(self._job)
             self._job = None
         now = self._session.edited
+        if self._saves and (not self.visible or not self._is_stale):
+            self._write()
         if self._shown.source is not None and (now is None or self._shown.source.now.original is not now.original):
             self._shown = _Shown()
         if not self.visible or now is None or self._job is not None:

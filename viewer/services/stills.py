@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from tracer.one_light import with_light
 from tracer.renderer import Renderer
+from tracer.scene.lights import number_of
 from tracer.scene.model import Scene
 from viewer.output import capture, fingerprint
 from viewer.output.annotations import annotated
@@ -33,7 +34,8 @@ from viewer.util.version import program_version
 def check_light(recipe: Recipe, scene: Scene) -> None:
     """Raise ValueError, in one line, where the view speaks of a light that the scene does not have."""
     if recipe.view.of_light and recipe.light >= len(scene.lights):
-        raise ValueError(f"--view {recipe.view.value}:{recipe.light}: {lights_in_words(len(scene.lights))}")
+        number, lights = recipe.edits.light_number(recipe.light), len(scene.lights) + len(recipe.edits.lights_off)
+        raise ValueError(f"--view {recipe.view.value}:{number}: {lights_in_words(lights)}")
 
 
 def times_before(scene: Scene, time: float, count: int) -> list[float]:
@@ -107,7 +109,8 @@ def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recip
     style, view, light, missing = recipe.style, recipe.view, recipe.light, ""
     if style.legend is not None:
         name = scene.lights[light].name if view.of_light else ""
-        chosen = Chosen(light, name, style.marked, style.shares, style.span, style.tone, style.clipping)
+        looks = style.marked, style.shares, style.span, style.tone, style.clipping
+        chosen = Chosen(light, name, *looks, number_of(scene.lights, light))
         legend = legend_of(frame, view, chosen)
         described = with_legend(pixels, legend, style.legend) if legend is not None else None
         if described is None:

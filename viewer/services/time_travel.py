@@ -70,12 +70,12 @@ class TimeTravel:
         if scene is None or self._runs.refuses():
             return
         if moment is None:
-            self._notices.say(f"frame {number} is no longer kept: only the last 10,000 are")
+            self._notices.say(f"picture {number} is no longer kept: only the last 10,000 are")
             return
-        goal = Goal(self._snapshot(moment), f"frame {number}", moment.size, point)
+        goal = Goal(self._snapshot(moment), f"picture {number}", moment.size, point)
         if not modes:
             self._arrive(goal)
-            self._notices.say(f"frame {number} again{self._may_differ(moment)}")
+            self._notices.say(f"{self.named(moment)}, again{self._may_differ(moment)}")
             return
         before = self._before(moment)
         if before is not None:
@@ -102,7 +102,21 @@ class TimeTravel:
             self.replay_to(goal, pasts(before, settings))
         else:
             self._arrive(goal)
-            self._notices.say(f"frame {number} of the path, by {run.shown}")
+            self._notices.say(self.named_of_experiment(run, number))
+
+    def named(self, moment: Moment) -> str:
+        """A picture by its number in the plots, and by the frame of the scene's path, whose number is another."""
+        return f"picture {moment.number}{self._of_path(moment.time)}"
+
+    def named_of_experiment(self, run: Experiment, number: int) -> str:
+        """A frame of an experiment, and of the scene's path where the experiment has others."""
+        scene = self._session.scene
+        if scene is None or not run.is_of(scene) or len(run.times) == scene.frames:
+            return f"frame {number} of the path, by {run.shown}"
+        return f"frame {number} of the experiment, by {run.shown}{self._of_path(run.times[number])}"
+
+    def _of_path(self, time: float) -> str:
+        return f", frame {self._session.frame_at(time)} of the path" if self._session.animated else ""
 
     def _snapshot(self, moment: Moment) -> Snapshot:
         return replace(
@@ -127,10 +141,10 @@ class TimeTravel:
         earlier = [n for n in numbers or [] if n < moment.number]
         kept = [self._record.moments.get(n) for n in earlier]
         if numbers is None or (numbers and moment.number < numbers[0]) or not all(kept):
-            self._notices.say(f"the modes of frame {moment.number} were forgotten since, and cannot be learnt again")
+            self._notices.say(f"the modes of picture {moment.number} were forgotten since, and cannot be learnt again")
             return None
         if len(kept) > MOST_REPLAYED:
-            self._notices.say(f"it took {len(kept):,} frames, and {MOST_REPLAYED:,} at most are traced again")
+            self._notices.say(f"it took {len(kept):,} pictures, and {MOST_REPLAYED:,} at most are traced again")
             return None
         return [Past(one.time, one.camera, one.settings) for one in kept if one is not None]
 

@@ -406,7 +406,7 @@ class Tracing:
     def title(self) -> str:
         """The view, and the light where it shows one; before it what a run that is under way is at."""
         view, run = self.drawn_view, self.now.run
-        title = f"{view.label}, light {self._session.light}" if view.of_light else view.label
+        title = f"{view.label}, light {self._session.light_number}" if view.of_light else view.label
         wanted = self._session.view
         if run is not None:
             lacks = wanted is not view and run.lacks(wanted)

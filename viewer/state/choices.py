@@ -47,7 +47,8 @@ _SETTINGS = {
 
 @dataclass(frozen=True)
 class Choices:
-    """`settings` holds fields of `tracer.Settings` as a snapshot does, `looks` those of LOOKS; None says nothing."""
+    """`settings` holds fields of `tracer.Settings` as a snapshot does, `looks` those of LOOKS; None says nothing.
+    `light_number` is what people call the light."""
 
     settings: dict[str, Any]
     view: View = View.COLOR
@@ -59,6 +60,7 @@ class Choices:
     spans: dict[View, tuple[float, float]] | None = None
     zoom: Zoom | None = None
     comparison: Chosen | None = None
+    light_number: int | None = field(default=None, compare=False)
 
     @staticmethod
     def of(session: Session, preferences: Preferences) -> Choices:
@@ -67,7 +69,7 @@ class Choices:
         s = session
         return Choices(
             settings_to_json(s.settings), s.view, s.light, s.wipe, looks,
-            s.tone, s.clipping, dict(s.spans), s.zoom, s.comparison.chosen,
+            s.tone, s.clipping, dict(s.spans), s.zoom, s.comparison.chosen, s.light_number,
         )  # fmt: skip
 
     def put_into(self, session: Session, preferences: Preferences) -> None:
@@ -126,7 +128,7 @@ def differences(before: Choices, after: Choices) -> dict[str, str]:
     if before.view is not after.view:
         changed["view"] = f"view {after.view.label}"
     if before.light != after.light:
-        changed["light"] = f"light {after.light}"
+        changed["light"] = f"light {after.light if after.light_number is None else after.light_number}"
     if before.wipe != after.wipe:
         changed["wipe"] = "line of the wipe"
     for name, called in LOOKS.items():

@@ -17,6 +17,8 @@ from viewer.state.views import View
 
 RATES = (0.25, 3.0)
 """Times a second, least and most, that pictures blink: no more, as faster flashes are dangerous to some people."""
+ENDLESS = 1e29
+"""From here on a difference is one without end: one of the two pictures hits nothing there."""
 HIDDEN_SHARE = 0.5
 """Per cent of the pixels that differ, at most, which lie beyond the range of a difference that is fitted."""
 
@@ -65,13 +67,21 @@ class Source(StrEnum):
 
 @dataclass(frozen=True)
 class Side:
-    """One of the two pictures: a frame in a view, of the scene of this name, at the frame number of its animation."""
+    """One of the two pictures: a frame in a view, of the scene of this name, at the frame number of its animation;
+    `light_number` is what people call its light."""
 
     frame: Frame
     view: View
     light: int
     scene: str
     number: int
+    light_number: int | None = None
+
+    @property
+    def of_light(self) -> str:
+        """Which light a view of one light is of, in words after a comma."""
+        number = self.light if self.light_number is None else self.light_number
+        return f", light {number}" if self.view.of_light else ""
 
     @property
     def method(self) -> str:
@@ -83,9 +93,8 @@ def named(side: Side, other: Side | None) -> str:
     parts = [side.method]
     if other is None:
         return parts[0]
-    light = f", light {side.light}" if side.view.of_light else ""
     if (side.view, side.light if side.view.of_light else 0) != (other.view, other.light if other.view.of_light else 0):
-        parts.append(side.view.label.lower() + light)
+        parts.append(side.view.label.lower() + side.of_light)
     if side.scene != other.scene:
         parts.append(side.scene)
     if side.frame.time != other.frame.time or side.scene != other.scene:
@@ -134,7 +143,7 @@ def difference_words(difference: NDArray[np.float32], values: Values, x: int, y:
     apart = float(difference[y, x])
     if values.classes:
         return ("other",) if apart else ("same",)
-    if abs(apart) > 1e29:
+    if abs(apart) > ENDLESS:
         return ("miss", "in A" if apart < 0.0 else "in B")
     return (f"{apart:+.3g}" if apart else "0",)
 
@@ -154,7 +163,7 @@ class Apart:
 
 def apart(difference: NDArray[np.float32]) -> Apart:
     """Sum a difference up.  Where one of the two pictures has no depth, it counts as differing, and no further."""
-    finite = np.where(np.abs(difference) < 1e29, difference, np.float32(0.0))
+    finite = np.where(np.abs(difference) < ENDLESS, difference, np.float32(0.0))
     changed = finite[finite != 0.0]
     limit = float(np.percentile(np.abs(changed), 100.0 - HIDDEN_SHARE)) if len(changed) else 1.0
     return Apart(
@@ -185,7 +194,7 @@ class Chosen:
         if (self.on, self.way) != (after.on, after.way):
             changed["way"] = f"comparison: {after.way.label.lower()}" if after.on else "comparison off"
         if self.source is not after.source:
-            changed["source"] = "A by a second method" if after.source is Source.METHOD else "A as it was kept"
+            changed["source"] = "A by another method" if after.source is Source.METHOD else "A as it was kept"
         if self.second and self.second != after.second:
             changed["second"] = f"second method {after.second}"
         if self.same_view != after.same_view:

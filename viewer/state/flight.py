@@ -27,11 +27,13 @@ class Stop:
 @dataclass(frozen=True)
 class Take:
     """A frame of a film: its camera is the scene's own where that is None; `warmup` is how many frames of the scene's
-    path come before it in the film, None where those before it are others."""
+    path come before it in the film, None where those before it are others, and `number` its number on that path, None
+    where it is no frame of it."""
 
     time: float
     camera: Camera | None
     warmup: int | None = None
+    number: int | None = None
 
 
 def along_path(
@@ -44,7 +46,7 @@ def along_path(
         only = "is 0" if scene.frames == 1 else f"are 0 to {scene.frames - 1}"
         raise ValueError(f"frames {first} to {last}: the scene's frame numbers {only}")
     if frames is None or frames == last - first + 1:
-        return [Take(scene.frame_time(n), camera, n - first) for n in range(first, last + 1)]
+        return [Take(scene.frame_time(n), camera, n - first, n) for n in range(first, last + 1)]
     _check(frames)
     start, end = scene.frame_time(first), scene.frame_time(last)
     return [Take(float(time), camera) for time in np.linspace(start, end, frames)]

@@ -29,9 +29,22 @@ SERIES = (
     "samples_reached",
     "penumbra",
     "pixels",
+    "all_pixels",
+    "steps_of_all",
+    "tests_of_all",
+    "certificate_steps",
+    "certificate_tests",
     "traced_ms",
     "drawn_ms",
 )
+
+_OF_ALL = {
+    "steps": "steps_of_all",
+    "tests": "tests_of_all",
+    "shadow_steps": "certificate_steps",
+    "shadow_tests": "certificate_tests",
+}
+"""What is part of a series, and done for all pixels, however many of them are shaded: primary rays and proofs."""
 
 
 def fully_traced(shadow: ShadowCounts) -> int:
@@ -52,7 +65,7 @@ class History:
         more of its pixels shaded; `drawn_seconds` is what the window needed for its last own frame.
 
         Steps and tests are all that were made for the frame, those of its certificates too.  Samples of lights are
-        those of primary hits, 0 where they were not recorded."""
+        those of primary hits, 0 where they were not recorded.  `pixels` are those that are shaded, of `all_pixels`."""
         if again and self.frames > 0:
             self.frames -= 1
         s = frame.statistics
@@ -72,6 +85,11 @@ class History:
             samples_reached=samples.reached,
             penumbra=samples.penumbra,
             pixels=frame.width * frame.height * s.part,
+            all_pixels=frame.width * frame.height,
+            steps_of_all=s.primary.traversal_steps + s.certificate_steps,
+            tests_of_all=s.primary.intersection_tests + s.certificate_tests,
+            certificate_steps=s.certificate_steps,
+            certificate_tests=s.certificate_tests,
             traced_ms=1e3 * s.seconds,
             drawn_ms=1e3 * drawn_seconds,
         )
@@ -96,6 +114,22 @@ class History:
         """The kept values of a series, oldest first, contiguous."""
         end = self.capacity + self.frames % self.capacity if self.frames > self.capacity else self.frames
         return self._values[name][end - len(self) : end]
+
+    def per_pixel(self, name: str) -> NDArray[np.float64]:
+        """A series for each pixel, so that frames compare of which only a part is shaded yet: what is done for all
+        pixels is shared by all, the rest by those that are shaded."""
+        of_all = self.values(_OF_ALL[name]) if name in _OF_ALL else 0.0
+        shaded, every = (np.maximum(self.values(pixels), 1.0) for pixels in ("pixels", "all_pixels"))
+        return (self.values(name) - of_all) / shaded + of_all / every
+
+    def shaded(self) -> NDArray[np.float64]:
+        """The part of each frame's pixels that is shaded, 0 to 1."""
+        return self.values("pixels") / np.maximum(self.values("all_pixels"), 1.0)
+
+    def shaded_of(self, number: int) -> float:
+        """That part of one frame by its number; 1 for one that is no longer kept."""
+        place = number - self.first
+        return float(self.shaded()[place]) if 0 <= place < len(self) else 1.0
 
     def _put(self, **numbers: float) -> None:
         at = self.frames % self.capacity

@@ -14,6 +14,7 @@ from typing import Any
 
 from tracer.renderer import Settings
 from tracer.scene.edits import NO_EDITS, Edited, Edits, edited
+from tracer.scene.lights import number_of
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from viewer.state import edits as scene_edits
@@ -222,6 +223,11 @@ class Session:
     def frame(self) -> int:
         """The number of the frame whose time is nearest."""
         return self.frame_at(self.time)
+
+    @property
+    def light_number(self) -> int:
+        """The number of the chosen light in the scene as it was read."""
+        return number_of(self.scene.lights, self.light) if self.scene is not None else self.light
 
     def frame_at(self, time: float) -> int:
         """The number of the frame whose time is nearest to some time in seconds."""

@@ -22,6 +22,9 @@ MOST_EXPOSURE = 16.0
 WHITES = (0.01, 1000.0)
 """The least and the highest white point."""
 
+MID_GREY = 0.18
+"""The grey that photographers expose for."""
+
 # Hable's filmic curve, "Uncharted 2: HDR Lighting" (GDC 2010): shoulder, linear strength and angle, toe strength,
 # numerator and denominator.
 HABLE = (0.15, 0.50, 0.10, 0.20, 0.02, 0.30)
@@ -70,6 +73,11 @@ class Tone:
     @property
     def gain(self) -> float:
         return float(2.0**self.exposure)
+
+    @property
+    def mid_grey(self) -> float:
+        """What becomes of MID_GREY, of 1."""
+        return float(toned(np.full((1, 1, 3), MID_GREY, np.float32), self)[0, 0, 0])
 
     def in_words(self) -> str:
         """What differs from neutral, briefly; empty where nothing does."""

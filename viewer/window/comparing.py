@@ -15,10 +15,12 @@ from viewer.output.annotations import annotated
 from viewer.output.compared import composed as composed_of
 from viewer.output.compared import difference_legend
 from viewer.output.legend import Legend
+from viewer.services.comparing import Difference
 from viewer.state.comparison import Side, Way, difference_words
 from viewer.state.marks import wipe_column
 from viewer.state.picking import pixel_at
 from viewer.state.values import words_at
+from viewer.state.worst import Spot, with_rings
 from viewer.window.compared import SignedDifference
 from viewer.window.display import Display, Look
 from viewer.window.ui import Ui
@@ -27,6 +29,7 @@ PICTURE, OF_A = "picture", "A"
 """What the magnifier calls what fills the picture, and A beside it."""
 
 Words = tuple[Frame, Callable[[int, int], tuple[str, ...]]]
+Seen = tuple[Side, Side, Way]
 
 
 def follow_key(ui: Ui) -> None:
@@ -59,7 +62,7 @@ def _look_of_a(ui: Ui, look: Look, a: Side, b: Side) -> Look:
     return replace(look, view=a.view, light=a.light, selected=-1, line=False, span=span)
 
 
-def shown(ui: Ui) -> tuple[Side, Side, Way] | None:
+def shown(ui: Ui) -> Seen | None:
     """A, B and the way in which both are seen now; None where only B is."""
     c, compared = ui.controller, ui.compared
     sides = c.comparing.sides
@@ -72,6 +75,20 @@ def shown(ui: Ui) -> tuple[Side, Side, Way] | None:
     if compared.a_texture is None:
         return None
     return *sides, Way.FLIP if way is Way.DIFFERENCE else way
+
+
+def difference(ui: Ui) -> Difference | None:
+    """The signed difference, while that is seen."""
+    seen = shown(ui)
+    if seen is None or seen[2] is not Way.DIFFERENCE or shows_a(ui):
+        return None
+    return ui.controller.comparing.difference(seen[0], seen[1])
+
+
+def marked(ui: Ui) -> tuple[Spot, ...]:
+    """The pixels of a signed difference that have rings."""
+    found = difference(ui) if ui.controller.preferences.mark_wrong else None
+    return () if found is None else found.worst
 
 
 def shows_a(ui: Ui) -> bool:
@@ -112,12 +129,10 @@ def magnify(ui: Ui, look: Look) -> None:
 
 def legend(ui: Ui) -> Legend | None:
     """Of the signed difference, while that is seen."""
-    seen = shown(ui)
-    if seen is None or seen[2] is not Way.DIFFERENCE or shows_a(ui):
+    found, comparing = difference(ui), ui.controller.comparing
+    if found is None:
         return None
-    comparing = ui.controller.comparing
-    found = comparing.difference(seen[0], seen[1])
-    return None if found is None else difference_legend(found.apart, found.values, comparing.limit(found))
+    return difference_legend(found.apart, found.values, comparing.limit(found), len(marked(ui)))
 
 
 def words(ui: Ui, side: Side | None = None) -> Words | None:
@@ -156,7 +171,7 @@ def composed(ui: Ui, b: NDArray[np.uint8]) -> NDArray[np.uint8]:
     if seen[2] is Way.SIDE:
         b = annotated(b, annotations)
     if seen[2] is Way.DIFFERENCE and not alone:
-        both = compared.difference.read()
+        both = with_rings(compared.difference.read(), marked(ui))
     else:
         both = composed_of(compared.read_a(), b, seen[2], ui.controller.session.wipe, alone)
     return both if seen[2] is Way.SIDE else annotated(both, annotations)

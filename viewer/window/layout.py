@@ -168,7 +168,8 @@ class Layout:
         if panel.label in self._to_front:
             self._to_front.discard(panel.label)
             imgui.set_next_window_focus()
-        shown, stays = imgui.begin(panel.label, None if alone else True, flags)
+        # A tab in the back has no cross, nor room for one: so all are found by eye, and none is closed by mistake.
+        shown, stays = imgui.begin(panel.label, True if not alone and _in_front(panel.label) else None, flags)
         try:
             if shown:
                 self._ui.guard.panel(f"The panel {panel.label}", lambda: panel.show(self._ui))
@@ -207,8 +208,8 @@ def _splits() -> list[hello_imgui.DockingSplit]:
         split("MainDockSpace", "Right", imgui.Dir.right, 0.295),
         split("MainDockSpace", "Bottom", down, 0.30),
         split("Left", "LeftBottom", down, 0.52),
-        split("Right", "RightBottom", down, 0.40),
-        split("Right", "RightMiddle", down, 0.54),
+        split("Right", "RightBottom", down, 0.37),
+        split("Right", "RightMiddle", down, 0.515),
     ]
 
 
@@ -216,6 +217,14 @@ def _seen(label: str) -> bool:
     """Whether a panel was drawn, and not behind another's tab."""
     window = imgui.internal.find_window_by_name(label)
     return window is not None and window.was_active and not window.hidden
+
+
+def _in_front(label: str) -> bool:
+    """Whether a panel is no tab behind another's."""
+    window = imgui.internal.find_window_by_name(label)
+    node: Any = window.dock_node if window is not None else None
+    front = node.visible_window if node is not None else None
+    return window is None or front is None or front.id_ == window.id_
 
 
 def _node_of(label: str) -> Any:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from viewer.output.capture import FIELDS
-from viewer.output.legend import light_in_words
+from viewer.output.legend import named_light
 from viewer.services.controller import Controller
 from viewer.services.file_browser import Browser
 from viewer.services.tour import Tour
@@ -68,11 +68,13 @@ class Ui:
     of a name that is being edited, `edited` that name; `tour_height` is what the picture leaves free below it for the
     tour, `tour_place` where that is: left, top and width. `gesture` is what a drag does that moves no camera, from
     `gesture_at` on, a point of the picture; `menu_at` is the point that the menu over the picture is about, and
-    `plot_frame` the frame that the menu of a plot is about; `plot_pointed` is the one that the pointer was on last.
-    `what_if_drawn` is the frame of ImGui's in which the panel What if was drawn last, `held_light` the light that the
-    pointer drags, and `changed_shown` says that changed pixels are to be seen. `find_focus` asks for the keyboard
-    above the table of what is in the scene, of which `find_drawn` rows were drawn last, each `find_height` pixels
-    high, in the order `find_order`. `chorded` are the keys that steer which were pressed with Ctrl, Alt or Super."""
+    `plot_frame` the frame that the menu of a plot is about, `plot_named` its name; `plot_pointed` is the one that the
+    pointer was on last.
+    `what_if_drawn` is the frame of ImGui's in which the panel What if was drawn last, `what_if_below` how high all is
+    below its list of lights, `held_light` the light that the pointer drags, and `changed_shown` says that changed
+    pixels are to be seen. `find_focus` asks for the keyboard above the table of what is in the scene, of which
+    `find_drawn` rows were drawn last, each `find_height` pixels high, in the order `find_order`. `chorded` are the keys
+    that steer which were pressed with Ctrl, Alt or Super."""
 
     controller: Controller
     display: Display | None = None
@@ -98,6 +100,7 @@ class Ui:
     about_open: bool = False
     per_pixel: bool = True
     plot_frame: int = 0
+    plot_named: str = ""
     plot_pointed: int | None = None
     picture_area: tuple[int, int] = (0, 0)
     picture_focused: bool = False
@@ -126,6 +129,7 @@ class Ui:
     zoom_all_steps: bool = False
     pointed_light: int | None = None
     what_if_drawn: int = -9
+    what_if_below: float = 0.0
     held_light: int | None = None
     changed_shown: bool = False
     light_filters: dict[str, str] = field(default_factory=dict)
@@ -160,11 +164,9 @@ class Ui:
         return known[2]
 
     def light_name(self, light: int) -> str:
-        """A light as every panel calls it: by the number that views and keys go by, and its name if it has one."""
+        """A light as every panel calls it: by its number in the scene as it was read, and its name if it has one."""
         scene = self.controller.session.scene
-        return light_in_words(
-            light, scene.lights[light].name if scene is not None and light < len(scene.lights) else ""
-        )
+        return named_light(scene.lights if scene is not None else (), light)
 
     def take_commands(self, commands: list[Command]) -> None:
         """Make these the commands, with the keys that the user has chosen for them."""

@@ -35,7 +35,7 @@ def test_pictures_and_video_show_the_same(capfd: pytest.CaptureFixture[str]) -> 
     code, out, _ = run(capfd, "film", "room.aff", "-o", "film.mp4", "--frames", "2-6", "--fps", 10, *SIZE, *modes)
     assert code == 0 and out.split() == ["film-frames", "film.mp4"]
     pictures = sorted(Path("film-frames").iterdir())
-    assert [p.name for p in pictures] == [f"{n:04d}.png" for n in range(1, 6)]
+    assert [p.name for p in pictures] == [f"{n:04d}.png" for n in range(2, 7)], "they have the numbers of their frames"
     last = pixels(pictures[-1])
     assert run(capfd, "render", pictures[-1], "-o", "again.png")[0] == 0
     assert np.array_equal(pixels("again.png"), last), "its modes come from the frames of the film"
@@ -60,7 +60,7 @@ def test_a_flight_goes_through_saved_pictures_or_bookmarks(
     flight = ("--seconds", 1, "--fps", 5, *SIZE, "--method", "none")
     assert run(capfd, "film", "room.aff", "-o", "flight", "--through", *seen, *flight)[0] == 0
     assert len(list(Path("flight").iterdir())) == 5
-    for name, original in (("0001", "at0"), ("0005", "at9")):
+    for name, original in (("0000", "at0"), ("0004", "at9")):
         assert np.array_equal(pixels(f"flight/{name}.png"), pixels(f"{original}.png"))
     path = str(Path("room.aff").absolute())
     state = [{"name": name, "state": capture.read(Path(name)).to_json()} for name in seen]
@@ -89,7 +89,8 @@ def test_what_is_done_is_kept(capfd: pytest.CaptureFixture[str], monkeypatch: py
 
 def test_mistakes_are_one_line(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     Path("taken").mkdir()
-    Path("taken/0001.png").write_bytes(b"")
+    for name in ("0110.png", "0002.png", "10000.png", "notes.png"):
+        Path("taken", name).write_bytes(b"")
     Path("file").write_text("")
     assert run(capfd, "render", "room.aff", "-o", "one.png", *SIZE)[0] == 0
     cases = [
@@ -99,7 +100,7 @@ def test_mistakes_are_one_line(capfd: pytest.CaptureFixture[str], monkeypatch: p
         (("-o", "d", "--through", "one.png"), "needs two at least"),
         (("-o", "d", "--bookmarks"), "needs two at least"),
         (("-o", "d", "--bookmarks", "--frames", "0-3"), "give one of"),
-        (("-o", "taken"), "numbered pictures in it already, as 0001.png"),
+        (("-o", "taken"), "numbered pictures in it already, 0002.png to 10000.png; give another folder"),
         (("-o", "file"), "no folder for the pictures"),
         (("-o", "d", "--caption", "{sceen}"), "the caption has no field {sceen}"),
         (("-o", "d", "--view", "shadow:7"), "the scene's lights are 0 to 1"),

@@ -115,7 +115,7 @@ def test_its_tone_and_its_range_come_back_where_the_view_has_any(room: Path, cap
     assert run(capfd, "check", "toned.png", "plain.png", "distances.png")[0] == 0
     film = ("--frames", "0-0", *size, *tone)
     assert run(capfd, "film", room, "-o", "frames", *film)[0] == 0
-    assert np.array_equal(np.asarray(Image.open("frames/0001.png")), pixels["toned"])
+    assert np.array_equal(np.asarray(Image.open("frames/0000.png")), pixels["toned"])
     code, _, said = run(capfd, "film", room, "-o", "none", *film, "--view", "normal")
     assert code == 1 and "--view normal shows none" in said
     assert kept["distances"].span == (2.0, 9.0) and kept["distances"].tone.neutral and kept["normals"].span is None

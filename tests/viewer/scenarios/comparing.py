@@ -14,6 +14,7 @@ from viewer.state.comparison import Source, Way
 from viewer.state.marks import wipe_column
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
+from viewer.state.worst import with_rings
 from viewer.window import comparing as seen
 
 KEY = imgui.Key
@@ -50,7 +51,12 @@ def comparing(d: Driver) -> None:
             assert found.apart.pixels > 100 and np.array_equal(
                 found.pixels != 0.0, (kept.color != d.c.frame.color).any(-1)
             )
-            assert np.abs(saved.astype(int) - signed_picture(found.pixels, found.apart.limit)).max() <= 1
+            shown = with_rings(signed_picture(found.pixels, found.apart.limit), found.worst)
+            assert np.abs(saved.astype(int) - shown).max() <= 1 and found.worst, "with its rings"
+            assert seen.legend(d.ui).entries[0].values == (str(len(found.worst)),)
+            p.mark_wrong = False
+            assert seen.marked(d.ui) == () and not seen.legend(d.ui).entries
+            p.mark_wrong = True
         elif way is not Way.BLINK:  # which may show either
             assert np.array_equal(saved, composed(a, b, way, 0.5, shows_a=False))
         if way is Way.SIDE:

@@ -45,7 +45,7 @@ def _from_a_plot(d: Driver) -> None:
     _point_at_sample(d, target)
     d.context.mouse_click(1)
     d.frames(3)
-    d.context.item_click(f"//$FOCUSED/Go to frame {target} with its modes")
+    d.context.item_click(f"//$FOCUSED/Go to picture {target} with its modes")
     d.wait(lambda: c.travel.replay is not None and c.runs.current is None, "the frames before it", 60.0)
     d.settle()
     assert c.travel.replay.whole and c.frame.time == c.session.scene.frame_time(1)

@@ -215,8 +215,23 @@ def test_rows_are_saved_as_they_are_seen(desk: Desk, table: SceneTable, tmp_path
     (path,) = (tmp_path / "pictures").glob("*.csv")
     with path.open(newline="") as file:
         read = list(csv.DictReader(file))
-    assert [int(row["number"]) for row in read] == listing.rows.tolist() and len(read) > 0
-    assert [int(row["pixels"]) for row in read] == listing.table.columns["pixels"].numbers[listing.rows].tolist()
+    assert [int(row["Number"]) for row in read] == listing.rows.tolist() and len(read) > 0
+    assert [int(row["Pixels"]) for row in read] == listing.table.columns["pixels"].numbers[listing.rows].tolist()
+
+
+def test_what_is_saved_at_once_after_hiding_knows_of_it(desk: Desk, table: SceneTable, tmp_path: Path) -> None:
+    table.level = Level.PRIMITIVES
+    table.filter("pixels>0")
+    sphere = desk.c.session.scene.triangle_count
+    assert sphere in known(desk).rows
+    table.hide(sphere)
+    table.save()
+    assert "when the picture shows the scene as it is edited" in desk.said
+    desk.until(lambda: any((tmp_path / "pictures").glob("*.csv")) and not desk.c.captures.busy)
+    (path,) = (tmp_path / "pictures").glob("*.csv")
+    with path.open(newline="") as file:
+        numbers = [int(row["Number"]) for row in csv.DictReader(file)]
+    assert sphere not in numbers and sorted(numbers) == sorted(known(desk).rows.tolist())
 
 
 def test_names_and_what_is_not_known_are_written_so_that_they_are_read_again(tmp_path: Path) -> None:
@@ -227,6 +242,6 @@ def test_names_and_what_is_not_known_are_written_so_that_they_are_read_again(tmp
     write_rows(table, np.arange(7, dtype=np.int32)[::-1], path)
     with path.open(newline="") as file:
         read = list(csv.DictReader(file))
-    assert [row["number"] for row in read] == list("6543210") and read[0]["object"] == 'a, "quoted"\nname'
-    assert {row["texture"] for row in read} == {""} and "saved" not in read[0]
-    assert set(read[0]) <= {column.name for column in COLUMNS[Level.PRIMITIVES]}
+    assert [row["Number"] for row in read] == list("6543210") and read[0]["Object"] == 'a, "quoted"\nname'
+    assert {row["Texture"] for row in read} == {""} and "Saved" not in read[0]
+    assert set(read[0]) <= {column.title for column in COLUMNS[Level.PRIMITIVES]}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -49,12 +50,21 @@ def test_an_exact_picture_comes_back_bit_for_bit(desk: Desk, method: str) -> Non
         moment = c.record.moments.get(number)
         assert moment is not None and (moment.time, moment.camera) == (frame.time, frame.camera)
         c.travel.go(number)
-        assert "bit for bit" in desk.said
+        of_path = c.session.frame_at(frame.time)
+        assert desk.said == f"picture {number}, frame {of_path} of the path, again: the same picture, bit for bit"
         desk.rest()
         assert (c.session.time, c.session.camera) == (frame.time, frame.camera)
         assert (c.session.settings.method, c.session.settings.depth) == (method, frame.settings.depth)
         assert np.array_equal(c.frame.color.view(np.uint32), frame.color.view(np.uint32))
     assert {c.record.moments.get(number).view for number in seen} == {View.COLOR, View.DEPTH}
+
+
+def test_frames_of_an_experiment_are_told_from_those_of_the_path(desk: Desk) -> None:
+    c, scene = desk.c, desk.c.session.scene
+    every = [scene.frame_time(number) for number in range(scene.frames)]
+    runs = [SimpleNamespace(times=times, shown="paper", is_of=lambda scene: True) for times in (every, every[::5])]
+    assert c.travel.named_of_experiment(runs[0], 2) == "frame 2 of the path, by paper"
+    assert c.travel.named_of_experiment(runs[1], 2) == "frame 2 of the experiment, by paper, frame 10 of the path"
 
 
 def test_going_back_can_be_undone_with_its_time(desk: Desk) -> None:
@@ -65,7 +75,7 @@ def test_going_back_can_be_undone_with_its_time(desk: Desk) -> None:
     assert "with the modes of now" in desk.said
     desk.rest()
     assert c.session.time == seen[number].time != here.time and c.session.view is View.COLOR
-    assert c.undo.undoes == f"going to frame {number}"
+    assert c.undo.undoes == f"going to picture {number}"
     c.undo.undo()
     desk.rest()
     assert c.session.snapshot() == here

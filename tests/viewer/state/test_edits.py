@@ -8,7 +8,9 @@ import pytest
 
 from tests.viewer.fakes import make_scene
 from tracer.scene.edits import NO_EDITS, Edits, edited
-from viewer.cli.edit_options import add_edits, edits_of
+from tracer.scene.lights import number_of
+from viewer.cli.edit_options import add_edits, edits_of, light_index
+from viewer.output.legend import light_in_words, named_light
 from viewer.state import edits as scene_edits
 from viewer.state.session import Session, Snapshot
 
@@ -89,3 +91,29 @@ def test_a_snapshot_keeps_edits_and_gives_up_those_without_a_target():
     other.open(make_scene(lights=2))
     other.restore(kept)
     assert other.edits == Edits(hidden=frozenset({"train"}))
+
+
+def test_lights_keep_their_numbers_whichever_others_are_off():
+    edits, scene = Edits(lights_off=frozenset({0, 3})), make_scene(lights=6)
+    assert [edits.light_number(index) for index in range(4)] == [1, 2, 4, 5]
+    assert [edits.light_index(number) for number in range(6)] == [None, 0, 1, None, 2, 3]
+    lights = edited(scene, edits).scene.lights
+    assert [number_of(lights, index) for index in range(4)] == [1, 2, 4, 5]
+    assert [light.name for light in lights] == [scene.lights[number].name for number in (1, 2, 4, 5)]
+    assert named_light(lights, 1) == light_in_words(2, scene.lights[2].name)
+    session = Session(scene)
+    session.take(edited(scene, edits))
+    session.light = 2
+    assert session.light_number == 4
+
+
+def test_options_name_lights_by_their_numbers_in_the_file():
+    parser, scene = ArgumentParser(), make_scene(lights=3)
+    add_edits(parser)
+    options = parser.parse_args(["--without-light=1"])
+    dark = edited(scene, edits_of(options)).scene
+    assert [light_index(options, "--light ", number, dark) for number in (0, 2)] == [0, 1]
+    with pytest.raises(ValueError, match="--light 1: this light is switched off"):
+        light_index(options, "--light ", 1, dark)
+    with pytest.raises(ValueError, match="--view shadow:3: the scene's lights are 0 to 2"):
+        light_index(options, "--view shadow:", 3, dark)

@@ -251,6 +251,23 @@ def test_fates_of_shadow_rays_add_up_to_those_due():
     assert history.values("tests")[0] == history.values("shadow_tests")[0] == 3
 
 
+def test_a_picture_that_is_shaded_in_part_counts_for_each_pixel_as_a_whole_one():
+    """Primary rays and proofs are of all pixels, all else is of those that are shaded."""
+    history, pixels = History(), make_frame().primitive.size
+    for part in (0.25, 1.0):
+        frame = make_frame()
+        s = frame.statistics
+        s.part, s.primary.traversal_steps, s.certificate_steps = part, 30 * pixels, 2 * pixels
+        s.shadow.due, s.shadow.traversal_steps = round(4 * part * pixels), round(40 * part * pixels)
+        history.add(frame, 0.0)
+    assert list(history.per_pixel("due")) == [4.0, 4.0]
+    assert list(history.per_pixel("steps")) == [72.0, 72.0]
+    assert list(history.per_pixel("shadow_steps")) == [42.0, 42.0]
+    assert list(history.values("shadow_steps")) == [12 * pixels, 42 * pixels], "the work that was done"
+    assert list(history.shaded()) == [0.25, 1.0]
+    assert [history.shaded_of(number) for number in (0, 1, 7)] == [0.25, 1.0, 1.0]
+
+
 def test_a_picture_that_becomes_whole_is_one_frame_of_the_history():
     history = History()
     for part, again in ((0.25, False), (0.5, True), (1.0, True), (0.25, False)):

@@ -136,6 +136,10 @@ class Bvh8:
         self.world_quadrics[which, :12] = maps.reshape(-1, 12)
         self._quadric_boxes[which] = primitives.placed_quadric_boxes(which, poses)
 
+    def certain(self, poses: Poses) -> NDArray[np.bool_]:
+        """All, as triangles are moved to the world."""
+        return np.ones_like(poses.present)
+
     def triangles_of(self, index: int, to_world: Float64) -> WorldTriangles:
         """The triangles of an object in the world, just as they are intersected, with the boxes of their blocks."""
         triangles = self._primitives.triangles_of(index)

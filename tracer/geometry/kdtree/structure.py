@@ -27,7 +27,9 @@ from tracer.scene.arrays import Float32, Float64
 from tracer.scene.model import Progress
 
 TRANSFORMED = 8 * 2.0**-24  # of the coordinates: by so much rays are wrong that are transformed to an object's space
-EVERYWHERE = 3e37
+EVEN = (
+    1.1  # an object's axes differ by so much in length at most, or else a little in its space may be much in the world
+)
 
 Tree = tuple[Trees, NDArray[np.float32]]  # with the box around it
 
@@ -129,8 +131,18 @@ class KdTree:
             moving_box,
         )
 
+    def certain(self, poses: Poses) -> NDArray[np.bool_]:
+        """Those that are not flattened, stretched or sheared.
+
+        What a ray is wrong by in an object's space is more in the world by the ratio of its longest to its shortest
+        axis, and the errors of the triangle test there by its square."""
+        scales = np.linalg.svd(poses.to_world[:, :, :3], compute_uv=False)
+        return scales[:, 0] <= EVEN * scales[:, 2]
+
     def triangles_of(self, index: int, to_world: Float64) -> WorldTriangles:
-        """The triangles of an object that to_world (3, 4) takes to the world; rays go to its space in float32."""
+        """The triangles of an object that to_world (3, 4) takes to the world; rays go to its space in float32.
+
+        Blurs and boxes hold of objects that are `certain`."""
         local = self._primitives.triangles[self._primitives.triangles_of(index)]
         near = triangle_boxes(local).astype(np.float64)  # a hit lies no further outside than the box is wide
         near += (near[:, 3:] - near[:, :3]).max(1, initial=0.0)[:, None] * 1.0001 * OUTWARDS
@@ -143,11 +155,8 @@ class KdTree:
         reach = np.abs(local).max(initial=0.0) * 2 * scales[0]
         reach += np.abs(to_world[:, 3]).max() + np.abs(world).max(initial=0.0)
         blurs = np.full(len(local), TRANSFORMED * reach, np.float32)
-        if scales[0] > 1.1 * scales[-1]:  # a little in the object's space may be much here
-            boxes = np.broadcast_to(EVERYWHERE * OUTWARDS, (len(local), 6))
-        else:
-            boxes = transform_boxes(near, np.broadcast_to(to_world, (len(local), 3, 4)))
-            boxes = boxes + TRANSFORMED * reach * OUTWARDS
+        boxes = transform_boxes(near, np.broadcast_to(to_world, (len(local), 3, 4)))
+        boxes = boxes + TRANSFORMED * reach * OUTWARDS
         return WorldTriangles(world.reshape(-1, 9).astype(np.float32), blurs, boxes.astype(np.float32))
 
     def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:

@@ -9,6 +9,7 @@ from tracer.method import Method, additions, bases
 from viewer.state.columns import Row, rows
 from viewer.state.comparison import RATES, Side, Source, Way
 from viewer.state.methods import toggled, with_base
+from viewer.state.told_apart import told_apart
 from viewer.state.views import LESS, MORE
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -29,7 +30,7 @@ from viewer.window.widgets import (
 
 _WIDE = 44.0  # ems of a panel that has room for controls and columns beside each other
 _CONTROLS = 15.5  # ems of the controls there
-_NAMES = 8.0  # ems of the names of figures
+_NAMES = 7.2  # ems of the names of figures
 
 
 def show(ui: Ui) -> None:
@@ -62,7 +63,7 @@ def _controls(ui: Ui) -> None:
     with properties("comparison", 5.0) as shown:
         if shown:
             row("A is", "what the live picture, B, is compared with")
-            names = {Source.KEPT: "the kept picture", Source.METHOD: "by a second method"}
+            names = {Source.KEPT: "a kept picture", Source.METHOD: "another method, live"}
             sources = list(Source)
             changed, index = imgui.combo("##source", sources.index(state.source), [names[one] for one in sources])
             if changed:
@@ -79,6 +80,7 @@ def _controls(ui: Ui) -> None:
                 state.rate = min(max(rate, RATES[0]), RATES[1]) if changed else state.rate
             if state.way is Way.DIFFERENCE and state.on:
                 _limit(ui)
+                _rings(ui)
     if state.source is Source.KEPT:
         _kept(ui)
     if comparing.remark:
@@ -134,6 +136,13 @@ def _limit(ui: Ui) -> None:
     imgui.end_disabled()
 
 
+def _rings(ui: Ui) -> None:
+    """Whether the signed difference marks where it is largest."""
+    p = ui.controller.preferences
+    row("Rings", f"around the pixels that differ most{ui.key('Mark wrong pixels')}")
+    checkbox("##rings", p.mark_wrong, lambda on: setattr(p, "mark_wrong", on))
+
+
 def _kept(ui: Ui) -> None:
     """What is kept, and whether it follows the view."""
     state = ui.controller.comparing.state
@@ -141,9 +150,8 @@ def _kept(ui: Ui) -> None:
     if kept is None:
         paragraph("Nothing is kept yet. Keep a picture, change anything, and compare.", QUIET)
         return
-    light = f", light {kept.light}" if kept.view.of_light else ""
     paragraph(
-        f"kept: {kept.scene}, frame {kept.number}, {kept.method}, {kept.view.label.lower()}{light}, "
+        f"kept: {kept.scene}, frame {kept.number}, {kept.method}, {kept.view.label.lower()}{kept.of_light}, "
         f"{kept.frame.width} x {kept.frame.height}",
         QUIET,
     )
@@ -170,7 +178,7 @@ def _columns(ui: Ui) -> None:
         return
     imgui.table_setup_scroll_freeze(0, 2)
     imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_fixed), em(_NAMES))
-    for name, width in (("A", 1.0), ("B", 1.0), ("difference", 1.0), ("per cent", 0.75)):
+    for name, width in (("A", 1.25), ("B", 1.25), ("difference", 1.0), ("per cent", 0.85)):
         imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch), width)
     _heads(a, b, comparing.names(a, b))
     for one in found:
@@ -182,10 +190,10 @@ def _heads(a: Side, b: Side, names: tuple[str, str]) -> None:
     """Two rows: which is which, and how large they are."""
     imgui.table_next_row(int(imgui.TableRowFlags_.headers))
     imgui.table_next_column()
-    for name, color in ((names[0], LESS), (names[1], MORE)):
+    for name, other, color in ((*names, LESS), (*names[::-1], MORE)):
         imgui.table_next_column()
         swatch(color)
-        clipped(name)
+        _name(name, other)
     for name in ("B - A", "of A"):
         imgui.table_next_column()
         right(name)
@@ -201,6 +209,15 @@ def _heads(a: Side, b: Side, names: tuple[str, str]) -> None:
     if round(shaded[0]) != round(shaded[1]):
         right("not alike", WARNING)
         tooltip(f"figures are of {count(shaded[0])} shaded pixels of A and {count(shaded[1])} of B")
+
+
+def _name(name: str, other: str) -> None:
+    """What A or B is, so that one sees what sets it apart from the other."""
+    letter, room = name[:3], imgui.get_content_region_avail().x + 0.5
+    shown = letter + told_apart(name[3:], other[3:], lambda text: imgui.calc_text_size(letter + text).x <= room)
+    imgui.text_unformatted(shown)
+    if shown != name:
+        tooltip(name)
 
 
 def _row(one: Row) -> None:

@@ -8,9 +8,20 @@ from viewer.services.film_controller import FilmController, FilmRun
 from viewer.services.runs import LONGEST_SIDE, duration
 from viewer.window.panels.runs import start_or_progress
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, row, size_field, tooltip
+from viewer.window.widgets import (
+    QUIET,
+    WARNING,
+    checkbox,
+    em,
+    paragraph,
+    properties,
+    row,
+    same_line_for,
+    size_field,
+    tooltip,
+)
 
-_WIDE = 46.0  # ems of a panel that has room for its three parts side by side
+_WIDE = 42.0  # ems of a panel that has room for its three parts side by side
 _HIGH = int(imgui.ChildFlags_.auto_resize_y)
 
 
@@ -39,7 +50,7 @@ def _way(ui: Ui, films: FilmController) -> None:
         row("Along", "the frames of the scene's animation, or a flight through the bookmarks at an even speed")
         if imgui.radio_button("path", not plan.through_bookmarks):
             plan.through_bookmarks = False
-        imgui.same_line()
+        same_line_for(f"bookmarks ({marks})")
         if imgui.radio_button(f"bookmarks ({marks})###bookmarks", plan.through_bookmarks):
             plan.through_bookmarks = True
         if not plan.through_bookmarks:
@@ -51,7 +62,7 @@ def _way(ui: Ui, films: FilmController) -> None:
             row("Camera", "the scene's own, or the one that you have taken in hand, which stays where it is")
             if imgui.radio_button("own", not plan.from_here):
                 plan.from_here = False
-            imgui.same_line()
+            same_line_for("as here")
             if imgui.radio_button("as here", plan.from_here):
                 plan.from_here = True
         row("Seconds", "how long the film is; 0: every frame once, or 2 seconds from bookmark to bookmark")

@@ -10,7 +10,7 @@ from viewer.state.row_filter import HELP, HINTS
 from viewer.state.scene_rows import Level
 from viewer.window.panels import find_rows, lights
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, clipped, count, em, paragraph, same_line_for, tooltip
+from viewer.window.widgets import ERROR, QUIET, clipped, count, em, fitted, paragraph, same_line_for, tooltip
 
 _FIELD, _LIGHT = 12.0, 8.0  # ems of width, at least, for the filter, and for the name of a light
 _LEVEL_TIPS = {
@@ -72,7 +72,8 @@ def _filter(ui: Ui, table: SceneTable) -> None:
         imgui.set_keyboard_focus_here()
         ui.find_focus = False
     hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  {HINTS[table.level]}"
-    changed, text = imgui.input_text_with_hint(f"##filter{table.level.value}", hint, table.order.text)
+    shown = fitted(hint, imgui.calc_item_width() - 2.0 * imgui.get_style().frame_padding.x)
+    changed, text = imgui.input_text_with_hint(f"##filter{table.level.value}", shown, table.order.text)
     if changed:
         table.filter(text)
     if imgui.is_item_deactivated() and (

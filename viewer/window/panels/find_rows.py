@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
@@ -31,8 +32,7 @@ def show(ui: Ui, table: SceneTable, listing: Listing) -> None:
     kinds = imgui.TableFlags_
     flags = kinds.scroll_x | kinds.scroll_y | kinds.row_bg | kinds.resizable | kinds.reorderable | kinds.hideable
     flags |= kinds.sortable | kinds.borders_inner_v
-    least = em(sum(_WIDTHS.get(column.name, _NAME) for column in columns) + 0.6 * len(columns))
-    width = max(least, imgui.get_content_region_avail().x - imgui.get_style().scrollbar_size)
+    width = _inner_width(columns)
     ui.find_drawn = 0
     name = f"table{listing.table.level.value}"
     if not imgui.begin_table(name, len(columns), int(flags), ImVec2(0.0, 0.0), width):
@@ -59,6 +59,18 @@ def show(ui: Ui, table: SceneTable, listing: Listing) -> None:
             ui.find_drawn += 1
     clipper.end()
     imgui.end_table()
+
+
+def _inner_width(columns: tuple[Column, ...]) -> float:
+    """Of the table: what its columns need, and where only one has names, so much more for these that no column is cut
+    by the right edge before the table is scrolled."""
+    room = imgui.get_content_region_avail().x - imgui.get_style().scrollbar_size
+    least = em(sum(_WIDTHS.get(column.name, _NAME) for column in columns) + 0.6 * len(columns))
+    edges = np.cumsum([em(_WIDTHS.get(column.name, _NAME) + 0.5) + 1.0 for column in columns])
+    if least <= room or sum(column.name in _SHARES for column in columns) > 1:
+        return max(least, room)
+    seen = room - em(0.5)  # so that its border can be taken hold of
+    return float(edges[-1] + seen - max(edges[edges <= seen], default=seen))
 
 
 def _set_up(ui: Ui, table: SceneTable, number: int, column: Column) -> None:

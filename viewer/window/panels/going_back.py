@@ -31,15 +31,23 @@ def pointed(first: int, last: int, frames: Sequence[int] | None = None) -> int |
 
 
 def handle(ui: Ui, plot: str, number: int | None, values: list[str]) -> None:
-    """After the plot of a name: say which frame of the window it is, and go there where that is clicked."""
+    """After the plot of a name: say which of the window's pictures it is, and go there where that is clicked."""
     c = ui.controller
     moment = c.record.moments.get(number) if number is not None else None
     said = []
     if moment is not None:
-        of_path = f"frame {c.session.frame_at(moment.time)} of the path, " if c.session.animated else ""
-        width, height = moment.settings.width, moment.settings.height
-        said = [f"{of_path}{moment.time:.3f} s, {moment.settings.method}, {width} x {height}"]
-    _menu(ui, plot, number, f"frame {number}", [*said, *values], lambda chosen, modes: c.travel.go(chosen, modes))
+        width, height, part = moment.settings.width, moment.settings.height, c.history.shaded_of(moment.number)
+        shaded = f", {part:.0%} shaded" if part < 1.0 else ""
+        said = [f"{moment.time:.3f} s, {moment.settings.method}, {width} x {height}{shaded}"]
+    named = in_words(ui, number) if number is not None else ""
+    _menu(ui, plot, number, named, [*said, *values], lambda chosen, modes: c.travel.go(chosen, modes))
+
+
+def in_words(ui: Ui, number: int) -> str:
+    """What a picture is called: its number in the plots, and that of the frame of the scene's path."""
+    c = ui.controller
+    moment = c.record.moments.get(number)
+    return c.travel.named(moment) if moment is not None else f"picture {number}"
 
 
 def of_experiment(ui: Ui, run: Experiment, results: Results, place: int | None, values: list[str]) -> None:
@@ -54,7 +62,8 @@ def of_experiment(ui: Ui, run: Experiment, results: Results, place: int | None, 
     def go(chosen: int, modes: bool) -> None:
         c.travel.go_to_experiment(run, chosen, modes)
 
-    _menu(ui, "experiment", number, f"frame {number} of the path, {run.shown}", values, go)
+    named = c.travel.named_of_experiment(run, number) if number is not None else ""
+    _menu(ui, "experiment", number, named, values, go)
 
 
 def _menu(ui: Ui, plot: str, number: int | None, name: str, said: list[str], go: Callable[[int, bool], None]) -> None:
@@ -65,14 +74,14 @@ def _menu(ui: Ui, plot: str, number: int | None, name: str, said: list[str], go:
         if imgui.is_mouse_clicked(imgui.MouseButton_.left):
             go(number, False)
         elif imgui.is_mouse_clicked(imgui.MouseButton_.right):
-            ui.plot_frame = number
+            ui.plot_frame, ui.plot_named = number, name.split(",")[0]
             imgui.open_popup(_MENU)
         elif not imgui.is_popup_open(_MENU) and imgui.begin_tooltip():
             imgui.text_unformatted("\n".join([name, *said, "click: go there; right button: with its modes"]))
             imgui.end_tooltip()
     if imgui.begin_popup(_MENU):
         for modes, what in ((False, ""), (True, " with its modes")):
-            if imgui.menu_item(f"Go to frame {ui.plot_frame}{what}", "", False, True)[0]:
+            if imgui.menu_item(f"Go to {ui.plot_named}{what}", "", False, True)[0]:
                 go(ui.plot_frame, modes)
         imgui.end_popup()
     imgui.pop_id()

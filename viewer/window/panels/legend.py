@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from tracer.scene.lights import number_of
 from viewer.output.legend import Chosen, Legend, legend_of
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, Layout, Swatch, fitting, lay_out
 from viewer.state.views import Color, color_map, signed_map
@@ -32,7 +33,8 @@ def of_picture(ui: Ui) -> Legend | None:
     name = scene.lights[light].name if light < len(scene.lights) else ""
     s, p = c.session, c.preferences
     span = c.comparing.span(view)
-    chosen = Chosen(light, name, p.mark_wrong, p.work_shares, span, s.tone, s.clipping)
+    number = number_of(scene.lights, light)
+    chosen = Chosen(light, name, p.mark_wrong, p.work_shares, span, s.tone, s.clipping, number)
     kept = "legend" if frame is c.frame else "legend of A"
     found: Legend | None = ui.cached(kept, frame, (view, chosen), lambda: legend_of(frame, view, chosen))
     return found

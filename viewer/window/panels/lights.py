@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from imgui_bundle import imgui
 
 from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.scene.lights import Light, as_lamps
+from tracer.scene.lights import Light, as_lamps, number_of
 from tracer.scene.model import Scene
 from viewer.services.lamps import OFFERED
 from viewer.window.ui import Ui
@@ -114,9 +114,9 @@ def matching(lights: Sequence[Light], text: str) -> Sequence[int]:
     words = text.lower().split()
     if not words:
         return range(len(lights))
-    if len(words) == 1 and words[0].isdecimal() and int(words[0]) < len(lights):
-        return [int(words[0])]
-    said = (f"light {i} {light.name.lower()} {light.kind}" for i, light in enumerate(lights))
+    if len(words) == 1 and words[0].isdecimal() and len(lights) and int(words[0]) <= number_of(lights, len(lights) - 1):
+        return [i for i in range(len(lights)) if number_of(lights, i) == int(words[0])]
+    said = (f"light {number_of(lights, i)} {light.name.lower()} {light.kind}" for i, light in enumerate(lights))
     return [i for i, one in enumerate(said) if all(word in one for word in words)]
 
 

@@ -34,6 +34,7 @@ from viewer.window.panels import (
     tour,
     unseen,
     wipe,
+    worst_pixels,
 )
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
@@ -110,6 +111,8 @@ def _picture(ui: Ui, room: ImVec2) -> None:
         unseen.show(ui, area.whole, area.whole_end)
     _pointer(ui, area)
     closeup.show(ui, area)
+    if seen is not None:
+        worst_pixels.show(ui, area, seen)
     wipe.show(ui, area)
     lower = _overlay(ui, area.corner, area.end)
     with _inside(area):

@@ -13,7 +13,7 @@ from viewer.state.pixels import ALL, Histogram, histogram
 from viewer.state.readings import can_draw
 from viewer.state.values import CHANNELS, values_of, words_at
 from viewer.state.views import View
-from viewer.window import closer
+from viewer.window import closer, comparing
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right, tooltip
 
@@ -111,9 +111,11 @@ def _value(ui: Ui, frame: Frame, view: View, light: int, x: int, y: int) -> str:
 def _histogram(ui: Ui) -> None:
     """How the values of the region lie, and the range of the colour map from them."""
     c, frame, region = ui.controller, ui.controller.frame, ui.pixels.region
-    view, light = c.tracing.drawn_view, c.session.light
+    view, light, difference = c.tracing.drawn_view, c.session.light, comparing.difference(ui)
     if frame is None or not can_draw(frame, view, light):
         return
+    if difference is not None and difference.pixels.shape != frame.primitive.shape:
+        return  # it is drawn of the frame before
     rows, columns = (region or ALL).pixels(frame)
     wide, high = columns.stop - columns.start, rows.stop - rows.start
     where = f"{wide} x {high} pixels from {columns.start}, {rows.start}" if region is not None else "the whole picture"
@@ -122,21 +124,29 @@ def _histogram(ui: Ui) -> None:
             ui.pixels.region = None
         tooltip("count the whole picture again")
         imgui.same_line()
-    clipped(f"{view.label}: {where}{'' if region is not None else '; Shift+drag for a part of it'}")
-    values = ui.cached("values", frame, (view, light), lambda: values_of(frame, view, light))
+    what = view.label if difference is None else f"B - A, {view.label.lower()}"
+    clipped(f"{what}: {where}{'' if region is not None else '; Shift+drag for a part of it'}")
+    if difference is not None:
+        values = ui.cached("differing", difference, None, difference.differing)
+    else:
+        values = ui.cached("values", frame, (view, light), lambda: values_of(frame, view, light))
     if values.classes:
         paragraph("Modes and numbers of primitives have no histogram; the legend counts them.", QUIET)
         return
-    found: Histogram | None = ui.cached(
-        "histogram", frame, (view, light, region), lambda: histogram(values, rows, columns)
-    )
+    found: Histogram | None = ui.cached("histogram", values, region, lambda: histogram(values, rows, columns))
     if found is None:
-        paragraph("No pixel here has a value.", QUIET)
+        paragraph("No pixel here has a value." if difference is None else "No pixel differs here.", QUIET)
         return
-    if found.pixels < found.of:
+    if difference is not None:
+        paragraph(f"{count(found.pixels)} of {count(found.of)} pixels differ; these are counted here", QUIET)
+    elif found.pixels < found.of:
         paragraph(f"{count(found.pixels)} of {count(found.of)} pixels have a value", QUIET)
     _figures(found, values.names)
-    if view.has_range and not (view.needs_work and c.preferences.work_shares):
+    if difference is not None:
+        if imgui.small_button("Use as the range of colours"):
+            c.comparing.state.limit = max(-found.least[0], found.largest[0])
+        tooltip("the colours go as far to both sides of 0 as the difference does here")
+    elif view.has_range and not (view.needs_work and c.preferences.work_shares):
         if imgui.small_button("Use as the range of colours"):
             c.session.spans[view] = (min(found.least), max(max(found.largest), min(found.least) + 1e-6))
         tooltip("the first and the last colour of the map stand for the least and the largest value here")

@@ -13,7 +13,7 @@ from viewer.state import terms
 from viewer.window.palette import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
 from viewer.window.panels import going_back
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, checkbox, count, em, paragraph, short
+from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, short
 
 _FATES = "What became of shadow rays"
 _LOGARITHMIC = "Milliseconds"
@@ -71,14 +71,18 @@ def show(ui: Ui) -> None:
         "per pixel",
         ui.per_pixel,
         lambda on: setattr(ui, "per_pixel", on),
-        "divide by the number of pixels, so that frames of different sizes can be compared",
+        "of frames of all sizes, and of those in motion, of which only some pixels are shaded: primary rays and proofs "
+        "are divided by all pixels, all else by those that are shaded",
     )
     imgui.same_line()
     if imgui.small_button("clear"):
         history.hide()
         return
     imgui.same_line()
-    imgui.text_colored(QUIET, f"the last {len(history)} frames" if len(history) > 1 else "one frame so far")
+    said = f"the last {len(history)} pictures" if len(history) > 1 else "one picture so far"
+    if (history.shaded() < 1.0).any():
+        said += "; on a grey ground: only some pixels are shaded"
+    clipped(said, QUIET)
     room = imgui.get_content_region_avail()
     spacing = imgui.get_style().item_spacing.x
     plots = (_PLOTS[0], _OF_LIGHTS, *_PLOTS[1:]) if history.values("samples_due").any() else _PLOTS
@@ -113,6 +117,7 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
     if title == _LOGARITHMIC:
         _label_decades(highest, size.y)
     implot.setup_legend(implot.Location_.south, LEGEND)
+    _mark_partly_shaded(float(history.first), history.shaded(), (lowest, highest))
     if title == _FATES:
         _stack(curves, float(history.first))
     else:
@@ -125,6 +130,16 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
         f"{label}: {values[at]:.3g}" if per_pixel else f"{label}: {short(values[at])}" for label, values, _ in curves
     ]
     going_back.handle(ui, title, number, said)
+
+
+def _mark_partly_shaded(first: float, shaded: NDArray[np.float64], heights: tuple[float, float]) -> None:
+    """A grey ground behind the pictures that were shaded in part."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], shaded < 1.0, [0]]).astype(np.int8)))
+    look = implot.Spec(fill_color=GREY, fill_alpha=0.3)
+    look.flags = int(implot.ItemFlags_.no_legend)
+    for begin, end in edges.reshape(-1, 2).tolist():
+        across = np.array([first + begin - 0.5, first + end - 0.5])
+        implot.plot_shaded("##partly shaded", across, np.full(2, heights[0]), np.full(2, heights[1]), look)
 
 
 def _label_decades(highest: float, height: float) -> None:
@@ -152,5 +167,4 @@ def _stack(curves: list[tuple[str, NDArray[np.float64], ImVec4]], first: float) 
 def _values(ui: Ui, name: str, per_pixel: bool) -> NDArray[np.float64]:
     """A series as ImPlot wants it, contiguous float64."""
     history = ui.controller.history
-    values = history.values(name)
-    return values / np.maximum(history.values("pixels"), 1.0) if per_pixel else values
+    return history.per_pixel(name) if per_pixel else history.values(name)

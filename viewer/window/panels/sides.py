@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from viewer.state.comparison import Side, Source, Way
+from viewer.state.comparison import Source, Way
 from viewer.state.views import LESS, MORE, Color
 from viewer.window import comparing
 from viewer.window.panels import layers
@@ -16,7 +16,7 @@ GAP = 0.3
 """Ems between pictures side by side."""
 _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.78), ImVec4(0.95, 0.96, 0.97, 1.0)
 
-Seen = tuple[Side, Side, Way]
+Seen = comparing.Seen
 
 
 def area_of_b(ui: Ui, room: tuple[int, int]) -> tuple[int, int]:

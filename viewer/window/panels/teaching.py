@@ -1,4 +1,6 @@
-"""In the inspector: which frames and pixels have taught the modes of a primitive, and the way back to them."""
+"""In the inspector: which pictures and pixels have taught the modes of a primitive, and the way back to them.
+
+A picture's number is that in the plots, which count all that the window has traced; frames are those of the path."""
 
 from __future__ import annotations
 
@@ -9,6 +11,7 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from viewer.services.teachers import Teacher
 from viewer.state.picking import Pick
 from viewer.state.teaching import NEVER, Lesson
+from viewer.window.panels import going_back
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, paragraph, tooltip
 
@@ -17,7 +20,7 @@ def of_occlusion(ui: Ui, pick: Pick) -> None:
     """Since which frame the primitive is fully rendered."""
     taught = ui.controller.record.taught(pick)
     if taught is not None and taught.whole != NEVER and pick.occlusion is OcclusionMode.FULLY_RENDERED:
-        _frame(ui, "since", taught.whole, None, "whole", f"FULLY_RENDERED: seen as a whole in frame {taught.whole}")
+        _frame(ui, "since", taught.whole, None, "whole", f"FULLY_RENDERED: seen as a whole in picture {taught.whole}")
 
 
 def of_light(ui: Ui, pick: Pick, light: int, mode: ShadowMode) -> None:
@@ -39,9 +42,10 @@ def sentence(mode: ShadowMode, light: str, lesson: Lesson, found: Teacher | None
     """A mode and who taught it, as one reads it in the tooltip."""
     by = "" if found is None else f" ({pixels_in_words(found)})"
     if mode is ShadowMode.PARTIAL_SHADOW:
-        return f"{mode.name} for {light}: blocked first in frame {lesson.blocked}, lit first in frame {lesson.lit}{by}"
+        both = f"blocked first in picture {lesson.blocked}, lit first in picture {lesson.lit}"
+        return f"{mode.name} for {light}: {both}{by}"
     number, never = (lesson.blocked, "lit") if mode is ShadowMode.FULL_SHADOW else (lesson.lit, "blocked")
-    return f"{mode.name} for {light}: set in frame {number}{by}, never seen {never}"
+    return f"{mode.name} for {light}: set in picture {number}{by}, never seen {never}"
 
 
 def pixels_in_words(found: Teacher) -> str:
@@ -56,18 +60,19 @@ def _frame(ui: Ui, word: str, number: int, found: Teacher | None, key: str, tip:
     """A line: what was met, a button that leads to the frame, and the pixel."""
     c = ui.controller
     imgui.text_colored(QUIET, word)
-    _beside(f"frame {number}", imgui.get_style().item_spacing.x)
+    _beside(f"picture {number}", imgui.get_style().item_spacing.x)
     kept = c.record.moments.get(number) is not None
     imgui.begin_disabled(not kept)
-    if imgui.small_button(f"frame {number}##taught {key}"):
+    if imgui.small_button(f"picture {number}##taught {key}"):
         c.travel.go(number, point=_point(ui, number, found))
     imgui.end_disabled()
-    tooltip(f"{tip}\n\nGo to frame {number}" if kept else f"{tip}\n\nThis frame is no longer kept.")
+    where = going_back.in_words(ui, number)
+    tooltip(f"{tip}\n\nGo to {where}" if kept else f"{tip}\n\nThis picture is no longer kept.")
     if kept:
         _beside(icons.ICON_FA_CLOCK_ROTATE_LEFT, 0.2 * imgui.get_font_size())
         if imgui.small_button(f"{icons.ICON_FA_CLOCK_ROTATE_LEFT}##taught {key}"):
             c.travel.go(number, modes=True, point=_point(ui, number, found))
-        tooltip(f"Go to frame {number} with its modes: those before it are forgotten, and learnt again")
+        tooltip(f"Go to picture {number} with its modes: those before it are forgotten, and learnt again")
     if found is not None:
         paragraph(pixels_in_words(found), QUIET)
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from imgui_bundle import imgui
 
 from viewer.state.readings import can_draw, span_of
-from viewer.state.tone import MOST_EXPOSURE, NEUTRAL, WHITES, Curve
+from viewer.state.tone import MID_GREY, MOST_EXPOSURE, NEUTRAL, WHITES, Curve, Tone
 from viewer.state.views import View
 from viewer.window.ui import Ui
 from viewer.window.widgets import checkbox, em, row, tooltip
@@ -47,8 +47,15 @@ def _tone(ui: Ui) -> None:
         for curve in curves:
             if imgui.selectable(curve.label, curve is s.tone.curve)[0]:
                 s.tone = replace(s.tone, curve=curve)
-            tooltip(curve.meaning)
+            tooltip(told(replace(s.tone, curve=curve)))
         imgui.end_combo()
+    else:
+        tooltip(told(s.tone))
+
+
+def told(tone: Tone) -> str:
+    """What a curve does, and how bright mid grey becomes with it."""
+    return f"{tone.curve.meaning}. Mid grey, {MID_GREY:g}, becomes {tone.mid_grey:.2f} as white and exposure are now"
 
 
 def _range(ui: Ui) -> None:

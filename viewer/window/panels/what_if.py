@@ -37,7 +37,7 @@ _TIPS = {
     "tests": "rays of all kinds tested against primitives",
     "certified": "certificates made in this frame",
 }
-_ROWS = 4  # of lists that are seen at once
+_ROWS = 12  # of the list of lights that are seen at least: a few need no scroll bar in the panel, which has its own
 _MOST_PAIRS = 4  # of transitions of a light that are listed
 _MOST_BLOCKERS = 4
 
@@ -55,6 +55,8 @@ def show(ui: Ui) -> None:
     _lights(ui, edited)
     _edits(ui)
     _effects(ui)
+    if ui.what_if_below < 0.0:  # where the list of lights ends
+        ui.what_if_below += imgui.get_cursor_pos_y()
 
 
 # --- what is edited ----------------------------------------------------------------------------------
@@ -146,7 +148,8 @@ def _lights(ui: Ui, edited: Edited) -> None:
         paragraph("The scene has no lights.", QUIET)
         return
     numbers = lights.found(ui, "what if", original)
-    height = min(max(len(numbers), 1), _ROWS) * imgui.get_frame_height_with_spacing() + 2.0
+    line, room = imgui.get_frame_height_with_spacing(), imgui.get_content_region_avail().y - ui.what_if_below
+    height = min(max(len(numbers), 1) * line, max(_ROWS * line, room)) + 2.0
     if imgui.begin_child("switches", (0.0, height)):
         clipper = imgui.ListClipper()
         clipper.begin(len(numbers), imgui.get_frame_height_with_spacing())
@@ -155,6 +158,7 @@ def _lights(ui: Ui, edited: Edited) -> None:
                 _light(ui, edited, numbers[k])
         clipper.end()
     imgui.end_child()
+    ui.what_if_below = -imgui.get_cursor_pos_y()
     paragraph("Drag a light in the picture, or type where it is.", QUIET)
 
 

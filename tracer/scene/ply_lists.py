@@ -1,0 +1,221 @@
+"""Lists in binary PLY files, as trimesh reads them: it takes all lists of an element to be as long as its first.
+
+Faces of different lengths become triangles, triangle strips become one list, and lists of anything else, such as the
+grid of a range scan, are left out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.scene.limits import MOST_PRIMITIVES
+from tracer.scene.tristrips import joined
+
+_LONGEST_HEAD = 1 << 16  # bytes
+_KINDS = {
+    "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
+    "uint16": "u2", "int": "i4", "int32": "i4", "uint": "u4", "uint32": "u4", "float": "f4", "float32": "f4",
+    "double": "f8", "float64": "f8",
+}  # fmt: skip
+_CORNERS = ("vertex_indices", "vertex_index")
+
+Places = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class _Property:
+    """A number, or a list of them after how many there are."""
+
+    name: str
+    said: str  # its kind, as the head says it
+    kind: np.dtype[Any]
+    count: np.dtype[Any] | None = None
+
+
+@dataclass
+class _Element:
+    """What the head says of an element."""
+
+    name: str
+    number: int
+    properties: list[_Property] = field(default_factory=list)
+    lines: list[str] = field(default_factory=list)
+
+    @property
+    def has_lists(self) -> bool:
+        return any(one.count is not None for one in self.properties)
+
+
+def with_even_lists(data: bytes) -> bytes:
+    """A binary PLY file as trimesh reads it, with all faces and strips.
+
+    Any other file comes back as it is, also one whose lists are even already.  Raises ValueError where the file ends
+    too soon, or its head is damaged."""
+    begin = data.find(b"\n", data.find(b"end_header", 0, _LONGEST_HEAD)) + 1
+    lines = data[:begin].decode("latin-1").splitlines()
+    if not lines or lines[0].strip() != "ply" or "format binary" not in lines[1] or "end_header" not in lines[-1]:
+        return data
+    order = ">" if "big" in lines[1] else "<"
+    elements, others = _elements(lines[:-1], order)
+    vertices = next((one.number for one in elements if one.name == "vertex"), 0)
+    if not any(one.has_lists for one in elements) or any(one.has_lists for one in elements if one.name == "vertex"):
+        return data
+    head, body, at, changed = others, [], begin, False
+    for element in elements:
+        end = _end_of_even(data, at, element)
+        own, kept = element.lines, data[at:end]
+        if element.has_lists and not (element.name == "face" and end is not None):
+            starts, lengths, end = _places(data, at, element, order)
+            kept = data[at:end]
+            if element.name == "face":
+                own, kept = _triangles(data, element, starts, lengths)
+            elif element.name == "tristrips" and len(element.properties) == 1:
+                own, kept = _one_strip(data, element, starts, lengths, vertices, order)
+            else:
+                own, kept = [], b""
+            changed = True
+        elif end is None:
+            raise ValueError(element.name)
+        head, at = [*head, *own], end
+        body.append(kept)
+    if not changed:
+        return data
+    return b"".join(["".join(f"{line}\n" for line in [*head, "end_header"]).encode("latin-1"), *body, data[at:]])
+
+
+def _elements(lines: list[str], order: str) -> tuple[list[_Element], list[str]]:
+    """All elements in their order, and the lines of the head that are of none."""
+    elements: list[_Element] = []
+    others = []
+    for line in lines:
+        words = line.split()
+        if words[:1] == ["element"]:
+            _, name, number = words
+            if not 0 <= int(number) <= MOST_PRIMITIVES:
+                raise ValueError(line)
+            elements.append(_Element(name, int(number), lines=[line]))
+        elif words[:1] == ["property"]:
+            elements[-1].properties.append(_property(words, order))
+            elements[-1].lines.append(line)
+        else:
+            others.append(line)
+    return elements, others
+
+
+def _property(words: list[str], order: str) -> _Property:
+    if words[1] == "list":
+        _, _, count, said, name = words
+        if _KINDS[count][0] == "f":
+            raise ValueError(count)
+        return _Property(name, said, np.dtype(order + _KINDS[said]), np.dtype(order + _KINDS[count]))
+    _, said, name = words
+    return _Property(name, said, np.dtype(order + _KINDS[said]))
+
+
+# --- where everything is ------------------------------------------------------------------------------
+
+
+def _end_of_even(data: bytes, at: int, element: _Element) -> int | None:
+    """The byte after an element whose lists are all as long as those of its first row; None where they are not."""
+    fields: list[tuple[str, Any]] = []
+    lengths = {}
+    start = at
+    for number, one in enumerate(element.properties if element.number else []):
+        length = 1
+        if one.count is not None:
+            (length,) = np.frombuffer(data, one.count, 1, start).tolist()
+            lengths[f"count {number}"] = length
+            fields.append((f"count {number}", one.count))
+            start += one.count.itemsize
+        if length < 0 or length * one.kind.itemsize > len(data) - start:
+            return None
+        fields.append((f"{number}", (one.kind, (length,))))
+        start += length * one.kind.itemsize
+    end = at + element.number * (start - at)
+    if end > len(data):
+        return None
+    rows = np.frombuffer(data, np.dtype(fields), element.number, at) if fields else None
+    even = rows is None or all((rows[name] == length).all() for name, length in lengths.items())
+    return end if even else None
+
+
+def _places(data: bytes, at: int, element: _Element, order: str) -> tuple[Places, Places, int]:
+    """(rows, properties) where the numbers of each begin and how many they are, and the byte after the element."""
+    byteorder: Any = "big" if order == ">" else "little"
+    sizes = [
+        (
+            one.kind.itemsize,
+            one.count.itemsize if one.count is not None else 0,
+            one.count is not None and one.count.kind == "i",
+        )
+        for one in element.properties
+    ]
+    starts: list[int] = []
+    lengths: list[int] = []
+    for _ in range(element.number):
+        for size, counted, signed in sizes:
+            length = int.from_bytes(data[at : at + counted], byteorder, signed=signed) if counted else 1
+            at += counted
+            starts.append(at)
+            lengths.append(length)
+            at += length * size
+            if length < 0 or at > len(data):
+                raise ValueError(element.name)
+    shape = element.number, len(sizes)
+    return np.array(starts, np.int64).reshape(shape), np.array(lengths, np.int64).reshape(shape), at
+
+
+def _numbers(data: bytes, places: Places, kind: np.dtype[Any]) -> NDArray[Any]:
+    """The numbers that begin at these bytes."""
+    single = np.frombuffer(data, np.uint8)[places[..., None] + np.arange(kind.itemsize)]
+    return np.ascontiguousarray(single).view(kind)[..., 0]
+
+
+# --- what becomes of them -------------------------------------------------------------------------------
+
+
+def _triangles(data: bytes, element: _Element, starts: Places, lengths: Places) -> tuple[list[str], bytes]:
+    """Faces as triangles around their first corner, each with all else that its face has: head and bytes."""
+    corners = next(n for n, one in enumerate(element.properties) if one.count is not None and one.name in _CORNERS)
+    sides = lengths[:, corners]
+    number = np.maximum(sides - 2, 0)
+    face = np.repeat(np.arange(len(sides)), number)
+    place = np.arange(len(face)) - np.repeat(np.cumsum(number) - number, number)
+    corner = np.stack([np.zeros_like(place), place + 1, place + 2], axis=1)  # of its face
+    lines, columns = [f"element face {len(face)}"], []
+    for n, one in enumerate(element.properties):
+        size = one.kind.itemsize
+        if one.count is None:
+            lines.append(f"property {one.said} {one.name}")
+            columns.append(_numbers(data, starts[face, n], one.kind)[:, None])
+            continue
+        each = 1 if n == corners else 2  # numbers for each corner: its vertex, or a place of the texture
+        if not (lengths[:, n] == each * sides).all():
+            continue
+        parts = (each * corner[:, :, None] + np.arange(each)).reshape(len(face), -1)
+        lines.append(f"property list uchar {one.said} {one.name}")
+        columns += [np.full((len(face), 1), parts.shape[1], np.uint8)]
+        columns += [_numbers(data, starts[face, n][:, None] + size * parts, one.kind)]
+    rows = np.zeros(len(face), np.dtype([(str(n), (one.dtype, one.shape[1:])) for n, one in enumerate(columns)]))
+    for n, column in enumerate(columns):
+        rows[str(n)] = column
+    return lines, rows.tobytes()
+
+
+def _one_strip(
+    data: bytes, element: _Element, starts: Places, lengths: Places, vertices: int, order: str
+) -> tuple[list[str], bytes]:
+    """All strips as a single list: head and bytes."""
+    (strips,), size = element.properties, element.properties[0].kind.itemsize
+    if strips.count is None or strips.kind.kind == "f":
+        raise ValueError(strips.name)
+    number = lengths[:, 0]
+    place = np.arange(number.sum()) - np.repeat(np.cumsum(number) - number, number)
+    flat = _numbers(data, np.repeat(starts[:, 0], number) + size * place, strips.kind)
+    strip = np.minimum(joined(np.split(flat, np.cumsum(number)[:-1]), vertices), 2**31 - 1)
+    lines = ["element tristrips 1", f"property list int int {strips.name}"]
+    return lines, np.concatenate([[len(strip)], strip]).astype(f"{order}i4").tobytes()
