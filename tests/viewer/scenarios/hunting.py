@@ -85,7 +85,7 @@ def _from_the_inspector(d: Driver) -> None:
     d.wait(lambda: c.teachers.of(lesson.lit, light, True) is not None, "the pixel that taught", 30.0)
     moment = c.record.moments.get(lesson.lit)
     d.scroll_down("Inspector")
-    d.context.item_click(f"//Inspector/**/frame {lesson.lit}##taught {light} lit")
+    d.context.item_click(f"//Inspector/**/picture {lesson.lit}##taught {light} lit")
     d.settle()
     assert (c.session.time, c.session.camera) == (moment.time, moment.camera)
 
