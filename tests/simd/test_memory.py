@@ -31,6 +31,7 @@ from tracer.simd import (
     load_i32,
     load_i64,
     local_memory,
+    sort_columns,
     store,
     store_bytes,
     store_where,
@@ -128,6 +129,22 @@ def test_rows_of_a_table_become_columns(columns: int):
     out = np.zeros((columns, N), F32)
     run(table, chosen, out)
     assert same(out, table[chosen].T.copy())
+
+
+@pytest.mark.parametrize("rows", [8, 16])
+def test_columns_are_sorted(rows: int):
+    """Whatever sorts all columns of zeros and ones sorts everything."""
+
+    @compiled
+    def run(tables):
+        for k in range(len(tables)):
+            sort_columns(address_of(tables) + 64 * rows * k, rows)
+
+    bits = np.arange(1 << rows, dtype=I32).reshape(-1, 1, 16) >> np.arange(rows, dtype=I32)[:, None]
+    for tables in (bits & 1, numbers(31, I32, 20 * rows * 16).reshape(20, rows, 16)):
+        wanted = np.sort(tables, axis=1)
+        run(tables)
+        assert same(tables, wanted)
 
 
 def test_single_numbers_in_memory():

@@ -7,7 +7,7 @@ import pytest
 
 from tracer.geometry.bvh8.frustum import box_at, boxes_at, entering
 from tracer.geometry.bvh8.packet import MEMORY, fill, lanes_inside, open_vectors
-from tracer.geometry.bvh8.packet_group import frusta_of, group_of, lead_of, reaches_of
+from tracer.geometry.bvh8.packet_group import WIDEST, frusta_of, group_of, lead_of, reaches_of
 from tracer.geometry.bvh8.placed import child_planes
 from tracer.geometry.queries import batch_of
 from tracer.geometry.rays import Rays, ray_batch
@@ -28,11 +28,11 @@ def _refusals(batch, count, boxes, found):
     todo = open_vectors(memory, vectors)
     while todo != 0:
         v = lowest_bit(todo)
-        axis, way, together = lead_of(memory, v)
+        axis, way, together = lead_of(memory, v, WIDEST)
         if not (finite and together):
             todo &= todo - 1
             continue
-        group = group_of(memory, todo, axis, way)
+        group = group_of(memory, todo, axis, way, WIDEST)
         todo &= ~group.vectors
         for n in range(len(boxes)):
             node = address_of(boxes) + 256 * n

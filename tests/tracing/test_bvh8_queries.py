@@ -19,6 +19,7 @@ from tests.tracing.brute8 import meet_all8
 from tests.tracing.random_worlds import END, quickly, scenes
 from tests.tracing.shoals import shoals
 from tests.tracing.worlds import affine, moved, quad, quadrics, random_corners, scene
+from tracer.geometry.queries import batch_of
 from tracer.geometry.rays import Rays
 from tracer.scene.model import CONE, SPHERE
 
@@ -166,6 +167,24 @@ def test_answers_do_not_depend_on_the_company_in_views(bart: Path, name: str, nu
     some = np.random.default_rng(1).integers(0, len(rays.t_min) - 700, 3)
     near = np.concatenate([np.arange(first, first + 700) for first in some])
     assert_alone_or_not(world, chosen(rays, near), chosen(kinds["incoherent"], np.arange(300)), 3)
+
+
+@pytest.mark.parametrize("n", [16, 128, 304])
+def test_rays_without_a_direction_in_common_visit_what_each_would_visit_alone(n: int):
+    """As many nodes are opened and leaves tested for the nearest hits as on the ways of the rays' interpreted twins."""
+    rng = np.random.default_rng(n)
+    world = of_8(scene(random_corners(rng, 3000, 0.08)))
+    origins = rng.normal(size=(n, 3))
+    origins *= 3 / np.linalg.norm(origins, axis=1, keepdims=True)  # outside, where no two boxes begin at the same t
+    rays = tracer.RayBatch(origins, rng.random((n, 3)) - origins)
+    hits = world.closest_hits(rays)
+    batch, counts = batch_of(rays, hits), np.zeros(2, np.int64)
+    world.structure.closest.call(world.placed.data, batch.ctypes.data, 0, n, counts.ctypes.data)
+    ways = [world.visits(rays, i, nearest=True) for i in range(n)]
+    roots = sum(visit.level == 0 for way in ways for visit in way)
+    opened = sum(not visit.leaf for way in ways for visit in way)
+    assert counts.tolist() == [opened - roots + n, sum(visit.leaf for way in ways for visit in way)]
+    assert opened > 2 * n and counts[1] > n
 
 
 @pytest.mark.parametrize("odd", [np.nan, np.inf, -np.inf, 0.0])

@@ -8,6 +8,7 @@ import pytest
 from tracer.geometry.camera import pinhole
 from tracer.kernels import kernel
 from tracer.scene.model import Camera
+from tracer.shading import direction_sort
 from tracer.shading.blocks import all_blocks
 from tracer.shading.direction_sort import sorted_by_direction
 from tracer.shading.primary import primary_wave
@@ -50,8 +51,13 @@ def _columns(memory: np.ndarray, rows: int, n: int) -> np.ndarray:
 def _cells(memory: np.ndarray, n: int) -> np.ndarray:
     """Where points are along a Z curve through the box around them, told anew."""
     points = memory[ORIGIN:DIRECTION, :n] + memory[HIT_T, :n] * memory[DIRECTION : DIRECTION + 3, :n]
+    return _along_a_z_curve(points, CELLS)
+
+
+def _along_a_z_curve(points: np.ndarray, count: int) -> np.ndarray:
+    """Where points (3, n) are along a curve through the box around them, with so many cells along each axis."""
     low, high = points.min(axis=1, keepdims=True), points.max(axis=1, keepdims=True)
-    cells = np.minimum((points - low) * (np.float32(CELLS) / (high - low)), CELLS - 1).astype(np.int64)
+    cells = np.minimum((points - low) * (np.float32(count) / (high - low)), count - 1).astype(np.int64)
     return sum(((cells[axis] >> bit) & 1) << (3 * bit + axis) for axis in range(3) for bit in range(4))
 
 
@@ -77,15 +83,38 @@ def test_a_small_wave_is_left_as_it_is():
     assert np.array_equal(same, before)
 
 
+@pytest.mark.parametrize("rest", [-1.0, np.nan, 3e38])
 @pytest.mark.parametrize("n", [1, 15, 16, 17, 700])
-def test_rays_are_sorted_by_direction_in_the_order_they_had(n: int):
-    memory = _wave(np.random.default_rng(5), n, -1.0)
+def test_rays_are_sorted_by_direction_and_origin_whatever_lies_past_them(n: int, rest: float):
+    memory = _wave(np.random.default_rng(5), n, rest)
     target = np.full_like(memory, np.nan)
     octants = (memory[DIRECTION : DIRECTION + 3, :n] < 0).T @ [1, 2, 4]
     assert _by_direction(memory, n, target) == (len(np.unique(octants)) > 1)
     if n > 1:
-        order = np.argsort(octants, kind="stable")
+        cells = _along_a_z_curve(memory[ORIGIN:DIRECTION, :n], direction_sort.CELLS)
+        assert n < 700 or len(np.unique(cells)) == direction_sort.CELLS**3
+        order = np.lexsort([cells, octants])  # which leaves equal ones in their order
         assert np.array_equal(target[:RAY_ROWS, :n].view(np.int32), memory[:RAY_ROWS, order].view(np.int32))
+
+
+@pytest.mark.parametrize("n", [5, 200])
+def test_rays_of_one_octant_are_left_as_they_are(n: int):
+    memory = _wave(np.random.default_rng(6), n, -1.0)
+    memory[DIRECTION : DIRECTION + 3, :n] = np.abs(memory[DIRECTION : DIRECTION + 3, :n])
+    assert not _by_direction(memory, n, np.zeros_like(memory))
+    memory[DIRECTION, n - 1] *= -1
+    assert _by_direction(memory, n, np.zeros_like(memory))
+
+
+def test_rays_from_one_point_and_from_no_point_are_sorted_by_direction():
+    """A box that has no size, and one that has no numbers, has one cell."""
+    for origin in (3.0, np.nan, np.inf):
+        memory = _wave(np.random.default_rng(7), 300, 0.0)
+        memory[ORIGIN:DIRECTION, :300] = origin
+        target = np.full_like(memory, np.nan)
+        assert _by_direction(memory, 300, target)
+        order = np.argsort((memory[DIRECTION : DIRECTION + 3, :300] < 0).T @ [1, 2, 4], kind="stable")
+        assert np.array_equal(target[:RAY_ROWS, :300].view(np.int32), memory[:RAY_ROWS, order].view(np.int32))
 
 
 @pytest.mark.parametrize("tile", [(0, 0, 64, 64), (64, 0, 65, 3), (0, 64, 37, 65), (5, 6, 22, 70)])

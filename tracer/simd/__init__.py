@@ -9,7 +9,7 @@ like a number; a comparison gives a mask.  What is written is what runs, and rea
 
 - `vectors`: the types, arithmetic, comparison, masks, selection, reduction;
 - `addresses`: memory as integers, loading and storing;
-- `rearranging`: packing lanes, gathering, rows of a table as columns;
+- `rearranging`: packing lanes, gathering, rows of a table as columns, sorting columns;
 - `bits`: counting and finding bits, and numbers as their bits;
 - `functions`: what is made of these, a power or three rows at a time.
 
@@ -50,7 +50,14 @@ from tracer.simd.functions import (
     size_of,
     store_three,
 )
-from tracer.simd.rearranging import gather_f32x16, gather_i32x16, load_columns, load_spread_bytes16, pack
+from tracer.simd.rearranging import (
+    gather_f32x16,
+    gather_i32x16,
+    load_columns,
+    load_spread_bytes16,
+    pack,
+    sort_columns,
+)
 from tracer.simd.vectors import (
     F32x8,
     F32x16,
@@ -138,6 +145,7 @@ __all__ = [
     "select",
     "size_of",
     "smallest",
+    "sort_columns",
     "square_root",
     "prefetch",
     "store",

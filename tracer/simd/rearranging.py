@@ -123,3 +123,39 @@ def load_columns(typingctx, address, numbers, columns):
         return context.make_tuple(builder, sig.return_type, rows)
 
     return types.UniTuple(F32x16, count)(types.int64, types.int64, columns), codegen
+
+
+# The two rows that are put in order, one pair after the other, to sort 8 or 16 with the fewest comparisons known (Knuth
+# 1998, 5.3.4; Dobbelaere's list of sorting networks).
+_SORTING = {
+    8: "02 13 46 57 04 15 26 37 01 23 45 67 24 35 14 36 12 34 56",
+    16: "0d 1c 2f 3e 48 56 7b 9a 05 17 29 34 6d 8e af bc 01 23 45 68 79 ab cd ef 02 13 4a 5b 67 89 ce df 12 3c 46 57 8a"
+    " 9b de 14 26 58 7a 9d be 24 36 9c bd 35 68 79 ac 34 56 78 9a bc 67 89",
+}
+
+
+@operation
+def sort_columns(typingctx, address, rows):
+    """Sort each column of a table at an address, 8 or 16 rows (a literal number) of sixteen int32, the least first."""
+    if not isinstance(rows, types.IntegerLiteral) or rows.literal_value not in _SORTING:
+        return None
+    count = rows.literal_value
+
+    def codegen(context, builder, sig, args):
+        kind = context.get_data_type(I32x16)
+        places = [
+            builder.inttoptr(builder.add(args[0], ir.Constant(_I64, 64 * k)), kind.as_pointer()) for k in range(count)
+        ]
+        x = []
+        for place in places:
+            x.append(builder.load(place))
+            x[-1].align = 4
+        for pair in _SORTING[count].split():
+            i, j = int(pair[0], 16), int(pair[1], 16)
+            less = builder.icmp_signed("<", x[i], x[j])
+            x[i], x[j] = builder.select(less, x[i], x[j]), builder.select(less, x[j], x[i])
+        for place, value in zip(places, x, strict=True):
+            builder.store(value, place).align = 4
+        return context.get_dummy_value()
+
+    return types.void(types.int64, rows), codegen

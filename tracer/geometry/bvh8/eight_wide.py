@@ -15,17 +15,22 @@ from tracer.geometry.bvh8.packet import (
     IX,
     IY,
     IZ,
+    NUMBER,
     OX,
     OY,
     OZ,
     ROW,
     T_MIN,
+    T,
+    U,
+    V,
 )
 from tracer.geometry.bvh8.packet_tree import code_of
 from tracer.geometry.bvh8.placed import NUMBERS, block_planes, triangles_of
 from tracer.geometry.intersect import hit_quadric
 from tracer.geometry.rays import MISS, Ray
 from tracer.geometry.triangle_test import ZERO, crossing, terms_of
+from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
     any_lane,
@@ -43,6 +48,7 @@ from tracer.simd import (
     minimum,
     select,
     smallest,
+    store,
 )
 
 NOBODY = np.int32(0x7FFFFFFF)
@@ -102,6 +108,20 @@ def children_of(node, r, far):
 
 
 @inlined
+def children_at(node, a):
+    """As `children_of`, for one ray and one node, the ray from its column in a packet's memory: to test both planes
+    takes less time than to find out from the direction which of them comes first."""
+    ox, oy, oz = load_f32(a + OX * ROW), load_f32(a + OY * ROW), load_f32(a + OZ * ROW)
+    ix, iy, iz = load_f32(a + IX * ROW), load_f32(a + IY * ROW), load_f32(a + IZ * ROW)
+    ax, bx = (load_f32x8(node) - ox) * ix, (load_f32x8(node + 96) - ox) * ix
+    ay, by = (load_f32x8(node + 32) - oy) * iy, (load_f32x8(node + 128) - oy) * iy
+    az, bz = (load_f32x8(node + 64) - oz) * iz, (load_f32x8(node + 160) - oz) * iz
+    enter = maximum(maximum(minimum(ax, bx), minimum(ay, by)), maximum(minimum(az, bz), load_f32(a + T_MIN * ROW)))
+    leave = minimum(minimum(maximum(ax, bx), maximum(ay, by)), minimum(maximum(az, bz), load_f32(a + T * ROW)))
+    return enter, leave
+
+
+@inlined
 def _inside_block(block, r, t):
     """Mask of those of eight t that lie where a ray is in a block's box."""
     x0, y0, z0, x1, y1, z1 = block_planes(block)
@@ -125,22 +145,31 @@ def _first_lane(block, t, bits):
 
 
 @inlined
-def nearest_in_block(block, r, best):
-    """The nearer of `best` and the nearest hit on a block's triangles."""
+def _replace(a, value, mask):
+    """Write an int32 to an address where a mask is -1; where it is 0, write what was there."""
+    old = load_i32(a)
+    store(a, np.int32(old ^ ((old ^ value) & mask)))
+
+
+@inlined
+def nearest_in_block(block, a):
+    """Test a ray with a block's triangles and keep the nearest hit in its column, the address of which is a.
+
+    Whether there is one nobody can predict, and so it is no branch."""
+    r, far = single_ray_at(a), load_f32(a + T * ROW)
     m = terms_of(r.ox, r.oy, r.oz, triangles_of(block))
     crosses, sign, u, v, area = crossing(r.dx, r.dy, r.dz, m)
-    if not any_lane(crosses):
-        return best
     scale = np.float32(1) / area
     t = as_f32(as_i32(m.height) ^ sign) * scale
-    bits = bits_of(crosses & (t > r.t_min) & (t <= best.t) & _inside_block(block, r, t))
-    if bits == 0:
-        return best
-    lane = _first_lane(block, t, bits)
+    bits = bits_of(crosses & (t > r.t_min) & (t <= far) & _inside_block(block, r, t))
+    lane = _first_lane(block, t, bits) & (WIDTH - 1)
     nearest, number = lane_of(t, lane), load_i32(block + NUMBERS + 4 * lane)
-    if nearest == best.t and number >= best.number:
-        return best
-    return Best(nearest, number, lane_of(u * scale, lane), lane_of(v * scale, lane))
+    first = np.int64(nearest == far) & np.int64(number < load_i32(a + NUMBER * ROW))
+    nearer = np.int32(-(np.int64(bits != 0) & (np.int64(nearest < far) | first)))
+    _replace(a + T * ROW, as_i32(nearest), nearer)
+    _replace(a + NUMBER * ROW, number, nearer)
+    _replace(a + U * ROW, as_i32(lane_of(u * scale, lane)), nearer)
+    _replace(a + V * ROW, as_i32(lane_of(v * scale, lane)), nearer)
 
 
 @inlined

@@ -1,8 +1,9 @@
 """The two queries on a placed world: batches are cut into packets, and a packet is traced together or ray by ray.
 
 The rays of a packet lie in vectors of sixteen.  Vectors whose rays head the same way go through the trees together, as
-one group (`packet_tree`); the rays of the others go one by one (`single_ray`).  The directions decide which.  A ray's
-answer does not depend on the company it travels in, so that only time is at stake.
+one group (`packet_tree`).  Each ray of the others goes its own way, for the nearest hits all at the same time
+(`stream`), for any one after the other (`single_ray`).  The directions decide which.  A ray's answer does not depend on
+the company it travels in, so that only time is at stake.
 """
 
 from __future__ import annotations
@@ -18,10 +19,11 @@ from tracer.geometry.bvh8.packet import (
     mark_static,
     open_vectors,
 )
-from tracer.geometry.bvh8.packet_group import group_of, lead_of
+from tracer.geometry.bvh8.packet_group import WIDEST, WIDEST_NEAREST, group_of, lead_of
 from tracer.geometry.bvh8.packet_tree import STACK, any_in_tree, closest_in_tree
 from tracer.geometry.bvh8.placed import MOVING_TREE, TREES, tree_of, trees_asked
-from tracer.geometry.bvh8.single_ray import SINGLE_MEMORY, any_one_by_one, closest_one_by_one
+from tracer.geometry.bvh8.single_ray import ROOM, SINGLE_MEMORY, any_one_by_one
+from tracer.geometry.bvh8.stream import STREAM_MEMORY, closest_in_stream
 from tracer.geometry.queries import WHICH
 from tracer.kernels import entry, inlined
 from tracer.simd import i64_at, load_i64, local_memory, lowest_bit, store
@@ -55,8 +57,8 @@ def _trace(data, batch, first, last, counts, nearest):
 
     `nearest` is a constant, so that either query is compiled without the other."""
     memory, stack, count = local_memory(MEMORY), local_memory(STACK), i64_at(counts)
-    single_stack = local_memory(SINGLE_MEMORY) + SINGLE_MEMORY - STACK
-    which = load_i64(batch + WHICH)
+    stream = local_memory(STREAM_MEMORY) if nearest else local_memory(SINGLE_MEMORY)
+    which, widest = load_i64(batch + WHICH), WIDEST_NEAREST if nearest else WIDEST
     trees = load_i64(data + TREES) if nearest else trees_asked(data, which)
     occluders = local_memory(24)  # the last block met in each tree; block 0 is empty
     for number in range(3):
@@ -65,20 +67,20 @@ def _trace(data, batch, first, last, counts, nearest):
         # Read the packet, and see which of its vectors hold a ray to trace.
         n = min(PACKET, last - start)
         vectors, low, high, finite = fill(memory, batch, start, n)
-        todo = open_vectors(memory, vectors)
+        todo, apart = open_vectors(memory, vectors), np.int64(0)
         while todo != 0:
-            # Trace the rays of the first vector one by one where they have no direction in common.
+            # Leave the first vector for later, or trace its rays one by one, if they have no direction in common.
             v = lowest_bit(todo)
-            axis, way, together = lead_of(memory, v)
+            axis, way, together = lead_of(memory, v, widest)
             if not (finite and together):
                 if nearest:
-                    closest_one_by_one(memory, v, data, single_stack, count)
+                    apart |= np.int64(1) << v
                 else:
-                    any_one_by_one(memory, v, data, which, single_stack, count)
+                    any_one_by_one(memory, v, data, which, stream + ROOM, count)
                 todo &= todo - 1
                 continue
             # Send it through each tree, with all vectors that go the same way.
-            group = group_of(memory, todo, axis, way)
+            group = group_of(memory, todo, axis, way, widest)
             rest = trees
             while rest != 0:
                 number = lowest_bit(rest)
@@ -93,6 +95,8 @@ def _trace(data, batch, first, last, counts, nearest):
                     if number != MOVING_TREE:
                         mark_static(memory, group.vectors)
             todo &= ~group.vectors
+        if nearest and apart != 0:
+            closest_in_stream(memory, apart, data, stream, count)
         # Write the answers.
         if nearest:
             keep_hits(memory, batch, start, n)
