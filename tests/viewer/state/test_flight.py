@@ -19,7 +19,7 @@ def stop(x: float, z: float, time: float = 0.0, direction: tuple[float, float, f
 def test_the_frames_of_a_path_know_how_many_come_before() -> None:
     scene = make_scene(frames=11)
     takes = along_path(scene, 3, 6)
-    assert takes == [Take(scene.frame_time(3 + i), None, i) for i in range(4)]
+    assert takes == [Take(scene.frame_time(3 + i), None, i, 3 + i) for i in range(4)]
     resampled = along_path(scene, 0, 10, 5)
     assert [take.time for take in resampled] == [0.0, 2.5, 5.0, 7.5, 10.0]
     assert {take.warmup for take in resampled} == {None}
