@@ -14,7 +14,7 @@ from tracer.settings import Settings
 from tracer.statistics import FrameStatistics
 
 
-@dataclass
+@dataclass(eq=False)  # arrays cannot be compared as one
 class Frame:
     """One picture, and what was found out about it.
 

@@ -31,7 +31,7 @@ class RayKind(Enum):
     REFRACTED = "refracted"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
 class ShadowRays:
     """The shadow rays of a point, s of them: one for each sample of each light, due or not.
 
@@ -94,7 +94,7 @@ def counted(verdicts: NDArray[np.uint8]) -> Counter[Verdict]:
     return Counter({verdict: int(n) for verdict, n in zip(VERDICTS, numbers) if n})
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
 class PathRay:
     """A primary, reflected or refracted ray.
 
@@ -121,7 +121,7 @@ class PathRay:
     shadows: ShadowRays | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
 class RayTree:
     """The rays of pixel (x, y) of a frame, and `samples` (s, 3), where the lights' samples are."""
 

@@ -94,6 +94,7 @@ EDITS = (
             ("certified/beams", 12, "STEPS", "1"),
             ("certified/asking_lamps", 4, "TESTS", "ones(open_)"),
             ("certified/asking_lamps", 8, "TESTS", "ones(lanes_below(found, batch))"),
+            ("certified/hiders", 8, "TESTS", "1"),
             ("regions/certify", 16, "STEPS", "1"),
             ("regions/certify", 16, "TESTS", "1"),
             ("regions/certify", 8, "TESTS", "1"),

@@ -8,7 +8,7 @@ import pytest
 import tracer
 from tests.sweeps import cases
 from tests.tracing.worlds import scene
-from tracer.culling.certified.prepared_triangles import PREPARED, Lamp, prepare
+from tracer.culling.certified.prepared_triangles import PREPARED, Lamp, prepare_in_tree
 from tracer.culling.certified.seen_by_lamp import (
     KEPT,
     MOST_SAMPLES,
@@ -39,7 +39,7 @@ def masks(o, samples, light, radius, ends, one_by_one, blocked, unsure, told):
     made, kept = local_memory(PREPARED), local_memory(KEPT)
     groups = put_samples(samples, 0, len(samples), light, room)
     lamp = Lamp(0, (light[0], light[1], light[2]), radius, groups)
-    prepare(o, lamp, address_of(numbers), made)
+    prepare_in_tree(o, lamp, address_of(numbers), made)
     if one_by_one:
         told[:] = 0
         for lane in range(LANES):

@@ -24,6 +24,7 @@ from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import exports
 from viewer.output.reports import LINES, WRONG, frames_in_words
+from viewer.util.messages import printable
 
 
 def bench(path: Path, options: Namespace) -> bool:
@@ -129,7 +130,9 @@ def frame_range(text: str | None, count: int) -> range:
 def _table(results: Results, verified: bool) -> Table:
     """A column per method, so that it fits terminals of 80 columns."""
     width, height = results.size
-    title = f"Work of shadow rays\n{Path(results.scene).name}, {width} × {height}, {frames_in_words(results)}"
+    title = (
+        f"Work of shadow rays\n{printable(Path(results.scene).name)}, {width} × {height}, {frames_in_words(results)}"
+    )
     table = Table(title=title, title_justify="left", title_style="bold", caption_justify="left")
     rows = experiment.table(results)
     table.add_column("")

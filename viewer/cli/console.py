@@ -106,7 +106,8 @@ def print_table(table: Table) -> None:
     console = Console(width=console.width if console.is_terminal else 100)
     title, table.title = table.title, None
     if title is not None:
-        console.print(Text(printable(title), str(table.title_style or "")), soft_wrap=True)
+        for line in str(title).split("\n"):
+            console.print(Text(printable(line), str(table.title_style or "")), soft_wrap=True)
     console.print(table)
 
 

@@ -31,7 +31,7 @@ Key = tuple[int | str, ...]
 Fate = tuple[int, int, str, int, str]  # verdict, lit, what blocks it, wrong, what was known
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
 class Row:
     """`ray` is the path ray it is about, and `places` are the shadow rays of that which it stands for, none for the
     path ray itself; `tip` says more about it."""

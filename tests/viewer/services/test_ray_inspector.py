@@ -62,6 +62,26 @@ def test_the_tree_is_of_the_newest_picture_and_keeps_what_is_selected(desk: Desk
     assert rays.tree is not None, "out of sight it is what it was"
 
 
+def test_rays_and_steps_follow_an_edit_of_the_scene(desk: Desk) -> None:
+    """The picture before and the one after are of the same time, camera and settings."""
+    rays, c = looked_at(desk), desk.c
+    c.selection.select(middle(desk))
+    desk.until(lambda: rays.tree is not None)
+    rays.select(rays.seen[1][1])
+    desk.until(lambda: rays.walked)
+    first, drawn = rays.tree, rays.lines(c.frame)
+    assert drawn and rays.lines(c.frame) is drawn
+    c.editing.switch(0, False)
+    desk.until(lambda: rays.tree is not None and rays.tree is not first)
+    desk.rest()
+    assert len(rays.lines(c.frame)) < len(drawn), "a light less shines on it"
+    c.undo.undo()
+    desk.rest()
+    assert len(rays.lines(c.frame)) == len(drawn)
+    again = replace(first, frame=replace(first.frame, color=first.frame.color.copy()))
+    assert (again, again.frame) != (first, first.frame), "arrays alone cannot be compared as one"
+
+
 def test_steps_lead_through_both_structures(desk: Desk) -> None:
     rays = looked_at(desk)
     desk.c.selection.select(middle(desk))
