@@ -109,9 +109,13 @@ def named(side: Side, other: Side | None) -> str:
 
 
 def sizes_in_words(a: Frame, b: Frame) -> str:
-    """What becomes of sizes that differ; empty where they do not."""
+    """What becomes of sizes, or samples, that differ; empty where they do not."""
     if a.primitive.shape == b.primitive.shape:
-        return ""
+        samples = a.settings.samples, b.settings.samples
+        if samples[0] == samples[1]:
+            return ""
+        had = f"{samples[0]} sample{'s' * (samples[0] != 1)}"
+        return f"A has {had} a pixel, B {samples[1]}: edges differ by that. Keep A again at as many."
     stretched = ""
     if abs(a.width * b.height - b.width * a.height) > max(a.width, b.width, a.height, b.height):
         stretched = ", stretched"

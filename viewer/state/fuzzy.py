@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from difflib import SequenceMatcher
 from itertools import pairwise
 
+_EXACT = 25.0  # for a text that is no more than what was typed
 _WHOLE, _PREFIX, _INITIALS, _INSIDE, _SCATTERED = 100.0, 80.0, 60.0, 50.0, 20.0
 _ALIKE = 0.7  # of a mistyped word, at least
 
@@ -32,6 +33,7 @@ def match(typed: str, text: str, also: str = "") -> Match | None:
         if elsewhere is None or elsewhere.score < _INSIDE:
             return None
         score += 0.4 * elsewhere.score
+    score += _EXACT if " ".join(typed.lower().split()) == lower else 0.0
     return Match(score - 0.1 * len(text), tuple(sorted(places)))
 
 

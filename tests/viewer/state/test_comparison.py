@@ -64,6 +64,8 @@ def test_modes_differ_or_do_not_and_what_hits_nothing_differs_without_end():
 def test_sizes_that_differ_are_told_and_the_nearest_pixel_counts():
     a, b = make_frame(Settings(width=16, height=8)), make_frame(Settings(width=32, height=16))
     assert sizes_in_words(a, a) == ""
+    more = make_frame(replace(a.settings, samples=16))
+    assert sizes_in_words(a, more).startswith("A has 1 sample a pixel, B 16: edges differ by that.")
     assert sizes_in_words(a, b) == "A has 16 x 8 pixels, B 32 x 16: A is shown in B's size."
     assert sizes_in_words(make_frame(Settings(width=16, height=16)), b).endswith("size, stretched.")
     numbers = np.arange(6).reshape(2, 3)

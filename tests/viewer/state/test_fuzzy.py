@@ -38,6 +38,7 @@ def test_places_are_those_of_the_letters():
 def test_words_elsewhere_count_for_less_and_a_whole_word_for_most():
     assert match("view", "Colour", "View").score < match("view", "Next view").score
     assert match("light", "Light theme").score > match("light", "Lighter").score
+    assert match("default", "default").score > match("default", "Default layout").score + 19.0, "the name itself"
     assert match("vw", "Colour", "View") is None, "elsewhere words are meant as they are"
 
 

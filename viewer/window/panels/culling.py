@@ -120,4 +120,5 @@ def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
         return f"{answers} ({percent(shadow.wrong, shadow.due)})", ERROR
     if not any((shadow.culled, shadow.candidates_only, shadow.dynamic_only, shadow.cache_hits, shadow.passed_over)):
         return "nothing culled", QUIET
-    return "no wrong answer", GOOD
+    samples = c.frame.settings.samples
+    return "no wrong answer" + (f" in the first of {samples} samples a pixel" if samples > 1 else ""), GOOD

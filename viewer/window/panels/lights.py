@@ -153,7 +153,9 @@ def _color(index: int, light: Light) -> None:
     strongest = max(*light.color, 1e-9)
     red, green, blue = (channel / strongest for channel in light.color)
     side = imgui.get_text_line_height()
+    imgui.push_style_var(imgui.StyleVar_.frame_border_size, 1.0)  # white ones are seen on white
     imgui.color_button(f"##light{index}", (red, green, blue, 1.0), int(imgui.ColorEditFlags_.no_tooltip), (side, side))
+    imgui.pop_style_var()
 
 
 def _remarks(index: int, light: Light) -> str:

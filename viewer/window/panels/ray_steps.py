@@ -18,8 +18,8 @@ from viewer.window.widgets import QUIET, clipped, em, fitted, paragraph, swatch,
 _COLUMNS = {  # with their widths in ems, 0 for what is left, and what they are
     "": (1.7, "click a step to go to it"),
     "node": (5.4, "the node's number in its tree; leaves hold the primitives"),
-    "enters": (3.0, "how far from {origin} the ray enters the node's box"),
-    "leaves": (3.0, "how far from {origin} it leaves the box"),
+    "enters": (4.6, "how far from {origin} the ray enters the node's box"),
+    "leaves": (4.6, "how far from {origin} it leaves the box"),
     "tests": (2.6, "primitives that the ray is tested against there"),
     "hits": (0.0, "what it hits there, and how far from {origin}"),
 }
