@@ -9,8 +9,7 @@ SHELL := /bin/bash
 PYTHON ?=
 ARGS ?=
 RUN := .venv/bin/python
-# A process more than there are cores, as a test of the window waits for it now and then.
-PARALLEL := -n $(shell cores=$$(getconf _NPROCESSORS_ONLN); echo $$((cores < 4 ? cores + 1 : 4))) --dist worksteal
+PARALLEL := -n auto --maxprocesses 4 --dist worksteal
 QUICK := tests/test_house.py tests/test_golden.py tests/scene \
     $(addprefix tests/viewer/,cli/test_cli.py output/test_legend.py state services window) \
     $(addprefix tests/tracing/test_,culling.py modes.py pictures.py intersect.py traversal.py waves.py zoom.py) \
