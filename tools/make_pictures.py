@@ -87,6 +87,7 @@ def still(d: Driver) -> None:
     d.c.settings.change(samples=SAMPLES)
     d.wait(lambda: d.c.frame.settings.samples == SAMPLES, "all samples")
     d.c.selection.select(CLICKED)
+    d.wait(lambda: d.c.inspector.answer is not None, "the pixel's shadow rays")
     d.settle()
     Image.fromarray(d.window()).save(FOLDER / "viewer.png", optimize=True)
 
