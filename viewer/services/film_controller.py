@@ -23,7 +23,7 @@ from viewer.services.runs import LONGEST_SIDE, Run
 from viewer.state import flight
 from viewer.state.flight import Stop, Take
 from viewer.state.notices import Notices
-from viewer.state.plans import FilmPlan
+from viewer.state.plans import FilmPlan, frames_within
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session, Snapshot
 from viewer.state.views import View
@@ -61,9 +61,6 @@ class FilmRun(Run[int]):
         for _ in filming.shoot(own, self.script, cancelled, on_frame):
             yield self.traced
 
-    def _copy(self, results: int) -> int:
-        return results
-
     def write(self, results: int, path: Path) -> None:
         raise ValueError("a film is written as it is traced")
 
@@ -89,9 +86,8 @@ class FilmController:
     @property
     def frames(self) -> tuple[int, int]:
         """The first and the last frame of the path that are to be filmed, of those that there are."""
-        last = self._session.scene.frames - 1 if self._session.scene is not None else 0
-        first = min(max(self.plan.first, 0), last)
-        return first, last if self.plan.last is None else min(max(self.plan.last, first), last)
+        scene = self._session.scene
+        return frames_within(self.plan.first, self.plan.last, scene.frames if scene is not None else 1)
 
     @property
     def count(self) -> int:

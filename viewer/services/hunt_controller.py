@@ -22,7 +22,7 @@ from viewer.services.time_travel import Goal, TimeTravel, pasts
 from viewer.state import flight, zooming
 from viewer.state.edits import as_options
 from viewer.state.notices import Notices
-from viewer.state.plans import HuntPlan
+from viewer.state.plans import HuntPlan, frames_within
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session, settings_to_json
 from viewer.state.views import View
@@ -91,9 +91,6 @@ class FigureRun(Run[Path]):
         self.traced = self.frames
         yield path
 
-    def _copy(self, results: Path) -> Path:
-        return results
-
     def write(self, results: Path, path: Path) -> None:
         raise ValueError("a figure is written when it is traced")
 
@@ -121,9 +118,8 @@ class HuntController:
     @property
     def frames(self) -> tuple[int, int]:
         """The first and the last frame of the path that are to be searched, of those that there are."""
-        last = self._session.scene.frames - 1 if self._session.scene is not None else 0
-        first = min(max(self.plan.first, 0), last)
-        return first, last if self.plan.last is None else min(max(self.plan.last, first), last)
+        scene = self._session.scene
+        return frames_within(self.plan.first, self.plan.last, scene.frames if scene is not None else 1)
 
     @property
     def found(self) -> Findings | None:

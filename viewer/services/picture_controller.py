@@ -80,9 +80,6 @@ class PictureRun(Run[Path]):
         self.traced = self.frames
         yield path
 
-    def _copy(self, results: Path) -> Path:
-        return results
-
     def write(self, results: Path, path: Path) -> None:
         raise ValueError("a picture is written when it is traced")
 

@@ -77,9 +77,6 @@ class Replay(Run[int]):
             self._count("nothing comes before it")
             yield 0
 
-    def _copy(self, results: int) -> int:
-        return results
-
     def write(self, results: int, path: Path) -> None:
         raise ValueError("a replay has nothing to save")
 

@@ -171,8 +171,9 @@ class Run(ABC, Generic[Results]):
     @abstractmethod
     def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[Results]: ...
 
-    @abstractmethod
-    def _copy(self, results: Results) -> Results: ...
+    def _copy(self, results: Results) -> Results:
+        """Results that nothing changes any more; as they are where nothing does."""
+        return results
 
     @abstractmethod
     def write(self, results: Results, path: Path) -> None:

@@ -30,6 +30,13 @@ class ZoomPlan:
     same_start: bool = False
 
 
+def frames_within(first: int, last: int | None, count: int) -> tuple[int, int]:
+    """The first and the last frame of a plan, its end where `last` is None, of a path of `count` frames."""
+    end = count - 1
+    first = min(max(first, 0), end)
+    return first, end if last is None else min(max(last, first), end)
+
+
 @dataclass
 class FilmPlan:
     """What to film: the frames `first` to `last` of the path, to its end where that is None, with the scene's camera or
