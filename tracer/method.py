@@ -24,7 +24,8 @@ class Kind:
     `uses_modes`: it culls by the modes of the paper, and keeps
     them in any case.  `uses_cells`: its modes belong to cells of large primitives.  `has_certificates`: it makes
     certificates, or may make some.  `adaptive`: it chooses by itself whether to cull.  `measures`: it serves
-    measurements only and is not offered in the window.
+    measurements only and is not offered in the window.  `addition`: it can be added to a base; `alone`: and be the base
+    itself, with nothing below it.
     """
 
     name: str
@@ -38,6 +39,7 @@ class Kind:
     adaptive: bool = False
     measures: bool = False
     addition: bool = False
+    alone: bool = False
 
     def load(self) -> Any:
         """The class that implements it."""
@@ -67,12 +69,16 @@ def unregister(name: str) -> None:
 
 def bases(measures: bool = False) -> tuple[Kind, ...]:
     """All bases, in the order of menus; with those that only measure, where asked for."""
-    return tuple(kind for kind in _KINDS.values() if not kind.addition and (measures or not kind.measures))
+    return tuple(kind for kind in _KINDS.values() if _can_be_base(kind) and (measures or not kind.measures))
 
 
-def additions() -> tuple[Kind, ...]:
-    """All that can be added to a base."""
-    return tuple(kind for kind in _KINDS.values() if kind.addition)
+def additions(base: str = "") -> tuple[Kind, ...]:
+    """All that can be added to a base: all but itself."""
+    return tuple(kind for kind in _KINDS.values() if kind.addition and kind.name != base)
+
+
+def _can_be_base(kind: Kind | None) -> bool:
+    return kind is not None and (kind.alone or not kind.addition)
 
 
 def choice() -> str:
@@ -94,8 +100,8 @@ class Method:
         """The method of a name.  Raises ValueError, in one line, where there is none."""
         base, *extras = name.split("+")
         kind, added = _KINDS.get(base), tuple(_KINDS.get(extra) for extra in extras)
-        known = kind is not None and not kind.addition
-        if not known or len(set(extras)) < len(extras) or not all(extra and extra.addition for extra in added):
+        repeated = len({base, *extras}) <= len(extras)
+        if not _can_be_base(kind) or repeated or not all(extra and extra.addition for extra in added):
             raise ValueError(f"method is {choice()}, not {name!r}")
         return Method(_KINDS[base], tuple(_KINDS[extra] for extra in extras))
 

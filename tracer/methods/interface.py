@@ -29,13 +29,13 @@ from tracer.culling.rest import Resting
 from tracer.culling.stages import COLUMNS, Stages
 from tracer.culling.verdicts import Answered, Because, Verdict
 from tracer.geometry.camera import Pinhole
-from tracer.geometry.world import World
 from tracer.kernels import Entry
 from tracer.shading.buffers import Buffers
 from tracer.shading.shading_data import ShadingData
 from tracer.simd.records import pack
 
 if TYPE_CHECKING:
+    from tracer.geometry.world import World
     from tracer.settings import Settings
     from tracer.statistics import FrameStatistics
 

@@ -36,7 +36,7 @@ def is_method(name: str) -> bool:
 
 
 def with_base(method: str, base: str) -> str:
-    """The method with another base and the same additions."""
+    """The method with another base and the same additions, but what is the base now."""
     return _named(base, Method.parse(method).additions)
 
 
@@ -60,4 +60,4 @@ def in_order(methods: Iterable[str]) -> list[str]:
 def _named(base: str, chosen: Iterable[str]) -> str:
     """The name of a method with these additions, in their usual order."""
     wanted = set(chosen)
-    return "+".join([base, *(kind.name for kind in additions() if kind.name in wanted)])
+    return "+".join([base, *(kind.name for kind in additions(base) if kind.name in wanted)])
