@@ -43,8 +43,8 @@ class Settings:
     threads : int
         Threads that work at once; 0 for one on each core.
     accelerator : str
-        "bvh8", the fast structure, which counts steps and tests for whole packets of rays, or "kdtree", the paper's,
-        which counts them ray by ray.
+        "bvh8", the fast structure, which counts steps and tests for whole packets of rays; "kdtree", the paper's, which
+        counts them ray by ray; or "kdtree-lazy", one kd-tree over everything, which is built where rays arrive.
     record_lights : bool
         Fill `Frame.due` and `Frame.lit`.
     record_work : bool

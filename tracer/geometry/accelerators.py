@@ -2,5 +2,10 @@
 
 from __future__ import annotations
 
-KD_TREE, BVH8 = "kdtree", "bvh8"  # the paper's, whose steps are counted; 8-wide nodes and packets of rays
-ACCELERATORS = (KD_TREE, BVH8)
+KD_TREE, LAZY, BVH8 = "kdtree", "kdtree-lazy", "bvh8"
+ACCELERATORS = (KD_TREE, LAZY, BVH8)
+ABOUT = {  # in words, for menus and help
+    KD_TREE: "the paper's kd-tree, whose steps and tests are counted ray by ray",
+    LAZY: "one kd-tree over everything, built where rays arrive",
+    BVH8: "the fast 8-wide trees, with packets of rays",
+}

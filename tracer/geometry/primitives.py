@@ -92,6 +92,7 @@ class Primitives:
         self.attributes = attribute_rows(scene, self.triangles, self.object_of)
         self.normals = self.attributes[: len(corners), CORNER_NORMALS:FACE_NORMAL]
         self.deformations = {i: o.deformation for i, o in enumerate(objects) if o.deformation is not None}
+        self._parts = [o.part_of for o in objects]
         self.boxes = np.array([self._box(i, o) for i, o in enumerate(objects)])
 
     def _box(self, index: int, one: SceneObject) -> Float64:
@@ -111,6 +112,21 @@ class Primitives:
     def quadrics_of(self, index: int) -> slice:
         """The rows of an object\'s quadrics, counted from the first quadric on."""
         return slice(int(self.quadric_starts[index]), int(self.quadric_starts[index + 1]))
+
+    def pieces_of(self, index: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Where runs of an object's primitives begin that are of one piece of a file, and how many are in each."""
+        part_of, starts, sizes = self._parts[index], [], []
+        triangles, quadrics = self.triangles_of(index), self.quadrics_of(index)
+        count = triangles.stop - triangles.start
+        for first, n, skipped in (
+            (triangles.start, count, 0),
+            (len(self.triangles) + quadrics.start, quadrics.stop - quadrics.start, count),
+        ):
+            parts = np.zeros(n, np.int32) if part_of is None else part_of[skipped : skipped + n]
+            begin = np.flatnonzero(np.diff(parts, prepend=-1)) if n else np.empty(0, np.int64)
+            starts.append(first + begin)
+            sizes.append(np.diff(begin, append=n))
+        return np.concatenate(starts), np.concatenate(sizes)
 
     def corners_of(self, index: int) -> Float32:
         """Corners (n, 3, 3) of a dynamic object's triangles, as they are now; a view."""

@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.accelerators import ACCELERATORS, BVH8, KD_TREE
+from tracer.geometry.accelerators import ACCELERATORS, BVH8, KD_TREE, LAZY
 from tracer.geometry.boxes import NO_BOX
 from tracer.geometry.bvh8.structure import Bvh8
 from tracer.geometry.kdtree.structure import KdTree
+from tracer.geometry.lazy_tree.structure import LazyKdTree
 from tracer.geometry.poses import Poses, poses_at
 from tracer.geometry.primitives import Outlines, Primitives, WorldTriangles
 from tracer.geometry.queries import EVERYTHING, batch_of
@@ -30,7 +31,7 @@ from tracer.scene.model import Cancelled, Progress, Scene
 CHUNK = 8192  # rays a thread takes at a time
 EACH = 1024  # rays, traced alone, after which somebody may cancel
 
-STRUCTURES: dict[str, Any] = {KD_TREE: KdTree, BVH8: Bvh8}
+STRUCTURES: dict[str, Any] = {KD_TREE: KdTree, LAZY: LazyKdTree, BVH8: Bvh8}
 
 
 class World:
@@ -45,7 +46,7 @@ class World:
     time : float
         The moment to begin with, in seconds.
     accelerator : str
-        "bvh8", the fast structure, or "kdtree", the paper's.
+        "bvh8", the fast structure; "kdtree", the paper's; or "kdtree-lazy", a kd-tree that is built where rays arrive.
     progress : callable, optional
         Called while trees are built; it may raise Cancelled.
 

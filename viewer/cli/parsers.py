@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
+from tracer.geometry.accelerators import ACCELERATORS
 from viewer.cli import examples
 from viewer.cli.argument_types import (
     before,
@@ -193,7 +194,7 @@ def add_tracing_options(parser: Parser, accelerator: str, many_lamps: bool = Fal
     take several kinds of lamps."""
     add = parser.add_argument
     help_ = f"the tree that rays are traced through (default: {accelerator})"
-    add("--accelerator", choices=("kdtree", "bvh8"), default=accelerator, help=help_)
+    add("--accelerator", choices=ACCELERATORS, default=accelerator, help=help_)
     add("--threads", type=count(0, 1024), default=0, metavar="N", help="0, the default: one per core")
     add("--depth", type=count(0, 100), default=10, metavar="D", help="the most bounces (default: 10)")
     add("--symmetric", action="store_true", help="occlusion tests in both directions between neighbouring pixels")

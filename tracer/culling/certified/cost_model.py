@@ -39,7 +39,12 @@ class CostModel(NamedTuple):
 
 
 # Measured on BART's scenes at 960x540, by accelerator.
-COST_MODELS = {"kdtree": CostModel(4, 12, 6, 48, True, 4), "bvh8": CostModel(8, 32, 0, 48, False, 16, 3, 8, 60)}
+_SINGLE_RAYS = CostModel(4, 12, 6, 48, True, 4)
+COST_MODELS = {
+    "kdtree": _SINGLE_RAYS,
+    "kdtree-lazy": _SINGLE_RAYS,
+    "bvh8": CostModel(8, 32, 0, 48, False, 16, 3, 8, 60),
+}
 
 
 def cost_model_for(accelerator: str, bounces: bool) -> CostModel:

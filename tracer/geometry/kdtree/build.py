@@ -27,7 +27,7 @@ SWEEP_BELOW = 48  # references; below it every plane is tried
 
 
 @subkernel
-def _split_cost(box, axis, plane, lower, upper):
+def split_cost(box, axis, plane, lower, upper):
     """Expected cost of a ray in `box` (6,) when split, with so many references on either side."""
     b, c = (axis + 1) % 3, (axis + 2) % 3
     across, along = box[b + 3] - box[b], box[c + 3] - box[c]
@@ -60,7 +60,7 @@ def _best_binned_split(boxes, first, last, box):
             upper -= ends[b - 1]
             plane = np.float64(np.float32(low + b * extent / BINS))
             if low < plane < box[axis + 3]:
-                cost = _split_cost(box, axis, plane, lower, upper)
+                cost = split_cost(box, axis, plane, lower, upper)
                 if cost < best_cost:
                     best_cost, best_axis, best_plane = cost, axis, plane
     return best_cost, best_axis, best_plane
@@ -108,7 +108,7 @@ def _best_swept_split(boxes, first, last, box):
                 lower += flats[flat] == plane
                 flat += 1
             if box[axis] < plane < box[axis + 3]:
-                cost = _split_cost(box, axis, np.float64(plane), lower, n - ended)
+                cost = split_cost(box, axis, np.float64(plane), lower, n - ended)
                 if cost < best_cost:
                     best_cost, best_axis, best_plane = cost, axis, np.float64(plane)
     return best_cost, best_axis, best_plane
@@ -135,7 +135,7 @@ def _clip_below(polygon, n, axis, plane, sign, out):
 
 
 @subkernel
-def _clip_triangle(triangles, i, box, polygon, other, result, row):
+def clip_triangle(triangles, i, box, polygon, other, result, row):
     """Bounds of a triangle's part inside box, into a row of result (n, 6) float32; False where none is left.
 
     Bounds are rounded outwards by more than the clipping errs, and never leave the box.
@@ -172,7 +172,7 @@ def _copy(prims, boxes, first, count, to_prims, to_boxes, to_first):
 
 
 @subkernel
-def _grown(array, used):
+def grown(array, used):
     """A copy of numbers (n,) int32 with twice the room."""
     larger = np.empty(2 * len(array), np.int32)
     for i in range(used):
@@ -196,7 +196,7 @@ def _partition(prims, boxes, first, last, box, axis, plane, triangles, side_prim
         _copy(prims, boxes, i, 1, side_prims, side_boxes, count)
         if low < plane and high > plane:
             side_boxes[count, axis if upper else axis + 3] = plane
-            if prims[i] < len(triangles) and not _clip_triangle(
+            if prims[i] < len(triangles) and not clip_triangle(
                 triangles, prims[i], side, polygon, other, side_boxes, count
             ):
                 continue
@@ -211,8 +211,8 @@ def _best_split(boxes, first, last, box):
     return _best_swept_split(boxes, first, last, box)
 
 
-@kernel
-def _build(boxes, bounds, triangles, control):
+@subkernel
+def build_over(boxes, bounds, triangles, control):
     """Words (2 nodes,) int32 and items of a tree over boxes (n, 6); reference i is triangle i where there is one."""
     n = len(boxes)
     max_depth = min(int(8 + 1.5 * math.log2(max(n, 1))), MAX_DEPTH)
@@ -236,7 +236,7 @@ def _build(boxes, bounds, triangles, control):
             box[k] = todo_box[pending, k]
         first = top - count
         if 2 * node_count == len(words):
-            words = _grown(words, 2 * node_count)
+            words = grown(words, 2 * node_count)
         if parent >= 0:
             words[2 * parent + 1] |= node_count << 2
         node, node_count = node_count, node_count + 1
@@ -251,7 +251,7 @@ def _build(boxes, bounds, triangles, control):
         # Make a leaf where no split pays.
         if lower + upper == 0 or (lower == count and upper == count):
             while item_count + count > len(items):
-                items = _grown(items, item_count)
+                items = grown(items, item_count)
             words[2 * node], words[2 * node + 1] = item_count, count << 2 | LEAF
             for i in range(count):
                 items[item_count + i] = prims[first + i]
@@ -261,7 +261,7 @@ def _build(boxes, bounds, triangles, control):
             continue
         # Push the upper child's references and then the lower child's, which is built next.
         while first + lower + upper > len(prims):
-            prims, old = _grown(prims, first), pool
+            prims, old = grown(prims, first), pool
             pool = np.empty((len(prims), 6), np.float32)
             _copy(prims, old, 0, first, prims, pool, 0)
         _copy(upper_prims, upper_boxes, 0, upper, prims, pool, first)
@@ -276,6 +276,11 @@ def _build(boxes, bounds, triangles, control):
         pending += 2
         words[2 * node], words[2 * node + 1] = float_bits(plane), axis
     return words[: 2 * node_count], items[:item_count]
+
+
+@kernel
+def _build(boxes, bounds, triangles, control):
+    return build_over(boxes, bounds, triangles, control)
 
 
 def bounds_of(boxes: np.ndarray) -> np.ndarray:

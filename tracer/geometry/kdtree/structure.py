@@ -12,37 +12,32 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.boxes import OUTWARDS, transform_boxes, triangle_boxes
+from tracer.geometry.boxes import transform_boxes, triangle_boxes
 from tracer.geometry.building import watched
 from tracer.geometry.kdtree import traverse
 from tracer.geometry.kdtree.build import bounds_of, build_tree
+from tracer.geometry.kdtree.object_space import InObjectSpace
 from tracer.geometry.kdtree.tree import LEAF, Parts, Trees
 from tracer.geometry.kdtree.walk import Walk
 from tracer.geometry.poses import Poses
-from tracer.geometry.primitives import Primitives, WorldTriangles
+from tracer.geometry.primitives import Primitives
 from tracer.geometry.queries import Placed
 from tracer.geometry.rays import Ray
 from tracer.geometry.visits import Visit
-from tracer.scene.arrays import Float32, Float64
+from tracer.scene.arrays import Float32
 from tracer.scene.model import Progress
-
-TRANSFORMED = 8 * 2.0**-24  # of the coordinates: by so much rays are wrong that are transformed to an object's space
-EVEN = (
-    1.1  # an object's axes differ by so much in length at most, or else a little in its space may be much in the world
-)
 
 Tree = tuple[Trees, NDArray[np.float32]]  # with the box around it
 
 
-class KdTree:
+class KdTree(InObjectSpace):
     """See `tracer.geometry.structure`; raises Cancelled if `progress` does while trees are being built."""
 
     closest, any_hit = traverse.closest, traverse.any_hit
-    extent = 0.0  # boxes of dynamic objects are not padded
-    hit_padding = 1e30  # and a hit need not lie in any
 
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
-        self._primitives, self._objects = primitives, objects
+        super().__init__(primitives)
+        self._objects = objects
         self._trees = [self._build(index, progress) for index in range(objects)]
         self._static = self._side_by_side([0])[0]
         self._dynamic, self._roots = self._side_by_side(range(1, objects))
@@ -130,34 +125,6 @@ class KdTree:
             bool(moving.any()),
             moving_box,
         )
-
-    def certain(self, poses: Poses) -> NDArray[np.bool_]:
-        """Those that are not flattened, stretched or sheared.
-
-        What a ray is wrong by in an object's space is more in the world by the ratio of its longest to its shortest
-        axis, and the errors of the triangle test there by its square."""
-        scales = np.linalg.svd(poses.to_world[:, :, :3], compute_uv=False)
-        return scales[:, 0] <= EVEN * scales[:, 2]
-
-    def triangles_of(self, index: int, to_world: Float64) -> WorldTriangles:
-        """The triangles of an object that to_world (3, 4) takes to the world; rays go to its space in float32.
-
-        Blurs and boxes hold of objects that are `certain`."""
-        local = self._primitives.triangles[self._primitives.triangles_of(index)]
-        near = triangle_boxes(local).astype(np.float64)  # a hit lies no further outside than the box is wide
-        near += (near[:, 3:] - near[:, :3]).max(1, initial=0.0)[:, None] * 1.0001 * OUTWARDS
-        if index == 0:
-            return WorldTriangles(local, np.zeros(len(local), np.float32), near.astype(np.float32))
-        linear = to_world[:, :3]
-        world = local.astype(np.float64).reshape(-1, 3, 3) @ linear.T
-        world[:, 0] += to_world[:, 3]
-        scales = np.linalg.svd(linear, compute_uv=False)
-        reach = np.abs(local).max(initial=0.0) * 2 * scales[0]
-        reach += np.abs(to_world[:, 3]).max() + np.abs(world).max(initial=0.0)
-        blurs = np.full(len(local), TRANSFORMED * reach, np.float32)
-        boxes = transform_boxes(near, np.broadcast_to(to_world, (len(local), 3, 4)))
-        boxes = boxes + TRANSFORMED * reach * OUTWARDS
-        return WorldTriangles(world.reshape(-1, 9).astype(np.float32), blurs, boxes.astype(np.float32))
 
     def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
         """The nodes that a ray enters, as `traverse` counts them."""

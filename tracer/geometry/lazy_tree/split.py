@@ -1,0 +1,73 @@
+"""Where a node is split whose references stand for many primitives each, by the surface area heuristic.
+
+A group counts with all its primitives on each side that it reaches to.  Of few references every face is tried, so that
+planes come to lie between pieces of the scene; of many, planes at even distances.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracer.geometry.kdtree.build import BINS, split_cost
+from tracer.kernels import subkernel
+
+FEW = 64  # references; each face of their boxes is tried
+
+
+@subkernel
+def _best_face(boxes, weights, n, box):
+    """(cost, axis, plane) over all faces of boxes (n, 6) in a node's box (6,)."""
+    best_cost, best_axis, best_plane = np.inf, -1, 0.0
+    for axis in range(3):
+        for i in range(2 * n):
+            plane = boxes[i >> 1, axis + 3 * (i & 1)]
+            if not box[axis] < plane < box[axis + 3]:
+                continue
+            lower, upper = np.int64(0), np.int64(0)
+            for j in range(n):
+                low, high = boxes[j, axis], boxes[j, axis + 3]
+                lower += weights[j] if low < plane or low == high == plane else np.int64(0)
+                upper += weights[j] if high > plane else np.int64(0)
+            cost = split_cost(box, axis, np.float64(plane), lower, upper)
+            if cost < best_cost:
+                best_cost, best_axis, best_plane = cost, axis, np.float64(plane)
+    return best_cost, best_axis, best_plane
+
+
+@subkernel
+def _best_bin(boxes, weights, n, box):
+    """(cost, axis, plane) over evenly spaced planes."""
+    best_cost, best_axis, best_plane = np.inf, -1, 0.0
+    starts, ends = np.empty(BINS, np.int64), np.empty(BINS, np.int64)
+    total = np.int64(0)
+    for i in range(n):
+        total += weights[i]
+    for axis in range(3):
+        low, extent = box[axis], box[axis + 3] - box[axis]
+        if not extent > 0.0:
+            continue
+        for b in range(BINS):
+            starts[b], ends[b] = 0, 0
+        scale = BINS / extent
+        for i in range(n):
+            starts[min(max(int((boxes[i, axis] - low) * scale), 0), BINS - 1)] += weights[i]
+            ends[min(max(int((boxes[i, axis + 3] - low) * scale), 0), BINS - 1)] += weights[i]
+        lower, upper = np.int64(0), total
+        for b in range(1, BINS):
+            lower += starts[b - 1]
+            upper -= ends[b - 1]
+            plane = np.float64(np.float32(low + b * extent / BINS))
+            if low < plane < box[axis + 3]:
+                cost = split_cost(box, axis, plane, lower, upper)
+                if cost < best_cost:
+                    best_cost, best_axis, best_plane = cost, axis, plane
+    return best_cost, best_axis, best_plane
+
+
+@subkernel
+def best_split(boxes, weights, n, box):
+    """(cost, axis, plane) of the cheapest split of a node's box (6,) float64 with boxes (n, 6) and weights (n,) int64 in
+    it; infinite, -1 and 0 where there is none."""
+    if n > FEW:
+        return _best_bin(boxes, weights, n, box)
+    return _best_face(boxes, weights, n, box)

@@ -1,0 +1,139 @@
+"""One kd-tree over everything, built where rays arrive (`tracer.geometry.structure`)."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+import weakref
+
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.geometry.boxes import NO_BOX, transform_boxes, union_of
+from tracer.geometry.building import LONG
+from tracer.geometry.kdtree.build import bounds_of
+from tracer.geometry.kdtree.object_space import InObjectSpace
+from tracer.geometry.lazy_tree import traverse
+from tracer.geometry.lazy_tree.build import fell, open_node, plant
+from tracer.geometry.lazy_tree.hierarchy import bounds_of_roots, hierarchy_over
+from tracer.geometry.lazy_tree.references import BYTES, LEFT, NODES
+from tracer.geometry.lazy_tree.upper import raise_over
+from tracer.geometry.lazy_tree.walk import Told, Walk
+from tracer.geometry.poses import Poses
+from tracer.geometry.primitives import Primitives
+from tracer.geometry.queries import Placed
+from tracer.geometry.rays import Ray
+from tracer.geometry.visits import Visit
+from tracer.scene.arrays import Float32
+from tracer.scene.model import Progress
+
+
+def _pause() -> int:
+    """The address of what lets another thread go on; 0 where the system's is not known."""
+    if sys.platform == "win32":
+        return 0
+    yielding = getattr(ctypes.CDLL(None), "sched_yield", None)
+    return (ctypes.cast(yielding, ctypes.c_void_p).value or 0) if yielding is not None else 0
+
+
+PAUSE = _pause()
+
+
+class LazyTree:
+    """The tree of one object in its own space: its root's address, the box (6,) float32 around it, and what is counted
+    while it grows.  Its memory is freed with it."""
+
+    def __init__(self, primitives: Primitives, quadric_boxes: Float32, index: int, touched: NDArray[np.uint8]) -> None:
+        triangles, quadrics = primitives.triangles_of(index), primitives.quadrics_of(index)
+        starts, sizes = primitives.pieces_of(index)
+        self._held = hierarchy = hierarchy_over(primitives.triangles, quadric_boxes, starts, sizes)
+        self.primitives = triangles.stop - triangles.start + quadrics.stop - quadrics.start
+        roots = np.arange(len(hierarchy.boxes) - hierarchy.roots, len(hierarchy.boxes), dtype=np.int32)
+        self.box = bounds_of(bounds_of_roots(hierarchy)) if self.primitives else NO_BOX.copy()
+        arrays = (hierarchy.boxes, hierarchy.first, hierarchy.counts, hierarchy.weights)
+        self._table = np.array(
+            [
+                primitives.triangles.ctypes.data,
+                len(primitives.triangles),
+                quadric_boxes.ctypes.data,
+                len(quadric_boxes),
+                *(a.ctypes.data for a in arrays),
+                len(hierarchy.boxes),
+                touched.ctypes.data,
+                0,
+                0,
+                0,
+            ],
+            np.int64,
+        )
+        self._kept = (primitives.triangles, quadric_boxes, touched)  # whose addresses are in the table
+        box, table = self.box.astype(np.float64), self._table.ctypes.data
+        self.root = plant(box, ~roots, np.ascontiguousarray(hierarchy.boxes[roots]), self.primitives, table)
+        weakref.finalize(self, fell, self.root)
+
+    def counted(self, what: int) -> int:
+        """NODES that are built, primitives LEFT in those that are not, or BYTES."""
+        return int(self._table[what // 8])
+
+
+class LazyKdTree(InObjectSpace):
+    """See `tracer.geometry.structure`.  Nothing but groups is made before rays arrive."""
+
+    closest, any_hit = traverse.closest, traverse.any_hit
+
+    def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
+        super().__init__(primitives)
+        everything = slice(0, len(primitives.quadrics))
+        self._quadric_boxes = primitives.quadric_boxes(everything, primitives.to_object)
+        self._touched = np.zeros(len(primitives.object_of), np.uint8)
+        self._trees = [self._plant(index, progress) for index in range(objects)]
+
+    def _plant(self, index: int, progress: Progress | None = None) -> LazyTree:
+        if progress is not None and index == 0 and len(self._touched) >= LONG:
+            progress("grouping primitives", 0.0)
+        return LazyTree(self._primitives, self._quadric_boxes, index, self._touched)
+
+    def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
+        """Plant the trees of objects that deform anew, and make the upper nodes over the objects that are present."""
+        primitives = self._primitives
+        for index in primitives.deformations:
+            self._trees[index] = self._plant(index)
+        present, moving = poses.present.copy(), poses.present & ~resting
+        present[0] = moving[0] = False
+        objects = np.flatnonzero(present).astype(np.int32)
+        object_boxes = np.stack([tree.box for tree in self._trees])
+        boxes = transform_boxes(object_boxes[objects].astype(np.float64), poses.to_world[objects])
+        boxes = boxes.astype(np.float32)
+        moves = moving[objects]
+        bounds = bounds_of(union_of(np.concatenate([object_boxes[:1], boxes]))[None])
+        root = self._trees[0].root
+        if len(objects):
+            self._upper = raise_over(boxes, objects, moves, bounds.astype(np.float64), root, open_node.address, PAUSE)
+            root = self._upper[0].ctypes.data
+        roots = np.array([tree.root for tree in self._trees], np.int64)
+        to_object, rests = poses.to_object.reshape(-1, 12).astype(np.float32), (present & ~moving).astype(np.uint8)
+        arrays = primitives.triangles, primitives.quadrics
+        self.told = told = Told(*arrays, root, bounds, roots, object_boxes, to_object, rests, bool(moves.any()), PAUSE)
+        addresses = [x.ctypes.data if isinstance(x, np.ndarray) else x for x in told[:8]]
+        count = len(primitives.triangles)
+        self._data = np.array([*addresses, open_node.address, PAUSE, count, told.moves], np.int64)
+        return Placed(
+            primitives.triangles,
+            primitives.quadrics,
+            to_object,
+            primitives.object_of,
+            self.closest.address,
+            self.any_hit.address,
+            self._data.ctypes.data,
+            told.moves,
+            bounds_of(boxes[moves]),
+        )
+
+    def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
+        """The nodes that a ray enters, as `traverse` counts them; those that are not built are built."""
+        return Walk(self.told, poses.to_world, nearest).go(ray, which)
+
+    def bounds(self) -> Float32:
+        """Box (6,) around everything that is there now; inverted for an empty world."""
+        return self.told.bounds

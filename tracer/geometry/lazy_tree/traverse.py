@@ -1,0 +1,292 @@
+"""The two queries on one tree of everything, which is built where rays arrive.
+
+The upper nodes separate what moves from what never does; below them hang what never moves, a tree for all frames, and
+the objects that are there, each with a tree in its own space to which the ray is transformed.  A ray that asks for what
+moves alone stops at nodes below which nothing does (section 2.4 of the paper).  A step is a node entered, inner or
+leaf; a test is a ray against a primitive.  What building costs is neither.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tracer.geometry.boxes import hit_box
+from tracer.geometry.intersect import ZERO, hit_quadric, hit_triangle, transform_ray
+from tracer.geometry.kdtree.tree import STACK_SIZE, Stack, Trees, next_leaf, push
+from tracer.geometry.lazy_tree.build import HEADER
+from tracer.geometry.lazy_tree.node import (
+    AGAIN,
+    FIRST,
+    OBJECTS,
+    SECOND,
+    STACK,
+    SUBTREE,
+    Building,
+    Nodes,
+    next_node,
+    push_node,
+)
+from tracer.geometry.memory import local_float32, local_int32
+from tracer.geometry.queries import (
+    BLOCKED,
+    DYNAMIC_OBJECTS,
+    HIT_PRIMITIVE,
+    HIT_T,
+    HIT_U,
+    HIT_V,
+    OCCLUDER,
+    STATIC_GEOMETRY,
+    STEPS,
+    TESTS,
+    WHICH,
+    rays_of,
+)
+from tracer.geometry.rays import INFINITY, MISS, Ray, ray_at
+from tracer.kernels import entry, inlined, subkernel
+from tracer.simd import f32_at, i32_at, i64_at, load_i64, local_memory, u8_at
+
+SLACK = np.float32(1e-5)  # relative: by so much a ray's interval in an object is wider than in the node that names it
+STACK_BYTES = 8 * STACK
+
+# A placed world as the entries get it, int64 each: addresses of triangles, quadrics, the root of everything and the
+# box around it; of each object's root, int64, its box in its own space, the map there, and whether it rests, uint8;
+# of what builds; the number of triangles; and whether anything moves.
+(
+    TRIANGLES, QUADRICS, ROOT, BOUNDS, OBJECT_ROOTS, OBJECT_BOXES, TO_OBJECT, RESTS, OPEN_NODE, PAUSE, TRIANGLE_COUNT,
+    HAS_MOVING,
+) = range(0, 96, 8)  # fmt: skip
+
+
+class _Search(NamedTuple):
+    """A placed world as pointers, and the memory that the walk of one ray needs."""
+
+    triangles: Any
+    triangle_count: Any
+    quadrics: Any
+    root: Any
+    bounds: Any
+    object_roots: Any
+    object_boxes: Any
+    to_object: Any
+    rests: Any
+    building: Building
+    upper: Nodes
+    lower: Nodes
+    stack: Stack
+    counts: Any
+
+
+class _Best(NamedTuple):
+    """The nearest hit so far."""
+
+    t: Any
+    primitive: Any
+    u: Any
+    v: Any
+
+
+@inlined
+def _search(data, upper, lower, stack, counts):
+    return _Search(
+        f32_at(load_i64(data + TRIANGLES)),
+        load_i64(data + TRIANGLE_COUNT),
+        f32_at(load_i64(data + QUADRICS)),
+        load_i64(data + ROOT),
+        f32_at(load_i64(data + BOUNDS)),
+        i64_at(load_i64(data + OBJECT_ROOTS)),
+        f32_at(load_i64(data + OBJECT_BOXES)),
+        f32_at(load_i64(data + TO_OBJECT)),
+        u8_at(load_i64(data + RESTS)),
+        Building(load_i64(data + OPEN_NODE), load_i64(data + PAUSE)),
+        upper,
+        lower,
+        stack,
+        i64_at(counts),
+    )
+
+
+@inlined
+def _no_hit(t_max):
+    """Nothing hit yet, and only what is nearer than t_max will do."""
+    return _Best(t_max, np.int32(MISS), ZERO, ZERO)
+
+
+@inlined
+def _between(ray, t_min, t_max):
+    return Ray(ray.ox, ray.oy, ray.oz, ray.dx, ray.dy, ray.dz, t_min, t_max)
+
+
+@inlined
+def _hit_primitive(s, ray, primitive):
+    """(t, u, v) of a ray, in the primitive's own space, on a primitive; t = inf for a miss."""
+    if primitive < s.triangle_count:
+        return hit_triangle(ray, s.triangles, primitive)
+    return hit_quadric(ray, s.quadrics, primitive - s.triangle_count), ZERO, ZERO
+
+
+@subkernel
+def _in_subtree(s, node, ray, enter, leave, best, nearest):
+    """The nearer of `best` and the nearest hit in a SUBTREE; or, where not the `nearest` is wanted, the first found.
+
+    Of hits at equal t the one on the lower number is the nearest."""
+    subtree = load_i64(node + FIRST)
+    words = subtree + HEADER
+    trees = Trees(i32_at(words), f32_at(words), i32_at(words + 4 * load_i64(subtree)))
+    pending = push(s.stack, 0, np.int32(0), enter, leave)
+    while pending > 0 and (not nearest or s.stack.enter[pending - 1] <= best.t):
+        leaf = next_leaf(trees, ray, s.stack, pending)
+        pending = leaf.pending
+        s.counts[STEPS] += leaf.steps
+        for i in range(leaf.first, leaf.first + leaf.size):
+            s.counts[TESTS] += 1
+            primitive = trees.items[i]
+            t, u, v = _hit_primitive(s, ray, primitive)
+            if nearest:
+                if t < best.t or (t == best.t and t < INFINITY and primitive < best.primitive):
+                    best = _Best(t, primitive, u, v)
+            elif t < INFINITY:
+                return _Best(t, primitive, u, v)
+    return best
+
+
+@subkernel
+def _in_object(s, o, ray, enter, leave, best, nearest):
+    """As `_in_subtree`, in all of object o; the ray is in its space."""
+    near, far = hit_box(_between(ray, enter, leave), s.object_boxes, o)
+    if near > far:
+        return best
+    pending = push_node(s.lower, 0, s.object_roots[o], near, far)
+    while pending > 0 and (not nearest or s.lower.enter[pending - 1] <= best.t):
+        met = next_node(ray, s.lower, pending, s.building, False)
+        pending = met.pending
+        s.counts[STEPS] += met.steps
+        best = _in_subtree(s, met.node, ray, met.enter, met.leave, best, nearest)
+        if not nearest and best.primitive != MISS:
+            break
+    return best
+
+
+@inlined
+def _local(s, ray, o):
+    return transform_ray(ray, s.to_object, o, 12)
+
+
+@inlined
+def _piece(met):
+    """The interval of a ray in a node of objects: an object that reaches into several is searched piece by piece."""
+    return met.enter - SLACK * abs(met.enter), met.leave + SLACK * abs(met.leave)
+
+
+@inlined
+def _put_off(s, met, pending):
+    """Leave the objects of a node until what never moves has been asked there: how many nodes are pending then."""
+    pending = push_node(s.upper, pending, met.node | AGAIN, met.enter, met.leave)
+    return push_node(s.upper, pending, load_i64(met.node + FIRST), met.enter, met.leave)
+
+
+@inlined
+def _closest(s, ray):
+    """The nearest hit of a ray."""
+    best = _no_hit(ray.t_max)
+    near, far = hit_box(ray, s.bounds, 0)
+    pending = push_node(s.upper, 0, s.root, near, far) if near <= far else 0
+    while pending > 0:
+        if s.upper.enter[pending - 1] > best.t:  # but objects that were put off, further down, may be nearer
+            pending -= 1
+            continue
+        met = next_node(ray, s.upper, pending, s.building, False)
+        pending = met.pending
+        s.counts[STEPS] += met.steps
+        if met.kind == SUBTREE:
+            best = _in_subtree(s, met.node, ray, met.enter, met.leave, best, True)
+        elif not met.node & AGAIN:
+            pending = _put_off(s, met, pending)
+        else:
+            enter, leave = _piece(met)
+            objects = i32_at(load_i64(met.node - AGAIN + SECOND))
+            for i in range(1, 1 + objects[0]):
+                o = objects[i]
+                best = _in_object(s, o, _local(s, ray, o), enter, min(leave, best.t), best, True)
+    return best
+
+
+@inlined
+def _any(s, ray, which):
+    """What blocks a ray: STATIC_GEOMETRY, DYNAMIC_OBJECTS or 0, and which primitive.
+
+    What never moves, or rests, is looked for as long as it may be there; what moves, until something is found."""
+    found, moving = 0, np.int32(MISS)
+    near, far = hit_box(ray, s.bounds, 0)
+    pending = push_node(s.upper, 0, s.root, near, far) if near <= far else 0
+    while pending > 0:
+        met = next_node(ray, s.upper, pending, s.building, which == DYNAMIC_OBJECTS)
+        pending = met.pending
+        s.counts[STEPS] += met.steps
+        if met.kind == SUBTREE:
+            if which & STATIC_GEOMETRY:
+                primitive = _in_subtree(s, met.node, ray, met.enter, met.leave, _no_hit(INFINITY), False).primitive
+                if primitive != MISS:
+                    return STATIC_GEOMETRY, primitive
+        elif met.kind == OBJECTS:
+            if which & STATIC_GEOMETRY and not met.node & AGAIN:
+                pending = _put_off(s, met, pending)
+                continue
+            enter, leave = _piece(met)
+            objects = i32_at(load_i64((met.node | AGAIN) - AGAIN + SECOND))
+            for i in range(1, 1 + objects[0]):
+                o = objects[i]
+                kind = STATIC_GEOMETRY if s.rests[o] != 0 else DYNAMIC_OBJECTS
+                if not which & kind or (kind == DYNAMIC_OBJECTS and found != 0):
+                    continue
+                primitive = _in_object(s, o, _local(s, ray, o), enter, leave, _no_hit(INFINITY), False).primitive
+                if primitive == MISS:
+                    continue
+                if kind == STATIC_GEOMETRY or which == DYNAMIC_OBJECTS:
+                    return kind, primitive
+                found, moving = DYNAMIC_OBJECTS, primitive
+    return found, moving
+
+
+@entry
+def closest(data, batch, first, last, counts):
+    """Nearest hits of rays first to last - 1; counts[STEPS] and counts[TESTS] grow."""
+    upper = Nodes(
+        i64_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES))
+    )
+    lower = Nodes(
+        i64_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES))
+    )
+    stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
+    s, rays = _search(data, upper, lower, stack, counts), rays_of(batch)
+    hit_t, hit_primitive = f32_at(load_i64(batch + HIT_T)), i32_at(load_i64(batch + HIT_PRIMITIVE))
+    hit_u, hit_v = f32_at(load_i64(batch + HIT_U)), f32_at(load_i64(batch + HIT_V))
+    for i in range(first, last):
+        best = _closest(s, ray_at(rays, i))
+        hit_t[i] = best.t if best.primitive != MISS else INFINITY
+        hit_primitive[i], hit_u[i], hit_v[i] = best.primitive, best.u, best.v
+
+
+@entry
+def any_hit(data, batch, first, last, counts):
+    """What of that which is asked for lies in the interval of rays first to last - 1."""
+    upper = Nodes(
+        i64_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES))
+    )
+    lower = Nodes(
+        i64_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES))
+    )
+    stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
+    s, rays = _search(data, upper, lower, stack, counts), rays_of(batch)
+    moves = load_i64(data + HAS_MOVING) != 0
+    blocked, which = u8_at(load_i64(batch + BLOCKED)), load_i64(batch + WHICH)
+    named, occluders = load_i64(batch + OCCLUDER) != 0, i32_at(load_i64(batch + OCCLUDER))
+    for i in range(first, last):
+        ray = ray_at(rays, i)
+        found, primitive = 0, np.int32(MISS)
+        if ray.t_min < ray.t_max and (which & STATIC_GEOMETRY or (which & DYNAMIC_OBJECTS and moves)):
+            found, primitive = _any(s, ray, which)
+        blocked[i] = np.uint8(found)
+        if named:
+            occluders[i] = primitive
