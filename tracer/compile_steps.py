@@ -226,6 +226,9 @@ class _Nowhere:
     def certain(self, poses: Poses) -> NDArray[np.bool_]:
         return np.ones_like(poses.present)
 
+    def built(self) -> None:
+        pass
+
     def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
         primitives = self._primitives
         to_object = poses.to_object.reshape(-1, 12).astype(np.float32)

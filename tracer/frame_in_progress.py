@@ -25,7 +25,7 @@ from tracer.shading.buffers import Buffers, empty_buffers
 from tracer.shading.surfaces import see_surfaces
 from tracer.shading.whitted import find_in_tile, shade_tile, trace_primary
 from tracer.state import State
-from tracer.statistics import gather, sample_counts
+from tracer.statistics import BuiltPart, gather, sample_counts
 from tracer.tiles import Tile, nearest_first, tiles_of, tiles_to_shade
 
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
@@ -374,6 +374,8 @@ class FrameInProgress:
         statistics.part = 1.0 if self._parts is None else self._parts.share
         if settings.record_lights:
             statistics.samples = sample_counts(buffers.asked, buffers.reached)
+        built = self._state.world.built()
+        statistics.built = None if built is None else BuiltPart(*built)
         statistics.phases, statistics.seconds = dict(self.phases), self.seconds
         layers: dict[str, NDArray] = {}
         for method in self.methods:

@@ -111,6 +111,33 @@ def sample_counts(asked: NDArray[np.uint16], reached: NDArray[np.uint16]) -> Sam
 
 
 @dataclass
+class BuiltPart:
+    """How much rays have had built so far of a tree that is built where they arrive ("kdtree-lazy").
+
+    Attributes
+    ----------
+    nodes : int
+        Nodes that are built.
+    primitives : int
+        Primitives in them.
+    of : int
+        Primitives in all.
+    memory_bytes : int
+        Memory of the tree, with what it keeps of primitives that no ray has come near.
+    """
+
+    nodes: int
+    primitives: int
+    of: int
+    memory_bytes: int
+
+    @property
+    def share(self) -> float:
+        """The part of the primitives that is built, 0 to 1."""
+        return self.primitives / max(self.of, 1)
+
+
+@dataclass
 class FrameStatistics:
     """Counters and times of one frame.
 
@@ -130,6 +157,8 @@ class FrameStatistics:
         What the method "auto" does now and why, in a sentence.
     samples : SampleCounts or None
         What the lights send to the primary hits; with `Settings.record_lights`.
+    built : BuiltPart or None
+        How much of the tree there is after this frame; None for trees that are built before rays come.
     seconds : float
         Time of the whole frame.
     by_modes : list of SaidByModes
@@ -148,6 +177,7 @@ class FrameStatistics:
     part: float = 1.0
     decision: str = ""
     samples: SampleCounts | None = None
+    built: BuiltPart | None = None
     seconds: float = 0.0
     by_modes: list[SaidByModes] = field(default_factory=list)
     phases: dict[str, float] = field(default_factory=dict)

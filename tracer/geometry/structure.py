@@ -6,7 +6,7 @@ else knows which, or looks inside.
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,16 @@ from tracer.geometry.rays import Ray
 from tracer.geometry.visits import Visit
 from tracer.kernels import Entry
 from tracer.scene.arrays import Float64
+
+
+class Built(NamedTuple):
+    """How much there is of a tree that is built where rays arrive: its nodes; the primitives in them, of so many; and
+    the bytes of all of it, with what is kept of primitives that no ray has come near."""
+
+    nodes: int
+    primitives: int
+    of: int
+    memory_bytes: int
 
 
 class Structure(Protocol):
@@ -45,6 +55,9 @@ class Structure(Protocol):
 
     def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
         """The nodes that a ray enters on its way to its nearest hit, or to any on `which` geometry."""
+
+    def built(self) -> Built | None:
+        """How much of it rays have had built so far; None for a structure that is built before they come."""
 
     def bounds(self) -> NDArray[np.float32]:
         """Box (6,) around everything that is placed; inverted for an empty world."""

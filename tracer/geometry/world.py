@@ -21,7 +21,7 @@ from tracer.geometry.poses import Poses, poses_at
 from tracer.geometry.primitives import Outlines, Primitives, WorldTriangles
 from tracer.geometry.queries import EVERYTHING, batch_of
 from tracer.geometry.rays import Hits, Ray, Rays
-from tracer.geometry.structure import Structure
+from tracer.geometry.structure import Built, Structure
 from tracer.geometry.visits import Visit
 from tracer.kernels import Entry
 from tracer.parallel import for_each_chunk, thread_count
@@ -294,6 +294,10 @@ class World:
             query.call(data, described, chunk * CHUNK, min(n, (chunk + 1) * CHUNK), counted[worker])
 
         for_each_chunk(work, -(-n // CHUNK), len(counts))
+
+    def built(self) -> Built | None:
+        """How much of the trees rays have had built so far; None where all are built before rays come."""
+        return self.structure.built()
 
     def bounds(self) -> NDArray[np.float32]:
         """Box (6,) around everything that is there now; inverted for an empty world."""

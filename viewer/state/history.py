@@ -34,6 +34,7 @@ SERIES = (
     "tests_of_all",
     "certificate_steps",
     "certificate_tests",
+    "built",
     "traced_ms",
     "drawn_ms",
 )
@@ -65,7 +66,8 @@ class History:
         more of its pixels shaded; `drawn_seconds` is what the window needed for its last own frame.
 
         Steps and tests are all that were made for the frame, those of its certificates too.  Samples of lights are
-        those of primary hits, 0 where they were not recorded.  `pixels` are those that are shaded, of `all_pixels`."""
+        those of primary hits, 0 where they were not recorded.  `pixels` are those that are shaded, of `all_pixels`.
+        `built` is the part of the tree that is built, in per cent; 0 where that is not told."""
         if again and self.frames > 0:
             self.frames -= 1
         s = frame.statistics
@@ -90,6 +92,7 @@ class History:
             tests_of_all=s.primary.intersection_tests + s.certificate_tests,
             certificate_steps=s.certificate_steps,
             certificate_tests=s.certificate_tests,
+            built=100.0 * s.built.share if s.built is not None else 0.0,
             traced_ms=1e3 * s.seconds,
             drawn_ms=1e3 * drawn_seconds,
         )

@@ -15,6 +15,7 @@ CACHE_HITS = "cache hits"
 TRACED = "traced"
 WRONG = "wrong answers"
 PASSED_OVER = "passed over"
+BUILT = "built"
 
 BY_BEAMS = (
     "The tests of shadow rays include those of beams: triangles that are asked about all samples of a lamp at once, "
@@ -34,6 +35,7 @@ MEANINGS = {
     CACHE_HITS: "blocked by the primitive that blocked a ray there before",
     TRACED: "nothing was known: traced through the whole scene",
     PASSED_OVER: "samples of lights, at all points, that are proven not to reach them: not even looked at, and not due",
+    BUILT: "of the tree, which is built where rays arrive: primitives in nodes that are built",
     WRONG: "shadow rays for which culling and tracing disagree",
 }
 

@@ -163,6 +163,9 @@ class Bvh8:
         trees = [tree for number, tree in enumerate(every) if self._there & asked & 1 << number]
         return Walk(self.world_quadrics, len(self._primitives.triangles), nearest).go(ray, trees)
 
+    def built(self) -> None:
+        """All of it is built before rays come."""
+
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""
         roots = (0, self.resting_root)

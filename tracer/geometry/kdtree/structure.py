@@ -130,6 +130,9 @@ class KdTree(InObjectSpace):
         """The nodes that a ray enters, as `traverse` counts them."""
         return Walk(self.parts, poses.to_world, nearest).go(ray, which)
 
+    def built(self) -> None:
+        """All of it is built before rays come."""
+
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""
         boxes = np.stack([self.parts.boxes[0], self.parts.resting_box, self.parts.moving_box])

@@ -45,7 +45,7 @@ from tracer.kernels import entry, kernel, subkernel
 from tracer.simd import call_entry, i32_at, load_i64, store, u8_at
 from tracer.simd.addresses import f64_at
 
-FEW = 128  # primitives whose whole subtree is built at once
+FEW = 64  # primitives whose whole subtree is built at once
 PATIENCE = 64  # looks at a claimed node before another thread is let go on
 HEADER = 16  # bytes of a subtree before its words
 

@@ -87,10 +87,9 @@ def hierarchy_over(
         done, first = done + len(boxes), ~(done + begin)
         boxes = np.concatenate([lower, upper], axis=1)
         levels.append((boxes, first, counts, weights))
-    joined = [np.concatenate(part) for part in zip(*levels, strict=True)]
-    return Hierarchy(
-        np.ascontiguousarray(joined[0], np.float32), *(a.astype(np.int32) for a in joined[1:]), roots=len(boxes)
-    )
+    every, *numbers = (np.concatenate(part) for part in zip(*levels, strict=True))
+    first, counts, weights = (a.astype(np.int32) for a in numbers)
+    return Hierarchy(np.ascontiguousarray(every, np.float32), first, counts, weights, len(boxes))
 
 
 def bounds_of_roots(hierarchy: Hierarchy) -> Float32:

@@ -19,7 +19,7 @@ from tracer.kernels import inlined, subkernel
 from tracer.simd import f32_at, i32_at, load_i64, store
 from tracer.simd.addresses import f64_at
 
-WIDE = 0.125  # of a node's extent: groups that reach so far along any axis are opened before a split is chosen
+WIDE = 0.0625  # of a node's extent: groups that reach so far along any axis are opened before a split is chosen
 WAITING = 2048  # room for groups and primitives that are still to be looked at while one is opened
 
 # A source, as kernels read it: int64 each.  Addresses of arrays, and what is counted while the tree is built.
@@ -129,8 +129,8 @@ def weight_of(source, number):
 
 @subkernel
 def _reaches(box, node, exactly):
-    """Whether a box reaches into a node: what only touches it does not, but for what lies flat in its upper side; groups,
-    where not `exactly`, do."""
+    """Whether a box reaches into a node: what only touches it does not, but for what lies flat in its upper side; where
+    not `exactly`, as for groups, it does."""
     for k in range(3):
         low, high = box[k], box[k + 3]
         if exactly:

@@ -66,8 +66,8 @@ def _best_bin(boxes, weights, n, box):
 
 @subkernel
 def best_split(boxes, weights, n, box):
-    """(cost, axis, plane) of the cheapest split of a node's box (6,) float64 with boxes (n, 6) and weights (n,) int64 in
-    it; infinite, -1 and 0 where there is none."""
+    """(cost, axis, plane) of the cheapest split of a node's box (6,) float64, in which are boxes (n, 6) of so many
+    primitives each, weights (n,) int64; infinite, -1 and 0 where there is none."""
     if n > FEW:
         return _best_bin(boxes, weights, n, box)
     return _best_face(boxes, weights, n, box)

@@ -6,7 +6,6 @@ import ctypes
 import sys
 import weakref
 
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,13 +16,14 @@ from tracer.geometry.kdtree.object_space import InObjectSpace
 from tracer.geometry.lazy_tree import traverse
 from tracer.geometry.lazy_tree.build import fell, open_node, plant
 from tracer.geometry.lazy_tree.hierarchy import bounds_of_roots, hierarchy_over
-from tracer.geometry.lazy_tree.references import BYTES, LEFT, NODES
+from tracer.geometry.lazy_tree.references import BYTES, NODES
 from tracer.geometry.lazy_tree.upper import raise_over
 from tracer.geometry.lazy_tree.walk import Told, Walk
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
 from tracer.geometry.queries import Placed
 from tracer.geometry.rays import Ray
+from tracer.geometry.structure import Built
 from tracer.geometry.visits import Visit
 from tracer.scene.arrays import Float32
 from tracer.scene.model import Progress
@@ -98,6 +98,7 @@ class LazyKdTree(InObjectSpace):
         """Plant the trees of objects that deform anew, and make the upper nodes over the objects that are present."""
         primitives = self._primitives
         for index in primitives.deformations:
+            self._touched[primitives.triangles_of(index)] = 0
             self._trees[index] = self._plant(index)
         present, moving = poses.present.copy(), poses.present & ~resting
         present[0] = moving[0] = False
@@ -114,10 +115,11 @@ class LazyKdTree(InObjectSpace):
         roots = np.array([tree.root for tree in self._trees], np.int64)
         to_object, rests = poses.to_object.reshape(-1, 12).astype(np.float32), (present & ~moving).astype(np.uint8)
         arrays = primitives.triangles, primitives.quadrics
-        self.told = told = Told(*arrays, root, bounds, roots, object_boxes, to_object, rests, bool(moves.any()), PAUSE)
+        has, moving_box = bool(moves.any()), bounds_of(boxes[moves])
+        self.told = told = Told(*arrays, root, bounds, roots, object_boxes, to_object, rests, PAUSE, moving_box, has)
         addresses = [x.ctypes.data if isinstance(x, np.ndarray) else x for x in told[:8]]
         count = len(primitives.triangles)
-        self._data = np.array([*addresses, open_node.address, PAUSE, count, told.moves], np.int64)
+        self._data = np.array([*addresses, open_node.address, PAUSE, moving_box.ctypes.data, count, has], np.int64)
         return Placed(
             primitives.triangles,
             primitives.quadrics,
@@ -126,13 +128,18 @@ class LazyKdTree(InObjectSpace):
             self.closest.address,
             self.any_hit.address,
             self._data.ctypes.data,
-            told.moves,
-            bounds_of(boxes[moves]),
+            has,
+            moving_box,
         )
 
     def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
         """The nodes that a ray enters, as `traverse` counts them; those that are not built are built."""
         return Walk(self.told, poses.to_world, nearest).go(ray, which)
+
+    def built(self) -> Built:
+        """What rays have had built of the trees that there are now."""
+        nodes, size = (sum(tree.counted(what) for tree in self._trees) for what in (NODES, BYTES))
+        return Built(nodes, int(np.count_nonzero(self._touched)), len(self._touched), size)
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""

@@ -47,16 +47,16 @@ from tracer.geometry.rays import INFINITY, MISS, Ray, ray_at
 from tracer.kernels import entry, inlined, subkernel
 from tracer.simd import f32_at, i32_at, i64_at, load_i64, local_memory, u8_at
 
-SLACK = np.float32(1e-5)  # relative: by so much a ray's interval in an object is wider than in the node that names it
+REMEMBERED = 8  # objects that a ray has searched last, which other nodes that they reach into need not search again
 STACK_BYTES = 8 * STACK
 
 # A placed world as the entries get it, int64 each: addresses of triangles, quadrics, the root of everything and the
 # box around it; of each object's root, int64, its box in its own space, the map there, and whether it rests, uint8;
-# of what builds; the number of triangles; and whether anything moves.
+# of what builds; of the box around what moves; the number of triangles; and whether anything moves.
 (
-    TRIANGLES, QUADRICS, ROOT, BOUNDS, OBJECT_ROOTS, OBJECT_BOXES, TO_OBJECT, RESTS, OPEN_NODE, PAUSE, TRIANGLE_COUNT,
-    HAS_MOVING,
-) = range(0, 96, 8)  # fmt: skip
+    TRIANGLES, QUADRICS, ROOT, BOUNDS, OBJECT_ROOTS, OBJECT_BOXES, TO_OBJECT, RESTS, OPEN_NODE, PAUSE, MOVING_BOX,
+    TRIANGLE_COUNT, HAS_MOVING,
+) = range(0, 104, 8)  # fmt: skip
 
 
 class _Search(NamedTuple):
@@ -67,6 +67,8 @@ class _Search(NamedTuple):
     quadrics: Any
     root: Any
     bounds: Any
+    moving_box: Any
+    has_moving: Any
     object_roots: Any
     object_boxes: Any
     to_object: Any
@@ -75,6 +77,7 @@ class _Search(NamedTuple):
     upper: Nodes
     lower: Nodes
     stack: Stack
+    searched: Any
     counts: Any
 
 
@@ -88,13 +91,15 @@ class _Best(NamedTuple):
 
 
 @inlined
-def _search(data, upper, lower, stack, counts):
+def _search(data, upper, lower, stack, searched, counts):
     return _Search(
         f32_at(load_i64(data + TRIANGLES)),
         load_i64(data + TRIANGLE_COUNT),
         f32_at(load_i64(data + QUADRICS)),
         load_i64(data + ROOT),
         f32_at(load_i64(data + BOUNDS)),
+        f32_at(load_i64(data + MOVING_BOX)),
+        load_i64(data + HAS_MOVING) != 0,
         i64_at(load_i64(data + OBJECT_ROOTS)),
         f32_at(load_i64(data + OBJECT_BOXES)),
         f32_at(load_i64(data + TO_OBJECT)),
@@ -103,6 +108,7 @@ def _search(data, upper, lower, stack, counts):
         upper,
         lower,
         stack,
+        searched,
         i64_at(counts),
     )
 
@@ -169,14 +175,26 @@ def _in_object(s, o, ray, enter, leave, best, nearest):
 
 
 @inlined
+def _meets_what_moves(s, ray):
+    """Whether a ray meets the box around all that moves: methods rely on it that nothing else has hits on that."""
+    near, far = hit_box(ray, s.moving_box, 0)
+    return s.has_moving and near <= far
+
+
+@inlined
 def _local(s, ray, o):
     return transform_ray(ray, s.to_object, o, 12)
 
 
 @inlined
-def _piece(met):
-    """The interval of a ray in a node of objects: an object that reaches into several is searched piece by piece."""
-    return met.enter - SLACK * abs(met.enter), met.leave + SLACK * abs(met.leave)
+def _is_searched(s, o, count):
+    """Whether object o is among the last of `count` that a ray has searched.
+
+    Each is searched as a whole: where an object is flat, t is too uncertain to go by pieces."""
+    found = False
+    for i in range(min(count, REMEMBERED)):
+        found = found or s.searched[i] == o
+    return found
 
 
 @inlined
@@ -189,7 +207,7 @@ def _put_off(s, met, pending):
 @inlined
 def _closest(s, ray):
     """The nearest hit of a ray."""
-    best = _no_hit(ray.t_max)
+    best, searched, moving = _no_hit(ray.t_max), 0, _meets_what_moves(s, ray)
     near, far = hit_box(ray, s.bounds, 0)
     pending = push_node(s.upper, 0, s.root, near, far) if near <= far else 0
     while pending > 0:
@@ -204,11 +222,13 @@ def _closest(s, ray):
         elif not met.node & AGAIN:
             pending = _put_off(s, met, pending)
         else:
-            enter, leave = _piece(met)
             objects = i32_at(load_i64(met.node - AGAIN + SECOND))
             for i in range(1, 1 + objects[0]):
                 o = objects[i]
-                best = _in_object(s, o, _local(s, ray, o), enter, min(leave, best.t), best, True)
+                if (moving or s.rests[o] != 0) and not _is_searched(s, o, searched):
+                    s.searched[searched % REMEMBERED] = o
+                    searched += 1
+                    best = _in_object(s, o, _local(s, ray, o), ray.t_min, best.t, best, True)
     return best
 
 
@@ -217,9 +237,11 @@ def _any(s, ray, which):
     """What blocks a ray: STATIC_GEOMETRY, DYNAMIC_OBJECTS or 0, and which primitive.
 
     What never moves, or rests, is looked for as long as it may be there; what moves, until something is found."""
-    found, moving = 0, np.int32(MISS)
+    if which & DYNAMIC_OBJECTS and not _meets_what_moves(s, ray):
+        which ^= DYNAMIC_OBJECTS
+    found, moving, searched = 0, np.int32(MISS), 0
     near, far = hit_box(ray, s.bounds, 0)
-    pending = push_node(s.upper, 0, s.root, near, far) if near <= far else 0
+    pending = push_node(s.upper, 0, s.root, near, far) if near <= far and which else 0
     while pending > 0:
         met = next_node(ray, s.upper, pending, s.building, which == DYNAMIC_OBJECTS)
         pending = met.pending
@@ -233,14 +255,16 @@ def _any(s, ray, which):
             if which & STATIC_GEOMETRY and not met.node & AGAIN:
                 pending = _put_off(s, met, pending)
                 continue
-            enter, leave = _piece(met)
             objects = i32_at(load_i64((met.node | AGAIN) - AGAIN + SECOND))
             for i in range(1, 1 + objects[0]):
                 o = objects[i]
                 kind = STATIC_GEOMETRY if s.rests[o] != 0 else DYNAMIC_OBJECTS
-                if not which & kind or (kind == DYNAMIC_OBJECTS and found != 0):
+                if not which & kind or (kind == DYNAMIC_OBJECTS and found != 0) or _is_searched(s, o, searched):
                     continue
-                primitive = _in_object(s, o, _local(s, ray, o), enter, leave, _no_hit(INFINITY), False).primitive
+                s.searched[searched % REMEMBERED] = o
+                searched += 1
+                local = _local(s, ray, o)
+                primitive = _in_object(s, o, local, ray.t_min, ray.t_max, _no_hit(INFINITY), False).primitive
                 if primitive == MISS:
                     continue
                 if kind == STATIC_GEOMETRY or which == DYNAMIC_OBJECTS:
@@ -259,7 +283,7 @@ def closest(data, batch, first, last, counts):
         i64_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES))
     )
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
-    s, rays = _search(data, upper, lower, stack, counts), rays_of(batch)
+    s, rays = _search(data, upper, lower, stack, local_int32(REMEMBERED), counts), rays_of(batch)
     hit_t, hit_primitive = f32_at(load_i64(batch + HIT_T)), i32_at(load_i64(batch + HIT_PRIMITIVE))
     hit_u, hit_v = f32_at(load_i64(batch + HIT_U)), f32_at(load_i64(batch + HIT_V))
     for i in range(first, last):
@@ -278,14 +302,13 @@ def any_hit(data, batch, first, last, counts):
         i64_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES))
     )
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
-    s, rays = _search(data, upper, lower, stack, counts), rays_of(batch)
-    moves = load_i64(data + HAS_MOVING) != 0
+    s, rays = _search(data, upper, lower, stack, local_int32(REMEMBERED), counts), rays_of(batch)
     blocked, which = u8_at(load_i64(batch + BLOCKED)), load_i64(batch + WHICH)
     named, occluders = load_i64(batch + OCCLUDER) != 0, i32_at(load_i64(batch + OCCLUDER))
     for i in range(first, last):
         ray = ray_at(rays, i)
         found, primitive = 0, np.int32(MISS)
-        if ray.t_min < ray.t_max and (which & STATIC_GEOMETRY or (which & DYNAMIC_OBJECTS and moves)):
+        if ray.t_min < ray.t_max:
             found, primitive = _any(s, ray, which)
         blocked[i] = np.uint8(found)
         if named:

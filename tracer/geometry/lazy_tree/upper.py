@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from tracer.geometry.kdtree.build import INTERSECTION_COST
+from tracer.geometry.kdtree.build import INTERSECTION_COST, TRAVERSAL_COST, split_cost
 from tracer.geometry.lazy_tree.node import (
     DEPTH,
     FIRST,
@@ -30,7 +30,8 @@ from tracer.geometry.memory import float_bits
 from tracer.kernels import kernel, subkernel
 from tracer.simd import address_of, load_f32, load_i64
 
-EACH = 32  # what an object costs that a ray must look for, in tests
+EACH = 8  # what an object costs that a ray must look for, in tests
+BORDER = 4.0  # what a plane at an object's border costs: below both sides the same nodes are entered again
 
 
 @subkernel
@@ -59,8 +60,8 @@ def _twice(rows, used):
 
 @kernel
 def raise_over(boxes, objects, moves, bounds, below, open_node, pause):
-    """Nodes (n, 4) int64 over objects (m,) int32 with boxes (m, 6) float32, in a box (6,) float64 around everything; the
-    lists of objects, int32, that they lead to; and whether anything moves below the first.
+    """Nodes (n, 4) int64 over objects (m,) int32 with boxes (m, 6) float32, inside bounds (6,) float64; the lists of
+    objects, int32, that they lead to; and whether anything moves below the first.
 
     moves (m,) bool tells which do not rest; `below` is the address of the tree of what never moves."""
     m, building = len(boxes), Building(open_node, pause)
@@ -89,6 +90,19 @@ def raise_over(boxes, objects, moves, bounds, below, open_node, pause):
         cost, axis, plane = np.inf, -1, 0.0
         if level < most:
             cost, axis, plane = best_split(inside[:n], weights, n, box)
+            cost += BORDER
+            # A plane of what never moves costs nothing, as rays would meet it anyway.
+            own = built(static, building)
+            if own < UNBUILT:
+                its_plane = np.float64(load_f32(static + PLANE))
+                lower, upper = np.int64(0), np.int64(0)
+                for i in range(n):
+                    low, high = inside[i, own], inside[i, own + 3]
+                    lower += EACH if low < its_plane or low == high == its_plane else 0
+                    upper += EACH if high > its_plane else 0
+                its_cost = split_cost(box, own, its_plane, lower, upper) - TRAVERSAL_COST
+                if its_cost < cost:
+                    cost, axis, plane = its_cost, own, its_plane
         if not cost < INTERSECTION_COST * EACH * n:
             # End with a list of objects, beside what never moves.
             while listed_count + n + 1 > len(listed):

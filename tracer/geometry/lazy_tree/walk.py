@@ -1,4 +1,4 @@
-"""The way of one ray through the tree, node by node: what `traverse` does, told as it goes.  What is not built is built.
+"""The way of one ray through the tree, node by node: what `traverse` does, told as it goes.  Nodes on it are built.
 
 A node's number is 1 for the root of its tree, and 2 n and 2 n + 1 for the children of n.
 """
@@ -17,7 +17,7 @@ from tracer.geometry.intersect import hit_quadric, hit_triangle, transform_ray
 from tracer.geometry.kdtree.tree import LEAF
 from tracer.geometry.lazy_tree.build import HEADER, open_node
 from tracer.geometry.lazy_tree.node import KIND, LOWER_MOVES, OBJECTS, SUBTREE, UNBUILT, UPPER_MOVES
-from tracer.geometry.lazy_tree.traverse import SLACK
+from tracer.geometry.lazy_tree.traverse import REMEMBERED
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY
 from tracer.geometry.rays import INFINITY, MISS, Ray
 from tracer.geometry.visits import WORLD, Visit, corners_of
@@ -38,8 +38,9 @@ class Told(NamedTuple):
     object_boxes: NDArray[np.float32]
     to_object: NDArray[np.float32]
     rests: NDArray[np.uint8]
-    moves: bool
     pause: int
+    moving_box: NDArray[np.float32]
+    moves: bool
 
 
 class Node(NamedTuple):
@@ -61,7 +62,7 @@ class Node(NamedTuple):
         """The words and items of a SUBTREE, copied."""
         words, items = (ctypes.c_int64 * 2).from_address(self.first)
         both = (ctypes.c_int32 * (words + items)).from_address(self.first + HEADER)
-        numbers = np.frombuffer(both, np.int32).copy()
+        numbers = np.array(both, np.int32)
         return numbers[:words], numbers[words:]
 
 
@@ -99,18 +100,20 @@ class Walk:
         self._maps, self._boxes = told.to_object.reshape(-1), told.object_boxes.reshape(-1)
         self.visits: list[Visit] = []
         self.t, self.primitive = INFINITY, MISS
-        self._found = 0
+        self._found, self._searched = 0, list[int]()
 
     def go(self, ray: Ray, which: int) -> list[Visit]:
         """All nodes that the ray enters, in their order."""
         told, nearest = self._told, self._nearest
-        if not nearest and not (which & STATIC_GEOMETRY or (which & DYNAMIC_OBJECTS and told.moves)):
-            return []
+        which = STATIC_GEOMETRY | DYNAMIC_OBJECTS if nearest else which
         with np.errstate(all="ignore"):
+            near, far = _hit_box(ray, told.moving_box, 0)
+            if not told.moves or near > far:
+                which &= ~DYNAMIC_OBJECTS
             self.t = ray.t_max
             near, far = _hit_box(ray, told.bounds, 0)
             name = "all objects" if told.root != told.object_roots[0] else "static"
-            pending = [_Pending(told.root, near, far, told.bounds, 0, 1, name)] if near <= far else []
+            pending = [_Pending(told.root, near, far, told.bounds, 0, 1, name)] if near <= far and which else []
             while pending and not self._done(which):
                 if nearest and pending[-1].enter > self.t:
                     pending.pop()
@@ -169,17 +172,19 @@ class Walk:
         self.visits.append(Visit(at.tree, at.number, leaf, at.level, corners, enter, leave, tuple(tested), tuple(hits)))
 
     def _objects(self, ray: Ray, at: _Pending, which: int) -> None:
-        """Go through the objects that a node leads to, in the ray's interval there."""
-        enter, leave = at.enter - SLACK * abs(at.enter), at.leave + SLACK * abs(at.leave)
+        """Go through the objects that a node leads to."""
         for o in node_at(at.address).objects:
             kind = STATIC_GEOMETRY if self._told.rests[o] else DYNAMIC_OBJECTS
-            if not self._nearest and (not which & kind or (kind == DYNAMIC_OBJECTS and self._found)):
+            if not which & kind or (not self._nearest and kind == DYNAMIC_OBJECTS and self._found):
                 continue
+            if o in self._searched[-REMEMBERED:]:
+                continue
+            self._searched.append(o)
             local = _transformed(ray, self._maps, o, 12)
             before = self.primitive
             if not self._nearest:
                 self.primitive = MISS
-            self._object(o, local, enter, min(leave, self.t) if self._nearest else leave)
+            self._object(o, local, ray.t_min, self.t if self._nearest else ray.t_max)
             if not self._nearest:
                 if self.primitive != MISS:
                     self._found = kind
@@ -256,8 +261,8 @@ class Walk:
 def _children(
     at: _Pending, node: Node, origin: np.float32, direction: np.float32
 ) -> tuple[_Pending, _Pending, np.float32, bool]:
-    """The nearer and the farther child of a node, with its own interval; where the ray meets the plane between them; and
-    whether the nearer one is the lower."""
+    """The nearer and the farther child of a node, with its own interval; where the ray meets the plane between them;
+    and whether the nearer one is the lower."""
     t = (node.plane - origin) * _inverse(direction)
     lower_first = bool(origin < node.plane or (origin == node.plane and direction <= 0))
     boxes = at.box.copy(), at.box.copy()

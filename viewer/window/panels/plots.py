@@ -29,9 +29,13 @@ _OF_LIGHTS = (
     "Samples of lights", ((terms.SAMPLES_DUE, "samples_due", BLUE), (terms.SAMPLES_REACHED, "samples_reached", YELLOW),
                           (terms.PENUMBRA, "penumbra", ORANGE)),
 )  # fmt: skip
-_SHARES = {4: (0.30, 0.26, 0.26, 0.18), 3: (0.44, 0.31, 0.25), 2: (0.5, 0.5), 1: (1.0,)}
+_BUILT = "Tree built, %"
+_OF_TREE = (_BUILT, ((terms.BUILT, "built", BLUE),))
+_SHARES = {
+    5: (0.25, 0.22, 0.22, 0.16, 0.15), 4: (0.30, 0.26, 0.26, 0.18), 3: (0.44, 0.31, 0.25), 2: (0.5, 0.5), 1: (1.0,)
+}  # fmt: skip
 """Of the panel's width, for so many plots beside each other: by the length of their legends."""
-_ROOM = {4: 64.0, 3: 45.0, 2: 30.0}
+_ROOM = {5: 80.0, 4: 64.0, 3: 45.0, 2: 30.0}
 """How wide the panel is, in ems, that has so many; what finds no room beside is below, and the panel scrolls."""
 FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
 AXIS = int(implot.AxisFlags_.no_highlight)
@@ -86,6 +90,8 @@ def show(ui: Ui) -> None:
     room = imgui.get_content_region_avail()
     spacing = imgui.get_style().item_spacing.x
     plots = (_PLOTS[0], _OF_LIGHTS, *_PLOTS[1:]) if history.values("samples_due").any() else _PLOTS
+    if history.values("built").any():
+        plots = (*plots, _OF_TREE)
     even = [n for n in _ROOM if len(plots) % n == 0]  # so that no row has an empty place
     columns = next((n for n in even if room.x > em(_ROOM[n])), 1)
     width = room.x - (columns - 1) * spacing
@@ -97,7 +103,7 @@ def show(ui: Ui) -> None:
 
 def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size: ImVec2) -> None:
     history = ui.controller.history
-    per_pixel = ui.per_pixel and title != _LOGARITHMIC
+    per_pixel = ui.per_pixel and title not in (_LOGARITHMIC, _BUILT)
     if not implot.begin_plot(f"{title}{' per pixel' if per_pixel else ''}##{title}", size, FLAGS):
         return
     curves = [(label, _values(ui, name, per_pixel), color) for label, name, color in series]

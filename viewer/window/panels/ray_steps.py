@@ -7,7 +7,7 @@ import math
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.geometry.accelerators import ACCELERATORS
+from tracer.geometry.accelerators import ACCELERATORS, BVH8, KD_TREE, LAZY
 from viewer.output import ray_way
 from viewer.output.ray_rows import RayRows
 from viewer.services.ray_inspector import RayInspector
@@ -62,15 +62,19 @@ def _legend(origin: str) -> None:
     clipped(f"distances from {origin}", QUIET)
 
 
+_ABOUT = {
+    KD_TREE: "the paper's structure: each node is a traversal step; built when it is first asked for",
+    LAZY: "one kd-tree over everything, built where rays arrive: each node is a traversal step",
+    BVH8: "the nodes that the ray itself enters; rays are traced in packets, which may enter more",
+}
+
+
 def _structures(rays: RayInspector) -> None:
     """Which structure's nodes are shown."""
     for accelerator in ACCELERATORS:
         if imgui.radio_button(accelerator, rays.structure == accelerator):
             rays.accelerator = accelerator
-        if accelerator == "bvh8":
-            tooltip("the nodes that the ray itself enters; rays are traced in packets, which may enter more")
-        else:
-            tooltip("the paper's structure: each node is a traversal step; built when it is first asked for")
+        tooltip(_ABOUT[accelerator])
         imgui.same_line()
 
 

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from imgui_bundle import imgui
 
 from tracer.frame import Frame
+from tracer.geometry.accelerators import BVH8
 from tracer.method import Method
 from viewer.state import terms
 from viewer.state.history import fully_traced
@@ -52,6 +53,13 @@ def show(ui: Ui) -> None:
     _shadow_rays(frame, pixels, certifies)
     heading("Work")
     _work(ui)
+    if s.built is not None:
+        with _amounts("tree") as shown:
+            tip = f"{terms.MEANINGS[terms.BUILT]} ({count(s.built.primitives)} of {count(s.built.of)})"
+            if shown:
+                amount("Tree built", percent(s.built.primitives, s.built.of), tip)
+                size = f"in {s.built.memory_bytes / 1e6:.1f} MB, with what waits for rays"
+                amount("  nodes", count(s.built.nodes), size)
     if terms.asks_by_beams(frame, c.tracing.lamps.any):
         paragraph(terms.BY_BEAMS, QUIET)
     heading("Time")
@@ -146,7 +154,7 @@ def _work(ui: Ui) -> None:
         rows.append(("certificates", (0, s.certificate_steps, s.certificate_tests)))
     rows.append(("all", tuple(sum(numbers[n] for _, numbers in rows) for n in range(3))))
     meaning = "steps: nodes of the tree that rays enter; tests: rays against primitives"
-    if frame.settings.accelerator != "kdtree":
+    if frame.settings.accelerator == BVH8:
         meaning += "; of whole packets of rays where these are coherent (an experiment counts each ray's, in a kd-tree)"
     if imgui.get_content_region_avail().x > em(_WIDE):
         _work_table(rows, meaning)
