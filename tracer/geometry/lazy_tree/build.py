@@ -25,7 +25,6 @@ from tracer.geometry.lazy_tree.references import (
     BOX,
     BYTES,
     FROM,
-    LEFT,
     LEVEL,
     NODES,
     TOUCHED,
@@ -120,7 +119,6 @@ def _split(node, source, table, wide, box, level):
     store(node + FIRST, children)
     store(node + SECOND, children + NODE)
     add_shared(table + NODES, np.int64(1))
-    add_shared(table + LEFT, lower.weight + upper.weight)
     add_shared(table + BYTES, size_of_references(lower.count) + size_of_references(upper.count) + 2 * NODE)
     publish(node, np.int64(axis))
     return True
@@ -142,7 +140,6 @@ def open_node(node, pause, _a, _b, _c):
     address = load_i64(node + FIRST)
     source, given, level = source_at(table), references_at(address), load_i64(address + LEVEL)
     box = carray(f64_at(address + BOX), (6,)).copy()
-    before = given.weight
     # Split it if it has many primitives and a split pays; else build all of it.
     done = False
     if given.weight > FEW:
@@ -155,7 +152,6 @@ def open_node(node, pause, _a, _b, _c):
         add_shared(table + NODES, np.int64(nodes))
         add_shared(table + BYTES, np.int64(size))
         publish(node, SUBTREE)
-    add_shared(table + LEFT, -before)
     add_shared(table + BYTES, -size_of_references(given.count))
     free(address)
 
@@ -166,13 +162,12 @@ def plant(bounds, numbers, boxes, weight, table):
     boxes (n, 6) float32 that stand for so many primitives, and the address of its source."""
     root = allocate(NODE)
     _unbuilt(root, References(numbers, boxes, len(numbers), weight), bounds, 0, table)
-    add_shared(table + LEFT, np.int64(weight))
     add_shared(table + BYTES, size_of_references(len(numbers)) + NODE)
     return root
 
 
-@kernel
-def fell(root):
+@entry
+def fell(root, _a, _b, _c, _d):
     """Free all memory of a tree."""
     waiting, pairs = np.empty(4 * DEPTH, np.int64), np.empty(4 * DEPTH, np.int64)
     waiting[0], pairs[0], left = root, root, 1

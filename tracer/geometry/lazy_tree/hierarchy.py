@@ -88,8 +88,8 @@ def hierarchy_over(
         boxes = np.concatenate([lower, upper], axis=1)
         levels.append((boxes, first, counts, weights))
     every, *numbers = (np.concatenate(part) for part in zip(*levels, strict=True))
-    first, counts, weights = (a.astype(np.int32) for a in numbers)
-    return Hierarchy(np.ascontiguousarray(every, np.float32), first, counts, weights, len(boxes))
+    one, two, three = (part.astype(np.int32) for part in numbers)
+    return Hierarchy(every.astype(np.float32), one, two, three, len(boxes))
 
 
 def bounds_of_roots(hierarchy: Hierarchy) -> Float32:

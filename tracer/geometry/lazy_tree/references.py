@@ -25,8 +25,8 @@ WAITING = 2048  # room for groups and primitives that are still to be looked at 
 # A source, as kernels read it: int64 each.  Addresses of arrays, and what is counted while the tree is built.
 (
     TRIANGLES, TRIANGLE_COUNT, QUADRIC_BOXES, QUADRIC_COUNT, GROUP_BOXES, GROUP_FIRST, GROUP_COUNTS, GROUP_WEIGHTS,
-    GROUPS, TOUCHED, NODES, LEFT, BYTES,
-) = range(0, 104, 8)  # fmt: skip
+    GROUPS, TOUCHED, NODES, BYTES,
+) = range(0, 96, 8)  # fmt: skip
 
 # References in memory: how many, the primitives in them, the level of their node, the source; the node's box, six
 # float64; boxes, six float32 each, and then the references, int32 each.

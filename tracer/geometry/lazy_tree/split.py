@@ -1,7 +1,7 @@
 """Where a node is split whose references stand for many primitives each, by the surface area heuristic.
 
-A group counts with all its primitives on each side that it reaches to.  Of few references every face is tried, so that
-planes come to lie between pieces of the scene; of many, planes at even distances.
+A group counts with all its primitives on each side that it reaches to.  Of few references every face is tried; of many,
+planes at even distances, and then the faces next to the best: so planes come to lie between pieces of the scene.
 """
 
 from __future__ import annotations
@@ -15,6 +15,17 @@ FEW = 64  # references; each face of their boxes is tried
 
 
 @subkernel
+def _cost_at(boxes, weights, n, box, axis, plane):
+    """What a split costs; what lies flat in the plane counts below it."""
+    lower, upper = np.int64(0), np.int64(0)
+    for j in range(n):
+        low, high = boxes[j, axis], boxes[j, axis + 3]
+        lower += weights[j] if low < plane or low == high == plane else np.int64(0)
+        upper += weights[j] if high > plane else np.int64(0)
+    return split_cost(box, axis, np.float64(plane), lower, upper)
+
+
+@subkernel
 def _best_face(boxes, weights, n, box):
     """(cost, axis, plane) over all faces of boxes (n, 6) in a node's box (6,)."""
     best_cost, best_axis, best_plane = np.inf, -1, 0.0
@@ -23,12 +34,7 @@ def _best_face(boxes, weights, n, box):
             plane = boxes[i >> 1, axis + 3 * (i & 1)]
             if not box[axis] < plane < box[axis + 3]:
                 continue
-            lower, upper = np.int64(0), np.int64(0)
-            for j in range(n):
-                low, high = boxes[j, axis], boxes[j, axis + 3]
-                lower += weights[j] if low < plane or low == high == plane else np.int64(0)
-                upper += weights[j] if high > plane else np.int64(0)
-            cost = split_cost(box, axis, np.float64(plane), lower, upper)
+            cost = _cost_at(boxes, weights, n, box, axis, plane)
             if cost < best_cost:
                 best_cost, best_axis, best_plane = cost, axis, np.float64(plane)
     return best_cost, best_axis, best_plane
@@ -61,6 +67,20 @@ def _best_bin(boxes, weights, n, box):
                 cost = split_cost(box, axis, plane, lower, upper)
                 if cost < best_cost:
                     best_cost, best_axis, best_plane = cost, axis, plane
+    if best_axis < 0:
+        return best_cost, best_axis, best_plane
+    # Move the plane to the nearest face on either side, between which it cuts the same references.
+    below, above = np.float32(box[best_axis]), np.float32(box[best_axis + 3])
+    for i in range(n):
+        low, high = boxes[i, best_axis], boxes[i, best_axis + 3]
+        for face in (low, high):
+            below = max(below, face) if face <= best_plane else below
+            above = min(above, face) if face >= best_plane else above
+    for face in (below, above):
+        if box[best_axis] < face < box[best_axis + 3]:
+            cost = _cost_at(boxes, weights, n, box, best_axis, face)
+            if cost <= best_cost:
+                best_cost, best_plane = cost, np.float64(face)
     return best_cost, best_axis, best_plane
 
 

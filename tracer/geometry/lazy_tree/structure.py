@@ -63,17 +63,17 @@ class LazyTree:
                 touched.ctypes.data,
                 0,
                 0,
-                0,
             ],
             np.int64,
         )
         self._kept = (primitives.triangles, quadric_boxes, touched)  # whose addresses are in the table
         box, table = self.box.astype(np.float64), self._table.ctypes.data
         self.root = plant(box, ~roots, np.ascontiguousarray(hierarchy.boxes[roots]), self.primitives, table)
-        weakref.finalize(self, fell, self.root)
+        fell.compile()  # now: when a tree goes, nothing may be compiled, as something may be being compiled just then
+        weakref.finalize(self, fell.call, self.root, 0, 0, 0, 0).atexit = False
 
     def counted(self, what: int) -> int:
-        """NODES that are built, primitives LEFT in those that are not, or BYTES."""
+        """NODES that are built, or BYTES."""
         return int(self._table[what // 8])
 
 
