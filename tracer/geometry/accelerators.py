@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
+# The paper's, whose steps are counted; one tree over everything, built where rays arrive; and 8-wide nodes with packets
+# of rays.
 KD_TREE, LAZY, BVH8 = "kdtree", "kdtree-lazy", "bvh8"
 ACCELERATORS = (KD_TREE, LAZY, BVH8)
-ABOUT = {  # in words, for menus and help
-    KD_TREE: "the paper's kd-tree, whose steps and tests are counted ray by ray",
-    LAZY: "one kd-tree over everything, built where rays arrive",
-    BVH8: "the fast 8-wide trees, with packets of rays",
-}
+MOST_TOGETHER = 128  # rays that go through a tree side by side

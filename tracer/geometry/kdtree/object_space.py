@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.geometry.accelerators import MOST_TOGETHER
 from tracer.geometry.boxes import OUTWARDS, transform_boxes, triangle_boxes
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives, WorldTriangles
@@ -19,6 +20,7 @@ EVEN = (
 class InObjectSpace:
     """Primitives are tested one by one, each in the space of its object, and nothing but its own test decides."""
 
+    together = MOST_TOGETHER  # of which they take no note: they trace rays one by one
     extent = 0.0  # boxes of dynamic objects are not padded
     hit_padding = 1e30  # and a hit need not lie in any
 
