@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz soak golden bench frames quickest lamps counters window table motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help
+.PHONY: run kernels test quick test-all fuzz soak golden bench frames quickest lamps counters window table motion memory growth first docs notebooks linkcheck pictures lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -96,6 +96,10 @@ memory:  ## measure the memory of Kitchen and of a million triangles, and build 
 growth:  ## measure how the cost of a ray grows from 10,000 to 2,000,000 triangles (ARGS="--most 200000")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.growth $(ARGS)
+
+first:  ## measure how soon a scene shows its first picture and a close-up, by each structure (ARGS="--triangles 200000 SCENE")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.first_pictures $(ARGS)
 
 docs:  ## build the documentation in build/docs; every warning is an error
 	@tools/environment.sh dev

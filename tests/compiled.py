@@ -17,7 +17,7 @@ from tracer import compilation
 from tracer.compilation import compiled_before, warm_up
 
 # Lights (modes in 32 and in 64 bits) and structure.
-VARIANTS = ((1, "bvh8"), (1, "kdtree"), (16, "bvh8"), (16, "kdtree"))
+VARIANTS = ((1, "bvh8"), (1, "kdtree"), (16, "bvh8"), (16, "kdtree"), (1, "kdtree-lazy"))
 
 
 class Part(NamedTuple):
@@ -38,8 +38,10 @@ AFTER = {
     Part("certificates", 16, "bvh8"): (CERTIFICATES,),
     Part("queries", 1, "bvh8"): (),
     Part("queries", 1, "kdtree"): (),
+    Part("queries", 1, "kdtree-lazy"): (),
     Part("frame", 16, "bvh8"): (FRAME,),
     Part("trees", 1, "kdtree"): (TREES,),
+    Part("trees", 1, "kdtree-lazy"): (TREES,),
 }
 
 

@@ -22,12 +22,13 @@ from tests.viewer.scenarios.rays import rays
 from tests.viewer.scenarios.runs import asking, experimenting, zooming
 from tests.viewer.scenarios.taking import taking
 from tests.viewer.scenarios.touring import touring
+from tests.viewer.scenarios.trees import trees
 from tests.viewer.scenarios.what_if import what_if
 
 SCENARIOS = {
     scenario.__name__: scenario
     for scenario in (
-        views, difference, wiping, comparing, closeup, legends, lamps, culling, certifying, explaining, rays,
+        views, difference, wiping, comparing, closeup, legends, lamps, trees, culling, certifying, explaining, rays,
         flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting,
         zooming, asking, finding, filmstrip, filming, hunting, taking, failing,
         panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if,

@@ -6,11 +6,16 @@ import os
 
 from imgui_bundle import imgui
 
+from tracer.geometry.accelerators import ACCELERATORS
 from viewer.state.preferences import LONGEST_SIDE
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
 from viewer.window.widgets import checkbox, properties, row, size_field
 
+_TREES = (
+    "bvh8: the fast one; kdtree: the paper's; kdtree-lazy: a kd-tree that is built where rays arrive; another one is "
+    "built, and the first time compiled, before the next picture, and modes and certificates are learnt anew"
+)
 SAMPLES = (1, 2, 4, 8, 16, 32, 64)
 
 
@@ -43,6 +48,11 @@ def show(ui: Ui) -> None:
                 c.settings.change(samples=SAMPLES[index])
             if c.session.scene is not None and c.session.scene.lights:
                 lights.lamp_rows(ui)
+            row("Tree", _TREES)
+            chosen = ACCELERATORS.index(c.session.settings.accelerator)
+            changed, index = imgui.combo("##tree", chosen, list(ACCELERATORS))
+            if changed:
+                c.settings.change(accelerator=ACCELERATORS[index])
             now = c.session.settings.threads
             row("Threads", "0: all cores; the picture and the numbers are the same for any")
             changed, threads = imgui.slider_int("##threads", now, 0, os.cpu_count() or 1, "%d" if now else "all cores")
