@@ -1,6 +1,6 @@
 """What an acceleration structure is to the rest of the program: built once, placed for a frame, asked by address.
 
-`tracer.geometry.bvh8` and `tracer.geometry.kdtree` are two such structures.  `World` picks one by its name; nobody
+`tracer.geometry.bvh8`, `kdtree` and `lazy_tree` are such structures.  `World` picks one by its name; nobody
 else knows which, or looks inside.
 """
 
