@@ -50,7 +50,7 @@ def show(ui: Ui) -> None:
                 lights.lamp_rows(ui)
             row("Tree", _TREES)
             chosen = ACCELERATORS.index(c.session.settings.accelerator)
-            changed, index = imgui.combo("##tree", chosen, list(ACCELERATORS))
+            changed, index = imgui.combo("##accelerator", chosen, list(ACCELERATORS))
             if changed:
                 c.settings.change(accelerator=ACCELERATORS[index])
             now = c.session.settings.threads
