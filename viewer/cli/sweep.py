@@ -6,6 +6,7 @@ Ctrl-C ends it at once: what is traced is kept, and the same command goes on fro
 from __future__ import annotations
 
 from argparse import Namespace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -131,7 +132,8 @@ def _summary(plan: Plan, store: Store) -> list[Line]:
     from viewer.output.sweep_summary import summary
     from viewer.services.sweeping import frames_of
 
-    return summary(store.read(), (key for task in plan.tasks for key in frames_of(task)))
+    lines = summary(store.read(), (key for task in plan.tasks for key in frames_of(task)))
+    return [replace(line, scene=plan.study.label(line.scene)) for line in lines]
 
 
 def _table(study: Study, lines: list[Line]) -> Table:
@@ -140,15 +142,15 @@ def _table(study: Study, lines: list[Line]) -> Table:
 
     verified = all(line.verified for line in lines)
     table = Table(title=printable(study.title), title_justify="left", title_style="bold", caption_justify="left")
-    table.caption = f"saved against {REFERENCE}, certificates included" + (
-        "; times include verifying" if verified else "; verify = true counts wrong answers"
+    table.caption = f"saved against {REFERENCE}, certificates included; times are processor time of one thread" + (
+        ", with verifying" if verified else "; verify = true counts wrong answers"
     )
     settings = any(line.settings for line in lines)
     for heading in ("scene", "size", *(["settings"] if settings else []), "method"):
         table.add_column(heading, no_wrap=heading != "settings")
     columns = [(heading, cell) for heading, cell in COLUMNS if verified or heading != "wrong"]
     for heading, _ in columns:
-        table.add_column(heading, justify="right")
+        table.add_column(heading, justify="right", no_wrap=True)
     before: tuple[str, ...] = ("", "", "")
     for number, line in enumerate(lines):
         where = (printable(line.scene), f"{line.width}×{line.height}", line.settings)

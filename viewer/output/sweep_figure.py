@@ -17,7 +17,7 @@ MOST_PANELS = 6
 _ROWS: tuple[tuple[str, Callable[[Line], float]], ...] = (
     ("Traversal steps\nsaved", lambda line: line.steps),
     ("Intersection tests\nsaved", lambda line: line.tests),
-    ("Speed-up\nover none", lambda line: line.speed_up),
+    ("Speed-up over none\n(processor time)", lambda line: line.speed_up),
 )
 
 

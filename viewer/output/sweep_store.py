@@ -46,6 +46,7 @@ _FIELDS: dict[str, pa.DataType] = {
     "time": pa.float64(),
     **{name: pa.int64() for name in _COUNTERS},
     "frame_seconds": pa.float64(),
+    "processor_seconds": pa.float64(),
     "picture": pa.string(),
     "repeats": pa.bool_(),
     "version": pa.string(),
@@ -62,9 +63,6 @@ _FIELDS: dict[str, pa.DataType] = {
 }
 SCHEMA = pa.schema(list(_FIELDS.items()))
 RESULTS, PARTS, STUDY, LOCK = "results.parquet", "parts", "study.json", ".lock"
-MEASURED = ("frame_seconds", "finished")
-"""Columns that differ each time, beside those of the machine."""
-
 Key = tuple[str, int]
 """A task and the number of a frame."""
 

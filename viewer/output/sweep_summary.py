@@ -22,7 +22,9 @@ NOTHING = float("nan")
 class Line:
     """A method under the same circumstances.  Savings are averages over frames, parts of 1, against `none`; `spread` is
     how far the averages of seeds deviate from the steps that are saved (standard deviation).  `known` is the part of
-    the shadow rays that was culled, or tested against dynamic objects only.  NaN: not known.
+    the shadow rays that was culled, or tested against dynamic objects only.  `seconds` is the median of processor
+    time, for which it matters little what else the machine does, and `speed_up` the quotient of all of it.  NaN: not
+    known.
 
     `settings` names those that the study varies."""
 
@@ -71,7 +73,7 @@ def _line(
     scene, width, height, _ = group
 
     def of(name: str, which: list[int]) -> np.ndarray:
-        return np.array([data[name][row] for row in which], np.float64)
+        return np.array([data[name][row] for row in which], np.float64)  # None becomes NaN
 
     pairs = [(row, reference[_moment(data, row)]) for row in rows if _moment(data, row) in reference]
     mine, theirs = [row for row, _ in pairs], [row for _, row in pairs]
@@ -85,7 +87,7 @@ def _line(
     seeds = np.array([data["seed"][row] for row in mine])
     by_seed = [float(steps[seeds == seed].mean()) for seed in np.unique(seeds)]
     due, wrong = of("shadow_rays_due", rows).sum(), of("wrong", rows).sum()
-    seconds = of("frame_seconds", mine).sum()
+    seconds = of("processor_seconds", mine).sum()
     return Line(
         scene=scene,
         width=width,
@@ -100,8 +102,8 @@ def _line(
         wrong=int(wrong),
         wrong_part=float(wrong / max(due, 1.0)),
         verified=all(data["verify"][row] for row in rows),
-        seconds=float(np.median(of("frame_seconds", rows))),
-        speed_up=float(of("frame_seconds", theirs).sum() / seconds) if seconds > 0 else NOTHING,
+        seconds=float(np.median(of("processor_seconds", rows))),
+        speed_up=float(of("processor_seconds", theirs).sum() / seconds) if seconds > 0 else NOTHING,
     )
 
 
@@ -128,11 +130,11 @@ def _percent(value: float, spread: float = NOTHING) -> str:
 
 COLUMNS: tuple[tuple[str, Callable[[Line], str]], ...] = (
     ("frames", lambda line: f"{line.frames:,}"),
-    ("steps saved", lambda line: "" if line.method == REFERENCE else _percent(line.steps, line.spread)),
-    ("tests saved", lambda line: "" if line.method == REFERENCE else _percent(line.tests)),
+    ("steps\nsaved", lambda line: "" if line.method == REFERENCE else _percent(line.steps, line.spread)),
+    ("tests\nsaved", lambda line: "" if line.method == REFERENCE else _percent(line.tests)),
     ("known", lambda line: "" if line.method == REFERENCE else _percent(line.known)),
     ("wrong", lambda line: f"{line.wrong:,}" if line.verified else ""),
-    ("frame", lambda line: f"{1000 * line.seconds:,.1f} ms"),
-    ("speed-up", lambda line: "" if line.speed_up != line.speed_up else f"{line.speed_up:.2f}"),
+    ("frame\nms", lambda line: "" if line.seconds != line.seconds else f"{1000 * line.seconds:,.1f}"),
+    ("speed-\nup", lambda line: "" if line.speed_up != line.speed_up else f"{line.speed_up:.2f}"),
 )
 """What a table says of a line: headings, and the cells below them."""

@@ -117,8 +117,9 @@ def _paths(script: Script) -> list[Path]:
 
 
 def _recipes(script: Script, scene: Scene) -> list[Recipe]:
-    """How each picture is made, alone, by a process of one thread."""
-    recipe = replace(script.recipe, settings=replace(script.recipe.settings, threads=1))
+    """How each picture is made, alone, by a process of one thread that may work in another folder."""
+    recipe = script.recipe
+    recipe = replace(recipe, scene=recipe.scene.absolute(), settings=replace(recipe.settings, threads=1))
     return [stills.with_caption_filled(filming.recipe_of(recipe, take), scene) for take in script.takes]
 
 

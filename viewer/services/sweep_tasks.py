@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import platform
 import sys
+import time as clocks
 from collections import OrderedDict
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -36,23 +37,37 @@ Row = dict[str, Any]
 """A frame that was measured, by the names of the columns in `viewer.output.sweep_store`."""
 KEPT_WORLDS = 2
 _worlds: OrderedDict[tuple[str, str, float], World] = OrderedDict()
+_last: Renderer | None = None
 
 
 def rows_of(task: Task, scene: Scene, cancelled: Callable[[], bool] = lambda: False) -> Iterator[Row]:
     """Trace a task's frames; yields a row for each as soon as it is traced.  Raises Cancelled."""
     settings = task.settings
     prepare(len(scene.lights), settings.accelerator, settings.method)
-    renderer = Renderer(scene, settings, world=world_of(scene, task.code, settings.accelerator, task.start))
+    renderer = _renderer(task, scene)
     renderer.settings = replace(settings, verify=False)  # of frames that only teach
     for _, time in task.before:
         renderer.render(time, task.camera(scene, time), cancelled)
     renderer.settings = settings
     for number, time in task.frames:
-        yield _row(task, number, time, renderer.render(time, task.camera(scene, time), cancelled))
+        start = clocks.process_time()  # of a process that does nothing else
+        frame = renderer.render(time, task.camera(scene, time), cancelled)
+        yield _row(task, number, time, frame, clocks.process_time() - start)
 
 
-def _row(task: Task, number: int, time: float, frame: Frame) -> Row:
+def _renderer(task: Task, scene: Scene) -> Renderer:
+    """A renderer that knows nothing of earlier frames; the last one again where its method learns nothing, as what a
+    renderer makes for its first frame is no part of the others' time."""
+    global _last
+    settings, world = task.settings, world_of(scene, task.code, task.settings.accelerator, task.start)
+    if _last is None or _last.world is not world or _last.settings != settings or Method.parse(settings.method).learns:
+        _last = Renderer(scene, settings, world=world)
+    return _last
+
+
+def _row(task: Task, number: int, time: float, frame: Frame, processor_seconds: float) -> Row:
     settings = task.settings
+    replays = Method.parse(settings.method).kind.measures  # what it records first is none of its time
     return {
         "task": task.key,
         "scene": task.scene,
@@ -77,6 +92,7 @@ def _row(task: Task, number: int, time: float, frame: Frame) -> Row:
         "path_frames": task.path_frames,
         "time": time,
         **figures_of(frame.statistics),
+        "processor_seconds": None if replays else processor_seconds,
         "picture": fingerprint.of_pixels(frame.color),
         "repeats": task.repeats,
         "version": program_version(),

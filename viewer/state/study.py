@@ -55,6 +55,11 @@ class Study:
     warmup: int | None = None
     folders: tuple[Path, ...] = ()
 
+    def label(self, name: str) -> str:
+        """A scene in a table: the name of its file alone, where no other scene has the same."""
+        stem = Path(name).stem
+        return stem if sum(Path(other).stem == stem for other in self.scenes) == 1 else name
+
     def to_json(self) -> dict[str, Any]:
         """The study in full, to be compared with another."""
         aspects = {name: list(dict.fromkeys(getattr(s, name) for s in self.settings)) for name in ASPECTS}
