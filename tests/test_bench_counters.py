@@ -9,7 +9,7 @@ import pytest
 
 from tests.bench.counters import EDITS, ROOT, WITH, WITHOUT, copy_without_counters, faults, measure
 from tracer.frame import Settings
-from tracer.kernels import cache_folder
+from tracer.kernel_cache import cache_root
 from viewer.util.resources import embedded_scenes
 
 TRAVERSE, TREE = "tracer/geometry/kdtree/traverse.py", "tracer/geometry/kdtree/tree.py"
@@ -73,7 +73,7 @@ def test_another_way_of_counting_is_refused(tmp_path: Path) -> None:
 
 def test_two_equal_tracers_render_the_same_and_are_found_out() -> None:
     """Both with counters, as if nothing had been taken out."""
-    trees = {name: (ROOT, cache_folder().parent) for name in (WITH, WITHOUT)}
+    trees = {name: (ROOT, cache_root()) for name in (WITH, WITHOUT)}
     result = measure(trees, embedded_scenes()["figure4"], Settings(32, 32, 2, threads=1), frames=3, start=30)
     counted, uncounted = (result["results"][name] for name in (WITH, WITHOUT))
     assert result["frames"] == [30, 33]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import multiprocessing
 import os
 import shutil
 import signal
@@ -10,33 +12,23 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from multiprocessing.connection import Connection
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from tests import kernel_processes
 from tests.platforms import linux_only, posix_only
 from tests.sweeps import cases
-from tracer import compilation, compile_beside, compile_steps
-from tracer.kernels import cache_folder
+from tracer import compilation, compile_beside, compile_steps, kernel_cache
+from tracer.kernel_cache import cache_root, sources_of
 from tracer.scene.model import Cancelled
 
 ROOT = Path(__file__).resolve().parent.parent
-TINY = """
-import sys
-from tracer.geometry.tiny import ask
-from tracer.kernels import cache_folder
-for name in sys.argv[1:]:
-    print(ask(eval(name)), end=" ")
-print(sum(ask.stats.cache_hits.values()), cache_folder())
-"""
-
-# Between reading which versions of a kernel there are and writing that there is one more, others have time to do so.
-SLOW = """
-import time
-from numba.core.caching import IndexDataCacheFile
-save = IndexDataCacheFile._save_index
-IndexDataCacheFile._save_index = lambda *a: (time.sleep(0.2), save(*a))
-"""
+# What each process takes longest to load.
+PROCESSES = multiprocessing.get_context("forkserver" if os.name == "posix" else "spawn")
+PROCESSES.set_forkserver_preload(["tests.kernel_processes", "platformdirs"])
 
 
 @pytest.fixture
@@ -58,24 +50,28 @@ def write_helper(package: Path, value: int) -> None:
     )
 
 
-def start(package: Path, folder: Path, *numbers: str, before: str = "") -> subprocess.Popen:
-    environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(folder), "PYTHONPATH": str(package)}
-    command = [sys.executable, "-c", before + TINY, *numbers]
-    return subprocess.Popen(
-        command, cwd=package, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+def start(package: Path, folder: Path, *numbers: str, slow: bool = False, **more: str) -> tuple[Any, Connection]:
+    """A process that asks the kernel for numbers, and where its answer will come from."""
+    answer, other = PROCESSES.Pipe(duplex=False)
+    environment = {"SHADOWCULL_CACHE_DIR": str(folder)} | more
+    process = PROCESSES.Process(target=kernel_processes.ask, args=(str(package), environment, numbers, slow, other))
+    process.start()
+    other.close()
+    return process, answer
 
 
-def finish(process: subprocess.Popen) -> tuple[list[float], int, Path]:
-    """What a process printed: the kernel's answers, how many versions of it came from the cache, and from where."""
-    out, err = process.communicate(timeout=120)
-    assert process.returncode == 0, err
-    *answers, hits, folder = out.split()
-    return [float(answer) for answer in answers], int(hits), Path(folder)
+def finish(started: tuple[Any, Connection]) -> tuple[list[float], int, Path]:
+    """What a process says: the kernel's answers, how many versions of it came from the cache, and from where."""
+    process, answer = started
+    assert answer.poll(120)
+    said = answer.recv()
+    process.join(120)
+    assert not isinstance(said, str), said
+    return said
 
 
-def ask(package: Path, folder: Path, *numbers: str) -> tuple[list[float], int, Path]:
-    return finish(start(package, folder, *numbers))
+def ask(package: Path, folder: Path, *numbers: str, **more: str) -> tuple[list[float], int, Path]:
+    return finish(start(package, folder, *numbers, **more))
 
 
 def test_a_changed_helper_never_meets_a_stale_kernel(package: Path) -> None:
@@ -91,10 +87,65 @@ def test_a_changed_helper_never_meets_a_stale_kernel(package: Path) -> None:
     assert ask(package, cached, "1") == ([2.0], 1, folder)
 
 
+def test_a_change_elsewhere_leaves_a_kernel_compiled(package: Path) -> None:
+    cached = package / "cache"
+    folder = ask(package, cached, "1")[2]
+    (package / "tracer" / "culling" / "modes.py").write_text("changed = True\n")
+    (package / "tracer" / "simd" / "tiny.py").touch()
+    assert ask(package, cached, "1") == ([2.0], 1, folder)
+
+
+def test_a_copy_of_the_sources_finds_what_is_compiled(package: Path) -> None:
+    cached = package / "cache"
+    folder = ask(package, cached, "1")[2]
+    shutil.copytree(package / "tracer", package / "copy" / "tracer")
+    assert ask(package / "copy", cached, "1") == ([2.0], 1, folder)
+
+
+def test_all_that_a_source_imports_is_found() -> None:
+    """The imports that are found by their form are those that Python's own parser finds."""
+    for path in sorted((ROOT / "tracer").rglob("*.py")):
+        imported = kernel_cache._imported(path)
+        tree = ast.parse(path.read_text())
+        for_types = {
+            node
+            for block in tree.body
+            if isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING"
+            for node in ast.walk(block)
+        }
+        for node in set(ast.walk(tree)) - for_types:
+            if isinstance(node, ast.Import):
+                taken = [name.name for name in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                assert not node.level and node.module
+                below = (ROOT.joinpath(*node.module.split("."), name.name) for name in node.names)
+                taken = [
+                    f"{node.module}.{file.name}" if file.is_dir() or file.with_suffix(".py").exists() else node.module
+                    for file in below
+                ]
+            else:
+                continue
+            for module in taken:
+                stem = ROOT.joinpath(*module.split("."))
+                file = stem / "__init__.py" if stem.is_dir() else stem.with_suffix(".py")
+                assert not module.startswith("tracer") or file in imported, (path, module)
+
+
+def test_what_is_ready_depends_on_all_kernels_that_are_made_ready() -> None:
+    names = {path.relative_to(ROOT / "tracer").as_posix() for path in sources_of(kernel_cache._STEPS)}
+    assert {f"methods/{name}.py" for name in ("paper", "cache", "watching", "certified", "certified_lights")} <= names
+
+
+def test_shading_depends_on_vectors_and_not_on_methods() -> None:
+    shading = {path.relative_to(ROOT / "tracer").as_posix() for path in sources_of(ROOT / "tracer/shading/whitted.py")}
+    assert {"shading/whitted.py", "simd/vectors.py", "culling/shadow_testing.py", "kernels.py"} <= shading
+    assert not any(name.startswith(("methods/", "geometry/kdtree", "renderer")) for name in shading)
+
+
 def test_processes_that_compile_at_once_lose_and_mix_up_nothing(package: Path) -> None:
     cached = package / "cache"
     numbers = [f"__import__('numpy').{kind}(3)" for kind in ("int8", "uint8", "int16", "uint16")]
-    processes = [start(package, cached, *half, before=SLOW) for half in (numbers[:2], numbers[2:])]
+    processes = [start(package, cached, *half, slow=True) for half in (numbers[:2], numbers[2:])]
     assert [finish(process)[0] for process in processes] == [[4.0] * 2] * 2
     assert ask(package, cached, *numbers)[:2] == ([4.0] * 4, 4)
 
@@ -136,12 +187,8 @@ def test_a_full_disk_is_survived(package: Path) -> None:
     with mounted(cached, "64k"):
         answers, _, folder = ask(package, cached, "1")
         assert answers == [2.0] and cached not in folder.parents
-        tight = {"SHADOWCULL_CACHE_DIR": str(cached), "TMPDIR": str(cached), "PYTHONPATH": str(package)}
         (cached / "filling").write_bytes(bytes(40_000))
-        command = [sys.executable, "-c", TINY, "1", "1.5"]
-        done = subprocess.run(command, cwd=package, env=os.environ | tight, capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
-        assert done.stdout.split()[:2] == ["2", "2.5"]
+        assert ask(package, cached, "1", "1.5", TMPDIR=str(cached))[0] == [2.0, 2.5]
 
 
 def test_a_folder_that_may_only_be_read_is_read(package: Path) -> None:
@@ -156,8 +203,8 @@ def test_a_folder_that_may_only_be_read_is_read(package: Path) -> None:
 
 
 def test_kernels_of_old_sources_are_removed_at_last(package: Path) -> None:
-    cached = package / "cache"
-    for age in range(20):
+    cached, most = package / "cache", kernel_cache._KEPT
+    for age in range(most + 5):
         old = cached / f"{age:016x}"
         old.mkdir(parents=True)
         (old / "kernel.nbc").write_bytes(b"code")
@@ -166,8 +213,10 @@ def test_kernels_of_old_sources_are_removed_at_last(package: Path) -> None:
     for other in others:
         other.mkdir()
     folder = ask(package, cached, "1")[2]
-    kept = {f"{age:016x}" for age in range(15)} | {folder.name}
-    assert {path.name for path in cached.iterdir()} == kept | {other.name for other in others}
+    left = {path.name for path in cached.iterdir() if path.is_dir()} - {other.name for other in others}
+    assert len(left) == most and all(other.is_dir() for other in others)
+    new = 2  # of this kernel, and of all that is made ready
+    assert folder.name in left and {f"{age:016x}" for age in range(most - new)} < left
     assert ask(package, cached, "1")[1] == 1
 
 
@@ -181,7 +230,7 @@ def test_kernels_of_old_sources_are_removed_at_last(package: Path) -> None:
 def test_what_is_compiled_beside_is_what_a_frame_needs(lights: int, accelerator: str) -> None:
     """All steps are done, and with all kernels there nothing is compiled: so each is compiled as it is called."""
     compilation.warm_up(lights=lights, accelerator=accelerator)
-    before = sorted(path.name for path in cache_folder().rglob("*.nbc"))
+    before = sorted(path.name for path in cache_root().rglob("*.nbc"))
     told: list[tuple[str, float]] = []
     done: set[str] = set()
     drawable: list[set[str]] = []
@@ -189,7 +238,7 @@ def test_what_is_compiled_beside_is_what_a_frame_needs(lights: int, accelerator:
     compile_beside.compile_beside(report, lights, accelerator, done, lambda: drawable.append(set(done)))
     assert done == set(compile_steps.SHARES) == {step for steps in compile_steps.PARTS.values() for step in steps}
     assert len(drawable) == 1 and drawable[0] >= done - {"certificates"}
-    assert sorted(path.name for path in cache_folder().rglob("*.nbc")) == before
+    assert sorted(path.name for path in cache_root().rglob("*.nbc")) == before
     fractions = [fraction for _, fraction in told]
     assert fractions == sorted(fractions) and fractions[-1] > 0.7
     assert sum(compile_steps.SHARES.values()) == pytest.approx(1.0)
@@ -197,12 +246,12 @@ def test_what_is_compiled_beside_is_what_a_frame_needs(lights: int, accelerator:
 
 def test_without_certificates_less_is_compiled_and_the_rest_later(tmp_path: Path) -> None:
     code = (
-        "from tracer import compilation, compile_beside, compile_steps\n"
+        "from tracer import compilation, compile_beside, compile_steps, kernel_cache\n"
         "made = []\n"
         "compilation.compile_beside = lambda *arguments: made.append(list(arguments[-1]))\n"
         "compilation.picture_steps = lambda *a: iter(['primary rays'])\n"
         "compilation.certificate_steps = lambda *a: iter(['certificates'])\n"
-        "(compilation.cache_folder() / 'kernel.nbc').touch()\n"
+        "(compilation.version_folder() / 'kernel.nbc').touch()\n"
         "compilation.warm_up(certificates=False)\n"
         "assert compilation.can_draw() and compilation.compiled_before(certificates=False)\n"
         "assert not compilation.compiled_before()\n"
@@ -216,15 +265,11 @@ def test_without_certificates_less_is_compiled_and_the_rest_later(tmp_path: Path
     assert done.returncode == 0, done.stderr
 
 
-def test_a_cache_is_compiled_for_its_processor_and_place(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """numba looks for kernels of these files and for this processor, so that a copy elsewhere is compiled again."""
-    monkeypatch.setattr(compilation, "cache_folder", lambda: tmp_path)
-    (tmp_path / "kernel.nbc").touch()
+def test_a_cache_is_compiled_for_its_processor(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(compilation, "version_folder", lambda: tmp_path)
+    monkeypatch.setattr(compilation, "anything_kept", lambda: True)
     compilation._mark_kept("bvh8-uint32", certificates=True)
     assert compilation.compiled_before() and compilation.compiled_before(certificates=False)
-    with monkeypatch.context() as elsewhere:
-        elsewhere.setattr(compilation, "__file__", str(tmp_path / "tracer" / "compilation.py"))
-        assert not compilation.compiled_before() and not compilation.compiled_before(certificates=False)
     codegen = compilation.cpu_target.target_context.codegen()
     monkeypatch.setattr(type(codegen), "magic_tuple", lambda self: ("a system", "a processor", "+its,+instructions"))
     assert not compilation.compiled_before()

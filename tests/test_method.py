@@ -3,6 +3,7 @@
 import pytest
 
 from tracer.method import Kind, Method, additions, bases, choice, register, unregister
+from viewer.state.methods import with_base
 
 
 def test_a_name_gives_a_base_additions_and_capabilities():
@@ -22,6 +23,18 @@ def test_other_names_are_refused_in_one_line_that_says_what_there_is(name):
     with pytest.raises(ValueError, match="method is one of none, paper") as error:
         Method.parse(name)
     assert "\n" not in str(error.value) and "+cache and +rest" in str(error.value)
+
+
+def test_what_stands_alone_is_a_base_and_an_addition_but_not_both_at_once():
+    kind = register(Kind("mine", "Mine.", dict, addition=True, alone=True))
+    try:
+        assert kind in bases() and kind in additions() and kind not in additions("mine")
+        assert (Method.parse("mine+cache").base, Method.parse("paper+mine").additions) == ("mine", ("mine",))
+        with pytest.raises(ValueError, match=r"not 'mine\+mine'"):
+            Method.parse("mine+mine")
+        assert with_base("paper+mine+cache", "mine") == "mine+cache"
+    finally:
+        unregister("mine")
 
 
 def test_a_kind_is_registered_once_and_can_be_taken_back():

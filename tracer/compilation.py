@@ -7,8 +7,6 @@ a first picture needs comes first; what makes certificates comes last, and only 
 
 from __future__ import annotations
 
-import hashlib
-import os
 import sys
 import threading
 from collections.abc import Iterator
@@ -20,7 +18,7 @@ from numba.core.registry import cpu_target
 from tracer.compile_beside import compile_beside
 from tracer.compile_steps import FOR_A_PICTURE, PARTS, SHARES, certificate_steps, picture_steps
 from tracer.culling.modes import word_type
-from tracer.kernels import cache_folder
+from tracer.kernel_cache import anything_kept, version_folder
 from tracer.scene.model import Progress
 
 _lock = threading.Lock()
@@ -77,8 +75,8 @@ def can_draw(lights: int = 1, accelerator: str = "bvh8") -> bool:
 
 
 def compiled_before(lights: int = 1, accelerator: str = "bvh8", certificates: bool = True) -> bool:
-    """Whether all kernels, or all but those of certificates, were compiled once already, for this processor, in this
-    folder and from these sources: they are loaded only."""
+    """Whether all kernels, or all but those of certificates, were compiled once already, for this processor and from
+    these sources: they are loaded only."""
     name = _variant(lights, accelerator)
     return _mark(name, True).exists() or (not certificates and _mark(name, False).exists())
 
@@ -90,21 +88,14 @@ def _variant(lights: int, accelerator: str) -> str:
 def _mark(variant: str, certificates: bool) -> Path:
     """The file that says that all kernels of a variant, or all but those of certificates, are in the cache."""
     whole = "ready" if certificates else "drawable"
-    return cache_folder() / f"{variant}-{sys.implementation.cache_tag}-{_processor()}-{_place()}.{whole}"
+    return version_folder() / f"{variant}-{sys.implementation.cache_tag}-{_processor()}.{whole}"
 
 
 def _processor() -> str:
     return str(cpu_target.target_context.codegen().magic_tuple()[1])
 
 
-def _place() -> str:
-    """What numba looks for besides the sources, which name the folder: code for such a system and such instructions,
-    of kernels whose files are in these folders.  A cache that was copied to another place is of no use there."""
-    target = cpu_target.target_context.codegen().magic_tuple()
-    return hashlib.sha256(repr((target, os.path.abspath(Path(__file__).parent))).encode()).hexdigest()[:8]
-
-
 def _mark_kept(variant: str, certificates: bool) -> None:
     with suppress(OSError):
-        if any(cache_folder().rglob("*.nbc")):  # else nothing could be kept
+        if anything_kept():  # else nothing could be kept
             _mark(variant, certificates).touch()

@@ -16,7 +16,7 @@ from queue import Empty, SimpleQueue
 
 from tracer.compile_steps import FOR_A_PICTURE, NEEDS, PARTS, SHARES, steps_of
 from tracer.estimate import Estimate
-from tracer.kernels import cache_folder
+from tracer.kernel_cache import cache_root
 from tracer.scene.model import Progress
 
 _USUAL = 70.0  # seconds that all of it takes one process on a usual machine, with all cores busy
@@ -104,7 +104,7 @@ def _worker(*arguments: str) -> subprocess.Popen:
     """A process that compiles one part, and names its steps on its standard output."""
     environment = os.environ | {
         "PYTHONPATH": os.pathsep.join(dict.fromkeys([*filter(None, sys.path), str(Path(__file__).parents[1])])),
-        "SHADOWCULL_CACHE_DIR": str(cache_folder().parent),
+        "SHADOWCULL_CACHE_DIR": str(cache_root()),
     }
     return subprocess.Popen(
         [sys.executable, "-P", "-m", "tracer.compile_beside", *arguments],

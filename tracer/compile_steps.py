@@ -24,7 +24,7 @@ from tracer.geometry.queries import HIT_PRIMITIVE, HIT_T, Placed
 from tracer.geometry.rays import INFINITY, MISS
 from tracer.geometry.world import STRUCTURES
 from tracer.kernels import entry
-from tracer.methods import certified_lights, watching
+from tracer.methods import cache, cells, certified_lights, watching  # noqa: F401  (what is ready goes by imports)
 from tracer.methods.certified import CertifiedCells
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import StageTable

@@ -31,7 +31,7 @@ from rich.table import Table
 from tests.bench import frame_server
 from tests.bench.frame_times import KITCHEN, in_words, machine
 from tracer.frame import Settings
-from tracer.kernels import cache_folder
+from tracer.kernel_cache import cache_root
 from tracer.parallel import thread_count
 from viewer.cli.console import print_table, say
 from viewer.util.resources import scene_path
@@ -245,7 +245,7 @@ def run(options: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory(prefix="shadowcull-counters-") as folder:
         copy = copy_without_counters(ROOT, Path(folder))
         say("compiling the tracer without counters, which takes about a minute")
-        trees = {WITH: (ROOT, cache_folder().parent), WITHOUT: (copy, Path(folder) / "kernels")}
+        trees = {WITH: (ROOT, cache_root()), WITHOUT: (copy, Path(folder) / "kernels")}
         result = measure(trees, scene, settings, options.frames, options.start)
     if result["results"][WITH]:
         print_table(table(result))

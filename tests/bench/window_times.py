@@ -28,7 +28,7 @@ from rich.table import Table
 
 from tests.bench.frame_times import KITCHEN, in_words, machine
 from tests.bench.window_server import STATES
-from tracer.kernels import cache_folder
+from tracer.kernel_cache import cache_root
 from viewer.cli.console import print_table
 from viewer.util.messages import say
 from viewer.util.resources import scene_path
@@ -124,8 +124,8 @@ def main(arguments: list[str] | None = None) -> int:
         with tempfile.TemporaryDirectory() as empty:
             runs = [] if options.no_cold else [(scenes[0], "cold", Path(empty))]
             # Once untimed: kernels, and the shaders of Mesa's own cache.
-            measure(scenes[0], options.size, 0.5, cache_folder().parent)
-            for scene, kernels, cache in [*runs, *((scene, "warm", cache_folder().parent) for scene in scenes)]:
+            measure(scenes[0], options.size, 0.5, cache_root())
+            for scene, kernels, cache in [*runs, *((scene, "warm", cache_root()) for scene in scenes)]:
                 result = measure(scene, options.size, options.seconds, cache)
                 about = {"scene": str(scene), "kernels": kernels, "size": options.size}
                 report["windows"].append(about | result | {"faults": faults_of(result)})

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from argparse import Namespace
 
-from tracer.compilation import warm_up
+from tracer.compilation import compiled_before, warm_up
 from tracer.frame import Settings
-from tracer.kernels import cache_folder, is_kept
+from tracer.kernel_cache import outlives_process
 from tracer.method import Method
 from tracer.scene.model import Scene
 from viewer.cli.console import Work
@@ -19,10 +19,11 @@ def prepare_kernels(work: Work, lights: int, accelerator: str, *methods: str) ->
     """Compile or load every kernel that these methods need for so many lights.
 
     The first time takes a while and says so."""
-    if next(cache_folder().rglob("*.nbi"), None) is None:
-        often = "once for this version" if is_kept() else "at every start, as the cache folder cannot be written to"
-        work.note(f"compiling the kernels, {often}; this takes a minute or less")
     certificates = any(Method.parse(name).has_certificates for name in methods)
+    if not compiled_before(lights, accelerator, certificates):
+        always = "at every start, as the cache folder cannot be written to"
+        often = "once for this version" if outlives_process() else always
+        work.note(f"compiling the kernels, {often}; this takes a minute or less")
     warm_up(work.progress, lights, accelerator, certificates)
 
 

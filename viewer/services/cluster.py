@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from typing import Any
 
-from tracer.kernels import cache_folder
+from tracer.kernel_cache import cache_root
 from viewer.util.failures import one_line
 
 NEEDS_DASK = "Dask is not installed; install shadowcull[sweep] (pip install distributed pyarrow cryptography)"
@@ -133,7 +133,7 @@ def _settings() -> dict[str, Any]:
         "distributed.scheduler.rootish-taskgroup-dependencies": 1_000_000,
         "distributed.worker.daemon": True,
         "distributed.nanny.pre-spawn-environ": {
-            "SHADOWCULL_CACHE_DIR": str(cache_folder().parent),
+            "SHADOWCULL_CACHE_DIR": str(cache_root()),
             "OMP_NUM_THREADS": "1",
             "MKL_NUM_THREADS": "1",
             "OPENBLAS_NUM_THREADS": "1",

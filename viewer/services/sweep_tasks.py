@@ -25,7 +25,7 @@ from tracer.compilation import compiled_before, warm_up
 from tracer.experiment import figures_of
 from tracer.frame import Frame
 from tracer.geometry.world import World
-from tracer.kernels import cache_folder
+from tracer.kernel_cache import cache_root
 from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
@@ -119,7 +119,7 @@ def prepare(lights: int, accelerator: str, method: str) -> None:
     if compiled_before(lights, accelerator, certificates):
         warm_up(None, lights, accelerator, certificates)
         return
-    with FileLock(cache_folder() / "sweep.lock"):
+    with FileLock(cache_root() / "sweep.lock"):
         warm_up(None, lights, accelerator, certificates)
 
 

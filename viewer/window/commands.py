@@ -223,7 +223,8 @@ def _culling(ui: Ui) -> list[Command]:
     def addition(kind: Kind) -> Command:
         change = lambda: c.settings.change(method=toggled(s().method, kind.name))  # noqa: E731
         name, chosen = f"Method +{kind.name}", lambda: method().has(kind.name)
-        return Command(name, "Culling", change, checked=chosen, tip=kind.summary)
+        enabled = lambda: method().kind is not kind  # noqa: E731
+        return Command(name, "Culling", change, enabled=enabled, checked=chosen, tip=kind.summary)
 
     return [
         *[base(kind) for kind in bases()],

@@ -5,6 +5,8 @@ Each object has a tree of its own, made once it is static; `Occluders` hold thes
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,8 +17,10 @@ from tracer.geometry.boxes import OUTWARDS, PADDING, triangle_boxes
 from tracer.geometry.memory import aligned_rows
 from tracer.geometry.primitives import Outlines
 from tracer.geometry.wide_tree.topology import WIDTH, Topology
-from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
+
+if TYPE_CHECKING:
+    from tracer.geometry.world import World
 
 GROWTH = 4  # times that what moves may grow before all is certified anew
 QUADRIC = 4e-6  # of the coordinates: how far from a quadric a ray that is transformed to it may hit it

@@ -9,6 +9,7 @@ then adds to it (`gather`, `certify`), kernels look cells up in it (`view`), and
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -51,9 +52,11 @@ from tracer.culling.shadow_modes import words_at
 from tracer.geometry.boxes import OUTWARDS
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.primitives import Outlines
-from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 from tracer.scene.lamps import Lamps
+
+if TYPE_CHECKING:
+    from tracer.geometry.world import World
 
 STATES = ("none", "full", "lit", "candidates")
 BATCH = 4096  # tasks of one call of `certify`, at most

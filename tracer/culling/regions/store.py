@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +19,12 @@ from tracer.culling.regions.blockers import Blockers, find_blockers
 from tracer.culling.regions.certify import COUNTERS, STEPS, TESTS, hidden_from, leaves_left
 from tracer.culling.regions.grid import Grid, blocks_around, boxes_of, make_grid, region_at
 from tracer.culling.regions.light_tree import LightTree, build_light_tree
-from tracer.geometry.world import World
 from tracer.parallel import for_each_chunk
 from tracer.scene.lamps import Lamps
 from tracer.simd.records import I32, I64, Bytes, F32x2D
+
+if TYPE_CHECKING:
+    from tracer.geometry.world import World
 
 COARSE = 8  # regions on a side of the blocks for which lights are left out first
 CHUNK, BATCH, MOST = 16, 64, 4096  # regions that a thread takes at a time; of a frame's first batch, and of any

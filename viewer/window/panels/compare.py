@@ -109,7 +109,7 @@ def _second(ui: Ui) -> None:
                 comparing.trace_by(with_base(str(method), kind.name))
             tooltip(kind.summary)
         imgui.separator()
-        for kind in additions():
+        for kind in additions(method.base):
             if imgui.menu_item(f"+{kind.name}", "", method.has(kind.name), True)[0]:
                 comparing.trace_by(toggled(str(method), kind.name))
             tooltip(kind.summary)

@@ -96,7 +96,7 @@ def _method(ui: Ui) -> None:
                         c.settings.change(method=with_base(name, kind.name))
                     tooltip(kind.summary)
                 imgui.end_combo()
-    for number, kind in enumerate(additions()):
+    for number, kind in enumerate(additions(method.base)):
         if number:
             imgui.same_line(0.0, em(1.0))
         changed, _ = imgui.checkbox(f"+{kind.name}", method.has(kind.name))
