@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from argparse import Namespace
 from contextlib import AbstractContextManager
 
@@ -19,20 +20,27 @@ def cluster_of(options: Namespace, tasks: int) -> AbstractContextManager[Cluster
 
 
 class Watch:
-    """Says how many processes there are, and when one has died."""
+    """Says how many processes there are, and when one has died, as they were at the last look: once a second."""
+
+    EVERY = 1.0
 
     def __init__(self, cluster: Cluster, work: Work) -> None:
         self._cluster, self._work, self._known = cluster, work, set(cluster.process_ids())
+        self._started, self._next = 0, 0.0
 
-    def look(self) -> None:
+    def look(self, at_once: bool = False) -> None:
         """Note which processes have died since."""
+        if time.monotonic() < self._next and not at_once:
+            return
+        self._next, self._started = time.monotonic() + self.EVERY, self._cluster.started()
         now = set(self._cluster.process_ids())
         for number in self._known - now:
             self._work.note(f"process {number} has died; another takes its place, and does its task again")
         self._known = now
 
     def __str__(self) -> str:
-        started, size = self._cluster.started(), self._cluster.size()
+        started = self._started
+        size = self._cluster.size() if self._cluster.is_local else started
         if not started:
             return "waiting for workers"
         return f"{started} of {size} workers" if started < size else f"{size} worker{'s' * (size > 1)}"

@@ -120,7 +120,9 @@ def _trace(plan: Plan, store: Store, options: Namespace, work: Work) -> tuple[bo
                 work.count(f"frame {min(now + 1, plan.frames):,} of {plan.frames:,}, {watch}", now, plan.frames)
 
             on_progress(done)
-            return True, sweeping.sweep(plan, store, cluster, work.cancelled, on_progress)
+            report = sweeping.sweep(plan, store, cluster, work.cancelled, on_progress)
+            watch.look(at_once=True)
+            return True, report
     except Cancelled:
         work.note(f"cancelled after {done:,} of {plan.frames:,} frames; these are kept, and the same command goes on")
         return False, report

@@ -61,10 +61,8 @@ class Cluster:
         if not self.is_local:
             return
         for nanny in list(self._local.workers.values()):
-            process = nanny.process
-            nanny.auto_restart = False
             number = nanny.pid
-            if process is not None and number is not None:
+            if number is not None:
                 with suppress(ProcessLookupError):
                     os.kill(number, signal.SIGKILL)
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import pickle
 import secrets
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
@@ -77,6 +78,7 @@ def do(
     program = program_version(), tracer_code()
     try:
         sent: dict[str, Any] = {}
+        needed = Counter(job.scene for job in jobs)
         waiting = iter(enumerate(jobs))
         left = len(jobs)
 
@@ -100,6 +102,10 @@ def do(
                 outcome.results = _fetched(client, ended, cancelled)
             for number, _ in [*outcome.results, *outcome.failures]:
                 futures.pop(number).release()
+                scene = jobs[number].scene
+                needed[scene] -= 1
+                if not needed[scene]:
+                    sent.pop(scene).release()  # no process keeps it any longer
             left -= outcome.ended
             hand_over(outcome.ended)
             if outcome.parts or outcome.ended:
