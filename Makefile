@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz bounds soak golden bench frames quickest lamps counters window table motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help
+.PHONY: run kernels test quick test-all fuzz bounds soak golden bench methods frames quickest lamps counters window table motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -72,6 +72,10 @@ frames:  ## time frames with and without culling, phase by phase (ARGS="--frames
 quickest:  ## hold frames by `auto` against those by `none`, fifty at a time (ARGS="--frames 100 SCENE ...")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.quickest $(ARGS)
+
+methods:  ## hold all methods side by side, scene by scene (ARGS="--write" into their page, "--frames 4 SCENE ...")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.methods $(ARGS)
 
 lamps:  ## hold frames by the light of lamps against those by `none` (ARGS="--radius 0.1 --frames 20 SCENE ...")
 	@tools/environment.sh dev
