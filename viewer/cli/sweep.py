@@ -70,7 +70,7 @@ def sweep(path: Path, options: Namespace) -> bool:
         print_table(_table(study, lines))
     if options.plot is not None:
         _plot(study, lines, options.plot)
-    if not options.table:
+    if not options.table and store.results.exists():
         print(printable(store.results))
     _check(report)
     return whole

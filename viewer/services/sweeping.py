@@ -143,6 +143,10 @@ def sweep(
             done += len(new)
         report.failures += [(missing[number], why) for number, why in outcome.failures]
         progress()
+    failed = {task.key for task, _ in report.failures}
+    for task in missing:
+        if task.key not in failed and not kept.issuperset(frames_of(task)):
+            report.failures.append((task, "its results did not arrive; the same command traces it again"))
     return report
 
 
@@ -175,5 +179,5 @@ def trace(task: Task, scene: Scene, emit: Emit, cancelled: Callable[[], bool]) -
 def in_words(failures: Sequence[tuple[Task, str]]) -> str:
     """Which tasks failed, in one line."""
     task, why = failures[0]
-    more = f" (and {len(failures) - 1} more)" if len(failures) > 1 else ""
-    return f"{len(failures)} of the tasks failed, the first of them {task.in_words()}: {why}{more}"
+    line = f"{task.in_words()}: {why}"
+    return line if len(failures) == 1 else f"{len(failures)} tasks failed, the first of them {line}"

@@ -197,6 +197,15 @@ def test_a_film_by_two_processes_is_that_of_one(shared: Cluster, capfd: pytest.C
     assert code == 0 and "one process traces them all" in err
 
 
+def test_another_version_does_not_take_part(
+    shared: Cluster, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("viewer.services.jobs_elsewhere.program_version", lambda: "9.9")
+    code, _, err = run(capfd, "sweep", "study.toml")
+    assert code == 1 and "16 tasks failed, the first of them room.aff" in err and "not 9.9" in err
+    assert not (Path("study-results") / "results.parquet").exists()
+
+
 def test_without_dask_one_line_says_so(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     for command in (("sweep", "study.toml"), ("film", "room.aff", "-o", "film", "--workers", 2)):
