@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+import tracer.methods.cache
+import tracer.methods.cells  # noqa: F401
 from tracer.culling.certified.certify import COUNTERS as CERTIFYING
 from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.certified.scheduler import Budget
@@ -26,7 +28,7 @@ from tracer.geometry.rays import INFINITY, MISS
 from tracer.geometry.world import STRUCTURES
 from tracer.kernels import entry
 from tracer.method import Kind, Method
-from tracer.methods import cells, certified_lights, watching  # noqa: F401  (what is ready goes by imports)
+from tracer.methods import certified_lights, watching
 from tracer.methods.certified import CertifiedCells
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import StageTable
