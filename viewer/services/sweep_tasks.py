@@ -21,7 +21,7 @@ import numba
 import numpy as np
 from filelock import FileLock
 
-from tracer.compilation import compiled_before, warm_up
+from tracer.compilation import compiled_before, make_ready, ready_for, warm_up
 from tracer.experiment import figures_of
 from tracer.frame import Frame
 from tracer.geometry.world import World
@@ -116,11 +116,12 @@ def world_of(scene: Scene, code: str, accelerator: str, start: float) -> World:
 def prepare(lights: int, accelerator: str, method: str) -> None:
     """Make ready the kernels; of the processes that share a cache, one compiles and the others wait for it."""
     certificates = Method.parse(method).has_certificates
-    if compiled_before(lights, accelerator, certificates):
+    if compiled_before(lights, accelerator, certificates) and ready_for(method, lights, accelerator):
         warm_up(None, lights, accelerator, certificates)
         return
     with FileLock(cache_root() / "sweep.lock"):
         warm_up(None, lights, accelerator, certificates)
+        make_ready(method, lights, accelerator)
 
 
 def check_program(version: str, tracer: str) -> None:
