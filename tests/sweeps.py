@@ -5,6 +5,9 @@ from __future__ import annotations
 import os
 from typing import TypeVar
 
+from tracer.geometry.accelerators import ACCELERATORS as EVERY_ACCELERATOR
+from tracer.geometry.accelerators import BVH8, KD_TREE
+
 ALL = os.environ.get("SHADOWCULL_TESTS") == "all"
 MORE = 8  # times as many examples of random scenes
 
@@ -13,6 +16,10 @@ T = TypeVar("T")
 
 def cases(usual: T, in_all: T) -> T:
     return in_all if ALL else usual
+
+
+# Each structure has its own tests; what all must do is tried with these.
+ACCELERATORS = cases((KD_TREE, BVH8), EVERY_ACCELERATOR)
 
 
 def examples(usual: int) -> int:

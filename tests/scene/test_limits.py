@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import tracer
-from tracer.geometry.accelerators import ACCELERATORS
+from tests.sweeps import ACCELERATORS
 from tracer.scene import aff, limits
 from tracer.scene.aff import load_aff
 from tracer.scene.camera import Camera

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 import tracer
+from tests.sweeps import ACCELERATORS
 from tests.tracing.brute import meet_all
 from tracer.culling.certified.cells import CANDIDATES, FULL, HIGHEST, LIT, named_by, state_of
 from tracer.culling.certified.error_bounds import EPSILON
@@ -18,7 +19,6 @@ from tracer.culling.certified.shaft import LOWEST
 from tracer.culling.certified.store import CertificateStore
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.rays import ray_batch
-from tracer.geometry.world import ACCELERATORS
 from tracer.kernels import kernel
 from tracer.simd import address_of, load_three
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import tracer
+from tests.sweeps import ACCELERATORS
 from tests.tracing.nasty_worlds import nasty_walk
 from tests.tracing.worlds import certificates_of
 from tracer.culling.certified.cost_model import CostModel
-from tracer.geometry.world import ACCELERATORS
 from tracer.method import Kind, register, unregister
 from tracer.methods.auto import Auto
 from tracer.methods.interface import Services

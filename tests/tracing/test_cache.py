@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 
 import tracer
 from tests.scenes import world_of
+from tests.sweeps import ACCELERATORS
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.same import assert_only_asked_less
 from tests.tracing.worlds import affine, moved, quad, quadrics, scene
 from tracer.culling import cells
 from tracer.culling.occluder_cache import OccluderSlots, merge_occluders, surely_blocked
 from tracer.culling.shadow_testing import LIGHT_MARGIN
-from tracer.geometry.world import ACCELERATORS
 from tracer.kernels import kernel
 from tracer.scene.model import SPHERE
 from tracer.simd import address_of, bits_of, load_i32x16, load_three

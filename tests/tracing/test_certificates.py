@@ -12,6 +12,7 @@ import pytest
 
 import tracer
 from tests.scenes import loaded
+from tests.sweeps import ACCELERATORS
 from tests.tracing.brute import meet_all
 from tests.tracing.shades import BEHIND, GOING, MIDDLES, floor, going, kite, roof
 from tests.tracing.worlds import GREY, certificates_of, quad, scene
@@ -22,7 +23,6 @@ from tracer.culling.certified.store import CertificateStore
 from tracer.culling.rest import changes
 from tracer.explanation import explain
 from tracer.geometry.rays import ray_batch
-from tracer.geometry.world import ACCELERATORS
 from tracer.scene.animation import Animation
 from tracer.scene.model import Cancelled
 

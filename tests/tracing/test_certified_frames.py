@@ -12,12 +12,11 @@ import pytest
 
 import tracer
 from tests.scenes import loaded
-from tests.sweeps import cases
+from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.nasty_worlds import NastyWalk, flattened_walk, nasty_walk, with_lamps
 from tests.tracing.same import contents
 from tests.tracing.worlds import certificates_of
 from tracer.culling.certified.cost_model import CostModel
-from tracer.geometry.world import ACCELERATORS
 
 SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
 # Small pictures are to have many certificates on either structure, and to test candidates.

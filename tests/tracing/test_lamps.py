@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.sweeps import ACCELERATORS
 from tests.tracing.same import assert_same
 from tests.tracing.shades import BEHIND, floor, going, kite, roof
 from tests.tracing.worlds import random_corners, scene
 from tracer.culling.modes import FULLY_RENDERED, ShadowMode
 from tracer.explanation import explain
-from tracer.geometry.world import ACCELERATORS
 from tracer.one_light import with_light
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation

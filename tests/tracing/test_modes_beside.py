@@ -12,13 +12,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
-from tests.sweeps import cases
+from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.naive_frame import NaiveRenderer
 from tests.tracing.nasty_worlds import nasty_walk
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.modes import FULLY_RENDERED, occlusion_mode
-from tracer.geometry.world import ACCELERATORS
 from tracer.scene.model import Camera
 
 BESIDE = ("none", "certified", "certified+cache", "none+cache+rest", "auto")

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given
 
 import tracer
+from tests.sweeps import ACCELERATORS
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.worlds import quad, quadrics, scene
-from tracer.geometry.world import ACCELERATORS
 from tracer.methods.payoff import Payoff
 from tracer.progressive import HALVES, LEVELS, Parts, after
 from tracer.scene.model import SPHERE, Camera, Cancelled, Material, Texture

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.sweeps import cases
+from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.nasty_worlds import nasty_walk, with_lamps
 from tests.tracing.same import assert_same
 from tests.tracing.worlds import quad, scene, wall
@@ -22,7 +22,7 @@ from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.explanation import explain
 from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.rays import ray_batch
-from tracer.geometry.world import ACCELERATORS, World
+from tracer.geometry.world import World
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation, Keys, TrackSet

@@ -10,9 +10,8 @@ import pytest
 
 import tracer
 from tests.scenes import world_of
-from tests.sweeps import cases
+from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.same import assert_same
-from tracer.geometry.world import ACCELERATORS
 
 
 @lru_cache(2)

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
+from tests.sweeps import ACCELERATORS
 from tests.tracing import brute
 from tests.tracing.brute8 import meet_all8
 from tests.tracing.random_worlds import END, quickly, scenes
@@ -18,7 +19,6 @@ from tests.tracing.shoals import shoals
 from tests.tracing.worlds import moved, quadrics, random_corners, scene
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, batch_of
 from tracer.geometry.rays import Rays
-from tracer.geometry.world import ACCELERATORS
 from tracer.scene.model import SPHERE
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tracer
-from tests.sweeps import cases
+from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.worlds import scene
 from tracer.culling.certified.prepared_triangles import PREPARED, Lamp, prepare_in_tree
 from tracer.culling.certified.seen_by_lamp import (
@@ -21,7 +21,6 @@ from tracer.culling.certified.seen_by_lamp import (
 from tracer.culling.certified.static_geometry import StaticGeometry
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.rays import ray_batch
-from tracer.geometry.world import ACCELERATORS
 from tracer.kernels import kernel
 from tracer.scene.lamps import LampTable
 from tracer.scene.lights import Light

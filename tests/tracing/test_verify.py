@@ -9,9 +9,8 @@ import pytest
 
 import tracer
 from tests.scenes import loaded, world_of
-from tests.sweeps import cases
+from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.same import assert_verified
-from tracer.geometry.world import ACCELERATORS
 
 SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
 SETTINGS = tracer.Settings(width=128, height=128, depth=10, verify=True)

@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
+from tests.sweeps import ACCELERATORS
 from tests.tracing.naive_frame import NaiveFrame, NaiveRenderer
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.same import assert_verified
 from tracer.culling import cells
-from tracer.geometry.world import ACCELERATORS
 
 
 @pytest.fixture(autouse=True)

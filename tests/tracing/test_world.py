@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
+from tests.sweeps import ACCELERATORS
 from tests.tracing import brute, naive
 from tests.tracing.brute8 import meet_all8
 from tests.tracing.random_worlds import END, quickly, scenes
@@ -17,7 +18,6 @@ from tests.tracing.worlds import affine, moved, quadrics, random_corners, scene
 from tracer.geometry.kdtree.build import CANCELLED, build_tree
 from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, any_hits_by
-from tracer.geometry.world import ACCELERATORS
 from tracer.kernels import kernel
 from tracer.scene.model import SPHERE, Cancelled
 
