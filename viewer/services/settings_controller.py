@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Collection
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 from tracer.method import Method
@@ -13,6 +14,9 @@ from viewer.state.preferences import Preferences, save_preferences
 from viewer.state.session import Session
 from viewer.state.views import View
 
+RESTED = 2.0
+"""Seconds that preferences are as they are before they are saved."""
+
 
 class SettingsController:
     """Settings stay as they are while `locked()`, which says so itself."""
@@ -21,6 +25,10 @@ class SettingsController:
         self, session: Session, preferences: Preferences, notices: Notices, locked: Callable[[], bool]
     ) -> None:
         self._session, self._preferences, self._notices, self._locked = session, preferences, notices, locked
+        self._stored = self._tried = asdict(preferences)  # as others have seen them; what could not be stored, too
+        self._looked = time.monotonic()
+        self._seen: dict[str, Any] = {}
+        self._problem: str | None = None
 
     def change(self, **changes: Any) -> None:
         """Change fields of `tracer.Settings`; a value that is no good is reported in one line and changes nothing."""
@@ -60,7 +68,27 @@ class SettingsController:
         self._notices.say("settings reset")
 
     def save(self) -> None:
-        """Write the preferences to their file; a failure is reported in one line."""
-        error = save_preferences(self._preferences)
-        if error:
-            self._notices.say(error, error=True)
+        """Write the preferences to their file, beside what other windows have written; a failure is reported in one
+        line."""
+        self._write()
+        if self._problem:
+            self._notices.say(self._problem, error=True)
+
+    def follow(self) -> None:
+        """Save what was changed and has rested for a moment, so that little is lost when the program is ended; a failure
+        is reported once."""
+        now = time.monotonic()
+        if now < self._looked + RESTED:
+            return
+        self._looked, before, self._seen = now, self._seen, asdict(self._preferences)
+        if self._seen == before and self._seen != self._tried:
+            problem = self._problem
+            self._write()
+            if self._problem and self._problem != problem:
+                self._notices.say(self._problem, error=True)
+
+    def _write(self) -> None:
+        self._tried = asdict(self._preferences)
+        self._problem = save_preferences(self._preferences, base=self._stored)
+        if self._problem is None:
+            self._stored = self._tried
