@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz soak golden bench frames quickest lamps counters window table motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help
+.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -47,6 +47,10 @@ test-all:  ## run the tests with many times as many random scenes and frames as 
 fuzz:  ## read damaged files of all kinds, and trace what is left of them (ARGS="--seconds 600 --seed 1000")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.fuzz.readers $(ARGS)
+
+faults:  ## kill what writes, fill its disk, and let several write at once (ARGS="--kills 1000 --only disk")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.fuzz.faults $(ARGS)
 
 soak:  ## use the program for long, and watch memory, threads and files (ARGS="--seconds 3600 SCENE ...")
 	@tools/environment.sh dev

@@ -25,11 +25,12 @@ Check = Callable[[Path], None]
 
 @dataclass(frozen=True)
 class Written:
-    """Something that the program writes; `mends` says that what is broken is noticed and made anew, as in a cache."""
+    """Something that the program writes; `tells` unless another is to tell that it could not be written."""
 
     name: str
     write: Write
     check: Check
+    tells: bool = True
 
 
 @dataclass
@@ -55,7 +56,7 @@ def kill_often(written: Written, folder: Path, kills: int, rng: np.random.Genera
     outcome = Outcome()
     one = _in_child(lambda: written.write(folder, 1))
     for number in range(kills):
-        _killed(lambda at: written.write(folder, at), 2 + number * 1000, float(rng.uniform(0.0, 2.0 * one)))
+        killed(lambda at: written.write(folder, at), 2 + number * 1000, float(rng.uniform(0.0, 2.0 * one)))
         outcome.kills += 1
         outcome.interrupted += any(_is_hidden(path) for path in folder.rglob("*"))
         try:
@@ -77,38 +78,46 @@ def kill_often(written: Written, folder: Path, kills: int, rng: np.random.Genera
 def _in_child(write: Callable[[], None]) -> float:
     """Let a child write, which knows nothing of what this process has written; the seconds that it takes."""
     read, told = os.pipe()
-    child = os.fork()
-    if child == 0:
-        try:
-            write()  # what is needed is imported
-            began = time.perf_counter()
-            write()
-            os.write(told, repr(time.perf_counter() - began).encode())
-        finally:
-            os._exit(0)
+
+    def work() -> None:
+        write()  # what is needed is imported
+        began = time.perf_counter()
+        write()
+        os.write(told, repr(time.perf_counter() - began).encode())
+
+    child = forked(work)
     os.close(told)
     with os.fdopen(read) as pipe:
         text = pipe.read()
-    os.waitpid(child, 0)
-    if not text:
-        raise RuntimeError("a writer failed")
+    assert os.waitpid(child, 0)[1] == 0, "a writer failed"
     return float(text)
 
 
-def _killed(write: Callable[[int], None], first: int, seconds: float) -> None:
-    """Let a child write from a number on, and kill it after so many seconds from its first write on."""
-    read, told = os.pipe()
+def forked(work: Callable[[], None]) -> int:
+    """A child that does some work; its exit code is 1 if that raises an exception, which it prints."""
     child = os.fork()
     if child == 0:
+        code = 1
         try:
-            os.close(read)
-            os.write(told, b"x")
-            for number in range(first, first + 1000):
-                write(number)
+            work()
+            code = 0
         except BaseException as error:
-            print(f"a writer failed: {type(error).__name__}: {error}", file=sys.stderr, flush=True)
+            print(f"a child failed: {type(error).__name__}: {error}", file=sys.stderr, flush=True)
         finally:
-            os._exit(0)
+            os._exit(code)
+    return child
+
+
+def killed(write: Callable[[int], None], first: int, seconds: float) -> None:
+    """Let a child write from a number on, and kill it after so many seconds from its first write on."""
+    read, told = os.pipe()
+
+    def work() -> None:
+        os.write(told, b"x")
+        for number in range(first, first + 1000):
+            write(number)
+
+    child = forked(work)
     os.close(told)
     os.read(read, 1)
     os.close(read)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -13,7 +14,7 @@ from PIL import Image
 
 from tests.fuzz.kills import Written
 from tests.viewer.fakes import make_frame
-from tracer.frame import Frame
+from tracer.frame import Frame, Settings
 from viewer.output import capture, exports, exr, figures, png
 from viewer.output.movie import video
 from viewer.services.picture_controller import JPEG, write_picture
@@ -27,7 +28,7 @@ SIZE = (96, 128)
 
 @cache
 def _frame() -> Frame:
-    return make_frame()
+    return make_frame(Settings(width=SIZE[1], height=SIZE[0]))
 
 
 def _pixels(number: int) -> np.ndarray:
@@ -54,7 +55,8 @@ def _check_settings(folder: Path) -> None:
 
 def _layout(folder: Path, number: int) -> None:
     layout = LayoutFile(folder)
-    layout.working_copy.write_text(f"[Layout]\nnumber={number}\n" * 500 + f"{layout_file.END}\n{{}}\n")
+    with suppress(OSError):  # as ImGui, which says nothing
+        layout.working_copy.write_text(f"[Layout]\nnumber={number}\n" * 500 + f"{layout_file.END}\n{{}}\n")
     layout.keep()
 
 
@@ -112,8 +114,12 @@ def _check_buffers(folder: Path) -> None:
 
 
 def _exr(folder: Path, number: int) -> None:
-    frame = _frame()
-    exr.write(folder / "frame.exr", replace(frame, color=frame.color + number), "{}")
+    noise = _pixels(number).astype(np.float32)  # which nothing makes smaller
+    exr.write(folder / "frame.exr", replace(_frame(), color=noise), "{}")
+
+
+def _small_exr(folder: Path, number: int) -> None:
+    exr.write(folder / "frame.exr", make_frame(), json.dumps({"number": number}))
 
 
 def _check_exr(folder: Path) -> None:
@@ -156,7 +162,7 @@ def _check_video(folder: Path) -> None:
 
 WRITTEN = (
     Written("settings, bookmarks, presets", _settings, _check_settings),
-    Written("layout of the panels", _layout, _check_layout),
+    Written("layout of the panels", _layout, _check_layout, tells=False),
     Written("captures", _capture, _check_images),
     Written("pictures of a film", _numbered, _check_images),
     Written("pictures as JPEG", _jpeg, _check_images),
@@ -164,6 +170,7 @@ WRITTEN = (
     Written("results as JSON", _results, _check_results),
     Written("buffers", _buffers, _check_buffers),
     Written("OpenEXR", _exr, _check_exr),
+    Written("OpenEXR, small", _small_exr, _check_exr),
     Written("figures and plots", _figure, _check_figure),
     Written("videos", _video, _check_video),
 )

@@ -103,10 +103,9 @@ def save(pixels: NDArray[np.uint8], folder: Path, name: str, text: str) -> Path:
     image = Image.fromarray(np.ascontiguousarray(pixels))
     with ExitStack() as stack:
         try:
-            folder.mkdir(parents=True, exist_ok=True)
             path = stack.enter_context(reserved(folder, name.removesuffix(".png"), ".png"))
         except OSError as error:
-            raise CaptureError(f"no picture saved: cannot write to {folder}: {error.strerror or error}") from None
+            raise CaptureError(f"no picture saved: {error}") from None
         try:
             write_whole(path, lambda file: image.save(file, "PNG", pnginfo=info, compress_level=4))
         except (OSError, ValueError) as error:

@@ -125,9 +125,8 @@ def save(folder: Path, name: str, ending: str, write: Callable[[Path], None], no
     stem = f"{name}-{now or datetime.now():%Y-%m-%d-%H-%M-%S}"
     with ExitStack() as stack:
         try:
-            folder.mkdir(parents=True, exist_ok=True)
             path = stack.enter_context(reserved(folder, stem, ending))
         except OSError as error:
-            raise OSError(f"nothing saved: cannot write to {folder}: {error.strerror or error}") from None
+            raise OSError(f"nothing saved: {error}") from None
         write(path)
     return path

@@ -69,8 +69,10 @@ def write(path: Path, frame: Frame, text: str, half: bool = False) -> None:
         try:
             with OpenEXR.File(header, channels(frame, half)) as file:
                 file.write(str(part))
+            with OpenEXR.File(str(part)) as file:  # the library says nothing where the last bytes have no room
+                file.channels()
         except RuntimeError as error:
-            raise OSError(str(error).replace(str(part), str(path))) from None
+            raise OSError(f"is the disk full? {str(error).replace(str(part), str(path))}") from None
 
 
 def read(path: Path) -> tuple[NDArray[Any], dict[str, Any]]:

@@ -73,7 +73,7 @@ class Video:
 
 @contextmanager
 def video(path: Path, size: tuple[int, int], fps: float) -> Iterator[Video]:
-    """An mp4 of pictures of this size, which takes its name at the end of the block, and may be shorter than was planned;
+    """An mp4 of pictures of this size, which takes its name at the end of the block, however many have come by then;
     without a picture, or after a failure to write, none is left.  Raises OSError in one line.
 
     x264 takes even sizes only: an odd side is made even by its last row or column once more."""

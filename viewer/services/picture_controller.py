@@ -29,7 +29,7 @@ from viewer.state.plans import MOST_MULTIPLE, PicturePlan
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
-from viewer.util.files import reserved, write_whole
+from viewer.util.files import reserved
 
 MOST_PIXELS = 1 << 26
 JPEG = ".jpg"
@@ -39,8 +39,7 @@ def write_picture(path: Path, pixels: NDArray[np.uint8], text: str) -> None:
     """Write (h, w, 3) pixels as the ending says, whole or not at all; a PNG carries the text.  Raises OSError in one
     line."""
     if path.suffix == JPEG:
-        image = Image.fromarray(pixels)
-        write_whole(path, lambda file: image.save(file, "JPEG", quality=95))
+        png.write_image(path, Image.fromarray(pixels), "JPEG", quality=95)
     else:
         png.write(path, pixels, text)
 
@@ -75,7 +74,6 @@ class PictureRun(Run[Path]):
         pixels, _ = (frame.pixels, "") if as_exr else stills.draw(frame, scene, self.recipe)
         text = stills.text(pixels, frame, scene, self.recipe)
         stem = f"{scene.path.stem}-{self.recipe.view.value}-{width}x{height}"
-        self.folder.mkdir(parents=True, exist_ok=True)
         with reserved(self.folder, stem, self.ending) as path:
             if as_exr:
                 exr.write(path, frame, text)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable, Collection
+from copy import deepcopy
 from dataclasses import asdict, replace
 from typing import Any
 
@@ -29,6 +31,8 @@ class SettingsController:
         self._looked = time.monotonic()
         self._seen: dict[str, Any] = {}
         self._problem: str | None = None
+        self._told: str | None = None
+        self._writer: threading.Thread | None = None
 
     def change(self, **changes: Any) -> None:
         """Change fields of `tracer.Settings`; a value that is no good is reported in one line and changes nothing."""
@@ -70,25 +74,29 @@ class SettingsController:
     def save(self) -> None:
         """Write the preferences to their file, beside what other windows have written; a failure is reported in one
         line."""
-        self._write()
+        if self._writer is not None:
+            self._writer.join()
+        self._write(deepcopy(self._preferences))
+        self._told = self._problem
         if self._problem:
             self._notices.say(self._problem, error=True)
 
     def follow(self) -> None:
-        """Save what was changed and has rested for a moment, so that little is lost when the program is ended; a failure
-        is reported once."""
+        """Save, on a thread, what was changed and has rested for a moment, so that little is lost with the program; a
+        failure is reported once."""
         now = time.monotonic()
-        if now < self._looked + RESTED:
+        if now < self._looked + RESTED or (self._writer is not None and self._writer.is_alive()):
             return
+        if self._problem and self._problem != self._told:
+            self._notices.say(self._problem, error=True)
+        self._told = self._problem
         self._looked, before, self._seen = now, self._seen, asdict(self._preferences)
         if self._seen == before and self._seen != self._tried:
-            problem = self._problem
-            self._write()
-            if self._problem and self._problem != problem:
-                self._notices.say(self._problem, error=True)
+            self._writer = threading.Thread(target=self._write, args=(deepcopy(self._preferences),), name="saving")
+            self._writer.start()
 
-    def _write(self) -> None:
-        self._tried = asdict(self._preferences)
-        self._problem = save_preferences(self._preferences, base=self._stored)
+    def _write(self, preferences: Preferences) -> None:
+        self._tried = asdict(preferences)
+        self._problem = save_preferences(preferences, base=self._stored)
         if self._problem is None:
             self._stored = self._tried

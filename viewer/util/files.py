@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
@@ -89,15 +89,20 @@ def write_text(path: Path, text: str) -> None:
 
 @contextmanager
 def reserved(folder: Path, stem: str, ending: str) -> Iterator[Path]:
-    """A name for a new file that nobody has, and nobody else is given until the end of the block: stem and ending, or
-    with -2, -3, ... between them.
+    """A name for a new file in a folder, which is made if need be, that nobody has, and nobody else is given until the
+    end of the block: stem and ending, or with -2, -3, ... between them.
 
-    Nothing has this name before the block gives it to a whole file.  Raises OSError where there is none.
+    Nothing has this name before the block gives it to a whole file.  Raises OSError, in one line, where there is none.
     """
     for number in range(1, MOST_NUMBERS + 1):
         path = folder / f"{stem}{f'-{number}' if number > 1 else ''}{ending}"
-        with claimed(path) as mine:
-            if mine and not os.path.lexists(path):
+        with ExitStack() as stack:
+            try:
+                folder.mkdir(parents=True, exist_ok=True)
+                free = stack.enter_context(claimed(path)) and not os.path.lexists(path)
+            except OSError as error:
+                raise OSError(f"cannot write to {folder}: {error.strerror or error}") from None
+            if free:
                 yield path
                 return
     raise OSError(f"{stem}{ending} and {MOST_NUMBERS - 1} more exist already")

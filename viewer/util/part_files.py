@@ -46,7 +46,7 @@ def part_file(target: Path) -> Iterator[tuple[Path, BinaryIO]]:
 
 @contextmanager
 def claimed(target: Path, patience: float = 0.0) -> Iterator[bool]:
-    """Whether nobody else has claimed this name until the end of the block, in this process or another; waits for others
+    """Whether nobody else has claimed this name until the end of the block, in any process; waits for others for
     so many seconds.  Raises OSError."""
     path, end = part_name(target, hashlib.blake2b(os.fsencode(target.name), digest_size=8).hexdigest()), 0.0
     while (file := _claim(path)) is None:
