@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help
+.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table motion memory growth dist docs notebooks linkcheck pictures lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -100,6 +100,10 @@ memory:  ## measure the memory of Kitchen and of a million triangles, and build 
 growth:  ## measure how the cost of a ray grows from 10,000 to 2,000,000 triangles (ARGS="--most 200000")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.growth $(ARGS)
+
+dist:  ## build the wheel and the source distribution, and check them (ARGS="--newest --oldest": install and use them)
+	@tools/environment.sh dev
+	@$(RUN) tools/dist.py $(ARGS)
 
 docs:  ## build the documentation in build/docs; every warning is an error
 	@tools/environment.sh dev
