@@ -20,7 +20,7 @@ import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-TWINE = "twine>=15,<16"
+TWINE = "twine>=7,<8"
 UV = [sys.executable, "-m", "uv"]
 _OF_WHEEL = ("shadowcull.py", "tracer/", "viewer/", "shadowcull-")
 _OF_SOURCES = (
