@@ -13,15 +13,16 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from tracer.scene.limits import MOST_PRIMITIVES
 from tracer.scene.model import SceneError
 
 ANYHOW = "SHADOWCULL_BEYOND_MEMORY"
 """A variable of the environment: set, no scene is refused for the memory that it needs."""
 
-READING = 1200.0
+READING = 750.0
 """Bytes for each triangle of a mesh, at most, while it is read; for each byte of a text, READING_TEXT."""
-READING_TEXT = 30.0
-SHOWING = 350.0
+READING_TEXT = 25.0
+SHOWING = 300.0
 """Bytes for each triangle that its tree and its first picture take beside the scene."""
 _SMALL = 256e6  # bytes that nobody needs to ask for
 _HEAD = 1 << 16  # bytes that the head of a PLY file may take
@@ -141,7 +142,8 @@ def _of_ply(path: Path) -> int | None:
     left = path.stat().st_size - end - sum(numbers[name] * flat[name] for name in numbers)
     faces = numbers.get("face", 0)
     corners = round((left / faces - 1) / 4) if faces else 0  # in the mean
-    return faces * max(corners - 2, 1)
+    found = faces * max(corners - 2, 1)
+    return found if 0 <= found <= MOST_PRIMITIVES else None
 
 
 def _of_gltf(path: Path) -> int | None:
@@ -161,4 +163,5 @@ def _of_gltf(path: Path) -> int | None:
         return found
 
     of_meshes = [triangles(mesh) for mesh in data.get("meshes", [])]
-    return sum(of_meshes[node["mesh"]] for node in data.get("nodes", []) if "mesh" in node)
+    found = sum(of_meshes[node["mesh"]] for node in data.get("nodes", []) if "mesh" in node)
+    return found if 0 <= found <= MOST_PRIMITIVES else None  # more is not read, or the file is damaged
