@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table motion memory growth dist docs notebooks linkcheck pictures lint format lock clean distclean help
+.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table motion memory growth dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -52,6 +52,10 @@ faults:  ## kill what writes, fill its disk, and let several write at once (ARGS
 	@tools/environment.sh dev
 	@$(RUN) -m tests.fuzz.faults $(ARGS)
 
+bounds:  ## have kernels checked for reading or writing past an array's end (ARGS="--seconds 600 --seed 1000")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.fuzz.bounds $(ARGS)
+
 soak:  ## use the program for long, and watch memory, threads and files (ARGS="--seconds 3600 SCENE ...")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.fuzz.soak $(ARGS)
@@ -72,6 +76,10 @@ frames:  ## time frames with and without culling, phase by phase (ARGS="--frames
 quickest:  ## hold frames by `auto` against those by `none`, fifty at a time (ARGS="--frames 100 SCENE ...")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.quickest $(ARGS)
+
+methods:  ## hold all methods side by side, scene by scene (ARGS="--write" into their page, "--frames 4 SCENE ...")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.methods $(ARGS)
 
 lamps:  ## hold frames by the light of lamps against those by `none` (ARGS="--radius 0.1 --frames 20 SCENE ...")
 	@tools/environment.sh dev

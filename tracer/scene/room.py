@@ -22,8 +22,8 @@ ANYHOW = "SHADOWCULL_BEYOND_MEMORY"
 READING = 750.0
 """Bytes for each triangle of a mesh, at most, while it is read; for each byte of a text, READING_TEXT."""
 READING_TEXT = 25.0
-SHOWING = 300.0
-"""Bytes for each triangle that its tree and its first picture take beside the scene."""
+SHOWING = 600.0
+"""Bytes for each triangle that its tree, modes, certificates and first pictures take beside the scene."""
 _SMALL = 256e6  # bytes that nobody needs to ask for
 _HEAD = 1 << 16  # bytes that the head of a PLY file may take
 _LONGEST_JSON = 1 << 28
