@@ -49,3 +49,17 @@ def test_a_scene_is_the_same_in_blocks_of_any_size(
                 found, wanted = getattr(one.triangles, field), getattr(other.triangles, field)
                 assert found.dtype == wanted.dtype and np.array_equal(found, wanted), field
             assert one.parts == other.parts and np.array_equal(one.part_of, other.part_of)
+
+
+def test_reading_a_mesh_can_be_cancelled_between_blocks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_beside(tmp_path)
+    path = tmp_path / "b.stl"
+    path.write_bytes(seeds()["b.stl"])
+    for wanted in ("Smoothing", "Putting"):
+
+        def stop(what: str, _: float, wanted: str = wanted) -> None:
+            if what.startswith(wanted):
+                raise tracer.Cancelled
+
+        with pytest.raises(tracer.Cancelled):
+            tracer.load_scene(path, stop, meshes=IN_STUDIO)

@@ -7,6 +7,8 @@ face is cut into triangles nor on whether triangles share their vertices in the 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,14 +21,18 @@ MOST_AROUND = 64
 """Other faces that are asked at a vertex: the hub of a fan of thousands is asked for those nearest in the file."""
 
 
-def creased_normals(vertices: Float64, faces: NDArray[np.int64], degrees: float) -> Float64:
+def creased_normals(
+    vertices: Float64, faces: NDArray[np.int64], degrees: float, report: Callable[[], None] = lambda: None
+) -> Float64:
     """(n, 3, 3) normals of the corners of faces (n, 3); those of faces without area are zero.
 
-    `degrees` is the crease angle; at 0, only faces in one plane are smoothed, which changes nothing to be seen."""
+    `degrees` is the crease angle; at 0, only faces in one plane are smoothed, which changes nothing to be seen.
+    `report` is called again and again on the way, and may raise Cancelled."""
     with np.errstate(all="ignore"):  # what is not finite is found, and named, later
         vertices = np.asarray(vertices, np.float64)
         normals, angles = np.empty((len(faces), 3)), np.empty((len(faces), 3))
         for start in range(0, len(faces), BLOCK):
+            report()
             part = slice(start, start + BLOCK)
             normals[part], angles[part] = _faces(vertices[faces[part]])
         place = _places(vertices)[faces].reshape(-1)
@@ -36,6 +42,7 @@ def creased_normals(vertices: Float64, faces: NDArray[np.int64], degrees: float)
         least = np.cos(np.radians(degrees)) - 1e-9
         start = 0
         while start < len(order):  # so many vertices at once, each with all faces around it
+            report()
             end = min(start + 3 * BLOCK, len(order))
             end = int(np.searchsorted(place, place[end - 1], side="right"))
             corners = order[start:end]

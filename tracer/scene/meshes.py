@@ -8,8 +8,9 @@ lights are added, or a studio around it.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -78,15 +79,18 @@ def load_mesh(
     nodes = list(model.graph.nodes_geometry)
     skipped = []
     for i, node in enumerate(nodes):
-        report(f"Reading {path.name}", 0.5 + 0.5 * i / len(nodes))
+        fraction = 0.5 + 0.4 * i / len(nodes)
+        report(f"Reading {path.name}", fraction)
         matrix, name = model.graph[node]
         mesh = model.geometry[name]
         if not hasattr(mesh, "faces") or not len(mesh.faces):
             skipped.append(f"{path}: {name!a} has no triangles; it is left out")
             continue
-        for shape, material, texture in _shapes(mesh, _MeshPlace(path, name), table, crease):
+        for shape, material, texture in _shapes(
+            mesh, _MeshPlace(path, name), table, crease, partial(report, f"Smoothing {path.name}", fraction)
+        ):
             geometry.meshes.append(Piece(shape, (np.asarray(matrix, np.float64),), material, texture))
-    objects, remarks = geometry.objects(())
+    objects, remarks = geometry.objects((), lambda: report(f"Putting {path.name} together", 0.9))
     if not len(objects[0].triangles):
         remarks.append(f"{path}: no triangle; only the background is seen")
     box = bounds(objects, Animation.empty(), 0.0)
@@ -219,14 +223,14 @@ def _check(mesh: Any, path: Path) -> None:
 
 
 def _shapes(
-    mesh: Any, place: _MeshPlace, table: MaterialTable, crease: float
+    mesh: Any, place: _MeshPlace, table: MaterialTable, crease: float, report: Callable[[], None]
 ) -> Iterator[tuple[IndexedMesh, int, int]]:
     """Parts of one material each, with its number and that of the texture; `crease` is the angle in degrees up to which
     edges are rounded where there are no normals."""
     vertices, faces = np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64)
     normals = _of_vertices(_vertex_normals(mesh), (len(vertices), 3))
     if normals is None and crease > 0:
-        normals = creased_normals(vertices, faces, crease)
+        normals = creased_normals(vertices, faces, crease, report)
     uvs = _of_vertices(getattr(mesh.visual, "uv", None), (len(vertices), 2))
     for which, material, texture in table.parts(mesh, place()):
         of_corners = normals is not None and normals.ndim == 3
