@@ -22,6 +22,13 @@ def notes(text: str) -> PngImagePlugin.PngInfo:
     return info
 
 
+def encoded(pixels: NDArray[np.uint8], text: str) -> bytes:
+    """The file that `write` would write."""
+    file = BytesIO()
+    Image.fromarray(np.ascontiguousarray(pixels)).save(file, "PNG", pnginfo=notes(text))
+    return file.getvalue()
+
+
 def write(path: Path, pixels: NDArray[np.uint8], text: str, **options: Any) -> None:
     """Write (h, w, 3) uint8 pixels, row 0 at the top; raises OSError in one line."""
     write_image(path, Image.fromarray(np.ascontiguousarray(pixels)), "PNG", pnginfo=notes(text), **options)

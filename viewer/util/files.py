@@ -87,6 +87,11 @@ def write_text(path: Path, text: str) -> None:
     write_whole(path, lambda file: file.write(text.encode()))
 
 
+def write_bytes(path: Path, data: bytes) -> None:
+    """As `write_whole`."""
+    write_whole(path, lambda file: file.write(data))
+
+
 @contextmanager
 def reserved(folder: Path, stem: str, ending: str) -> Iterator[Path]:
     """A name for a new file in a folder, which is made if need be, that nobody has, and nobody else is given until the
