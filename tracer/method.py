@@ -210,5 +210,13 @@ register(
         measures=True,
     )
 )
+register(
+    Kind(
+        "lightcuts",
+        "Shades by clusters of lights, as fine as a bound of the error asks for.",
+        "tracer.methods.lightcuts:Lightcuts",
+        exact=False,
+    )
+)
 register(Kind("cache", "Tests what blocked a light before first.", "tracer.methods.cache:OccluderCache", addition=True))
 register(Kind("rest", "Counts objects that rest as static.", "tracer.methods.rest:Resting", culls=False, addition=True))

@@ -111,6 +111,36 @@ def sample_counts(asked: NDArray[np.uint16], reached: NDArray[np.uint16]) -> Sam
 
 
 @dataclass
+class CutCounts:
+    """What the cuts of a frame were, by a method that shades by clusters of lights.
+
+    Attributes
+    ----------
+    lights : int
+        Lights, each sample of a lamp one.
+    blocks : int
+        Blocks of up to 128 points that have a cut, at all bounces.
+    nodes : int
+        Clusters of all their cuts.
+    limited : int
+        Blocks whose cuts have as many nodes as they may, so that their error may be greater than was asked for.
+    most : int
+        Nodes of the largest cut.
+    """
+
+    lights: int = 0
+    blocks: int = 0
+    nodes: int = 0
+    limited: int = 0
+    most: int = 0
+
+    @property
+    def mean(self) -> float:
+        """Nodes of a cut on average."""
+        return self.nodes / max(1, self.blocks)
+
+
+@dataclass
 class FrameStatistics:
     """Counters and times of one frame.
 
@@ -130,6 +160,8 @@ class FrameStatistics:
         What the method "auto" does now and why, in a sentence.
     samples : SampleCounts or None
         What the lights send to the primary hits; with `Settings.record_lights`.
+    cuts : CutCounts or None
+        What cuts of lights there were; with methods that have them.
     seconds : float
         Time of the whole frame.
     by_modes : list of SaidByModes
@@ -148,6 +180,7 @@ class FrameStatistics:
     part: float = 1.0
     decision: str = ""
     samples: SampleCounts | None = None
+    cuts: CutCounts | None = None
     seconds: float = 0.0
     by_modes: list[SaidByModes] = field(default_factory=list)
     phases: dict[str, float] = field(default_factory=dict)
