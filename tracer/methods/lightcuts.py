@@ -153,4 +153,5 @@ def _work(limit: int) -> CutWork:
         nodes=np.zeros(limit, np.int32),
         heap=np.zeros(limit, np.int32),
         keys=np.zeros(limit, np.float32),
+        tells=np.zeros(limit, np.int32),
     )

@@ -74,7 +74,8 @@ class CutWork(NamedTuple):
     origin and direction (3, ROOM), t_min and t_max (ROOM,), blocked (ROOM,): a packet of rays.  kept (m, 2 POINTS): the
     diffuse and the specular term of each representative at each point that it reaches.  mirror (3, POINTS).  estimate
     and bound (POINTS,): the sum over the channels of what arrives at each point, and by what it may be wrong.  nodes,
-    heap (m,) and keys (m,): the cut, and those of its nodes that may be parted, the worst first."""
+    heap, keys and tells (m,): the cut, those of its nodes that may be parted, the worst first, by what part of the
+    estimate each is wrong, and at which vector."""
 
     origin: F32x2D
     direction: F32x2D
@@ -88,6 +89,7 @@ class CutWork(NamedTuple):
     nodes: I32
     heap: I32
     keys: F32
+    tells: I32
 
 
 class Block(NamedTuple):
@@ -168,23 +170,48 @@ def add_to_estimate(points, block, k, color, work):
         store(at, load_f32x16(at) + colored(points, color, diffuse, specular, v))
 
 
-@subkernel
-def error_of(clusters, points, block, node, work, adds):
-    """The greatest part of the estimate that a cluster may be wrong by at any point; 0 for a single light.
+@inlined
+def _worst_of(clusters, points, block, node, v, work, adds):
+    """The greatest part of the estimate that a cluster may be wrong by at any point of a vector."""
+    mirror = load_three(work.mirror, v - block.first)
+    color, falls = color_of(clusters.colors, node), clusters.falls[node] != 0
+    bound = greatest_light(points, mirror, clusters.boxes[node], color, falls, v)
+    if adds:
+        at = _of_block(work.bound, v, block)
+        store(at, load_f32x16(at) + bound)
+    estimate = maximum(load_f32x16(_of_block(work.estimate, v, block)), DARK)
+    return largest(select(mask16(lanes_below(block.count, v)), bound / estimate, ZERO))
 
-    Where it `adds`, the bound goes to that of the whole cut."""
+
+@subkernel
+def is_coarse(clusters, points, block, k, error, work):
+    """Whether the k-th node of a cut may be wrong by more than the part `error` at any point, with that as its key.
+
+    One vector tells: that which has told of the node that it is a part of is asked first."""
+    node, many = np.int64(work.nodes[k]), block.last - block.first
     if clusters.children[node] == 0:
-        return ZERO
-    box, color, worst = clusters.boxes[node], color_of(clusters.colors, node), f32x16(ZERO)
+        return False
+    for n in range(many):
+        v = block.first + (work.tells[k] + n) % many
+        worst = _worst_of(clusters, points, block, node, v, work, False)
+        if worst > error:
+            work.keys[k], work.tells[k] = worst, v - block.first
+            return True
+    return False
+
+
+@subkernel
+def error_of(clusters, points, block, k, work):
+    """The greatest part of the estimate that the k-th node of a cut may be wrong by at any point; 0 for a single light.
+    Its bound goes to that of the whole cut."""
+    node, most = np.int64(work.nodes[k]), ZERO
+    if clusters.children[node] == 0:
+        return most
     for v in range(block.first, block.last):
-        mirror = load_three(work.mirror, v - block.first)
-        bound = greatest_light(points, mirror, box, color, clusters.falls[node] != 0, v)
-        estimate = maximum(load_f32x16(_of_block(work.estimate, v, block)), DARK)
-        worst = maximum(worst, select(mask16(lanes_below(block.count, v)), bound / estimate, ZERO))
-        if adds:
-            at = _of_block(work.bound, v, block)
-            store(at, load_f32x16(at) + bound)
-    return largest(worst)
+        worst = _worst_of(clusters, points, block, node, v, work, True)
+        if worst > most:
+            most, work.tells[k] = worst, v - block.first
+    return most
 
 
 # --- the nodes that may be parted, as a heap -------------------------------------------------------
@@ -256,7 +283,7 @@ def refine(clusters, points, wave, block, error, limit, work, counts):
         for v in range(block.first, block.last):
             store(_of_block(work.bound, v, block), f32x16(ZERO))
         for k in range(count):
-            work.keys[k] = error_of(clusters, points, block, np.int64(work.nodes[k]), work, True)
+            work.keys[k] = error_of(clusters, points, block, k, work)
             if work.keys[k] > error:
                 _push(work, size, k)
                 size += 1
@@ -266,8 +293,6 @@ def refine(clusters, points, wave, block, error, limit, work, counts):
             k = _pop(work, size)
             size -= 1
             node = np.int64(work.nodes[k])
-            if not error_of(clusters, points, block, node, work, False) > error:
-                continue
             # Part it: one of its children has its representative.
             child = np.int64(clusters.children[node])
             other = child + 1 if clusters.reps[child] == clusters.reps[node] else child
@@ -282,13 +307,12 @@ def refine(clusters, points, wave, block, error, limit, work, counts):
                 ask_light(clusters, points, wave, block, clusters.reps[other], count, work, counts)
                 add_to_estimate(points, block, count, color_of(clusters.colors, other), work)
                 count += 1
-            work.keys[k] = error_of(clusters, points, block, child, work, False)
-            if work.keys[k] > error:
+            if is_coarse(clusters, points, block, k, error, work):
                 _push(work, size, k)
                 size += 1
             if added:
-                work.keys[count - 1] = error_of(clusters, points, block, other, work, False)
-                if work.keys[count - 1] > error:
+                work.tells[count - 1] = work.tells[k]
+                if is_coarse(clusters, points, block, count - 1, error, work):
                     _push(work, size, count - 1)
                     size += 1
         size = 0
