@@ -218,5 +218,14 @@ register(
         exact=False,
     )
 )
+register(
+    Kind(
+        "lightcuts-certified",
+        "Lightcuts of those lights that are not proven to be hidden.",
+        "tracer.methods.lightcuts_certified:CertifiedLightcuts",
+        exact=False,
+        has_certificates=True,
+    )
+)
 register(Kind("cache", "Tests what blocked a light before first.", "tracer.methods.cache:OccluderCache", addition=True))
 register(Kind("rest", "Counts objects that rest as static.", "tracer.methods.rest:Resting", culls=False, addition=True))

@@ -46,8 +46,8 @@ class Stages(NamedTuple):
 
     Where a stage selects, looks (lights, words) int64 has a bit for each vector of a wave that must look at a light; it
     has no rows where all do, and larger waves look at all lights.  Of the first `everything` lights somebody wants to
-    know all rays: those to which points need not look then count as due and culled.  `shades` says whether a stage does
-(see above)."""
+    know all rays: those to which points need not look then count as due and culled.  `shades` says whether a stage
+    shades in the place of all lights."""
 
     table: NDArray[np.int64]
     rows: int

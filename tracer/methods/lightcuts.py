@@ -7,24 +7,14 @@ not exact, unless no error is allowed: then every light is looked at, and the pi
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import carray
 from numpy.typing import NDArray
 
-from tracer.culling.counters import PASSED_OVER, SHADOW_COUNTERS
-from tracer.culling.lightcuts.cut import BLOCK, POINTS, ROOM, Block, Clusters, CutWork, refine, shade_block
-from tracer.culling.lightcuts.seen import (
-    BLOCKS,
-    LIMITED,
-    MOST_NODES,
-    NODES,
-    POINT_NODES,
-    TALLIES,
-    Seen,
-    tell,
-)
+from tracer.culling.counters import SHADOW_COUNTERS
+from tracer.culling.lightcuts.cut import BLOCK, POINTS, ROOM, Clusters, CutWork
+from tracer.culling.lightcuts.seen import BLOCKS, LIMITED, MOST_NODES, NODES, TALLIES, Seen
+from tracer.culling.lightcuts.shade import Cuts, block_at, shade_by_cut
 from tracer.culling.lightcuts.tree import CutTree, build_cut_tree
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.stages import call_at, vectors
@@ -35,20 +25,10 @@ from tracer.scene.lamps import Lamps
 from tracer.shading.points import points_in
 from tracer.shading.wave import wave_in
 from tracer.simd import i64_at
-from tracer.simd.records import F32, I32, I64, reading
+from tracer.simd.records import reading
 from tracer.statistics import CutCounts, FrameStatistics
 
 FEWEST = 3  # lights that are worth a tree
-
-
-class Cuts(NamedTuple):
-    """What a worker is given: the part of what arrives that a cluster may be wrong by, and the most nodes of a cut."""
-
-    clusters: Clusters
-    work: CutWork
-    seen: Seen
-    error: float
-    limit: int
 
 
 cuts_at = reading(Cuts)
@@ -59,13 +39,8 @@ def shade(data, call, light, count, counts):
     """Add the light of all lights to a wave's points, block by block."""
     given, cuts = call_at(call), cuts_at(data)
     points, wave, counted = points_in(given.points), wave_in(given.rays, count), carray(i64_at(counts), SHADOW_COUNTERS)
-    lights = len(cuts.clusters.samples)
     for first in range(0, vectors(count), BLOCK):
-        block = Block(first, min(first + BLOCK, vectors(count)), count)
-        nodes = refine(cuts.clusters, points, wave, block, np.float32(cuts.error), cuts.limit, cuts.work, counted)
-        shade_block(cuts.clusters, points, block, nodes, cuts.work)
-        counted[PASSED_OVER] += (min(count, 16 * block.last) - 16 * first) * (lights - nodes)
-        tell(cuts.seen, wave, given.place, block, nodes, nodes == cuts.limit, cuts.work, given.bounce)
+        shade_by_cut(cuts, cuts.clusters, points, wave, given, block_at(first, count), counted)
 
 
 class Lightcuts(ShadowMethod):
@@ -101,8 +76,9 @@ class Lightcuts(ShadowMethod):
         return self._tree is not None and frame.settings.lightcuts_error > 0.0
 
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
-        if not self._shades(frame):
-            return []
+        return [Stage(self._cuts(frame, worker, learns), shade=shade)] if self._shades(frame) else []
+
+    def _cuts(self, frame: FrameView, worker: int, learns: bool) -> Cuts:
         settings, buffers = frame.settings, frame.buffers
         limit = min(settings.lightcuts_nodes, len(frame.shading.lamps.samples))
         self._make_room(frame.workers, limit)
@@ -110,8 +86,7 @@ class Lightcuts(ShadowMethod):
         seen = Seen(none, np.empty(0, np.float32), none, none, np.zeros(TALLIES, np.int64))
         if learns:
             seen = Seen(self._nodes, self._bound, buffers.cost, buffers.saved, self._tally[worker])
-        cuts = Cuts(self._clusters(frame), self._work[worker], seen, settings.lightcuts_error, limit)
-        return [Stage(cuts, shade=shade)]
+        return Cuts(self._clusters(frame), self._work[worker], seen, settings.lightcuts_error, limit)
 
     def _make_room(self, workers: int, limit: int) -> None:
         """Let each worker have memory for cuts of so many nodes."""

@@ -41,7 +41,7 @@ from tracer.simd import (
     store,
     store_three,
 )
-from tracer.simd.records import F32, I32, I64, Bytes, F32x2D
+from tracer.simd.records import F32, I32, Bytes, F32x2D
 
 BLOCK = 8  # vectors of sixteen points
 POINTS = 16 * BLOCK
@@ -49,7 +49,6 @@ ROOM = POINTS + 16  # rays of a block, and a vector to spare
 DARK = np.float32(3 / 64)  # sum of three channels: of what is darker, errors are parts of this
 PASSES = 8  # over a cut, at most, in search of clusters that have become too coarse
 ZERO = np.float32(0)
-
 
 
 class Clusters(NamedTuple):
@@ -127,7 +126,11 @@ def ask_light(clusters, points, wave, block, light, k, work, counts):
         faced = faces(points, place, v) & lanes_below(block.count, v)
         counts[DUE] += ones(faced)
         due += ones(faced)
-        position, normal, way = load_three(points.position, v), load_three(points.normal, v), load_three(wave.direction, v)
+        position, normal, way = (
+            load_three(points.position, v),
+            load_three(points.normal, v),
+            load_three(wave.direction, v),
+        )
         cosine, reached, mirrored, near = toward(place, position, normal, way, mask16(faced))
         shine, exponent = _point(points, SHINE_ROW, v), _point(points, EXPONENT_ROW, v)
         cosine, specular = fall_off(row, near, cosine, highlight(reached, shine, exponent, mirrored))
@@ -279,7 +282,7 @@ def refine(clusters, points, wave, block, error, limit, work, counts):
         ask_light(clusters, points, wave, block, clusters.reps[node], count, work, counts)
         add_to_estimate(points, block, count, color_of(clusters.colors, node), work)
         count += 1
-    for passes in range(PASSES):
+    for _ in range(PASSES):
         for v in range(block.first, block.last):
             store(_of_block(work.bound, v, block), f32x16(ZERO))
         for k in range(count):

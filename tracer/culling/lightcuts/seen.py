@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tracer.culling.lightcuts.cut import DARK, Block
+from tracer.culling.lightcuts.cut import DARK
 from tracer.kernels import subkernel
 from tracer.simd.records import F32, I32, I64
 
@@ -16,8 +16,8 @@ TALLIES = 6
 
 class Seen(NamedTuple):
     """What is told of the first sample's primary hits, (pixels,), or without rows: nodes int32, and the bound of their
-    error as a part of what is estimated, float32.  Rays that were traced for pixels, and those that this saves, (pixels,)
-    int32 or without rows.  And a worker's tally (TALLIES,) int64 of all waves."""
+    error as a part of what is estimated, float32.  Rays that were traced for pixels, and those that this saves,
+    (pixels,) int32 or without rows.  And a worker's tally (TALLIES,) int64 of all waves."""
 
     nodes: I32
     bound: F32

@@ -1,0 +1,39 @@
+"""What workers are given to shade by cuts, and the shading of one block."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tracer.culling.counters import PASSED_OVER
+from tracer.culling.lightcuts.cut import BLOCK, Block, Clusters, CutWork, refine, shade_block
+from tracer.culling.lightcuts.seen import Seen, tell
+from tracer.culling.stages import vectors
+from tracer.kernels import inlined, subkernel
+
+
+class Cuts(NamedTuple):
+    """What a worker is given: the tree, memory, and what is told of cuts; the part of what arrives that a cluster may
+    be wrong by; and the most nodes of a cut."""
+
+    clusters: Clusters
+    work: CutWork
+    seen: Seen
+    error: float
+    limit: int
+
+
+@inlined
+def block_at(first, count):
+    """The block that begins with a vector of `count` points."""
+    return Block(first, min(first + BLOCK, vectors(count)), count)
+
+
+@subkernel
+def shade_by_cut(cuts, clusters, points, wave, given, block, counts):
+    """Add the light of all lights to a block of points, by a cut of clusters."""
+    nodes = refine(clusters, points, wave, block, np.float32(cuts.error), cuts.limit, cuts.work, counts)
+    shade_block(clusters, points, block, nodes, cuts.work)
+    counts[PASSED_OVER] += (min(block.count, 16 * block.last) - 16 * block.first) * (len(clusters.samples) - nodes)
+    tell(cuts.seen, wave, given.place, block, nodes, nodes == cuts.limit, cuts.work, given.bounce)
