@@ -250,6 +250,14 @@ register(
 )
 register(
     Kind(
+        "lightcuts-stochastic",
+        "Lightcuts with lights drawn for each pixel: noise, which averages out, instead of bands.",
+        "tracer.methods.lightcuts_stochastic:StochasticLightcuts",
+        exact=False,
+    )
+)
+register(
+    Kind(
         "lightcuts-certified",
         "Lightcuts of those lights that are not proven to be hidden.",
         "tracer.methods.lightcuts_certified:CertifiedLightcuts",

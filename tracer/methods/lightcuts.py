@@ -12,7 +12,8 @@ from numba import carray
 from numpy.typing import NDArray
 
 from tracer.culling.counters import SHADOW_COUNTERS
-from tracer.culling.lightcuts.cut import BLOCK, POINTS, ROOM, Clusters, CutWork
+from tracer.culling.lightcuts.block import BLOCK, POINTS, ROOM, Clusters, CutWork
+from tracer.culling.lightcuts.drawn import Draws
 from tracer.culling.lightcuts.seen import BLOCKS, LIMITED, MOST_NODES, NODES, TALLIES, Seen
 from tracer.culling.lightcuts.shade import Cuts, block_at, shade_by_cut
 from tracer.culling.lightcuts.tree import CutTree, build_cut_tree
@@ -29,6 +30,8 @@ from tracer.simd.records import reading
 from tracer.statistics import CutCounts, FrameStatistics
 
 FEWEST = 3  # lights that are worth a tree
+_NONE, _NO_INTS = np.empty(0, np.float32), np.empty(0, np.int32)
+NO_DRAWS = Draws(np.empty((0, 2), np.int32), _NO_INTS, _NONE, _NONE, np.empty((0, POINTS), np.float32), 0)
 
 
 cuts_at = reading(Cuts)
@@ -86,12 +89,18 @@ class Lightcuts(ShadowMethod):
         seen = Seen(none, np.empty(0, np.float32), none, none, np.zeros(TALLIES, np.int64))
         if learns:
             seen = Seen(self._nodes, self._bound, buffers.cost, buffers.saved, self._tally[worker])
-        return Cuts(self._clusters(frame), self._work[worker], seen, settings.lightcuts_error, limit)
+        return Cuts(
+            self._clusters(frame), self._draws(frame), self._work[worker], seen, settings.lightcuts_error, limit
+        )
+
+    def _draws(self, frame: FrameView) -> Draws:
+        """How representatives are drawn: they are not."""
+        return NO_DRAWS
 
     def _make_room(self, workers: int, limit: int) -> None:
         """Let each worker have memory for cuts of so many nodes."""
         if len(self._work) < workers or len(self._work[0].nodes) != limit:
-            self._work = [_work(limit) for _ in range(workers)]
+            self._work = [self._new_work(limit) for _ in range(workers)]
 
     def layers(self, frame: FrameView) -> dict[str, NDArray]:
         shape = frame.settings.height, frame.settings.width
@@ -113,15 +122,21 @@ class Lightcuts(ShadowMethod):
         work = sum(array.nbytes for work in self._work for array in work)
         return work + (0 if self._tree is None else self._tree.bytes)
 
+    def _new_work(self, limit: int) -> CutWork:
+        return new_work(limit, 2)
 
-def _work(limit: int) -> CutWork:
+
+def new_work(limit: int, kept: int) -> CutWork:
+    """Memory for cuts of so many nodes, for each of which so many rows of numbers are kept."""
     rows = [np.zeros((3, ROOM), np.float32) for _ in range(2)]
     return CutWork(
         *rows,
         t_min=np.full(ROOM, LIGHT_MARGIN, np.float32),
         t_max=np.ones(ROOM, np.float32),
         blocked=np.zeros(ROOM, np.uint8),
-        kept=aligned_rows(limit, 2 * POINTS),
+        reached=np.zeros(BLOCK, np.int32),
+        asked=np.zeros(POINTS, np.int32),
+        kept=aligned_rows(limit, kept * POINTS),
         mirror=np.zeros((3, POINTS), np.float32),
         estimate=np.zeros(POINTS, np.float32),
         bound=np.zeros(POINTS, np.float32),

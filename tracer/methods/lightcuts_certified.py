@@ -11,7 +11,7 @@ import numpy as np
 from numba import carray
 
 from tracer.culling.counters import SHADOW_COUNTERS
-from tracer.culling.lightcuts.cut import BLOCK, Clusters
+from tracer.culling.lightcuts.block import BLOCK, Clusters
 from tracer.culling.lightcuts.hidden import leave_out_hidden, see
 from tracer.culling.lightcuts.shade import Cuts, block_at, shade_by_cut
 from tracer.culling.regions.lookup import look

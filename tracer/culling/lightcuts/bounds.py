@@ -11,21 +11,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from tracer.culling.lightcuts.block import point_row
 from tracer.kernels import inlined
 from tracer.shading.points import DIFFUSE_ROW, EXPONENT_ROW, SHINE_ROW, SPECULAR_ROW
-from tracer.shading.wave import row_of
-from tracer.simd import any_lane, f32x16, load_f32x16, load_three, maximum, minimum, power, select, size_of, square_root
+from tracer.simd import any_lane, f32x16, load_three, maximum, minimum, power, select, size_of, square_root
 
 ZERO, ONE, HALF = np.float32(0), np.float32(1), np.float32(0.5)
 TINY = np.float32(1e-24)  # squares of distances are taken to be no less
 ROUNDED = np.float32(2e-6)  # of coordinates, by which a height above a surface may be wrong
 ENLARGED = np.float32(1.0001)
-
-
-@inlined
-def point_row(points, row, v):
-    """The v-th vector of one of the rows of points."""
-    return load_f32x16(row_of(points.memory, row) + 64 * v)
 
 
 @inlined

@@ -11,15 +11,13 @@ point that needs it most.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from tracer.culling.counters import CULLED, DUE, RAYS
+from tracer.culling.lightcuts.block import DARK, POINTS, color_of, count_asked, is_dark, of_block, point_row, trace_rays
 from tracer.culling.lightcuts.bounds import colored, greatest_light, mirrored_direction
+from tracer.culling.lightcuts.drawn import ask_drawn
 from tracer.culling.shadow_testing import faces
-from tracer.geometry.queries import EVERYTHING, any_hits
-from tracer.geometry.rays import Rays
 from tracer.kernels import inlined, subkernel
 from tracer.shading.phong import fall_off, highlight, toward
 from tracer.shading.points import DIFFUSE_ROW, EXPONENT_ROW, SHINE_ROW, SPECULAR_ROW
@@ -28,6 +26,7 @@ from tracer.simd import (
     address_of,
     bits_of,
     f32x16,
+    i32x16,
     lanes_below,
     largest,
     load_f32x16,
@@ -41,79 +40,15 @@ from tracer.simd import (
     store,
     store_three,
 )
-from tracer.simd.records import F32, I32, Bytes, F32x2D
 
-BLOCK = 8  # vectors of sixteen points
-POINTS = 16 * BLOCK
-ROOM = POINTS + 16  # rays of a block, and a vector to spare
-DARK = np.float32(3 / 64)  # sum of three channels: of what is darker, errors are parts of this
 PASSES = 8  # over a cut, at most, in search of clusters that have become too coarse
 ZERO = np.float32(0)
-
-
-class Clusters(NamedTuple):
-    """The tree, as in `CutTree`, with the samples (l, 3) and the rows (lamps, 4) of lamps, and the query of the
-    structure that rays are asked of (`tracer.geometry.queries`)."""
-
-    boxes: F32x2D
-    colors: F32x2D
-    children: I32
-    reps: I32
-    falls: Bytes
-    owners: I32
-    samples: F32x2D
-    rows: F32x2D
-    any_hit: int
-    data: int
-
-
-class CutWork(NamedTuple):
-    """Memory of one worker for one block and cuts of up to m nodes.
-
-    origin and direction (3, ROOM), t_min and t_max (ROOM,), blocked (ROOM,): a packet of rays.  kept (m, 2 POINTS): the
-    diffuse and the specular term of each representative at each point that it reaches.  mirror (3, POINTS).  estimate
-    and bound (POINTS,): the sum over the channels of what arrives at each point, and by what it may be wrong.  nodes,
-    heap, keys and tells (m,): the cut, those of its nodes that may be parted, the worst first, by what part of the
-    estimate each is wrong, and at which vector."""
-
-    origin: F32x2D
-    direction: F32x2D
-    t_min: F32
-    t_max: F32
-    blocked: Bytes
-    kept: F32x2D
-    mirror: F32x2D
-    estimate: F32
-    bound: F32
-    nodes: I32
-    heap: I32
-    keys: F32
-    tells: I32
-
-
-class Block(NamedTuple):
-    """Vectors `first` to `last` - 1 of the points of a wave, of which there are `count`."""
-
-    first: int
-    last: int
-    count: int
 
 
 @inlined
 def _kept(work, k, v, block):
     """Where a vector of the terms of the k-th representative lies; the specular ones are POINTS further on."""
     return address_of(work.kept) + 4 * (2 * POINTS * k + 16 * (v - block.first))
-
-
-@inlined
-def _of_block(row, v, block):
-    return address_of(row) + 64 * (v - block.first)
-
-
-@inlined
-def color_of(colors, node):
-    """The colour of a cluster."""
-    return colors[node, 0], colors[node, 1], colors[node, 2]
 
 
 @subkernel
@@ -132,7 +67,7 @@ def ask_light(clusters, points, wave, block, light, k, work, counts):
             load_three(wave.direction, v),
         )
         cosine, reached, mirrored, near = toward(place, position, normal, way, mask16(faced))
-        shine, exponent = _point(points, SHINE_ROW, v), _point(points, EXPONENT_ROW, v)
+        shine, exponent = point_row(points, SHINE_ROW, v), point_row(points, EXPONENT_ROW, v)
         cosine, specular = fall_off(row, near, cosine, highlight(reached, shine, exponent, mirrored))
         at = _kept(work, k, v, block)
         store(at, select(reached, cosine, ZERO))
@@ -140,15 +75,13 @@ def ask_light(clusters, points, wave, block, light, k, work, counts):
         x, y, z = load_three(points.lifted, v)
         direction = pack_three((x - place[0], y - place[1], z - place[2]), reached)
         store_three(address_of(work.direction) + 4 * n, stride, direction)
+        count_asked(work, block, v, reached)
         n += ones(bits_of(reached))
     counts[RAYS] += n
     counts[CULLED] += due - n  # what faces away by its shading normal is dark anyway
-    if n == 0:
-        return
     for at in range(0, 4 * n, 64):
         store_three(address_of(work.origin) + at, stride, (f32x16(place[0]), f32x16(place[1]), f32x16(place[2])))
-    rays = Rays(work.origin, work.direction, work.t_min, work.t_max)
-    any_hits(clusters, rays, EVERYTHING, work.blocked, 0, n, counts)
+    trace_rays(clusters, n, work, counts)
     n = 0
     for v in range(block.first, block.last):
         at = _kept(work, k, v, block)
@@ -159,16 +92,11 @@ def ask_light(clusters, points, wave, block, light, k, work, counts):
         n += ones(bits_of(reached))
 
 
-@inlined
-def _point(points, row, v):
-    return load_f32x16(row_of(points.memory, row) + 64 * v)
-
-
 @subkernel
 def add_to_estimate(points, block, k, color, work):
     """Add the k-th representative, in this colour, to the estimate."""
     for v in range(block.first, block.last):
-        at, terms = _of_block(work.estimate, v, block), _kept(work, k, v, block)
+        at, terms = of_block(work.estimate, v, block), _kept(work, k, v, block)
         diffuse, specular = load_f32x16(terms), load_f32x16(terms + 4 * POINTS)
         store(at, load_f32x16(at) + colored(points, color, diffuse, specular, v))
 
@@ -180,9 +108,9 @@ def _worst_of(clusters, points, block, node, v, work, adds):
     color, falls = color_of(clusters.colors, node), clusters.falls[node] != 0
     bound = greatest_light(points, mirror, clusters.boxes[node], color, falls, v)
     if adds:
-        at = _of_block(work.bound, v, block)
+        at = of_block(work.bound, v, block)
         store(at, load_f32x16(at) + bound)
-    estimate = maximum(load_f32x16(_of_block(work.estimate, v, block)), DARK)
+    estimate = maximum(load_f32x16(of_block(work.estimate, v, block)), DARK)
     return largest(select(mask16(lanes_below(block.count, v)), bound / estimate, ZERO))
 
 
@@ -256,35 +184,61 @@ def begin_block(points, wave, block, work):
     """Nothing but ambient light is known to arrive yet."""
     for v in range(block.first, block.last):
         r, g, b = load_three(points.light, v)
-        store(_of_block(work.estimate, v, block), r + g + b)
+        store(of_block(work.asked, v, block), i32x16(0))
+        store(of_block(work.estimate, v, block), r + g + b)
         mirror = mirrored_direction(load_three(points.normal, v), load_three(wave.direction, v))
-        store_three(_of_block(work.mirror, v, block), 4 * work.mirror.shape[1], mirror)
-
-
-@inlined
-def is_dark(colors, node):
-    """Whether nothing of a cluster shines."""
-    return colors[node, 0] == ZERO and colors[node, 1] == ZERO and colors[node, 2] == ZERO
+        store_three(of_block(work.mirror, v, block), 4 * work.mirror.shape[1], mirror)
 
 
 @subkernel
-def refine(clusters, points, wave, block, error, limit, work, counts):
-    """Find a cut of up to `limit` nodes, none of which may be wrong by more than the part `error`; how many it has."""
+def _start(clusters, draws, points, wave, place, block, node, k, work, counts):
+    """Let a node be the k-th of the cut."""
+    work.nodes[k] = node
+    if len(draws.order) > 0:
+        ask_drawn(clusters, draws, points, wave, place, block, k, k, node, node, node, work, counts)
+    else:
+        ask_light(clusters, points, wave, block, clusters.reps[node], k, work, counts)
+        add_to_estimate(points, block, k, color_of(clusters.colors, node), work)
+
+
+@subkernel
+def _part(clusters, draws, points, wave, place, block, k, count, work, counts):
+    """Part the k-th node of a cut of `count` nodes; whether there is one more now."""
+    node = np.int64(work.nodes[k])
+    child = np.int64(clusters.children[node])
+    if len(draws.order) > 0:
+        work.nodes[k], work.nodes[count] = child, child + 1
+        ask_drawn(clusters, draws, points, wave, place, block, k, count, node, child, child + 1, work, counts)
+        return True
+    # One of the children has the node's representative.
+    other = child + 1 if clusters.reps[child] == clusters.reps[node] else child
+    child = child + 1 if other == child else child
+    r, g, b = color_of(clusters.colors, node)
+    cr, cg, cb = color_of(clusters.colors, child)
+    work.nodes[k] = child
+    add_to_estimate(points, block, k, (cr - r, cg - g, cb - b), work)
+    if is_dark(clusters.colors, other):
+        return False
+    _start(clusters, draws, points, wave, place, block, other, count, work, counts)
+    return True
+
+
+@subkernel
+def refine(clusters, draws, points, wave, place, block, error, limit, work, counts):
+    """Find a cut of up to `limit` nodes, none of which may be wrong by more than the part `error`; how many it has.
+
+    place (n,) int32 are the pixels of the tile in the picture, for representatives that are drawn."""
     begin_block(points, wave, block, work)
-    count, size, root = 0, 0, 0
-    child = np.int64(clusters.children[0])
-    both = child != 0 and clusters.falls[child] != clusters.falls[child + 1]
-    for k in range(2 if both else 1):
-        node = child + k if both else root
-        if is_dark(clusters.colors, node):
-            continue
-        work.nodes[count] = node
-        ask_light(clusters, points, wave, block, clusters.reps[node], count, work, counts)
-        add_to_estimate(points, block, count, color_of(clusters.colors, node), work)
-        count += 1
+    count, size, child = 0, 0, np.int64(clusters.children[0])
+    both = child != 0 and clusters.falls[child] != clusters.falls[child + 1] and limit > 1
+    for node in range(child if both else 0, child + 2 if both else 1):
+        if not is_dark(clusters.colors, node):
+            _start(clusters, draws, points, wave, place, block, node, count, work, counts)
+            work.tells[count] = 0
+            count += 1
     for _ in range(PASSES):
         for v in range(block.first, block.last):
-            store(_of_block(work.bound, v, block), f32x16(ZERO))
+            store(of_block(work.bound, v, block), f32x16(ZERO))
         for k in range(count):
             work.keys[k] = error_of(clusters, points, block, k, work)
             if work.keys[k] > error:
@@ -295,29 +249,16 @@ def refine(clusters, points, wave, block, error, limit, work, counts):
         while size > 0 and count < limit:
             k = _pop(work, size)
             size -= 1
-            node = np.int64(work.nodes[k])
-            # Part it: one of its children has its representative.
-            child = np.int64(clusters.children[node])
-            other = child + 1 if clusters.reps[child] == clusters.reps[node] else child
-            child = child + 1 if other == child else child
-            r, g, b = color_of(clusters.colors, node)
-            cr, cg, cb = color_of(clusters.colors, child)
-            work.nodes[k] = child
-            add_to_estimate(points, block, k, (cr - r, cg - g, cb - b), work)
-            added = not is_dark(clusters.colors, other)
-            if added:
-                work.nodes[count] = other
-                ask_light(clusters, points, wave, block, clusters.reps[other], count, work, counts)
-                add_to_estimate(points, block, count, color_of(clusters.colors, other), work)
-                count += 1
+            added = _part(clusters, draws, points, wave, place, block, k, count, work, counts)
             if is_coarse(clusters, points, block, k, error, work):
                 _push(work, size, k)
                 size += 1
             if added:
-                work.tells[count - 1] = work.tells[k]
-                if is_coarse(clusters, points, block, count - 1, error, work):
-                    _push(work, size, count - 1)
+                work.tells[count] = work.tells[k]
+                if is_coarse(clusters, points, block, count, error, work):
+                    _push(work, size, count)
                     size += 1
+                count += 1
         size = 0
     return count
 
@@ -347,7 +288,7 @@ def shade_block(clusters, points, block, count, work):
         for c in range(3):
             at = row_of(points.light, c) + 64 * v
             light = load_f32x16(at)
-            diffuse, specular = _point(points, DIFFUSE_ROW + c, v), _point(points, SPECULAR_ROW + c, v)
+            diffuse, specular = point_row(points, DIFFUSE_ROW + c, v), point_row(points, SPECULAR_ROW + c, v)
             for nth in range(count):
                 k = np.int64(work.heap[nth])
                 terms, color = _kept(work, k, v, block), clusters.colors[work.nodes[k], c]

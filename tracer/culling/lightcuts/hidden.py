@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.culling.lightcuts.cut import BLOCK
+from tracer.culling.lightcuts.block import BLOCK
 from tracer.kernels import inlined, subkernel
 
 

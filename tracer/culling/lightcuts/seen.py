@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tracer.culling.lightcuts.cut import DARK
+from tracer.culling.lightcuts.block import DARK
 from tracer.kernels import subkernel
 from tracer.simd.records import F32, I32, I64
 
@@ -45,5 +45,5 @@ def tell(seen, wave, place, block, nodes, limited, work, bounce):
             seen.nodes[pixel] = nodes
             seen.bound[pixel] = work.bound[i - first] / max(work.estimate[i - first], DARK)
         if len(seen.cost) > 0:
-            seen.cost[pixel] += nodes
-            seen.saved[pixel] -= nodes
+            seen.cost[pixel] += work.asked[i - first]
+            seen.saved[pixel] -= work.asked[i - first]

@@ -7,17 +7,20 @@ from typing import NamedTuple
 import numpy as np
 
 from tracer.culling.counters import PASSED_OVER
-from tracer.culling.lightcuts.cut import BLOCK, Block, Clusters, CutWork, refine, shade_block
+from tracer.culling.lightcuts.block import BLOCK, Block, Clusters, CutWork
+from tracer.culling.lightcuts.cut import refine, shade_block
+from tracer.culling.lightcuts.drawn import Draws, shade_drawn
 from tracer.culling.lightcuts.seen import Seen, tell
 from tracer.culling.stages import vectors
 from tracer.kernels import inlined, subkernel
 
 
 class Cuts(NamedTuple):
-    """What a worker is given: the tree, memory, and what is told of cuts; the part of what arrives that a cluster may
-    be wrong by; and the most nodes of a cut."""
+    """What a worker is given: the tree; how representatives are drawn; memory; what is told of cuts; the part of what
+    arrives that a cluster may be wrong by; and the most nodes of a cut."""
 
     clusters: Clusters
+    draws: Draws
     work: CutWork
     seen: Seen
     error: float
@@ -33,7 +36,11 @@ def block_at(first, count):
 @subkernel
 def shade_by_cut(cuts, clusters, points, wave, given, block, counts):
     """Add the light of all lights to a block of points, by a cut of clusters."""
-    nodes = refine(clusters, points, wave, block, np.float32(cuts.error), cuts.limit, cuts.work, counts)
-    shade_block(clusters, points, block, nodes, cuts.work)
+    error, place = np.float32(cuts.error), given.place
+    nodes = refine(clusters, cuts.draws, points, wave, place, block, error, cuts.limit, cuts.work, counts)
+    if len(cuts.draws.order) > 0:
+        shade_drawn(points, block, nodes, cuts.work)
+    else:
+        shade_block(clusters, points, block, nodes, cuts.work)
     counts[PASSED_OVER] += (min(block.count, 16 * block.last) - 16 * block.first) * (len(clusters.samples) - nodes)
     tell(cuts.seen, wave, given.place, block, nodes, nodes == cuts.limit, cuts.work, given.bounce)
