@@ -111,6 +111,27 @@ def sample_counts(asked: NDArray[np.uint16], reached: NDArray[np.uint16]) -> Sam
 
 
 @dataclass
+class CutErrors:
+    """By how much a picture shaded by cuts differs from that of all lights, as a part of the latter, pixel by pixel.
+
+    Colours are sums of three channels. What is darker than 1/64 is taken for that bright, and what misses everything is
+    left out.
+
+    Attributes
+    ----------
+    median, most_of, most : float
+        What half of the pixels, 95 % of them and all of them do not exceed.
+    beyond : int
+        Pixels that differ by more than `Settings.lightcuts_error`.
+    """
+
+    median: float = 0.0
+    most_of: float = 0.0
+    most: float = 0.0
+    beyond: int = 0
+
+
+@dataclass
 class CutCounts:
     """What the cuts of a frame were, by a method that shades by clusters of lights.
 
@@ -126,6 +147,8 @@ class CutCounts:
         Blocks whose cuts have as many nodes as they may, so that their error may be greater than was asked for.
     most : int
         Nodes of the largest cut.
+    errors : CutErrors or None
+        How wrong the picture is; with `Settings.verify`.
     """
 
     lights: int = 0
@@ -133,6 +156,7 @@ class CutCounts:
     nodes: int = 0
     limited: int = 0
     most: int = 0
+    errors: CutErrors | None = None
 
     @property
     def mean(self) -> float:

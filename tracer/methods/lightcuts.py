@@ -12,7 +12,7 @@ from numba import carray
 from numpy.typing import NDArray
 
 from tracer.culling.counters import SHADOW_COUNTERS
-from tracer.culling.lightcuts.block import BLOCK, POINTS, ROOM, Clusters, CutWork
+from tracer.culling.lightcuts.block import BLOCK, DARK, POINTS, ROOM, Clusters, CutWork
 from tracer.culling.lightcuts.drawn import Draws
 from tracer.culling.lightcuts.seen import BLOCKS, LIMITED, MOST_NODES, NODES, TALLIES, Seen
 from tracer.culling.lightcuts.shade import Cuts, block_at, shade_by_cut
@@ -27,9 +27,10 @@ from tracer.shading.points import points_in
 from tracer.shading.wave import wave_in
 from tracer.simd import i64_at
 from tracer.simd.records import reading
-from tracer.statistics import CutCounts, FrameStatistics
+from tracer.statistics import CutCounts, CutErrors, FrameStatistics
 
 FEWEST = 3  # lights that are worth a tree
+FEW_LEFT = 0.9  # of the lights: cuts of more clusters gain nothing
 _NONE, _NO_INTS = np.empty(0, np.float32), np.empty(0, np.int32)
 NO_DRAWS = Draws(np.empty((0, 2), np.int32), _NO_INTS, _NONE, _NONE, np.empty((0, POINTS), np.float32), 0)
 
@@ -61,6 +62,8 @@ class Lightcuts(ShadowMethod):
         pixels = frame.settings.width * frame.settings.height
         self._nodes, self._bound = np.zeros(pixels, np.int32), np.zeros(pixels, np.float32)
         self._tally = np.zeros((frame.workers, TALLIES), np.int64)
+        self._asked = frame.settings.lightcuts_error
+        self._errors: CutErrors | None = None
 
     def follow(self, frame: FrameView) -> None:
         lamps, before = frame.shading.lamps, self._lamps
@@ -108,11 +111,51 @@ class Lightcuts(ShadowMethod):
             return {}
         return {"cut nodes": self._nodes.reshape(shape), "cut bound": self._bound.reshape(shape)}
 
+    def keep(self, frame: FrameView) -> None:
+        """A verified picture tells its error, and pixels that are wrong by more than was asked for."""
+        buffers, self._errors = frame.buffers, None
+        if frame.settings.verify and self._shades(frame):
+            wrong = errors_of(buffers.color, buffers.reference)
+            seen = buffers.primitive.reshape(-1) >= 0
+            buffers.wrong[:] = seen & (wrong > frame.settings.lightcuts_error)
+            if seen.any():
+                found = np.percentile(wrong[seen], [50, 95, 100]).tolist()
+                self._errors = CutErrors(*found, int(buffers.wrong.sum()))
+
     def report(self, statistics: FrameStatistics) -> None:
+        cuts = self._counts()
+        statistics.decision = self._decided(cuts)
+        if cuts.blocks:
+            statistics.cuts = cuts
+            if cuts.errors is not None:
+                statistics.shadow.wrong = cuts.errors.beyond
+
+    def _counts(self) -> CutCounts:
         lights = 0 if self._lamps is None else len(self._lamps.samples)
         total, most = self._tally.sum(0), int(self._tally[:, MOST_NODES].max())
-        cuts = CutCounts(lights, *(int(total[k]) for k in (BLOCKS, NODES, LIMITED)), most)
-        statistics.cuts = cuts
+        return CutCounts(lights, *(int(total[k]) for k in (BLOCKS, NODES, LIMITED)), most, self._errors)
+
+    def _decided(self, cuts: CutCounts) -> str:
+        """What the method does in this scene, in words."""
+        if self._tree is None:
+            return f"{cuts.lights} light{'s' * (cuts.lights != 1)}: too few for clusters. Every shadow ray is traced."
+        if self._asked == 0.0:
+            return "No error is allowed: every shadow ray is traced."
+        said = (
+            f"Cuts of {cuts.mean:,.0f} clusters on average, {cuts.most:,} at most, stand for {cuts.lights:,} lights; "
+            f"a cluster may be wrong by {100 * self._asked:.3g} % of the light at a point."
+        )
+        if cuts.limited:
+            said += f" {cuts.limited:,} of {cuts.blocks:,} cuts are as large as they may be."
+        elif cuts.mean > FEW_LEFT * cuts.lights:
+            said += " There are too few lights to gain from it."
+        if cuts.errors is not None:
+            half, most_of, most = (100 * e for e in (cuts.errors.median, cuts.errors.most_of, cuts.errors.most))
+            said += (
+                f" Half of the pixels are wrong by less than {half:.2g} %, 95 % by less than {most_of:.2g} %, "
+                f"none by more than {most:.2g} %."
+            )
+        return said
 
     def forget(self) -> None:
         self._lamps = self._tree = None
@@ -124,6 +167,12 @@ class Lightcuts(ShadowMethod):
 
     def _new_work(self, limit: int) -> CutWork:
         return new_work(limit, 2)
+
+
+def errors_of(color: NDArray[np.float32], reference: NDArray[np.float32]) -> NDArray[np.float64]:
+    """(n,): by what part pixels (n, 3) differ from what they should be, dark ones as `CutErrors` says."""
+    found, true = (picture.astype(np.float64).sum(1) for picture in (color, reference))
+    return np.abs(found - true) / np.maximum(true, float(DARK))
 
 
 def new_work(limit: int, kept: int) -> CutWork:
@@ -143,5 +192,4 @@ def new_work(limit: int, kept: int) -> CutWork:
         nodes=np.zeros(limit, np.int32),
         heap=np.zeros(limit, np.int32),
         keys=np.zeros(limit, np.float32),
-        tells=np.zeros(limit, np.int32),
     )

@@ -43,8 +43,8 @@ class CutWork(NamedTuple):
     rays each point has asked for.  kept (m, 2 POINTS): the diffuse and the specular term
     of each representative at each point that it reaches, or what is drawn (`drawn`).  mirror (3, POINTS).  estimate
     and bound (POINTS,): the sum over the channels of what arrives at each point, and by what it may be wrong.  nodes,
-    heap, keys and tells (m,): the cut, those of its nodes that may be parted, the worst first, by what part of the
-    estimate each is wrong, and at which vector."""
+    heap and keys (m,): the cut, those of its nodes that may be parted, the worst first, and by what part of the
+    estimate each may be wrong."""
 
     origin: F32x2D
     direction: F32x2D
@@ -60,7 +60,6 @@ class CutWork(NamedTuple):
     nodes: I32
     heap: I32
     keys: F32
-    tells: I32
 
 
 class Block(NamedTuple):

@@ -101,48 +101,24 @@ def add_to_estimate(points, block, k, color, work):
         store(at, load_f32x16(at) + colored(points, color, diffuse, specular, v))
 
 
-@inlined
-def _worst_of(clusters, points, block, node, v, work, adds):
-    """The greatest part of the estimate that a cluster may be wrong by at any point of a vector."""
-    mirror = load_three(work.mirror, v - block.first)
-    color, falls = color_of(clusters.colors, node), clusters.falls[node] != 0
-    bound = greatest_light(points, mirror, clusters.boxes[node], color, falls, v)
-    if adds:
-        at = of_block(work.bound, v, block)
-        store(at, load_f32x16(at) + bound)
-    estimate = maximum(load_f32x16(of_block(work.estimate, v, block)), DARK)
-    return largest(select(mask16(lanes_below(block.count, v)), bound / estimate, ZERO))
-
-
 @subkernel
-def is_coarse(clusters, points, block, k, error, work):
-    """Whether the k-th node of a cut may be wrong by more than the part `error` at any point, with that as its key.
-
-    One vector tells: that which has told of the node that it is a part of is asked first."""
-    node, many = np.int64(work.nodes[k]), block.last - block.first
-    if clusters.children[node] == 0:
-        return False
-    for n in range(many):
-        v = block.first + (work.tells[k] + n) % many
-        worst = _worst_of(clusters, points, block, node, v, work, False)
-        if worst > error:
-            work.keys[k], work.tells[k] = worst, v - block.first
-            return True
-    return False
-
-
-@subkernel
-def error_of(clusters, points, block, k, work):
+def error_of(clusters, points, block, k, work, adds):
     """The greatest part of the estimate that the k-th node of a cut may be wrong by at any point; 0 for a single light.
-    Its bound goes to that of the whole cut."""
-    node, most = np.int64(work.nodes[k]), ZERO
+
+    Where it `adds`, the bound goes to that of the whole cut."""
+    node, worst = np.int64(work.nodes[k]), f32x16(ZERO)
     if clusters.children[node] == 0:
-        return most
+        return ZERO
+    box, color, falls = clusters.boxes[node], color_of(clusters.colors, node), clusters.falls[node] != 0
     for v in range(block.first, block.last):
-        worst = _worst_of(clusters, points, block, node, v, work, True)
-        if worst > most:
-            most, work.tells[k] = worst, v - block.first
-    return most
+        mirror = load_three(work.mirror, v - block.first)
+        bound = greatest_light(points, mirror, box, color, falls, v)
+        estimate = maximum(load_f32x16(of_block(work.estimate, v, block)), DARK)
+        worst = maximum(worst, select(mask16(lanes_below(block.count, v)), bound / estimate, ZERO))
+        if adds:
+            at = of_block(work.bound, v, block)
+            store(at, load_f32x16(at) + bound)
+    return largest(worst)
 
 
 # --- the nodes that may be parted, as a heap -------------------------------------------------------
@@ -234,13 +210,12 @@ def refine(clusters, draws, points, wave, place, block, error, limit, work, coun
     for node in range(child if both else 0, child + 2 if both else 1):
         if not is_dark(clusters.colors, node):
             _start(clusters, draws, points, wave, place, block, node, count, work, counts)
-            work.tells[count] = 0
             count += 1
     for _ in range(PASSES):
         for v in range(block.first, block.last):
             store(of_block(work.bound, v, block), f32x16(ZERO))
         for k in range(count):
-            work.keys[k] = error_of(clusters, points, block, k, work)
+            work.keys[k] = error_of(clusters, points, block, k, work, True)
             if work.keys[k] > error:
                 _push(work, size, k)
                 size += 1
@@ -250,12 +225,13 @@ def refine(clusters, draws, points, wave, place, block, error, limit, work, coun
             k = _pop(work, size)
             size -= 1
             added = _part(clusters, draws, points, wave, place, block, k, count, work, counts)
-            if is_coarse(clusters, points, block, k, error, work):
+            work.keys[k] = error_of(clusters, points, block, k, work, False)
+            if work.keys[k] > error:
                 _push(work, size, k)
                 size += 1
             if added:
-                work.tells[count] = work.tells[k]
-                if is_coarse(clusters, points, block, count, error, work):
+                work.keys[count] = error_of(clusters, points, block, count, work, False)
+                if work.keys[count] > error:
                     _push(work, size, count)
                     size += 1
                 count += 1

@@ -42,5 +42,6 @@ def shade_by_cut(cuts, clusters, points, wave, given, block, counts):
         shade_drawn(points, block, nodes, cuts.work)
     else:
         shade_block(clusters, points, block, nodes, cuts.work)
-    counts[PASSED_OVER] += (min(block.count, 16 * block.last) - 16 * block.first) * (len(clusters.samples) - nodes)
-    tell(cuts.seen, wave, given.place, block, nodes, nodes == cuts.limit, cuts.work, given.bounce)
+    lights = len(clusters.samples)
+    counts[PASSED_OVER] += (min(block.count, 16 * block.last) - 16 * block.first) * (lights - nodes)
+    tell(cuts.seen, wave, place, block, nodes, nodes == cuts.limit and nodes < lights, cuts.work, given.bounce)
