@@ -17,9 +17,6 @@ from tests.tracing.nasty_worlds import nasty_walk, with_lamps
 from tests.tracing.same import assert_same
 from tests.tracing.shades import floor, going, kite, roof
 from tests.tracing.worlds import quad, scene
-from tracer.culling.lightcuts.block import DARK
-from tracer.culling.lightcuts.bounds import greatest_light, mirrored_direction
-from tracer.culling.lightcuts.tree import CutTree, build_cut_tree
 from tracer.geometry.world import ACCELERATORS
 from tracer.kernels import kernel
 from tracer.methods.lightcuts import errors_of
@@ -28,6 +25,9 @@ from tracer.scene.lamps import COLOR, FALLS_OFF, Lamps, LampTable
 from tracer.scene.lights import Light
 from tracer.scene.load import load_scene
 from tracer.scene.model import Camera, Material
+from tracer.shading.lightcuts.block import DARK
+from tracer.shading.lightcuts.bounds import greatest_light, mirrored_direction
+from tracer.shading.lightcuts.tree import CutTree, build_cut_tree
 from tracer.shading.points import (
     DIFFUSE_ROW,
     EXPONENT_ROW,

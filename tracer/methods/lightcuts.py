@@ -1,5 +1,5 @@
 """Lightcuts: light of clusters of lights, each by one of them, as many as an error that nobody sees asks for (B. Walter
-et al., "Lightcuts: A Scalable Approach to Illumination", SIGGRAPH 2005; `tracer.culling.lightcuts`).
+et al., "Lightcuts: A Scalable Approach to Illumination", SIGGRAPH 2005; `tracer.shading.lightcuts`).
 
 This is a method that shades: its stage takes the place of all lights.  Samples of lamps are lights of their own.  It is
 not exact, unless no error is allowed: then every light is looked at, and the picture is that of "none" bit for bit.
@@ -12,17 +12,17 @@ from numba import carray
 from numpy.typing import NDArray
 
 from tracer.culling.counters import SHADOW_COUNTERS
-from tracer.culling.lightcuts.block import BLOCK, DARK, POINTS, ROOM, Clusters, CutWork
-from tracer.culling.lightcuts.drawn import Draws
-from tracer.culling.lightcuts.seen import BLOCKS, LIMITED, MOST_NODES, NODES, TALLIES, Seen
-from tracer.culling.lightcuts.shade import Cuts, block_at, shade_by_cut
-from tracer.culling.lightcuts.tree import CutTree, build_cut_tree
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.stages import call_at, vectors
 from tracer.geometry.memory import aligned_rows
 from tracer.kernels import Entry, entry
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.scene.lamps import Lamps
+from tracer.shading.lightcuts.block import BLOCK, DARK, POINTS, ROOM, Clusters, CutWork
+from tracer.shading.lightcuts.drawn import Draws
+from tracer.shading.lightcuts.seen import BLOCKS, LIMITED, MOST_NODES, NODES, TALLIES, Seen
+from tracer.shading.lightcuts.shade import Cuts, block_at, shade_by_cut
+from tracer.shading.lightcuts.tree import CutTree, build_cut_tree
 from tracer.shading.points import points_in
 from tracer.shading.wave import wave_in
 from tracer.simd import i64_at
@@ -60,7 +60,7 @@ class Lightcuts(ShadowMethod):
 
     def begin(self, frame: FrameView) -> None:
         pixels = frame.settings.width * frame.settings.height
-        self._nodes, self._bound = np.zeros(pixels, np.int32), np.zeros(pixels, np.float32)
+        self._nodes, self._bound = np.full(pixels, -1, np.int32), np.zeros(pixels, np.float32)
         self._tally = np.zeros((frame.workers, TALLIES), np.int64)
         self._asked = frame.settings.lightcuts_error
         self._errors: CutErrors | None = None
@@ -119,8 +119,8 @@ class Lightcuts(ShadowMethod):
             seen = buffers.primitive.reshape(-1) >= 0
             buffers.wrong[:] = seen & (wrong > frame.settings.lightcuts_error)
             if seen.any():
-                found = np.percentile(wrong[seen], [50, 95, 100]).tolist()
-                self._errors = CutErrors(*found, int(buffers.wrong.sum()))
+                median, most_of, most = np.percentile(wrong[seen], [50, 95, 100]).tolist()
+                self._errors = CutErrors(median, most_of, most, int(buffers.wrong.sum()))
 
     def report(self, statistics: FrameStatistics) -> None:
         cuts = self._counts()
@@ -132,8 +132,8 @@ class Lightcuts(ShadowMethod):
 
     def _counts(self) -> CutCounts:
         lights = 0 if self._lamps is None else len(self._lamps.samples)
-        total, most = self._tally.sum(0), int(self._tally[:, MOST_NODES].max())
-        return CutCounts(lights, *(int(total[k]) for k in (BLOCKS, NODES, LIMITED)), most, self._errors)
+        blocks, nodes, limited = self._tally.sum(0)[[BLOCKS, NODES, LIMITED]].tolist()
+        return CutCounts(lights, blocks, nodes, limited, int(self._tally[:, MOST_NODES].max()), self._errors)
 
     def _decided(self, cuts: CutCounts) -> str:
         """What the method does in this scene, in words."""
@@ -177,9 +177,9 @@ def errors_of(color: NDArray[np.float32], reference: NDArray[np.float32]) -> NDA
 
 def new_work(limit: int, kept: int) -> CutWork:
     """Memory for cuts of so many nodes, for each of which so many rows of numbers are kept."""
-    rows = [np.zeros((3, ROOM), np.float32) for _ in range(2)]
     return CutWork(
-        *rows,
+        origin=np.zeros((3, ROOM), np.float32),
+        direction=np.zeros((3, ROOM), np.float32),
         t_min=np.full(ROOM, LIGHT_MARGIN, np.float32),
         t_max=np.ones(ROOM, np.float32),
         blocked=np.zeros(ROOM, np.uint8),

@@ -1,4 +1,4 @@
-"""Certified lightcuts: cuts of those lights alone that are not proven to be hidden (`tracer.culling.lightcuts.hidden`).
+"""Certified lightcuts: cuts of those lights alone that are not proven to be hidden (`tracer.shading.lightcuts.hidden`).
 
 What is proven is what the method `certified` proves of many lights: that a triangle hides them from a whole region.
 """
@@ -11,9 +11,6 @@ import numpy as np
 from numba import carray
 
 from tracer.culling.counters import SHADOW_COUNTERS
-from tracer.culling.lightcuts.block import BLOCK, Clusters
-from tracer.culling.lightcuts.hidden import leave_out_hidden, see
-from tracer.culling.lightcuts.shade import Cuts, block_at, shade_by_cut
 from tracer.culling.regions.lookup import look
 from tracer.culling.regions.store import RegionView
 from tracer.culling.stages import call_at, selects, vectors
@@ -21,6 +18,9 @@ from tracer.kernels import Entry, entry
 from tracer.methods.certified_lights import WORDS, CertifiedLights
 from tracer.methods.interface import FrameView, Services, Stage
 from tracer.methods.lightcuts import Lightcuts
+from tracer.shading.lightcuts.block import BLOCK, Clusters
+from tracer.shading.lightcuts.hidden import leave_out_hidden, see
+from tracer.shading.lightcuts.shade import Cuts, block_at, shade_by_cut
 from tracer.shading.points import points_in
 from tracer.shading.wave import wave_in
 from tracer.simd import i64_at
@@ -65,7 +65,7 @@ def shade(data, call, light, count, counts):
 class CertifiedLightcuts(Lightcuts):
     """Shades by cuts of the lights that are not proven to be hidden."""
 
-    entries: tuple[Entry, ...] = (shade, *getattr(CertifiedLights, "entries", ()))
+    entries: tuple[Entry, ...] = (shade,)
 
     def __init__(self, services: Services) -> None:
         super().__init__(services)
@@ -92,9 +92,9 @@ class CertifiedLightcuts(Lightcuts):
         assert store is not None and tree is not None, "followed before"
         cuts, lamps = self._cuts(frame, worker, learns), len(frame.lights)
         whole = cuts.clusters
-        own = [array.copy() for array in (whole.boxes, whole.colors, whole.children, whole.reps, whole.falls)]
+        own = {name: getattr(whole, name).copy() for name in ("boxes", "colors", "children", "reps", "falls")}
         looks, seen = np.zeros((lamps, WORDS), np.int64), np.zeros(lamps, np.bool_)
-        cuts = cuts._replace(clusters=Clusters(*own, *whole[len(own) :]))
+        cuts = cuts._replace(clusters=whole._replace(**own))
         return [Stage(CertifiedCuts(cuts, whole, tree.chances, store.view(), looks, seen), shade=shade)]
 
     def keep(self, frame: FrameView) -> None:

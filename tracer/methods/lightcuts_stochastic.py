@@ -1,5 +1,5 @@
 """Stochastic lightcuts: clusters of lights by representatives that are drawn anew for each pixel and sample
-(`tracer.culling.lightcuts.drawn`)."""
+(`tracer.shading.lightcuts.drawn`)."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import zlib
 
 import numpy as np
 
-from tracer.culling.lightcuts.block import POINTS, CutWork
-from tracer.culling.lightcuts.drawn import DRAWN_ROWS, Draws
 from tracer.methods.interface import FrameView
 from tracer.methods.lightcuts import Lightcuts, new_work
 from tracer.scene.lamps import COLOR
+from tracer.shading.lightcuts.block import POINTS, CutWork
+from tracer.shading.lightcuts.drawn import DRAWN_ROWS, Draws
 
 
 class StochasticLightcuts(Lightcuts):

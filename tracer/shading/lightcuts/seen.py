@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tracer.culling.lightcuts.block import DARK
 from tracer.kernels import subkernel
+from tracer.shading.lightcuts.block import DARK
 from tracer.simd.records import F32, I32, I64
 
 # Of a worker's tally: blocks, their points, nodes of their cuts, the same times their points, blocks whose cuts have as
@@ -31,7 +31,7 @@ def tell(seen, wave, place, block, nodes, limited, work, bounce):
     """Tell of the cut of a block: its nodes, and whether it has as many as may be.
 
     place (n,) int32 are the pixels of the tile in the picture."""
-    first, last = 16 * block.first, min(block.count, 16 * block.last)
+    first, last = 16 * block.first, min(block.size, 16 * block.last)
     tally = seen.tally
     tally[BLOCKS] += 1
     tally[POINTS] += last - first

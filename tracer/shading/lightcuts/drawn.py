@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from tracer.culling.counters import CULLED, DUE, RAYS
-from tracer.culling.lightcuts.block import POINTS, count_asked, of_block, point_row, trace_rays
 from tracer.kernels import inlined, subkernel
 from tracer.scene.lamps import COLOR, FALLS_OFF
+from tracer.shading.lightcuts.block import POINTS, count_asked, of_block, point_row, trace_rays
 from tracer.shading.phong import highlight, toward
 from tracer.shading.points import DIFFUSE_ROW, EXPONENT_ROW, SHINE_ROW, SPECULAR_ROW
 from tracer.shading.wave import PIXEL, row_of
@@ -116,7 +116,7 @@ def ask_drawn(clusters, draws, points, wave, place, block, k, other, node, left,
         _intensity(clusters, right),
     )
     for v in range(block.first, block.last):
-        there = lanes_below(block.count, v)
+        there = lanes_below(block.size, v)
         pixel = select(mask16(there), load_i32x16(row_of(wave.memory, PIXEL) + 64 * v), i32x16(0))
         pixel = gather_i32x16(address_of(place), pixel)
         in_left = load_i32x16(_kept_at(work, k, 3, v, block)) < np.int32(middle)

@@ -63,11 +63,11 @@ class CutWork(NamedTuple):
 
 
 class Block(NamedTuple):
-    """Vectors `first` to `last` - 1 of the points of a wave, of which there are `count`."""
+    """Vectors `first` to `last` - 1 of the points of a wave, of which there are `size`."""
 
     first: int
     last: int
-    count: int
+    size: int
 
 
 @inlined

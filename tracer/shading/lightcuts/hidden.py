@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.culling.lightcuts.block import BLOCK
 from tracer.kernels import inlined, subkernel
+from tracer.shading.lightcuts.block import BLOCK
 
 
 @subkernel

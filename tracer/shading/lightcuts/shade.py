@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from tracer.culling.counters import PASSED_OVER
-from tracer.culling.lightcuts.block import BLOCK, Block, Clusters, CutWork
-from tracer.culling.lightcuts.cut import refine, shade_block
-from tracer.culling.lightcuts.drawn import Draws, shade_drawn
-from tracer.culling.lightcuts.seen import Seen, tell
 from tracer.culling.stages import vectors
 from tracer.kernels import inlined, subkernel
+from tracer.shading.lightcuts.block import BLOCK, Block, Clusters, CutWork
+from tracer.shading.lightcuts.cut import refine, shade_block
+from tracer.shading.lightcuts.drawn import Draws, shade_drawn
+from tracer.shading.lightcuts.seen import Seen, tell
 
 
 class Cuts(NamedTuple):
@@ -43,5 +43,5 @@ def shade_by_cut(cuts, clusters, points, wave, given, block, counts):
     else:
         shade_block(clusters, points, block, nodes, cuts.work)
     lights = len(clusters.samples)
-    counts[PASSED_OVER] += (min(block.count, 16 * block.last) - 16 * block.first) * (lights - nodes)
+    counts[PASSED_OVER] += (min(block.size, 16 * block.last) - 16 * block.first) * (lights - nodes)
     tell(cuts.seen, wave, place, block, nodes, nodes == cuts.limit and nodes < lights, cuts.work, given.bounce)

@@ -14,11 +14,11 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.culling.counters import CULLED, DUE, RAYS
-from tracer.culling.lightcuts.block import DARK, POINTS, color_of, count_asked, is_dark, of_block, point_row, trace_rays
-from tracer.culling.lightcuts.bounds import colored, greatest_light, mirrored_direction
-from tracer.culling.lightcuts.drawn import ask_drawn
 from tracer.culling.shadow_testing import faces
 from tracer.kernels import inlined, subkernel
+from tracer.shading.lightcuts.block import DARK, POINTS, color_of, count_asked, is_dark, of_block, point_row, trace_rays
+from tracer.shading.lightcuts.bounds import colored, greatest_light, mirrored_direction
+from tracer.shading.lightcuts.drawn import ask_drawn
 from tracer.shading.phong import fall_off, highlight, toward
 from tracer.shading.points import DIFFUSE_ROW, EXPONENT_ROW, SHINE_ROW, SPECULAR_ROW
 from tracer.shading.wave import row_of
@@ -58,7 +58,7 @@ def ask_light(clusters, points, wave, block, light, k, work, counts):
     place, row = clusters.samples[light], clusters.rows[clusters.owners[light]]
     stride, n, due = 4 * work.direction.shape[1], 0, np.int64(0)
     for v in range(block.first, block.last):
-        faced = faces(points, place, v) & lanes_below(block.count, v)
+        faced = faces(points, place, v) & lanes_below(block.size, v)
         counts[DUE] += ones(faced)
         due += ones(faced)
         position, normal, way = (
@@ -114,7 +114,7 @@ def error_of(clusters, points, block, k, work, adds):
         mirror = load_three(work.mirror, v - block.first)
         bound = greatest_light(points, mirror, box, color, falls, v)
         estimate = maximum(load_f32x16(of_block(work.estimate, v, block)), DARK)
-        worst = maximum(worst, select(mask16(lanes_below(block.count, v)), bound / estimate, ZERO))
+        worst = maximum(worst, select(mask16(lanes_below(block.size, v)), bound / estimate, ZERO))
         if adds:
             at = of_block(work.bound, v, block)
             store(at, load_f32x16(at) + bound)
