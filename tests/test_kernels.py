@@ -102,6 +102,15 @@ def test_a_copy_of_the_sources_finds_what_is_compiled(package: Path) -> None:
     assert ask(package / "copy", cached, "1") == ([2.0], 1, folder)
 
 
+def test_a_kernel_from_no_file_is_compiled_and_not_kept(tmp_path: Path) -> None:
+    """As in a notebook, where another cell may stand in the same line."""
+    code = "from tracer.kernels import kernel\n\n@kernel\ndef twice(x):\n    return 2 * x\nprint(twice(21))\n"
+    environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("42\n", "")
+    assert not list(tmp_path.rglob("*.nbc"))
+
+
 def test_all_that_a_source_imports_is_found() -> None:
     """The imports that are found by their form are those that Python's own parser finds."""
     for path in sorted((ROOT / "tracer").rglob("*.py")):
