@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.kernels import kernel
+from tracer.kernels import inlined, kernel
 from tracer.scene.lamps import COLOR, FALLS_OFF, Lamps
 from tracer.simd.records import I32, Bytes, F32x2D
 
@@ -53,6 +53,12 @@ class CutTree(NamedTuple):
         return sum(array.nbytes for array in self)
 
 
+@inlined
+def _bin_of(place, low, scale):
+    """Which bin of an axis a coordinate falls in."""
+    return max(0, min(BINS - 1, int((place - low) * scale)))
+
+
 @kernel
 def _part(places, brightness, order, first, last):
     """Sort lights order[first:last] into two parts; where the second begins.
@@ -75,7 +81,7 @@ def _part(places, brightness, order, first, last):
         boxes[:, 3:] = -np.inf
         for k in range(first, last):
             place = places[order[k]]
-            b = min(BINS - 1, int((place[axis] - low[axis]) * scale))
+            b = _bin_of(place[axis], low[axis], scale)
             power[b] += brightness[order[k]]
             for c in range(3):
                 boxes[b, c], boxes[b, 3 + c] = min(boxes[b, c], place[c]), max(boxes[b, 3 + c], place[c])
@@ -101,7 +107,7 @@ def _part(places, brightness, order, first, last):
     scale, middle = BINS / (high[best_axis] - low[best_axis]), first
     for k in range(first, last):
         light = order[k]
-        if min(BINS - 1, int((places[light, best_axis] - low[best_axis]) * scale)) <= best_bin:
+        if _bin_of(places[light, best_axis], low[best_axis], scale) <= best_bin:
             order[k], order[middle] = order[middle], light
             middle += 1
     return middle if first < middle < last else (first + last) // 2
