@@ -135,6 +135,16 @@ def test_errors_that_are_allowed_are_not_exceeded_by_much_and_limits_are_told() 
     assert frame_of(still_hall(), lightcuts_nodes=1, depth=0).layers["cut nodes"].max() == 1
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_a_picture_that_is_refined_tells_what_is_known_and_ends_within_the_error(method: str) -> None:
+    renderer = tracer.Renderer(still_hall(), replace(SETTINGS, method=method, depth=0))
+    *parts, whole = renderer.refine(0.7)
+    hit, none = whole.primitive >= 0, truth()
+    unknown = [(frame.layers["cut nodes"][hit] < 0).mean() for frame in (*parts, whole)]
+    assert unknown[0] > 0.7 and unknown == sorted(unknown, reverse=True) and unknown[-1] == 0.0
+    assert np.median(errors_of(whole.color[hit], none.color[hit])) < 0.02
+
+
 def test_what_is_drawn_averages_out() -> None:
     """Sixteen frames at moments that look alike differ in what is drawn; their mean is nearer to the truth."""
     made = replace(still_hall(), animation=Animation.empty(), objects=still_hall().objects[:1])

@@ -109,7 +109,8 @@ class Lightcuts(ShadowMethod):
         shape = frame.settings.height, frame.settings.width
         if not self._shades(frame):
             return {}
-        return {"cut nodes": self._nodes.reshape(shape), "cut bound": self._bound.reshape(shape)}
+        known = {"cut nodes": self._nodes, "cut bound": self._bound}
+        return {name: pixels.reshape(shape).copy() for name, pixels in known.items()}  # more are shaded after this
 
     def keep(self, frame: FrameView) -> None:
         """A verified picture tells its error, and pixels that are wrong by more than was asked for."""
