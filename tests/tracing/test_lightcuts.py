@@ -114,10 +114,11 @@ def test_frames_repeat_for_any_number_of_threads_and_whatever_came_before(method
     assert np.median(errors_of(moved.color[hit], none.color[hit])) < 0.02, "of where the lights are now"
 
 
-def test_errors_that_are_allowed_are_not_exceeded_by_much_and_limits_are_told() -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_errors_that_are_allowed_are_not_exceeded_by_much_and_limits_are_told(method: str) -> None:
     errors, sizes = [], []
     for allowed in (0.2, 0.02, 0.002):
-        frame = frame_of(still_hall(), lightcuts_error=allowed, depth=0, verify=True)
+        frame = frame_of(still_hall(), method=method, lightcuts_error=allowed, depth=0, verify=True)
         cuts = frame.statistics.cuts
         assert cuts is not None and cuts.errors is not None and frame.reference is not None and frame.wrong is not None
         assert frame.reference.tobytes() == truth().color.tobytes()
@@ -129,10 +130,11 @@ def test_errors_that_are_allowed_are_not_exceeded_by_much_and_limits_are_told() 
         errors.append(cuts.errors.median)
         sizes.append(cuts.mean)
     assert errors == sorted(errors, reverse=True) and sizes == sorted(sizes)
-    few = frame_of(still_hall(), lightcuts_error=0.002, lightcuts_nodes=7, depth=0)
+    few = frame_of(still_hall(), method=method, lightcuts_error=0.002, lightcuts_nodes=7, depth=0)
     assert few.statistics.cuts is not None and few.statistics.cuts.most == 7
     assert few.statistics.cuts.limited > 0 and "as large as they may be" in few.statistics.decision
-    assert frame_of(still_hall(), lightcuts_nodes=1, depth=0).layers["cut nodes"].max() == 1
+    one = frame_of(still_hall(), method=method, lightcuts_nodes=1, depth=0)
+    assert one.layers["cut nodes"].max() == 1
 
 
 @pytest.mark.parametrize("method", METHODS)

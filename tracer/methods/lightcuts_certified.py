@@ -98,8 +98,12 @@ class CertifiedLightcuts(Lightcuts):
         return [Stage(CertifiedCuts(cuts, whole, tree.chances, store.view(), looks, seen), shade=shade)]
 
     def keep(self, frame: FrameView) -> None:
+        super().keep(frame)
         if self._shades(frame):
             self._certified.keep(frame)
+
+    def discard(self, frame: FrameView, begun: bool) -> None:
+        self._certified.discard(frame, begun)
 
     def report(self, statistics: FrameStatistics) -> None:
         super().report(statistics)
