@@ -44,7 +44,7 @@ class FrameInProgress:
     def __init__(
         self, state: State, settings: Settings, camera: Camera, time: float, cancel: Cancel, progressive: bool = False
     ) -> None:
-        self._state, self._camera, self._time = state, camera, time
+        self._state, self._camera, self.time, self.sample = state, camera, time, 0
         self.settings, self.cancel = settings, cancel
         self.workers = thread_count(settings.threads)
         self._started, self._paused = state.clock(), 0.0
@@ -122,14 +122,14 @@ class FrameInProgress:
         has come to rest, or rests no longer."""
         state = self._state
         world = state.world
-        poses = world.pose(self._time)
+        poses = world.pose(self.time)
         together = min(method.together for method in self.methods)
         if any([method.follows_rest() for method in self.methods]):
             world.place(poses, state.rest.follow(poses, world.primitives, world.certain(poses)), together)
         else:
             state.rest.forget()
             world.place(poses, together=together)
-        self._use_lamps(self._lamps.at(state.scene.light_positions(self._time)))
+        self._use_lamps(self._lamps.at(state.scene.light_positions(self.time)))
         self.resting = state.rest.now
         self.history.follow_lights(self.lights, self._lamps)
         self.history.follow_rest(self.resting, state.world.outlines, self.workers)
@@ -321,7 +321,7 @@ class FrameInProgress:
         """Mix in a further sample of each pixel, placed by the R2 sequence; it uses modes but counts nothing."""
         shift = ((0.5 + number / GOLDEN) % 1.0, (0.5 + number / GOLDEN**2) % 1.0)
         rays = pinhole(self._camera, self.settings.width, self.settings.height, shift)
-        buffers, counts = self._empty_buffers(records=False), np.zeros_like(self._counts)
+        buffers, counts, self.sample = self._empty_buffers(records=False), np.zeros_like(self._counts), number
         self._trace_primary(rays, buffers, counts)
         self._shade(rays, buffers, counts, self._everywhere, learns=False)
         if number == 1:
@@ -347,9 +347,11 @@ class FrameInProgress:
     # --- what became of one pixel's rays (`tracer.ray_tree`) --------------------------------------------
 
     def stages_now(self) -> list[tuple[ShadowMethod, Stage]]:
-        """The stages that shaded this frame, with the methods that they are of; they learn nothing any more."""
+        """The stages that answered shadow rays of this frame, with the methods that they are of; they learn nothing any
+        more.  Those that shade are left out: then every ray is traced."""
         chosen = self._others if not self._base.takes_part else self.methods
-        return [(method, stage) for method in chosen for stage in method.stages(self, 0, learns=False)]
+        stages = [(method, stage) for method in chosen for stage in method.stages(self, 0, learns=False)]
+        return [(method, stage) for method, stage in stages if stage.shade is None]
 
     def shade_again(self, x: int, y: int, stages: list[Stage]) -> None:
         """Shade the tile of a pixel once more, with these stages, in the company in which it was shaded."""
@@ -387,7 +389,7 @@ class FrameInProgress:
             return rows.reshape(*shape, *rows.shape[1:]) if recorded else None
 
         return Frame(
-            time=self._time,
+            time=self.time,
             camera=self._camera,
             settings=replace(settings),
             color=buffers.color.reshape(*shape, 3),

@@ -14,6 +14,7 @@ from importlib import import_module
 from typing import Any
 
 ANY_NUMBER = 1 << 31
+MANY = 16  # lights: clusters of fewer are hardly ever worth it
 #: Methods that are made of others and are worth a look (`line_up`), as far as these are known.
 TOGETHER = (
     "paper+cache",
@@ -38,7 +39,7 @@ class Kind:
     certificates, or may make some.  `adaptive`: it chooses by itself whether to cull.  `measures`: it serves
     measurements only and is not offered in the window.  `addition`: it can be added to a base; `alone`: and be the base
     itself, with nothing below it.  `lights`: of scenes with so many it has something to say, from least to most; it
-    is right for others, too.
+    is right for others, too.  `clusters`: it shades by clusters of lights.
     """
 
     name: str
@@ -54,6 +55,7 @@ class Kind:
     addition: bool = False
     alone: bool = False
     lights: tuple[int, int] = (0, ANY_NUMBER)
+    clusters: bool = False
 
     def load(self) -> Any:
         """The class that implements it."""
@@ -183,6 +185,11 @@ class Method:
         return any(kind.has_certificates for kind in self.kinds)
 
     @property
+    def clusters(self) -> bool:
+        """Whether it shades by clusters of lights, and looks at few lights themselves."""
+        return any(kind.clusters for kind in self.kinds)
+
+    @property
     def learns(self) -> bool:
         """Whether what it counts in a frame may depend on the frames before it: it knows something of them."""
         return self.culls or bool(self.added)
@@ -243,6 +250,37 @@ register(
         "Replays the answers of the same frame: no culling can be faster.",
         "tracer.methods.free:Free",
         measures=True,
+    )
+)
+register(
+    Kind(
+        "lightcuts",
+        "Shades by clusters of lights, as fine as a bound of the error asks for.",
+        "tracer.methods.lightcuts:Lightcuts",
+        exact=False,
+        lights=(MANY, ANY_NUMBER),
+        clusters=True,
+    )
+)
+register(
+    Kind(
+        "lightcuts-stochastic",
+        "Lightcuts with lights drawn for each pixel: noise, which averages out, instead of bands.",
+        "tracer.methods.lightcuts_stochastic:StochasticLightcuts",
+        exact=False,
+        lights=(MANY, ANY_NUMBER),
+        clusters=True,
+    )
+)
+register(
+    Kind(
+        "lightcuts-certified",
+        "Lightcuts of those lights that are not proven to be hidden.",
+        "tracer.methods.lightcuts_certified:CertifiedLightcuts",
+        exact=False,
+        lights=(MANY, ANY_NUMBER),
+        clusters=True,
+        has_certificates=True,
     )
 )
 register(Kind("cache", "Tests what blocked a light before first.", "tracer.methods.cache:OccluderCache", addition=True))

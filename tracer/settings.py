@@ -10,6 +10,7 @@ from tracer.method import Method
 from tracer.scene.lights import MAX_SAMPLES
 
 MAX_SIDE = 16384
+MAX_NODES = 65536  # of a cut: each takes a kilobyte for each thread
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,11 @@ class Settings:
         Nobody waits for the frame, so that "auto" may spend the whole budget and not only what certificates are worth.
     certificate_memory : float
         Megabytes that certificates take, at most.
+    lightcuts_error : float
+        The part of the light of a point that a cluster of lights may be wrong by, for methods that shade by cuts of
+        lights. With 0 every light is looked at.
+    lightcuts_nodes : int
+        Clusters of a cut, at most.
     """
 
     width: int = 512
@@ -79,6 +85,8 @@ class Settings:
     certificate_seconds: float = math.inf
     patient: bool = False
     certificate_memory: float = 256.0
+    lightcuts_error: float = 0.02
+    lightcuts_nodes: int = 1000
 
     @property
     def keeps_modes(self) -> bool:
@@ -113,6 +121,11 @@ class Settings:
                 all(budget >= 0 for budget in (self.certificates, self.certificate_seconds, self.certificate_memory)),
                 "budgets of certificates are 0 or more",
             ),
+            (
+                math.isfinite(self.lightcuts_error) and self.lightcuts_error >= 0,
+                "lightcuts_error is a finite number from 0 up",
+            ),
+            (1 <= self.lightcuts_nodes <= MAX_NODES, f"lightcuts_nodes lie in 1 to {MAX_NODES}"),
         )
         for holds, message in checks:
             if not holds:

@@ -138,6 +138,60 @@ class BuiltPart:
 
 
 @dataclass
+class CutErrors:
+    """By how much a picture shaded by cuts differs from that of all lights, as a part of the latter, pixel by pixel.
+
+    Colours are sums of three channels. What is darker than 1/64 is taken for that bright, and what misses everything is
+    left out.
+
+    Attributes
+    ----------
+    median, most_of, most : float
+        What half of the pixels, 95 % of them and all of them do not exceed.
+    beyond : int
+        Pixels that differ by more than `Settings.lightcuts_error`.
+    """
+
+    median: float = 0.0
+    most_of: float = 0.0
+    most: float = 0.0
+    beyond: int = 0
+
+
+@dataclass
+class CutCounts:
+    """What the cuts of a frame were, by a method that shades by clusters of lights.
+
+    Attributes
+    ----------
+    lights : int
+        Lights, each sample of a lamp one.
+    blocks : int
+        Blocks of up to 128 points that have a cut, at all bounces.
+    nodes : int
+        Clusters of all their cuts.
+    limited : int
+        Blocks whose cuts have as many nodes as they may, so that their error may be greater than was asked for.
+    most : int
+        Nodes of the largest cut.
+    errors : CutErrors or None
+        How wrong the picture is; with `Settings.verify`.
+    """
+
+    lights: int = 0
+    blocks: int = 0
+    nodes: int = 0
+    limited: int = 0
+    most: int = 0
+    errors: CutErrors | None = None
+
+    @property
+    def mean(self) -> float:
+        """Nodes of a cut on average."""
+        return self.nodes / max(1, self.blocks)
+
+
+@dataclass
 class FrameStatistics:
     """Counters and times of one frame.
 
@@ -159,6 +213,8 @@ class FrameStatistics:
         What the lights send to the primary hits; with `Settings.record_lights`.
     built : BuiltPart or None
         How much of the tree there is after this frame; None for trees that are built before rays come.
+    cuts : CutCounts or None
+        What cuts of lights there were; with methods that have them.
     seconds : float
         Time of the whole frame.
     by_modes : list of SaidByModes
@@ -178,6 +234,7 @@ class FrameStatistics:
     decision: str = ""
     samples: SampleCounts | None = None
     built: BuiltPart | None = None
+    cuts: CutCounts | None = None
     seconds: float = 0.0
     by_modes: list[SaidByModes] = field(default_factory=list)
     phases: dict[str, float] = field(default_factory=dict)

@@ -12,7 +12,8 @@ import tracer
 
 def contents(frame: tracer.Frame) -> dict[str, Any]:
     """Everything a frame holds but how long it took and on how many threads."""
-    held = {f.name: getattr(frame, f.name) for f in fields(frame) if f.name not in ("settings", "statistics")}
+    held = {f.name: getattr(frame, f.name) for f in fields(frame) if f.name not in ("settings", "statistics", "layers")}
+    held |= {f"layer {name}": layer for name, layer in frame.layers.items()}
     counted = frame.statistics.to_dict()
     del counted["seconds"], counted["phases"], counted["built"]  # of trees, by rays of earlier frames as well
     return held | {"occlusion_mode": frame.occlusion_mode, "shadow_mode": frame.shadow_mode, "counters": counted}

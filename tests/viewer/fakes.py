@@ -22,7 +22,7 @@ from tracer.scene.model import (
     Triangles,
     empty_quadrics,
 )
-from tracer.statistics import FrameStatistics
+from tracer.statistics import CutCounts, FrameStatistics
 
 TINY_SCENE = """
 b 0.3 0.4 0.5
@@ -144,6 +144,16 @@ def with_lamps(frame: Frame) -> Frame:
     asked = np.where(hit, lots.choice([0.0, 0.4, 1.0, 1.0], shape) * most, 0).astype(np.uint16)
     reached = (lots.choice([0.0, 0.3, 0.7, 1.0], shape) * asked).astype(np.uint16)
     return replace(frame, asked=asked, reached=reached)
+
+
+def with_cuts(frame: Frame) -> Frame:
+    """The frame as if shaded by cuts of up to 40 clusters of 100 lights, drawn by lot; of some it is not known."""
+    lots, shape = np.random.default_rng(3), frame.primitive.shape
+    nodes = lots.integers(-1, 40, shape).astype(np.int32)
+    nodes[0, 0] = 40
+    statistics = replace(frame.statistics, cuts=CutCounts(100, 7, 70, 0, 40))
+    layers = frame.layers | {"cut nodes": nodes, "cut bound": lots.random(shape, np.float32)}
+    return replace(frame, layers=layers, statistics=statistics)
 
 
 def in_part(frame: Frame) -> Frame:

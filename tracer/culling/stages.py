@@ -1,6 +1,6 @@
 """Stages: how a method takes part in shadow testing, as kernels that are called by address.
 
-Shading knows no method.  It is given a table of stages, and calls up to six kernels of each:
+Shading knows no method.  It is given a table of stages, and calls up to seven kernels of each:
 
     find(data, call, 0, count, counts)          once for a wave: what is known of these points?
     select(data, call, 0, count, counts)        once for a wave, after that: which lights must they look at?
@@ -8,11 +8,16 @@ Shading knows no method.  It is given a table of stages, and calls up to six ker
     choose(data, call, light, count, counts)    for each sample of a light: answers rays, which are not traced then
     learn(data, call, light, count, counts)     for each sample of a light: learns from all answers
     finish(data, call, 0, count, counts)        once for a wave, after all lights
+    shade(data, call, 0, count, counts)         once for a wave, in the place of all lights: adds what they send
 
 `data` is the address of the stage's own block, and `call` that of a `Call`; `count` is the number of points, and
 `counts` the address of the shadow counters (`tracer.culling.counters`).  A kernel that chooses takes points out of
 `live` and, where static geometry leaves them lit, puts them into `lit`; dynamic objects are asked about those
 unless it puts them into `settled` too.
+
+Where a stage shades, it adds the light of all lights to that of the points, by whatever rays it traces and counts
+itself.  Lights are then gone through one by one only as far as somebody wants to know all rays: these are traced, one
+and all, and neither counted nor added to the light.
 
 Stages run in the order of the table: a later one chooses among what an earlier one left live.  So methods compose,
 shading is compiled once for all of them, and kernels of methods that nobody chose are never compiled.
@@ -29,10 +34,10 @@ from tracer.kernels import inlined
 from tracer.simd import address_of, call_entry, load_i64, store
 from tracer.simd.records import I32, F32x2D, block_size, reading, writing
 
-# Columns of the table: addresses of the six kernels, 0 for none, and of the stage's data, and the first of its rows
+# Columns of the table: addresses of the seven kernels, 0 for none, and of the stage's data, and the first of its rows
 # in the memory that stages work in.
-FIND, SELECT, APPROACH, CHOOSE, LEARN, FINISH, DATA, FIRST_ROW = range(8)
-COLUMNS = 8
+FIND, SELECT, APPROACH, CHOOSE, LEARN, FINISH, SHADE, DATA, FIRST_ROW = range(9)
+COLUMNS = 9
 
 
 class Stages(NamedTuple):
@@ -41,7 +46,8 @@ class Stages(NamedTuple):
 
     Where a stage selects, looks (lights, words) int64 has a bit for each vector of a wave that must look at a light; it
     has no rows where all do, and larger waves look at all lights.  Of the first `everything` lights somebody wants to
-    know all rays: those to which points need not look then count as due and culled."""
+    know all rays: those to which points need not look then count as due and culled.  `shades` says whether a stage
+    shades in the place of all lights."""
 
     table: NDArray[np.int64]
     rows: int
@@ -49,6 +55,7 @@ class Stages(NamedTuple):
     verify: bool
     everything: int
     looks: NDArray[np.int64]
+    shades: bool
 
 
 class Call(NamedTuple):
@@ -80,7 +87,7 @@ CALL = block_size(Call)
 
 @inlined
 def run_stages(stages, which, call, light, count, counts):
-    """Call one of the six kernels of every stage that has it."""
+    """Call one of the seven kernels of every stage that has it."""
     for k in range(len(stages.table)):
         entry = stages.table[k, which]
         if entry != 0:

@@ -66,6 +66,8 @@ class FrameView(Protocol):
     rays: Pinhole
     tiles: NDArray[np.int64]  # (n, 5): left, top, right, bottom, number
     buffers: Buffers
+    time: float  # the moment that is shown, in seconds
+    sample: int  # of each pixel, which is being shaded: 0 for the first
     shading: ShadingData
     lights: NDArray[np.float32]  # (l, 3) their centres
     resting: Resting
@@ -100,6 +102,7 @@ class Stage:
     rows: int = 0
     occluders: bool = False
     looks: NDArray[np.int64] | None = None
+    shade: Entry | None = None
 
 
 class ShadowMethod:
@@ -200,7 +203,8 @@ class StageTable:
         self._blocks = [np.zeros(1, np.int64) if stage.data is None else pack(stage.data) for stage in stages]
         table, rows = np.zeros((len(stages), COLUMNS), np.int64), 0
         for row, stage, block in zip(table, stages, self._blocks, strict=True):
-            kernels: list[Any] = [stage.find, stage.select, stage.approach, stage.choose, stage.learn, stage.finish]
+            first: list[Any] = [stage.find, stage.select, stage.approach, stage.choose]
+            kernels = [*first, stage.learn, stage.finish, stage.shade]
             row[:] = *(0 if kernel is None else kernel.address for kernel in kernels), block.ctypes.data, rows
             rows += stage.rows
         looks = [stage.looks for stage in stages if stage.looks is not None]
@@ -214,4 +218,5 @@ class StageTable:
             verify,
             everything,
             looks[0] if looks else ALL_LOOK,
+            any(stage.shade is not None for stage in stages),
         )

@@ -31,11 +31,12 @@ def count_rays(wave, pixels, buffers):
 
 
 @subkernel
-def count_shadow_rays(wave, batch, pixels, buffers):
-    """Count the shadow rays that are due, those that asked static geometry, and those that need not."""
+def count_shadow_rays(wave, batch, pixels, buffers, traced):
+    """Count the shadow rays that are due, those that asked static geometry, and those that need not: all of them,
+    where the method has not `traced` these."""
     for i in range(wave.size):
         place = pixels.place[wave.pixel[i]]
-        due, live = batch.due[i >> 4] >> (i & 15), batch.live[i >> 4] >> (i & 15)
+        due, live = batch.due[i >> 4] >> (i & 15), (batch.live[i >> 4] >> (i & 15)) if traced else 0
         buffers.saved[place] += due & ~live & 1
         buffers.cost[place] += live & 1
         buffers.due_rays[place] += due & 1

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.culling.counters import PASSED_OVER, PRIMARY, RAYS, SECONDARY, SHADOW, SHADOW_COUNTERS
+from tracer.culling.counters import BY_LIGHT, PASSED_OVER, PRIMARY, RAYS, SECONDARY, SHADOW, SHADOW_COUNTERS
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.shadow_testing import shadow_testing
 from tracer.culling.stages import (
@@ -21,6 +21,7 @@ from tracer.culling.stages import (
     FIND,
     FINISH,
     SELECT,
+    SHADE,
     Call,
     looked_at,
     run_stages,
@@ -120,7 +121,11 @@ def _add_lights(world, shading, wave, points, stages, counts, pixels, tile, boun
     run_stages(stages, FIND, call, 0, wave.size, counts)
     if selects(stages.looks, wave.size):
         run_stages(stages, SELECT, call, 0, wave.size, counts)
-    for light in range(len(lamps.places)):
+    lights, counted = len(lamps.places), counts
+    if stages.shades:
+        run_stages(stages, SHADE, call, 0, wave.size, counted)
+        lights, counts = min(lights, stages.everything), np.zeros(SHADOW_COUNTERS, np.int64)
+    for light in range(lights):
         if light >= stages.everything and not _is_looked_at(stages.looks, light, wave.size):
             counts[PASSED_OVER] += wave.size * (lamps.first[light + 1] - lamps.first[light])
             continue
@@ -132,19 +137,23 @@ def _add_lights(world, shading, wave, points, stages, counts, pixels, tile, boun
         for sample in range(lamps.first[light], lamps.first[light + 1]):
             write_sample(call, sample, sample - lamps.first[light])
             shadow_testing(world, points, wave.size, lamps.samples[sample], light, stages, call, batch, counts)
-            add_light(points, lamps, light, sample, batch.lit, wave, points.light)
+            if not stages.shades:
+                add_light(points, lamps, light, sample, batch.lit, wave, points.light)
             if stages.verify:
                 add_light(points, lamps, light, sample, batch.truth, wave, points.reference)
                 count_wrong(wave, batch, pixels, buffers.wrong)
             if bounce == 0 and len(buffers.asked) > 0:
                 record_lights(wave, light, batch, pixels, buffers)
             if len(buffers.saved) > 0:
-                count_shadow_rays(wave, batch, pixels, buffers)
+                count_shadow_rays(wave, batch, pixels, buffers, not stages.shades)
     run_stages(stages, FINISH, call, 0, wave.size, counts)
+    if stages.shades:
+        for k in range(BY_LIGHT, SHADOW_COUNTERS):
+            counted[k] += counts[k]  # what modes say
     accumulate(wave, points.light, pixels.light)
     if stages.verify:
         accumulate(wave, points.reference, pixels.reference)
-    return scratch, batch.memory
+    return scratch, batch.memory, counts
 
 
 @inlined

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from tracer.geometry.accelerators import ACCELERATORS
+from tracer.settings import MAX_NODES
 from viewer.cli import examples
 from viewer.cli.argument_types import (
     BeyondMemory,
@@ -209,6 +210,7 @@ def add_tracing_options(parser: Parser, accelerator: str, many_lamps: bool = Fal
     add("--depth", type=count(0, 100), default=10, metavar="D", help="the most bounces (default: 10)")
     add("--symmetric", action="store_true", help="occlusion tests in both directions between neighbouring pixels")
     _add_lamps(parser, many_lamps)
+    _add_cuts(parser)
     add_mesh_options(parser)
 
 
@@ -224,6 +226,14 @@ def _add_lamps(parser: Parser, many: bool = False) -> None:
     add("--lamp-radius", type=radius, metavar="R,..." if many else "R", help=help_ + more)
     help_ = "points from which each lamp shines (default: as the scene says, and 16 for what --lamp-radius makes)"
     add("--lamp-samples", type=samples, metavar="N,..." if many else "N", help=help_ + more)
+
+
+def _add_cuts(parser: Parser) -> None:
+    """How fine clusters of lights are."""
+    help_ = "the part of a point's light that a cluster of lights may be wrong by (default: 0.02; 0: no clusters)"
+    parser.add_argument("--lightcuts-error", type=number(0.0, 1e9), default=0.02, metavar="E", help=help_)
+    help_ = "clusters of lights for a point, at most (default: 1000)"
+    parser.add_argument("--lightcuts-nodes", type=count(1, MAX_NODES), default=1000, metavar="N", help=help_)
 
 
 def add_zoom_factor(parser: Parser) -> None:

@@ -20,7 +20,8 @@ from viewer.state.tone import Curve
 _A_CAMERA = '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
 _LARGEST_CAMERA = 1 << 20  # bytes
 _SETTINGS = (
-    "method", "samples", "depth", "symmetric", "zoom_factor", "verify", "lamp_radius", "lamp_samples", "accelerator"
+    "method", "samples", "depth", "symmetric", "zoom_factor", "verify", "lamp_radius", "lamp_samples", "accelerator",
+    "lightcuts_error", "lightcuts_nodes",
 )  # fmt: skip
 _STYLE = ("magnified", "shading", "beneath", "outlines", "annotations")
 _TONE = ("exposure", "white", "tone")

@@ -42,6 +42,8 @@ def tracing_settings(options: Namespace) -> Settings:
         zoom_factor=options.zoom_factor,
         lamp_radius=options.lamp_radius,
         lamp_samples=options.lamp_samples,
+        lightcuts_error=options.lightcuts_error,
+        lightcuts_nodes=options.lightcuts_nodes,
         verify=options.verify,
         threads=options.threads,
         accelerator=options.accelerator,

@@ -15,9 +15,11 @@ import numpy as np
 from tracer.frame import Frame
 from tracer.method import Method
 from tracer.scene.lights import Light, number_of
+from tracer.statistics import CutErrors
 from viewer.output.legend_counts import (
     LegendRow,
     certificate_legend,
+    cuts_legend,
     difference_legend,
     lights_legend,
     occlusion_legend,
@@ -133,6 +135,7 @@ def legend_of(frame: Frame, view: View, chosen: Chosen = Chosen()) -> Legend | N
         View.COST: _work,
         View.PENUMBRA: _penumbra,
         View.LIGHTS: _lights,
+        View.CUTS: _cuts,
     }
     return makers[view](frame, view, chosen) if view in makers and can_draw(frame, view, chosen.light) else None
 
@@ -290,6 +293,19 @@ def _lights(frame: Frame, view: View, chosen: Chosen) -> Legend:
     return Legend("Lights that each pixel has to look at", (), entries, scale, facts)
 
 
+def _cuts(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    found = cuts_legend(frame)
+    facts = (
+        Entry("per pixel", values=(f"{found.per_pixel:.4g} for {count(found.lights)} lights",)),
+        Entry("bound of the error", None, (f"{percent(found.bound, 1.0)} of the light",), _BOUND),
+    )
+    entries = (Entry(_ARRIVALS[Arrival.UNKNOWN], GREY),) if found.unknown else ()
+    scale = Scale("0", count(found.most), count(found.most // 2) if found.most % 2 == 0 else "")
+    if chosen.span is not None:
+        scale = Scale(f"{chosen.span[0]:.4g}", f"{chosen.span[1]:.4g}")
+    return Legend("Clusters of lights that each pixel is shaded by", (), entries, scale, facts)
+
+
 def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
     """What is wrong in the frame, or why nothing is."""
     found, shadow = difference_legend(frame), frame.statistics.shadow
@@ -307,6 +323,9 @@ def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
         ),
         Entry("largest difference", None, (f"{255.0 * found.largest:.0f} of 255",), _LARGEST),
     )
+    cuts = frame.statistics.cuts
+    if cuts is not None and cuts.errors is not None:
+        return Legend(view.label, (), entries, facts=(*_cut_errors(cuts.errors), facts[1]))
     if not Method.parse(frame.settings.method).culls:
         note = Note("Culling is off: every shadow ray is traced, so nothing can be wrong.", Tone.WARNING)
     elif not any((shadow.culled, shadow.candidates_only, shadow.dynamic_only, shadow.cache_hits, shadow.passed_over)):
@@ -328,6 +347,21 @@ _ARRIVALS = {
 }
 _TOO_BRIGHT = "red, green or blue is brighter than the screen's"
 _BLACK = "no channel is brighter than nothing"
+
+
+def _cut_errors(errors: CutErrors) -> tuple[Entry, ...]:
+    """What is wrong in pictures by clusters of lights, of which no answer is wrong."""
+    parts = (("half of the pixels", errors.median), ("95 % of them", errors.most_of), ("all of them", errors.most))
+    return tuple(Entry(f"{name} differ by", None, (f"{100.0 * e:.2g} % at most",), _ERRORS) for name, e in parts)
+
+
+_ERRORS = (
+    "by what part of its light a pixel differs from the picture by all lights; darker ones than 1/64 as if that bright"
+)
+_BOUND = (
+    "by what part of its light a pixel can be wrong if every cluster is as wrong as it can be, and none makes up for "
+    "another: the middle of all pixels. What is wrong in fact is a small part of that."
+)
 _SHARE = "of the samples that pixels in the penumbra face, those that reach them"
 _BY_MODES = "of this frame, at all bounces, by the modes after the frame before: what the paper's method saves"
 _IN_ALL_SAVED = "of the first sample of each pixel; the share is of the shadow rays due"

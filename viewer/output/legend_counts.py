@@ -11,7 +11,9 @@ from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
 from viewer.state.readings import (
+    CUT_BOUND,
     arrivals,
+    cut_nodes,
     lights_due,
     lights_top,
     samples_of,
@@ -176,6 +178,28 @@ def lights_legend(frame: Frame) -> LightsLegend:
     due = lights_due(frame)
     seen = due[(frame.primitive >= 0) & (due >= 0)]
     return LightsLegend(float(seen.mean()) if len(seen) else 0.0, lights_top(due))
+
+
+@dataclass(frozen=True)
+class CutsLegend:
+    """How many clusters of so many `lights` primary pixels are shaded by, on average and at most; the median of the
+    part of its light that a pixel can be wrong by; and whether of some this is not known yet."""
+
+    lights: int
+    per_pixel: float
+    most: int
+    bound: float
+    unknown: bool
+
+
+def cuts_legend(frame: Frame) -> CutsLegend:
+    """Of a frame that was shaded by cuts of lights; raises ValueError for another."""
+    nodes, hit = cut_nodes(frame), frame.primitive >= 0
+    seen = hit & (nodes >= 0)
+    bound = float(np.median(frame.layers[CUT_BOUND][seen])) if seen.any() else 0.0
+    lights = 0 if frame.statistics.cuts is None else frame.statistics.cuts.lights
+    per_pixel = float(nodes[seen].mean()) if seen.any() else 0.0
+    return CutsLegend(lights, per_pixel, lights_top(nodes), bound, bool((hit & ~seen).any()))
 
 
 @dataclass(frozen=True)

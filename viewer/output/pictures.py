@@ -17,6 +17,7 @@ from viewer.output.legend_counts import certificates_of
 from viewer.state.marks import Mark, wipe_column, wrong_marks
 from viewer.state.readings import (
     arrivals,
+    cut_nodes,
     lights_due,
     samples_of,
     span_of,
@@ -95,7 +96,9 @@ def picture(
     elif view is View.PENUMBRA:
         colors = _on_background(frame, _shaded(frame, _penumbra(frame, light), shading))
     elif view is View.LIGHTS:
-        colors = _on_background(frame, _lights(frame, span))
+        colors = _on_background(frame, _counted(lights_due(frame), span or span_of(frame, view)))
+    elif view is View.CUTS:
+        colors = _on_background(frame, _counted(cut_nodes(frame), span or span_of(frame, view)))
     elif view is View.DEPTH:
         colors = _on_background(frame, _depth(frame, span))
     elif view is View.NORMAL:
@@ -189,11 +192,9 @@ def _displayed(color: NDArray[np.float32], tone: Tone, clipping: bool) -> NDArra
     return shown
 
 
-def _lights(frame: Frame, span: tuple[float, float] | None) -> NDArray:
-    """By how many lights each pixel faces, by their range; grey where that is not known yet."""
-    due = lights_due(frame)
-    mapped = _mapped(_in_range(due, span or span_of(frame, View.LIGHTS)))
-    return np.where((due >= 0)[..., None], mapped, np.asarray(GREY, np.float32))
+def _counted(numbers: NDArray[np.int32], span: tuple[float, float]) -> NDArray:
+    """By numbers (h, w) of lights, or of clusters of them, by their range; grey where that is not known yet."""
+    return np.where((numbers >= 0)[..., None], _mapped(_in_range(numbers, span)), np.asarray(GREY, np.float32))
 
 
 def _outlined(frame: Frame, colors: NDArray) -> NDArray:

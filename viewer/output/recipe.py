@@ -220,6 +220,8 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         ("--zoom-factor", settings.zoom_factor, 4.0),
         ("--lamp-radius", settings.lamp_radius, None),
         ("--lamp-samples", settings.lamp_samples, None),
+        ("--lightcuts-error", settings.lightcuts_error, 0.02),
+        ("--lightcuts-nodes", settings.lightcuts_nodes, 1000),
         ("--accelerator", settings.accelerator, "bvh8"),
         ("--threads", settings.threads if recipe.by_one_thread else 0, 0),
         ("--warmup", recipe.warmup, 0),

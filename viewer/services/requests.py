@@ -28,7 +28,7 @@ def settings_for(session: Session, certificate_seconds: float, ready: bool, ligh
         verify=session.settings.verify or view.needs_verify,
         record_work=view.needs_work or session.counting,
         record_lights=lights,
-        modes=True,
+        modes=not Method.parse(method).clusters,  # which would look at single lights for these alone
         certificate_seconds=certificate_seconds,
     )
 

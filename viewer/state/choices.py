@@ -42,6 +42,8 @@ _SETTINGS = {
     "zoom_factor": "zoom factor",
     "lamp_radius": "lamp radius",
     "lamp_samples": "lamp samples",
+    "lightcuts_error": "error of clusters",
+    "lightcuts_nodes": "clusters of lights",
 }
 
 

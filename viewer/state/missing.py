@@ -11,6 +11,9 @@ from viewer.state.readings import MOST_RECORDED, can_draw, can_record_lights
 from viewer.state.views import View
 from viewer.util.numbers import count
 
+CLUSTERED = "lightcuts"
+"""The method that shades by clusters of lights."""
+
 
 @dataclass(frozen=True)
 class Missing:
@@ -29,9 +32,12 @@ def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) 
         if decision and frame.statistics.certificates and more:
             decision += " More are made and tried while nothing moves."
         return Missing(decision or f"The method {method.base} makes no certificates; {CERTIFIED} does.", CERTIFIED)
+    if view is View.CUTS and not can_draw(frame, view):
+        why = decision if method.clusters else f"The method {method.base} clusters no lights; {CLUSTERED} does."
+        return Missing(why, "" if method.clusters else CLUSTERED)
     if view is View.SAVED or (view is View.COST and shares):
         return _nothing_saved(view, frame)
-    if view.needs_verify and not method.uses_modes:
+    if view.needs_verify and method.exact and not method.uses_modes:
         why = "is exact" if method.kind.culls else "traces every shadow ray"
         text = f"The method {method.base} {why}: no answer can be wrong. The paper's method is sometimes wrong."
         return Missing(text, BY_MODES)

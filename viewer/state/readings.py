@@ -15,6 +15,9 @@ MOST_TOGETHER = 32
 """Lights, at most, that are recorded together for a view of one: of more, the one is looked at alone, which is done
 soon and asks for no other frame."""
 
+CUT_NODES, CUT_BOUND = "cut nodes", "cut bound"  # layers of methods that shade by cuts of lights
+
+_NO_CUTS = "the method of the frame shades by all lights, not by clusters of them"
 _NO_WORK = "the frame did not record the work at its pixels"
 _NO_LIGHTS = "the frame did not record which samples of its lights reach its pixels"
 
@@ -29,6 +32,8 @@ def can_draw(frame: Frame, view: View, light: int = 0) -> bool:
         return frame.asked is not None and frame.only_light in ((None, light) if view.of_light else (None,))
     if view is View.CERTIFICATE:
         return frame.certificates is not None
+    if view is View.CUTS:
+        return CUT_NODES in frame.layers
     return frame.settings.keeps_modes or not view.of_modes
 
 
@@ -113,8 +118,17 @@ def lights_due(frame: Frame) -> NDArray[np.int32]:
 
 
 def lights_top(due: NDArray[np.int32]) -> int:
-    """What has the last colour of the map of `lights_due`: the most, 1 at least."""
+    """What has the last colour of the map of `lights_due`, or of `cut_nodes`: the most, 1 at least."""
     return max(1, int(due.max(initial=0)))
+
+
+def cut_nodes(frame: Frame) -> NDArray[np.int32]:
+    """(h, w) how many clusters of lights each pixel is shaded by; -1 where it is not known yet.
+
+    Raises ValueError for a frame by a method that has none."""
+    if CUT_NODES not in frame.layers:
+        raise ValueError(_NO_CUTS)
+    return frame.layers[CUT_NODES]
 
 
 def work_top(frame: Frame, view: View) -> float:
@@ -137,6 +151,8 @@ def span_of(frame: Frame, view: View) -> tuple[float, float]:
         return depth_range(frame)
     if view is View.LIGHTS:
         return 0.0, float(lights_top(lights_due(frame)))
+    if view is View.CUTS:
+        return 0.0, float(lights_top(cut_nodes(frame)))
     if not view.has_range:
         raise ValueError(f"the view {view.value} has no range")
     return 0.0, work_top(frame, view)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode, ShadowMode, has_shadow_mode
 from tracer.frame import Frame
-from viewer.state.readings import can_draw, lights_due, samples_of, units_of, whole_of, work_of
+from viewer.state.readings import CUT_BOUND, can_draw, cut_nodes, lights_due, samples_of, units_of, whole_of, work_of
 from viewer.state.views import Certificate, View
 
 CHANNELS = ("red", "green", "blue")
@@ -58,6 +58,9 @@ def values_of(frame: Frame, view: View, light: int = 0) -> Values:
     if view is View.LIGHTS:
         due = lights_due(frame)
         return _single(due, "lights due", hit & (due >= 0))
+    if view is View.CUTS:
+        nodes = cut_nodes(frame)
+        return _single(nodes, "clusters of lights", hit & (nodes >= 0))
     if view is View.PENUMBRA:
         asked, reached = samples_of(frame, light)
         known = hit if frame.shaded is None else hit & frame.shaded
@@ -133,6 +136,11 @@ def _lights(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
     return ("?",) if frame.shaded is not None and not frame.shaded[y, x] else (str(due),)
 
 
+def _cuts(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
+    nodes, bound = int(cut_nodes(frame)[y, x]), float(frame.layers[CUT_BOUND][y, x])
+    return ("?",) if nodes < 0 else (f"{nodes}", f"± {100.0 * bound:.3g} %")
+
+
 _WORDS: dict[View, Callable[[Frame, int, int, int], tuple[str, ...]]] = {
     View.NORMAL: _normal,
     View.DEPTH: _depth,
@@ -143,6 +151,7 @@ _WORDS: dict[View, Callable[[Frame, int, int, int], tuple[str, ...]]] = {
     View.PIXEL_COUNT: _pixel_count,
     View.PENUMBRA: _penumbra,
     View.LIGHTS: _lights,
+    View.CUTS: _cuts,
 }
 
 

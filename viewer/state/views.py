@@ -35,6 +35,7 @@ class View(StrEnum):
     COST = "cost"
     PENUMBRA = "penumbra"
     LIGHTS = "lights"
+    CUTS = "cuts"
 
     @property
     def label(self) -> str:
@@ -72,7 +73,7 @@ class View(StrEnum):
     @property
     def has_range(self) -> bool:
         """Whether it shows a number on the colour map, whose range can be chosen."""
-        return self in (View.DEPTH, View.SAVED, View.COST, View.LIGHTS)
+        return self in (View.DEPTH, View.SAVED, View.COST, View.LIGHTS, View.CUTS)
 
     @property
     def shows_picture(self) -> bool:
@@ -114,6 +115,7 @@ _TITLES = {
     View.COST: "Rays traced",
     View.PENUMBRA: "Penumbra",
     View.LIGHTS: "Lights due",
+    View.CUTS: "Clusters of lights",
 }
 
 _KEYS = {
@@ -123,6 +125,7 @@ _KEYS = {
     View.COST: "Shift+H",
     View.PENUMBRA: "J",
     View.LIGHTS: "Shift+J",
+    View.CUTS: "Shift+N",
 }
 
 _EXPLANATIONS = {
@@ -145,6 +148,8 @@ _EXPLANATIONS = {
     View.PENUMBRA: "How many samples of the chosen light reach each pixel: all are lit, none is dark, and between them "
     "lies the penumbra. A point has one sample, and no penumbra.",
     View.LIGHTS: "How many lights each pixel has to look at: those that its surface faces, and to which rays are due.",
+    View.CUTS: "How many clusters of lights each pixel is shaded by, with the methods that cluster them (lightcuts); a "
+    "block of 128 points shares them.",
 }
 
 

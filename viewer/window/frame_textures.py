@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from viewer.state.marks import wrong_marks
-from viewer.state.readings import depth_range, lights_due, lights_top, samples_of, span_of, units_of
+from viewer.state.readings import cut_nodes, depth_range, lights_due, lights_top, samples_of, span_of, units_of
 from viewer.state.views import View, color_map
 
 TABLE_WIDTH = 2048
 NAMES = (
     "color_buffer", "primitive_buffer", "unit_buffer", "mode_table", "count_table", "depth_buffer", "normal_buffer",
     "color_map", "reference_buffer", "mark_buffer", "certificate_buffer", "cell_buffer", "saved_buffer", "cost_buffer",
-    "due_rays_buffer", "penumbra_buffer", "lights_buffer", "part_table",
+    "due_rays_buffer", "penumbra_buffer", "lights_buffer", "cuts_buffer", "part_table",
 )  # fmt: skip
 """Of all textures, in the order of their units."""
 # What lies on the GPU as a frame holds it: components, their kind, and the frame's attribute.
@@ -145,6 +145,8 @@ class FrameTextures:
             self._write(name, self.size, 2, "u2", _penumbra(frame, light))
         elif name == "lights_buffer":
             self._write(name, self.size, 1, "i4", self.ranges.lights)
+        elif name == "cuts_buffer":
+            self._write(name, self.size, 1, "i4", cut_nodes(frame))
         elif name == "unit_buffer":
             self._write(name, self.size, 1, "i4", units_of(frame))
         elif name == "part_table":

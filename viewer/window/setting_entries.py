@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tracer.scene.lights import MAX_SAMPLES
+from tracer.settings import MAX_NODES
 from viewer.state.preferences import LONGEST_SIDE, MOST_CERTIFYING, Preferences
 from viewer.window.finder import Item, Kind
 from viewer.window.ui import Ui
@@ -106,6 +107,9 @@ def _traced(ui: Ui) -> Iterator[Number]:
     yield Number("Samples per pixel", "Rendering", lambda: s.samples, change("samples"), 1, 64)
     yield Number("Threads", "Rendering", lambda: s.threads, change("threads"), 0, 1024, unit=", 0 for all cores")
     yield Number("Zoom factor", "Culling", lambda: s.zoom_factor, change("zoom_factor"), 1, 1e6, whole=False)
+    yield Number("Error of clusters of lights", "Culling", lambda: 100.0 * s.lightcuts_error,
+                 lambda value: change("lightcuts_error")(value / 100.0), 0, 100, whole=False, unit=" %")  # fmt: skip
+    yield Number("Clusters of lights", "Culling", lambda: s.lightcuts_nodes, change("lightcuts_nodes"), 1, MAX_NODES)
     if c.session.scene is not None and c.session.scene.lights:
         yield Number("Lamp radius", "Rendering", lambda: s.lamp_radius, change("lamp_radius"), 0, 1e9, whole=False,
                      unset="scene")  # fmt: skip

@@ -224,6 +224,21 @@ def test_verified_buffers_say_what_is_wrong(capfd: pytest.CaptureFixture[str], t
     assert int(row.split()[-2].replace(",", "")) == arrays["wrong"].sum() > 0
 
 
+def test_cuts_of_lights_take_an_error_and_tell_it(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path
+) -> None:
+    lamps = ("--lamp-radius", 0.5, "--lamp-samples", 64, "--method", "lightcuts")
+    code, out, errors = render(capfd, room, "-o", tmp_path / "a.png", *lamps, "--lightcuts-error", 0.3, "--verify")
+    said = " ".join(out.split())
+    assert code == 0 and "stand for 128 lights" in said and "by 30 % of the light" in said, errors
+    assert "Half of the pixels are wrong by less than" in said
+    few = (*lamps, "--lightcuts-nodes", 3, "--view", "cuts")
+    code, out, errors = render(capfd, room, "-o", tmp_path / "b.png", *few)
+    assert code == 0 and "3 at most" in " ".join(out.split()), errors
+    code, _, errors = render(capfd, room, "-o", tmp_path / "c.png", "--method", "none", "--view", "cuts")
+    assert code != 0 and "clusters" in errors
+
+
 def test_views_of_what_is_wrong_verify_by_themselves(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     drawn = {}
     output = tmp_path / "view.png"

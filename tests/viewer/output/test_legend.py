@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from tests.viewer.colors import luminance
-from tests.viewer.fakes import in_cells, in_part, make_frame, with_certificates, with_lamps
+from tests.viewer.fakes import in_cells, in_part, make_frame, with_certificates, with_cuts, with_lamps
 from tracer.frame import Frame, Settings
-from tracer.statistics import SaidByModes
+from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.legend import Chosen, Legend, Tone, legend_of, light_in_words
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, QUIET, TEXT, TONES, fitting, lay_out, wrapped
 from viewer.output.legend_picture import with_legend
@@ -27,7 +27,7 @@ def measure(text: str) -> float:
 
 @pytest.fixture
 def frame() -> Frame:
-    return with_lamps(with_certificates(make_frame(SETTINGS)))
+    return with_cuts(with_lamps(with_certificates(make_frame(SETTINGS))))
 
 
 def of(frame: Frame, view: View, **chosen) -> Legend:
@@ -89,6 +89,26 @@ def test_lights_per_pixel_and_what_is_not_known_yet(frame: Frame):
     unknown = {entry.name: entry.values for entry in of(part, View.PENUMBRA).entries}["not known yet"]
     assert unknown == (percent((hit & ~part.shaded).sum(), hit.sum()),)
     assert legend_of(make_frame(), View.LIGHTS) is None
+
+
+def test_clusters_of_lights_per_pixel_with_the_bound_of_their_error(frame: Frame):
+    nodes, bound = frame.layers["cut nodes"], frame.layers["cut bound"]
+    seen, legend = (frame.primitive >= 0) & (nodes >= 0), of(frame, View.CUTS)
+    assert [fact.values for fact in legend.facts] == [
+        (f"{nodes[seen].mean():.4g} for 100 lights",),
+        (f"{percent(float(np.median(bound[seen])), 1.0)} of the light",),
+    ]
+    assert legend.scale is not None and (legend.scale.low, legend.scale.middle, legend.scale.high) == ("0", "20", "40")
+    assert [entry.name for entry in legend.entries] == ["not known yet"]
+    assert of(frame, View.CUTS, span=(2.0, 9.0)).scale.high == "9"
+    assert legend_of(make_frame(), View.CUTS) is None
+
+
+def test_pictures_by_clusters_of_lights_tell_their_errors(frame: Frame):
+    cuts = replace(frame.statistics.cuts, errors=CutErrors(0.002, 0.0137, 0.041, 5))
+    legend = of(replace(frame, statistics=replace(frame.statistics, cuts=cuts)), View.DIFFERENCE)
+    assert [fact.values[0] for fact in legend.facts][:3] == ["0.2 % at most", "1.4 % at most", "4.1 % at most"]
+    assert not legend.notes, "nothing is said of answers"
 
 
 def test_a_light_is_called_by_its_number_and_by_a_name_that_says_more(frame: Frame):

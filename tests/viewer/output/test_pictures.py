@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import in_cells, in_part, with_certificates, with_lamps
+from tests.viewer.fakes import in_cells, in_part, with_certificates, with_cuts, with_lamps
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
@@ -74,7 +74,7 @@ def wrong_frame(frame: Frame) -> Frame:
 @pytest.fixture(scope="module")
 def certified_frame(wrong_frame: Frame) -> Frame:
     """The same with cells and their certificates, the work at each pixel, and lamps that reach it in part."""
-    return with_lamps(with_certificates(wrong_frame))
+    return with_cuts(with_lamps(with_certificates(wrong_frame)))
 
 
 @pytest.fixture(scope="module")

@@ -90,6 +90,25 @@ def certifying(d: Driver) -> None:
         d.press(chord(key))
         d.settle()
         assert d.c.tracing.drawn_view is d.c.session.view and not d.c.tracing.outdated
+    _clusters(d)
+
+
+def _clusters(d: Driver) -> None:
+    """Methods by clusters of lights have a view, and their error and the most clusters can be chosen."""
+    d.press(chord(View.CUTS.key))
+    d.settle()
+    d.context.item_click("//Picture/**/Use lightcuts##instead")
+    d.c.settings.change(lamp_radius=0.3, lamp_samples=16)
+    d.settle()
+    assert d.c.frame.settings.method.startswith("lightcuts") and d.c.tracing.drawn_view is View.CUTS
+    assert d.c.frame.statistics.cuts.most > 3
+    expected = picture(d.c.frame, View.CUTS)
+    assert np.abs(d.shown().astype(int) - expected).max() <= 2
+    d.context.item_input_value("//Culling/**/##cuts", 20.0)
+    d.context.item_input_value("//Culling/**/##nodes", 3)
+    d.settle()
+    assert (d.c.frame.settings.lightcuts_error, d.c.frame.settings.lightcuts_nodes) == (0.2, 3)
+    assert d.c.frame.statistics.cuts.most == 3
 
 
 def explaining(d: Driver) -> None:

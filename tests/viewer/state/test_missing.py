@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import make_frame, with_certificates, with_lamps
+from tests.viewer.fakes import make_frame, with_certificates, with_cuts, with_lamps
 from tracer.frame import Settings
 from tracer.method import bases
 from viewer.state.missing import missing
@@ -21,8 +21,12 @@ def test_a_view_that_a_method_has_nothing_for_names_a_method_that_has(view: View
     frame = make_frame(Settings(16, 8, method=method, modes=True, verify=True))
     if method.startswith("certified"):
         frame = with_certificates(frame)
+    if method.startswith("lightcuts"):
+        frame = with_cuts(frame)
     found = missing(view, frame)
-    shows = {View.CERTIFICATE: ("certified",), View.DIFFERENCE: ("paper", "cells"), View.WIPE: ("paper", "cells")}
+    cuts = "lightcuts", "lightcuts-stochastic", "lightcuts-certified"
+    wrong = "paper", "cells", *cuts
+    shows = {View.CERTIFICATE: ("certified",), View.DIFFERENCE: wrong, View.WIPE: wrong, View.CUTS: cuts}
     if view not in shows or method.split("+")[0] in shows[view]:
         assert found is None
     else:

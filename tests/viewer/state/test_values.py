@@ -7,14 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import in_part, make_frame, with_certificates, with_lamps
+from tests.viewer.fakes import in_part, make_frame, with_certificates, with_cuts, with_lamps
 from tracer.frame import Settings
 from viewer.state.pixels import ALL, MOST_WATCHED, Pixels, Region, histogram, region_between
 from viewer.state.readings import can_draw
 from viewer.state.values import values_of, words_at
 from viewer.state.views import View
 
-FRAME = with_lamps(with_certificates(make_frame(Settings(width=16, height=8, verify=True, record_work=True))))
+FRAME = with_cuts(
+    with_lamps(with_certificates(make_frame(Settings(width=16, height=8, verify=True, record_work=True))))
+)
 
 
 def test_pixels_are_put_into_words():
@@ -33,6 +35,11 @@ def test_pixels_are_put_into_words():
     assert said(View.LIGHTS, 5) == (str(np.count_nonzero(FRAME.asked[2, 5])),)
     part = in_part(FRAME)
     assert words_at(part, View.PENUMBRA, 0, 3, 2) == words_at(part, View.LIGHTS, 0, 3, 2) == ("?",)
+    nodes, bound = (FRAME.layers[name][2, 5] for name in ("cut nodes", "cut bound"))
+    assert nodes >= 0 and said(View.CUTS, 5) == (str(nodes), f"± {100 * bound:.3g} %")
+    assert {words_at(FRAME, View.CUTS, 0, x, y) for y, x in np.argwhere(FRAME.layers["cut nodes"] < 0) if x < 14} == {
+        ("?",)
+    }
     shares = words_at(FRAME, View.SAVED, 0, 3, 2, shares=True)
     assert shares == (f"{100 * FRAME.saved[2, 3] / FRAME.due_rays[2, 3]:.0f} %",)
 

@@ -6,6 +6,7 @@ from imgui_bundle import ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.method import Method, additions, bases
+from tracer.settings import MAX_NODES
 from viewer.services.controller import Controller
 from viewer.state.methods import toggled, with_base
 from viewer.state.preferences import MOST_CERTIFYING
@@ -52,6 +53,19 @@ def show(ui: Ui) -> None:
             changed, factor = imgui.slider_float("##zoom", s.zoom_factor, 1.0, 64.0, "%.1f", flags)
             if changed:
                 c.settings.change(zoom_factor=factor)
+        if shown and Method.parse(s.method).clusters:
+            row(
+                "Error of clusters",
+                "the part of a point's light that a cluster of lights may be wrong by; 0: no clusters",
+            )
+            flags = int(imgui.SliderFlags_.logarithmic)
+            changed, error = imgui.slider_float("##cuts", 100.0 * s.lightcuts_error, 0.0, 100.0, "%.2f %%", flags)
+            if changed:
+                c.settings.change(lightcuts_error=max(error, 0.0) / 100.0)
+            row("Clusters at most", "of lights, for a point: as many as this where the error would ask for more")
+            changed, most = imgui.slider_int("##nodes", s.lightcuts_nodes, 1, MAX_NODES, "%d", flags)
+            if changed:
+                c.settings.change(lightcuts_nodes=min(max(most, 1), MAX_NODES))
         if shown and Method.parse(s.method).has_certificates:
             row(
                 "Certificates",
