@@ -212,3 +212,12 @@ register(
 )
 register(Kind("cache", "Tests what blocked a light before first.", "tracer.methods.cache:OccluderCache", addition=True))
 register(Kind("rest", "Counts objects that rest as static.", "tracer.methods.rest:Resting", culls=False, addition=True))
+register(
+    Kind(
+        "lightbuffer",
+        "Looks up what each light sees in each direction; never wrong.",
+        "tracer.methods.lightbuffer:LightBuffer",
+        addition=True,
+        alone=True,
+    )
+)
