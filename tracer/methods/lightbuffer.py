@@ -44,7 +44,8 @@ from tracer.simd.records import reading
 from tracer.statistics import FrameStatistics
 
 LONGEST = 8  # candidates of a record, at most
-GROUPS = 4  # records of a vector whose candidates are tested, at most
+TRIES = 4  # regions that rays of a vector are looked for in, at most, beside that of the rays before
+STATIC_SIDE, RESTING_SIDE = 256, 128
 GROWTH = 4  # times that what moves may grow before boxes of what rests no longer hold (`certified.static_geometry`)
 
 buffers_at = reading(LightBuffers)
@@ -117,9 +118,9 @@ class LightBuffer(ShadowMethod):
         if self._resting is None:
             self._allowed = GROWTH * world.extent if resting else np.inf
             self._resting = items_of(world, resting, outlines or world.outlines())
-        self._make("static", self._static, 256, most, frame)
+        self._make("static", self._static, STATIC_SIDE, most, frame)
         if resting:
-            self._make("resting", self._resting, 128, most, frame)
+            self._make("resting", self._resting, RESTING_SIDE, most, frame)
         moving = np.flatnonzero(world._poses.present & (self._since == 0))[0:]
         moving = moving[moving > 0]
         boxes = world.object_boxes()[moving]
@@ -168,7 +169,7 @@ class LightBuffer(ShadowMethod):
                 table[k, DEPTHS] = buffer.depths.ctypes.data
             table[k, KNOWN] = not moves or buffer.depths is not None
         single = self.services.world.accelerator == KD_TREE
-        return [Stage(LightBuffers(table, reach, moves, GROUPS, single), choose=choose)]
+        return [Stage(LightBuffers(table, reach, moves, TRIES, single), choose=choose)]
 
     def report(self, statistics: FrameStatistics) -> None:
         statistics.certificates += self._made

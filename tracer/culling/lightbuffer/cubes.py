@@ -16,7 +16,7 @@ from tracer.culling.certified.static_geometry import put_rows
 from tracer.culling.lightbuffer.cube import FACES
 from tracer.culling.lightbuffer.divide import CAME_TO, FOUND, LISTED, LOOKED_AT, LOOKED_FOR, RECORDS_USED, divide_face
 from tracer.culling.lightbuffer.items import find_error_radii, put_items, put_rows_of_light
-from tracer.culling.lightbuffer.shapes import FIRST, ITEM, RECORD, SPAN
+from tracer.culling.lightbuffer.shapes import FIRST, ITEM, RECORD, SPAN, WIDTH_BITS
 from tracer.geometry.memory import aligned_rows
 from tracer.geometry.primitives import Outlines
 from tracer.geometry.world import World
@@ -65,7 +65,7 @@ def items_of(world: World, objects: list[int], outlines: Outlines) -> Items:
 class Cube:
     """What a light sees.
 
-    cells (6, side, side) int32 are the numbers of records (r, RECORD) float32 (`shapes`), whose candidates lists (l,)
+    cells (6, side, side) int32 name records (r, RECORD) float32 (`shapes`), whose candidates lists (l,)
     int32 name by rows (k, LIGHT_ROW) float32 prepared for the light, of the primitives of these numbers (k,) int32.
     `reach`: how long rays may be that ask, and `sure`: how long to be sure of a hit on what covers their cell."""
 
@@ -176,7 +176,7 @@ class CubeMaker:
         records[0] = 0.0
         used, listed = 1, 0
         for face, numbers in zip(there, cells, strict=True):
-            numbers += (numbers > 0) * np.int32(used - 1)
+            numbers += (numbers >= 1 << WIDTH_BITS) * np.int32((used - 1) << WIDTH_BITS)
             target = records[used : used + len(face.records)]
             target[:] = face.records
             target.view(np.int32)[:, FIRST] += listed

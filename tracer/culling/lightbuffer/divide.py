@@ -44,6 +44,7 @@ from tracer.culling.lightbuffer.shapes import (
     OF_U,
     OF_V,
     SPAN,
+    WIDTH_BITS,
     U,
     V,
     W,
@@ -53,7 +54,6 @@ from tracer.kernels import inlined, kernel, subkernel
 from tracer.simd import (
     address_of,
     any_lane,
-    as_i32,
     bits_of,
     i32x16,
     lanes_below,
@@ -217,9 +217,9 @@ def _put_ints(record, first, count):
 
 @kernel
 def divide_face(items, spans, count, face, side, longest, cells, records, lists, arena, found, alone, state):
-    """Divide a face with `count` items into cells (side, side) int32, the numbers of records (r, RECORD) float32.
+    """Divide a face with `count` items into cells (side, side) int32, which name records (r, RECORD) float32 (`shapes`).
 
-    Numbers count from 1 on; 0 is NOTHING.  Up to `longest` candidates of a record are put into lists (l,) int32.
+    Their numbers count from 1 on; 0 is NOTHING.  Up to `longest` candidates of a record are put into lists (l,) int32.
     There is room for a record of each cell, and `longest` list entries.  arena (a,) int32 has room for all items as
     often as regions lie in one another, and LANES more each time; found (FOUND, n + LANES) float32 and alone (n,) int32
     are memory.  What it came to is added to state (CAME_TO,) int64."""
@@ -280,8 +280,9 @@ def divide_face(items, spans, count, face, side, longest, cells, records, lists,
                 _put_plane(record, BLOCKED, _far_plane(items, cover), face)
             else:
                 record[BLOCKED] = record[BLOCKED + 1] = record[BLOCKED + 2] = ZERO
+        code = np.int32((number << WIDTH_BITS) | lowest_bit(np.int64(width)))
         for i in range(row, row + width):
             for k in range(column, column + width):
-                cells[i, k] = number
+                cells[i, k] = code
     state[RECORDS_USED] += used
     state[LISTED] += listed

@@ -27,7 +27,6 @@ from tracer.culling.certified.error_bounds import (
     BOX,
     ENLARGED,
     EPSILON,
-    INSIDE,
     LAMP,
     LANES,
     LARGE,

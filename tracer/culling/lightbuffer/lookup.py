@@ -14,13 +14,13 @@ import numpy as np
 
 from tracer.culling.certified.light_space import LIGHT_ROW, verdicts_on
 from tracer.culling.counters import CANDIDATES_ONLY, CULLED, DYNAMIC_ONLY, STEPS, TESTS
-from tracer.culling.lightbuffer.cube import cells_of
+from tracer.culling.lightbuffer.cube import SEAM, cells_of
 from tracer.culling.lightbuffer.items import LEAST
-from tracer.culling.lightbuffer.shapes import BLOCKED, COUNT, FIRST, LIT, RECORD
+from tracer.culling.lightbuffer.shapes import BLOCKED, COUNT, FIRST, LIT, RECORD, WIDTH_BITS
 from tracer.culling.stages import vectors
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
-    address_of,
+    as_i32,
     bits_of,
     f32x16,
     gather_f32x16,
@@ -28,12 +28,15 @@ from tracer.simd import (
     i32x16,
     load_columns,
     load_f32,
+    load_f32x16,
     load_i32,
+    load_i64,
     load_three,
     local_memory,
     lowest_bit,
     ones,
     store,
+    store_three,
 )
 from tracer.simd.records import F32x2D, I64x2D
 
@@ -54,30 +57,22 @@ class LightBuffers(NamedTuple):
         reach: (lights, 4) float32, the squares of how long rays may be that ask the cube of what never moves, and to be
             sure of its hits; the same of what rests.
         moves: whether anything moves.
-        groups: records of one vector whose candidates are tested, at most.
+        tries: regions that the rays of one vector are looked for in, at most, beside that of those before.
         single: whether steps and tests are counted by rays, not by vectors of sixteen.
     """
 
     table: I64x2D
     reach: F32x2D
     moves: bool
-    groups: int
+    tries: int
     single: bool
 
 
-class _Way(NamedTuple):
-    """Sixteen rays: where they end, what leads there from the light, the square of its length, and its largest
-    component."""
-
-    end: Any
-    direction: Any
-    square: Any
-    depth: Any
-
-
-@inlined
-def _times(plane, direction):
-    return plane[0] * direction[0] + plane[1] * direction[1] + plane[2] * direction[2]
+# A node: the region that the last rays were in, as offsets in bytes: the ranges of x / z and y / z, and the sign of z;
+# which components of a way, as offsets, are x, y and z; and the address of the region's record.
+LEFT, RIGHT, LOW, HIGH, SIGN = range(0, 20, 4)
+ALONG_X, ALONG_Y, ALONG_Z, RECORD_AT = range(24, 56, 8)
+NODE = 64  # bytes
 
 
 @subkernel
@@ -86,6 +81,8 @@ def _ask_candidates(cube, record, light, way, asked, single, counts):
     count, first = np.int64(load_i32(record + 4 * COUNT)), np.int64(load_i32(record + 4 * FIRST))
     open_rays, missed = asked, asked if count > 0 else np.int64(0)
     blocked = np.int64(0)
+    direction = load_f32x16(way), load_f32x16(way + 64), load_f32x16(way + 128)
+    end = load_f32x16(way + 192), load_f32x16(way + 256), load_f32x16(way + 320)
     for k in range(count):
         row = cube.rows + 4 * LIGHT_ROW * np.int64(load_i32(cube.lists + 4 * (first + k)))
         t = (
@@ -96,7 +93,7 @@ def _ask_candidates(cube, record, light, way, asked, single, counts):
             f32x16(load_f32(row + 52)), f32x16(load_f32(row + 56)), f32x16(load_f32(row + 60)),
         )  # fmt: skip
         counts[TESTS] += ones(open_rays) if single else 1
-        hit, miss = verdicts_on(t, light, way.direction, way.end)
+        hit, miss = verdicts_on(t, light, direction, end)
         blocked |= np.int64(hit) & open_rays
         missed &= np.int64(miss)
         open_rays &= ~np.int64(hit)
@@ -120,41 +117,95 @@ def _cube_at(row, first):
     return _Cube(row[first + CELLS], row[first + RECORDS], row[first + LISTS], row[first + ROWS], row[first + SIDE])
 
 
+@inlined
+def _go_to(cube, node, face, column, row, code):
+    """Put the region of a cell into a node."""
+    axis, sign = face >> 1, -ONE if face & 1 else ONE
+    width, cell = np.int64(1) << (code & ((1 << WIDTH_BITS) - 1)), np.float32(2) / np.float32(cube.side)
+    left, low = np.float32(column & -width) * cell - ONE, np.float32(row & -width) * cell - ONE
+    wide, room = cell * np.float32(width), np.float32(SEAM)
+    store(node + LEFT, left - room)
+    store(node + RIGHT, left + wide + room)
+    store(node + LOW, low - room)
+    store(node + HIGH, low + wide + room)
+    store(node + SIGN, sign)
+    store(node + ALONG_X, np.int64(64 if axis == 0 else 0))
+    store(node + ALONG_Y, np.int64(64 if axis == 2 else 128))
+    store(node + ALONG_Z, np.int64(64 * axis))
+    store(node + RECORD_AT, cube.records + 4 * RECORD * (code >> WIDTH_BITS))
+
+
+@inlined
+def _in_node(node, way):
+    """Mask of those of sixteen ways that lead into a node's region."""
+    z = load_f32x16(way + load_i64(node + ALONG_Z)) * load_f32(node + SIGN)
+    x, y = load_f32x16(way + load_i64(node + ALONG_X)), load_f32x16(way + load_i64(node + ALONG_Y))
+    inside = (x >= z * load_f32(node + LEFT)) & (x <= z * load_f32(node + RIGHT)) & (z >= np.float32(LEAST))
+    return inside & (y >= z * load_f32(node + LOW)) & (y <= z * load_f32(node + HIGH))
+
+
 @subkernel
-def _ask_cube(cube, reach, sure, light, way, live, groups, single, counts):
-    """Look live rays, as bits, up in a cube: (blocked, lit, those of either that candidates have answered), as bits."""
-    _, face, column, row = cells_of(way.direction, cube.side)
+def _ask_apart(cube, node, light, way, asked, sure, tries, single, counts):
+    """Look rays up that are not all in one region, each in that of its own: as `_ask_cube`."""
+    memory = local_memory(4 * 64)
+    dx, dy, dz = load_f32x16(way), load_f32x16(way + 64), load_f32x16(way + 128)
+    depth, face, column, row = cells_of((dx, dy, dz), cube.side)
     side = np.int32(cube.side)
-    number = gather_i32x16(cube.cells, (face * side + row) * side + column)
-    counts[STEPS] += ones(live) if single else 1
-    sane = bits_of((way.depth >= np.float32(LEAST)) & (way.square <= reach)) & live
-    memory = local_memory(64)
+    code = gather_i32x16(cube.cells, (face * side + row) * side + column)
+    number = code >> np.int32(WIDTH_BITS)
     store(memory, number)
-    first = load_i32(memory + 4 * lowest_bit(live))
-    same = bits_of(number == i32x16(first)) & live
-    if same == live:
-        a = cube.records + 4 * RECORD * np.int64(first)
-        near = load_f32(a + 4 * LIT), load_f32(a + 4 * LIT + 4), load_f32(a + 4 * LIT + 8)
-        far = load_f32(a + 4 * BLOCKED), load_f32(a + 4 * BLOCKED + 4), load_f32(a + 4 * BLOCKED + 8)
-        lit, blocked = bits_of(_times(near, way.direction) < ONE), bits_of(_times(far, way.direction) > ONE)
-    else:
-        t = load_columns(cube.records, memory, RECORD)
-        lit = bits_of(_times((t[LIT], t[LIT + 1], t[LIT + 2]), way.direction) < ONE)
-        blocked = bits_of(_times((t[BLOCKED], t[BLOCKED + 1], t[BLOCKED + 2]), way.direction) > ONE)
-    lit, blocked = np.int64(lit) & sane, np.int64(blocked) & sane & bits_of(way.square <= sure)
-    rest, tested, tries = sane & ~(lit | blocked), np.int64(0), groups
+    t = load_columns(cube.records, memory, RECORD)
+    there = np.int64(bits_of(depth >= np.float32(LEAST))) & asked
+    lit = np.int64(bits_of(dx * t[LIT] + dy * t[LIT + 1] + dz * t[LIT + 2] < ONE)) & there
+    blocked = np.int64(bits_of(dx * t[BLOCKED] + dy * t[BLOCKED + 1] + dz * t[BLOCKED + 2] > ONE)) & there & sure
+    counts[STEPS] += ones(asked) if single else 1
+    # Test the candidates of those in between, of one record after the other.
+    rest, tested = there & ~(lit | blocked) & bits_of(as_i32(t[COUNT]) > np.int32(0)), np.int64(0)
     while rest != 0 and tries > 0:
         tries -= 1
         first = load_i32(memory + 4 * lowest_bit(rest))
-        asked = bits_of(number == i32x16(first)) & rest
-        rest &= ~asked
+        together = np.int64(bits_of(number == i32x16(first))) & rest
+        rest &= ~together
         record = cube.records + 4 * RECORD * np.int64(first)
-        if load_i32(record + 4 * COUNT) == 0:
-            continue
-        hit, missed = _ask_candidates(cube, record, light, way, asked, single, counts)
+        hit, missed = _ask_candidates(cube, record, light, way, together, single, counts)
         blocked |= hit
         lit |= missed
         tested |= hit | missed
+    # The next rays will be where the first of these was.
+    store(memory, face)
+    store(memory + 64, column)
+    store(memory + 128, row)
+    store(memory + 192, code)
+    at = memory + 4 * lowest_bit(asked)
+    _go_to(
+        cube, node, np.int64(load_i32(at)), np.int64(load_i32(at + 64)), np.int64(load_i32(at + 128)),
+        np.int64(load_i32(at + 192)),
+    )  # fmt: skip
+    return blocked, lit, tested
+
+
+@inlined
+def _ask_cube(cube, node, reach, sure, light, way, square, live, tries, single, counts):
+    """Look live rays, as bits, up in a cube: (blocked, lit, those of either that candidates have answered), as bits.
+
+    Their ways lie at an address.  The node is where the rays before these were."""
+    asked, certain = np.int64(bits_of(square <= reach)) & live, np.int64(bits_of(square <= sure))
+    here = np.int64(bits_of(_in_node(node, way))) & asked
+    if here != asked:
+        return _ask_apart(cube, node, light, way, asked, certain, tries, single, counts)
+    counts[STEPS] += ones(here) if single else 1
+    dx, dy, dz = load_f32x16(way), load_f32x16(way + 64), load_f32x16(way + 128)
+    record = load_i64(node + RECORD_AT)
+    a = record + 4 * LIT
+    lit = np.int64(bits_of(dx * load_f32(a) + dy * load_f32(a + 4) + dz * load_f32(a + 8) < ONE)) & here
+    a = record + 4 * BLOCKED
+    blocked = np.int64(bits_of(dx * load_f32(a) + dy * load_f32(a + 4) + dz * load_f32(a + 8) > ONE)) & here & certain
+    rest, tested = here & ~(lit | blocked), np.int64(0)
+    if rest != 0 and load_i32(record + 4 * COUNT) != 0:
+        hit, missed = _ask_candidates(cube, record, light, way, rest, single, counts)
+        blocked |= hit
+        lit |= missed
+        tested = hit | missed
     return blocked, lit, tested
 
 
@@ -166,23 +217,36 @@ def ask_buffers(buffers, points, position, number, count, batch, counts):
         return
     light = position[0], position[1], position[2]
     static, resting, depths = _cube_at(row, STATIC), _cube_at(row, RESTING), row[DEPTHS]
+    way, node, resting_node = local_memory(6 * 64), local_memory(NODE), local_memory(NODE)
+    for a in (node, resting_node):  # where nothing is yet
+        store(a + LEFT, ONE)
+        store(a + RIGHT, -ONE)
+        store(a + LOW, ONE)
+        store(a + HIGH, -ONE)
+        store(a + SIGN, ONE)
+        store(a + ALONG_X, np.int64(0))
+        store(a + ALONG_Y, np.int64(0))
+        store(a + ALONG_Z, np.int64(0))
+        store(a + RECORD_AT, static.records)
+    tries, single = buffers.tries, buffers.single
     for v in range(vectors(count)):
         live = np.int64(batch.live[v])
         if live == 0:
             continue
         x, y, z = load_three(points.lifted, v)
-        direction = x - light[0], y - light[1], z - light[2]
-        depth, face, column, line = cells_of(direction, row[DEPTHS_SIDE])
-        way = _Way((x, y, z), direction, _times(direction, direction), depth)
+        dx, dy, dz = x - light[0], y - light[1], z - light[2]
+        square = dx * dx + dy * dy + dz * dz
+        store_three(way, 64, (dx, dy, dz))
+        store_three(way + 192, 64, (x, y, z))
         # Ask what never moves, and about what that leaves lit what rests.
+        reach, sure = buffers.reach[number, 0], buffers.reach[number, 1]
         blocked, lit, tested = _ask_cube(
-            static, buffers.reach[number, 0], buffers.reach[number, 1], light, way, live, buffers.groups,
-            buffers.single, counts,
+            static, node, reach, sure, light, way, square, live, tries, single, counts
         )
         if resting.side != 0 and lit != 0:
+            reach, sure = buffers.reach[number, 2], buffers.reach[number, 3]
             hit, lit, more = _ask_cube(
-                resting, buffers.reach[number, 2], buffers.reach[number, 3], light, way, lit, buffers.groups,
-                buffers.single, counts,
+                resting, resting_node, reach, sure, light, way, square, lit, tries, single, counts
             )
             blocked |= hit
             tested |= more
@@ -190,8 +254,9 @@ def ask_buffers(buffers, points, position, number, count, batch, counts):
         settled = lit
         if buffers.moves and lit != 0:
             side = np.int32(row[DEPTHS_SIDE])
+            depth, face, column, line = cells_of((dx, dy, dz), row[DEPTHS_SIDE])
             beyond = gather_f32x16(depths, (face * side + line) * side + column)
-            counts[STEPS] += ones(lit) if buffers.single else 1
+            counts[STEPS] += ones(lit) if single else 1
             settled = np.int64(bits_of(depth < beyond)) & lit
         batch.live[v] = live & ~(blocked | lit)
         batch.lit[v] |= lit

@@ -24,5 +24,6 @@ SPAN = 8
 # than 1.  Then the first of its candidates in the lists, and how many there are, int32: 0 for "trace the others".
 LIT, BLOCKED, FIRST, COUNT = 0, 3, 6, 7
 RECORD = 8
+WIDTH_BITS = 5  # of a cell's number: the logarithm of how many cells its region is wide; the rest names its record
 NOTHING = 0  # the record of cells in which nothing is: the first of every cube
 NEVER = np.float32(1e30)  # instead of a coefficient of a plane: no point is before it
