@@ -21,6 +21,7 @@ from tracer.culling.lightbuffer.lookup import (
     DEPTHS_SIDE,
     KNOWN,
     LISTS,
+    MOVING,
     RECORDS,
     RESTING,
     ROWS,
@@ -31,9 +32,10 @@ from tracer.culling.lightbuffer.lookup import (
 )
 from tracer.culling.lightbuffer.moving import SIDE as MOVING_SIDE
 from tracer.culling.lightbuffer.moving import depths_of
+from tracer.culling.lightbuffer.rays import RAY_ROWS, buffer_rays_in
 from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_batch import shadow_batch_in
-from tracer.culling.stages import call_at
+from tracer.culling.stages import call_at, scratch_of
 from tracer.geometry.accelerators import KD_TREE
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.kernels import entry
@@ -44,7 +46,6 @@ from tracer.simd.records import reading
 from tracer.statistics import FrameStatistics
 
 LONGEST = 8  # candidates of a record, at most
-TRIES = 4  # regions that rays of a vector are looked for in, at most, beside that of the rays before
 STATIC_SIDE, RESTING_SIDE = 256, 128
 GROWTH = 4  # times that what moves may grow before boxes of what rests no longer hold (`certified.static_geometry`)
 
@@ -56,7 +57,8 @@ def choose(data, call, light, count, counts):
     """Answer the rays that the light's buffers tell about."""
     given, buffers = call_at(call), buffers_at(data)
     points, batch, position = points_in(given.points), shadow_batch_in(given.shadows), given.samples[given.sample]
-    ask_buffers(buffers, points, position, light, count, batch, i64_at(counts))
+    rays = buffer_rays_in(scratch_of(given))
+    ask_buffers(buffers, points, position, light, count, rays, batch, i64_at(counts))
 
 
 @dataclass
@@ -67,6 +69,7 @@ class _Buffer:
     static: Cube | None = None
     resting: Cube | None = None
     depths: NDArray[np.float32] | None = None
+    moving: NDArray[np.float32] | None = None
 
 
 class LightBuffer(ShadowMethod):
@@ -121,11 +124,12 @@ class LightBuffer(ShadowMethod):
         self._make("static", self._static, STATIC_SIDE, most, frame)
         if resting:
             self._make("resting", self._resting, RESTING_SIDE, most, frame)
-        moving = np.flatnonzero(world._poses.present & (self._since == 0))[0:]
-        moving = moving[moving > 0]
-        boxes = world.object_boxes()[moving]
+        boxes = world.object_boxes()
+        there = boxes[:, 0] <= boxes[:, 3]
+        moving = boxes[there & (self._since == 0)]
         for buffer in self.buffers.values():
-            buffer.depths = depths_of(boxes, buffer.place) if len(boxes) else None
+            buffer.depths = depths_of(boxes[there], buffer.place) if there.any() else None
+            buffer.moving = depths_of(moving, buffer.place) if len(moving) and resting else None
         self.seconds = self.services.clock() - start
 
     def _make(self, which: str, items: Items, side: int, most: float, frame: FrameView) -> None:
@@ -167,9 +171,11 @@ class LightBuffer(ShadowMethod):
             table[k, DEPTHS_SIDE] = MOVING_SIDE
             if buffer.depths is not None:
                 table[k, DEPTHS] = buffer.depths.ctypes.data
+            if buffer.moving is not None:
+                table[k, MOVING] = buffer.moving.ctypes.data
             table[k, KNOWN] = not moves or buffer.depths is not None
         single = self.services.world.accelerator == KD_TREE
-        return [Stage(LightBuffers(table, reach, moves, TRIES, single), choose=choose)]
+        return [Stage(LightBuffers(table, reach, moves, single), choose=choose, rows=RAY_ROWS)]
 
     def report(self, statistics: FrameStatistics) -> None:
         statistics.certificates += self._made
