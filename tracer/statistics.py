@@ -128,6 +128,8 @@ class FrameStatistics:
         The part of the pixels that were shaded. Below 1, shadow and secondary rays are those of this part.
     decision : str
         What the method "auto" does now and why, in a sentence.
+    light_buffers : list of int
+        How many cells an edge of each light's cube has, 0 for a light that is traced; for the method "lightbuffer".
     samples : SampleCounts or None
         What the lights send to the primary hits; with `Settings.record_lights`.
     seconds : float
@@ -147,6 +149,7 @@ class FrameStatistics:
     certificate_tests: int = 0
     part: float = 1.0
     decision: str = ""
+    light_buffers: list[int] = field(default_factory=list)
     samples: SampleCounts | None = None
     seconds: float = 0.0
     by_modes: list[SaidByModes] = field(default_factory=list)

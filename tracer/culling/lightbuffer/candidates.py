@@ -2,8 +2,8 @@
 
 A candidate's answer is taken where it is certain (`certified.light_space.verdicts`).  One certain hit blocks the ray;
 where all candidates are certain to be missed nothing static does.  All rays test one candidate, then those that are
-still open, packed anew, the next.  Where sixteen of them ask the same candidate, as neighbours do, its row is read once.
-A ray of which a candidate is not certain is traced, and asks no more.
+still open, packed anew, the next.  Where sixteen of them ask the same candidate, as neighbours do, its row is read
+once.  A ray of which a candidate is not certain is traced, and asks no more.
 """
 
 from __future__ import annotations

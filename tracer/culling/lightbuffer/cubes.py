@@ -16,7 +16,7 @@ from tracer.culling.certified.static_geometry import put_rows
 from tracer.culling.lightbuffer.cube import FACES
 from tracer.culling.lightbuffer.divide import CAME_TO, FOUND, LISTED, LOOKED_AT, LOOKED_FOR, RECORDS_USED, divide_face
 from tracer.culling.lightbuffer.items import find_error_radii, put_items, put_rows_of_light
-from tracer.culling.lightbuffer.shapes import FIRST, ITEM, RECORD, SPAN, WIDTH_BITS
+from tracer.culling.lightbuffer.shapes import COUNT, FIRST, ITEM, RECORD, SPAN, WIDTH_BITS
 from tracer.geometry.memory import aligned_rows
 from tracer.geometry.primitives import Outlines
 from tracer.geometry.world import World
@@ -48,12 +48,15 @@ def items_of(world: World, objects: list[int], outlines: Outlines) -> Items:
     numbers = []
     for index in objects:
         triangles, quadrics = primitives.triangles_of(index), primitives.quadrics_of(index)
-        numbers += [np.arange(triangles.start, triangles.stop), first_quadric + np.arange(quadrics.start, quadrics.stop)]
+        numbers += [
+            np.arange(triangles.start, triangles.stop),
+            first_quadric + np.arange(quadrics.start, quadrics.stop),
+        ]
     which = np.concatenate([np.empty(0, np.int64), *numbers]).astype(np.int32)
     rows, start = aligned_rows(len(which), ROW), 0
     rows[:] = 0.0
-    for index, triangles, quadrics in zip(objects, numbers[::2], numbers[1::2], strict=True):
-        middle, end = start + len(triangles), start + len(triangles) + len(quadrics)
+    for index, first, second in zip(objects, numbers[::2], numbers[1::2], strict=True):
+        middle, end = start + len(first), start + len(first) + len(second)
         put_rows(world, index, outlines, rows[start:middle], rows[middle:end])
         start = end
     ends = np.concatenate([rows[:, :3], rows[:, :3] + rows[:, 3:6], rows[:, :3] + rows[:, 6:9]])
@@ -67,6 +70,7 @@ class Cube:
 
     cells (6, side, side) int32 name records (r, RECORD) float32 (`shapes`), whose candidates lists (l,)
     int32 name by rows (k, LIGHT_ROW) float32 prepared for the light, of the primitives of these numbers (k,) int32.
+    `every` (n,) int32 are the numbers of all primitives, which records name that have no candidates.
     `reach`: how long rays may be that ask, and `sure`: how long to be sure of a hit on what covers their cell."""
 
     cells: NDArray[np.int32]
@@ -74,6 +78,7 @@ class Cube:
     lists: NDArray[np.int32]
     rows: NDArray[np.float32]
     numbers: NDArray[np.int32]
+    every: NDArray[np.int32]
     reach: float
     sure: float
 
@@ -125,7 +130,7 @@ class CubeMaker:
         return found
 
     def _make(self, lights: NDArray[np.float32], side: int, threads: int, cancel: Cancel) -> list[Cube]:
-        rows, numbers, sure = self._items
+        rows, sure = self._items.rows, self._items.sure
         n, reaches = len(rows), [self._reach(light) for light in lights]
         radii = np.empty((len(lights), -(-n // LANES) * LANES), np.float32)
         cells = np.zeros((len(lights), FACES, side, side), np.int32)
@@ -150,9 +155,7 @@ class CubeMaker:
                 room.items, room.spans, count, face, side, self._longest, cells[k, face], room.records, room.lists,
                 room.arena, room.found, room.alone, state,
             )  # fmt: skip
-            faces[k][face] = _Face(
-                room.records[: state[RECORDS_USED]].copy(), room.lists[: state[LISTED]].copy()
-            )
+            faces[k][face] = _Face(room.records[: state[RECORDS_USED]].copy(), room.lists[: state[LISTED]].copy())
 
         if n:
             for_each_chunk(find_radii, len(lights), threads, cancel)
@@ -179,7 +182,8 @@ class CubeMaker:
             numbers += (numbers >= 1 << WIDTH_BITS) * np.int32((used - 1) << WIDTH_BITS)
             target = records[used : used + len(face.records)]
             target[:] = face.records
-            target.view(np.int32)[:, FIRST] += listed
+            numbers_of = target.view(np.int32)
+            numbers_of[:, FIRST] += listed * (numbers_of[:, COUNT] > 0)
             used, listed = used + len(face.records), listed + len(face.lists)
         lists = np.concatenate([face.lists for face in there])
         mark = np.zeros(len(self._items.rows), np.int32)
@@ -190,4 +194,13 @@ class CubeMaker:
         rows[:] = self._items.rows[which]
         if len(which):
             put_rows_of_light(rows, SureHitLength(len(which), self._items.sure, 0.0), light, light_space)
-        return Cube(cells, records, mark[lists], light_space, self._items.numbers[which], reach, self._items.sure)
+        return Cube(
+            cells,
+            records,
+            mark[lists],
+            light_space,
+            self._items.numbers[which],
+            self._items.numbers,
+            reach,
+            self._items.sure,
+        )

@@ -80,7 +80,8 @@ DEPTH = 3 * 16 + 1  # regions that wait, at most
 # Rows of what is found of a region's items: the near function, and the inverse of the least depth.
 NX, NY, NZ, NEAREST_ROW = range(4)
 FOUND = 4
-# What a division comes to: how many records and list entries there are, regions that were looked at, and items of theirs.
+# What a division comes to: how many records and list entries there are, how many regions were looked at, and how many
+# items of theirs.
 RECORDS_USED, LISTED, LOOKED_AT, LOOKED_FOR = range(4)
 CAME_TO = 4
 
@@ -109,7 +110,11 @@ def _filter(items, spans, arena, begin, end, x, y, half, found):
         if not any_lane(met):
             continue
         t = load_columns(rows, place, ITEM)
-        u, v, w = t[U] * x + t[U + 1] * y + t[U + 2], t[V] * x + t[V + 1] * y + t[V + 2], t[W] * x + t[W + 1] * y + t[W + 2]
+        u, v, w = (
+            t[U] * x + t[U + 1] * y + t[U + 2],
+            t[V] * x + t[V + 1] * y + t[V + 2],
+            t[W] * x + t[W + 1] * y + t[W + 2],
+        )
         du, dv, dw = (
             half * (_size(t[U]) + _size(t[U + 1])),
             half * (_size(t[V]) + _size(t[V + 1])),
@@ -217,7 +222,7 @@ def _put_ints(record, first, count):
 
 @kernel
 def divide_face(items, spans, count, face, side, longest, cells, records, lists, arena, found, alone, state):
-    """Divide a face with `count` items into cells (side, side) int32, which name records (r, RECORD) float32 (`shapes`).
+    """Divide a face with `count` items into cells (side, side) int32, which name records (r, RECORD) float32.
 
     Their numbers count from 1 on; 0 is NOTHING.  Up to `longest` candidates of a record are put into lists (l,) int32.
     There is room for a record of each cell, and `longest` list entries.  arena (a,) int32 has room for all items as
@@ -265,14 +270,15 @@ def divide_face(items, spans, count, face, side, longest, cells, records, lists,
             record = records[used]
             used += 1
             number = used
+            covering = load_i32(address_of(spans[cover]) + 4 * NUMBER) if cover >= 0 else np.int32(-1)
             if single:
                 alone[cover] = number
                 _put_plane(record, LIT, (items[cover, NEAR], items[cover, NEAR + 1], items[cover, NEAR + 2]), face)
-                _put_ints(record, 0, 0)
+                _put_ints(record, covering, 0)
             else:
                 _put_plane(record, LIT, _near_plane(found, n, x, y, half), face)
                 asked = n if n <= longest else 0
-                _put_ints(record, listed, asked)
+                _put_ints(record, listed if asked > 0 else np.int64(covering), asked)
                 for k in range(asked):
                     lists[listed + k] = load_i32(address_of(spans[arena[end + k]]) + 4 * NUMBER)
                 listed += asked

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-# Columns of an item: coefficients, of (x, y, 1) on the face, of U, V and D - U - V (`certified.error_bounds`), which are
-# greater than minus the bound at the end wherever a ray may hit; of the *near* function, which times the depth of a
+# Columns of an item: coefficients, of (x, y, 1) on the face, of U, V and D - U - V (`certified.error_bounds`), which
+# are greater than minus the bound at the end wherever a ray may hit; of the *near* function, which times the depth of a
 # point is at least 1 wherever the item may block it; their error bounds; and what makes of it the *far* function, which
 # times the depth is more than 1 only where the item surely does: times KEEP, less LESS.
 U, V, W, NEAR, OF_U, OF_V, KEEP, LESS = 0, 3, 6, 9, 12, 13, 14, 15
@@ -21,7 +21,8 @@ SPAN = 8
 
 # Columns of what is known of a cell.  Two planes, each three numbers: their products with the way from the light to a
 # point say that nothing is in between where the first is less than 1, and that something is where the second is more
-# than 1.  Then the first of its candidates in the lists, and how many there are, int32: 0 for "trace the others".
+# than 1.  Then the first of its candidates in the lists, and how many there are, int32; where rays are not tested
+# against any, there are 0, and the first number is that of the row of what covers the cell, -1 for nothing.
 LIT, BLOCKED, FIRST, COUNT = 0, 3, 6, 7
 RECORD = 8
 WIDTH_BITS = 5  # of a cell's number: the logarithm of how many cells its region is wide; the rest names its record
