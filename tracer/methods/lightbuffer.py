@@ -191,6 +191,11 @@ class LightBuffer(ShadowMethod):
         """Whether there is all that is asked of a light."""
         return buffer.static is not None and (buffer.resting is not None or not (self._since > 0).any())
 
+    def cube_of(self, light: int) -> Cube | None:
+        """What a light sees of all that never moves, None where it has no buffer."""
+        buffer = self.buffers.get(light)
+        return None if buffer is None else buffer.static
+
     def report(self, statistics: FrameStatistics) -> None:
         statistics.certificates += self._made
         statistics.certificate_steps += self._steps
