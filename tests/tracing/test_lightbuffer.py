@@ -13,8 +13,7 @@ import tracer
 from tests.tracing.nasty_worlds import nasty_walk
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.shades import BEHIND, floor, going, kite, roof
-from tests.tracing.test_cache import nasty_triangles
-from tests.tracing.worlds import scene
+from tests.tracing.worlds import nasty_triangles, scene
 from tracer.culling.lightbuffer.cubes import Cube, CubeMaker, items_of
 from tracer.culling.lightbuffer.moving import depths_of
 from tracer.culling.lightbuffer.shapes import BLOCKED, COUNT, FIRST, LIT, WIDTH_BITS
