@@ -337,3 +337,15 @@ def _lives(process: Path) -> bool:
         return process.joinpath("stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except OSError:
         return False
+
+
+def test_a_method_with_kernels_of_its_own_is_made_ready_by_name() -> None:
+    """What `warm_up` makes is ready with it; `free` has kernels of its own, which make_ready names as it compiles."""
+    assert all(compilation.ready_for(name) for name in ("none", "paper+cache+rest", "cells", "certified", "auto"))
+    told: list[str] = []
+    compilation._methods.discard(compilation._variant(1, "bvh8", "free"))
+    assert not compilation.ready_for("free")
+    compilation.make_ready("free", progress=lambda what, fraction: told.append(what))
+    compilation.make_ready("free", progress=lambda what, fraction: told.append(what))
+    assert told == ["compiling the kernels of free"] and compilation.ready_for("free")
+    assert not compilation.ready_for("free", lights=40)
