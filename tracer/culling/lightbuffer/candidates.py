@@ -71,7 +71,6 @@ def ask_candidates(cube, light, rays, count, single, counts):
     """Test the candidates of so many rays, and note what is certain of them."""
     ray, following, left = address_of(rays.ray), address_of(rays.next), address_of(rays.left)
     name, ends, stride = address_of(rays.name), address_of(rays.asked), 4 * rays.asked.shape[1]
-    tests = np.int64(0)
     while count > 0:
         n = np.int64(0)
         for k in range(vectors(count)):
@@ -81,7 +80,7 @@ def ask_candidates(cube, light, rays, count, single, counts):
             store(name, number)
             end = load_three(rays.asked, k)
             direction = end[0] - light[0], end[1] - light[1], end[2] - light[2]
-            tests += ones(there) if single else 1
+            counts[TESTS] += ones(there) if single else 1
             first = load_i32(name)
             if bits_of(number == i32x16(first)) & there == there:
                 hit, missed = _same_row(cube.rows + 4 * LIGHT_ROW * np.int64(first), light, direction, end)
@@ -100,4 +99,3 @@ def ask_candidates(cube, light, rays, count, single, counts):
                 store_three(ends + 4 * n, stride, pack_three(end, open_rays))
                 n += ones(more)
         count = n
-    counts[TESTS] += tests
