@@ -287,6 +287,15 @@ register(Kind("cache", "Tests what blocked a light before first.", "tracer.metho
 register(Kind("rest", "Counts objects that rest as static.", "tracer.methods.rest:Resting", culls=False, addition=True))
 register(
     Kind(
+        "lightbuffer",
+        "Looks up what each light sees in each direction; never wrong.",
+        "tracer.methods.lightbuffer:LightBuffer",
+        addition=True,
+        alone=True,
+    )
+)
+register(
+    Kind(
         "cache-directions",
         "Tests first what blocked a light before in this direction.",
         "tracer.methods.cache:DirectionCache",

@@ -64,6 +64,11 @@ class Settings:
         lights. With 0 every light is looked at.
     lightcuts_nodes : int
         Clusters of a cut, at most.
+    light_buffer_side : int
+        Cells along an edge of the cube around a light, a power of two from 16 to 1024; for the method "lightbuffer".
+    light_buffer_memory : float
+        Megabytes that all cubes take, at most. Where these are too few for a light, its cells are made larger, and at
+        last the light is traced.
     """
 
     width: int = 512
@@ -87,6 +92,8 @@ class Settings:
     certificate_memory: float = 256.0
     lightcuts_error: float = 0.02
     lightcuts_nodes: int = 1000
+    light_buffer_side: int = 256
+    light_buffer_memory: float = 256.0
 
     @property
     def keeps_modes(self) -> bool:
@@ -117,6 +124,11 @@ class Settings:
                 f"lamp_samples lie in 1 to {MAX_SAMPLES}",
             ),
             (0 <= self.threads <= 1024, "threads lie in 0 to 1024"),
+            (
+                self.light_buffer_side in (16, 32, 64, 128, 256, 512, 1024),
+                "light_buffer_side is a power of two from 16 to 1024",
+            ),
+            (self.light_buffer_memory >= 0, "light_buffer_memory is 0 or more"),
             (
                 all(budget >= 0 for budget in (self.certificates, self.certificate_seconds, self.certificate_memory)),
                 "budgets of certificates are 0 or more",

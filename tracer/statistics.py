@@ -209,6 +209,8 @@ class FrameStatistics:
         The part of the pixels that were shaded. Below 1, shadow and secondary rays are those of this part.
     decision : str
         What the method "auto" does now and why, in a sentence.
+    light_buffers : list of int
+        How many cells an edge of each light's cube has, 0 for a light that is traced; for the method "lightbuffer".
     samples : SampleCounts or None
         What the lights send to the primary hits; with `Settings.record_lights`.
     built : BuiltPart or None
@@ -232,6 +234,7 @@ class FrameStatistics:
     certificate_tests: int = 0
     part: float = 1.0
     decision: str = ""
+    light_buffers: list[int] = field(default_factory=list)
     samples: SampleCounts | None = None
     built: BuiltPart | None = None
     cuts: CutCounts | None = None

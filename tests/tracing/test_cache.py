@@ -15,7 +15,7 @@ from tests.scenes import world_of
 from tests.sweeps import ACCELERATORS
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.same import assert_only_asked_less
-from tests.tracing.worlds import affine, moved, quad, quadrics, scene
+from tests.tracing.worlds import affine, moved, nasty_triangles, quad, quadrics, scene
 from tracer.culling import cells
 from tracer.culling.occluder_cache import OccluderSlots, merge_occluders, surely_blocked
 from tracer.culling.shadow_testing import LIGHT_MARGIN
@@ -42,16 +42,6 @@ def believed(triangles: np.ndarray, light: np.ndarray, ends: np.ndarray, numbers
     padding = np.float32(OccluderSlots(triangles, len(triangles)).padding)
     _ask(triangles, light, directions, asked, padding, sure)
     return np.array([(sure[i >> 4] >> (i & 15)) & 1 for i in range(n)], np.bool_)
-
-
-def nasty_triangles(rng: np.random.Generator, n: int) -> np.ndarray:
-    """Triangles in the unit cube: any, small ones, slivers, flat ones in a plane that others share, and duplicates."""
-    corners = rng.random((n, 1, 3)) + rng.normal(size=(n, 3, 3)) * np.exp(rng.uniform(-9, 0, (n, 1, 1)))
-    sliver, flat, twice = (rng.random(n) < 0.2 for _ in range(3))
-    corners[sliver, 2] = corners[sliver, 1] + rng.normal(size=(sliver.sum(), 3)) * np.exp(rng.uniform(-14, -4))
-    corners[flat, :, rng.integers(3)] = rng.choice([0.0, 0.5, 1.0])
-    corners[twice] = corners[rng.permutation(n)[: twice.sum()]]
-    return corners
 
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)

@@ -105,6 +105,16 @@ def random_corners(rng: np.random.Generator, n: int, size: float) -> np.ndarray:
     return corners.astype(np.float32)
 
 
+def nasty_triangles(rng: np.random.Generator, n: int) -> np.ndarray:
+    """Triangles in the unit cube: any, small ones, slivers, flat ones in a plane that others share, and duplicates."""
+    corners = rng.random((n, 1, 3)) + rng.normal(size=(n, 3, 3)) * np.exp(rng.uniform(-9, 0, (n, 1, 1)))
+    sliver, flat, twice = (rng.random(n) < 0.2 for _ in range(3))
+    corners[sliver, 2] = corners[sliver, 1] + rng.normal(size=(sliver.sum(), 3)) * np.exp(rng.uniform(-14, -4))
+    corners[flat, :, rng.integers(3)] = rng.choice([0.0, 0.5, 1.0])
+    corners[twice] = corners[rng.permutation(n)[: twice.sum()]]
+    return corners
+
+
 def certificates_of(renderer: Renderer) -> CertificateStore | None:
     """The certificates of cells that a renderer has made, if any."""
     method = renderer.state.method("certified")

@@ -18,6 +18,9 @@ class Verdict(Enum):
     CANDIDATES = "certificate candidates"
     BEAM = "beam"
     CACHED = "cached occluder"
+    BUFFER_LIT = "light buffer lit"
+    BUFFER_FULL = "light buffer full"
+    BUFFER_TESTED = "light buffer candidates"
     ANSWERED = "answered"
     TRACED = "traced"
 

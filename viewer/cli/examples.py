@@ -146,6 +146,15 @@ step, and the plot draws them. In these, wrong_of_primitive counts the wrong pix
 of the whole picture. A primitive that is never fully rendered is never culled, so nothing is tested.
 """
 
+CUBE = """\
+examples:
+  shadowcull cube default --light 1 -o cube.png
+  shadowcull cube kitchen.aff --side 512 --accelerator kdtree
+
+Cells with nothing in them are yellow, those that one triangle covers blue; those with candidates go from violet, for
+one, to yellow green, for eight, and those with more are grey.
+"""
+
 EXPLAIN = """\
 examples:
   shadowcull explain default --pixel 300,200

@@ -7,6 +7,7 @@
     shadowcull sweep STUDY      many scenes, methods and settings, by several processes
     shadowcull zoom SCENE       towards a primitive, and whether its shadows keep up
     shadowcull explain SCENE    what became of the rays of one pixel
+    shadowcull cube SCENE       what a light sees, from its light buffer
     shadowcull hunt SCENE       the worst wrong pixels of a method
     shadowcull figure SCENE     a frame by several methods, side by side
     shadowcull check FILE       whether saved pictures and figures are still true
@@ -53,6 +54,7 @@ def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
         "sweep": _sweep,
         "zoom": _zoom,
         "explain": _explain,
+        "cube": _cube,
         "info": _info,
         "film": _film,
         "figure": _figure,
@@ -226,6 +228,15 @@ def _explain(arguments: list[str]) -> int:
 
     options.camera = saved_pictures.camera(options.camera)
     explain.explain(resources.scene_path(options.scene), options)
+    return 0
+
+
+def _cube(arguments: list[str]) -> int:
+    options = parsers.cube().parse_args(arguments)
+
+    from viewer.cli import cube
+
+    cube.cube(resources.scene_path(options.scene), options)
     return 0
 
 

@@ -158,6 +158,31 @@ def explain() -> Parser:
     return parser
 
 
+def cube() -> Parser:
+    """Of `cube`."""
+    parser = Parser(
+        prog="shadowcull cube",
+        description="Save what a light sees, as the method lightbuffer has it: its cube unfolded, on the left what is "
+        "known of each cell, on the right how far from the light all is in shadow.",
+        epilog=examples.CUBE,
+    )
+    add = parser.add_argument
+    add_scene(parser)
+    add("--light", type=count(0, 2**31 - 1), default=0, metavar="N", help="which light (default: 0)")
+    add(
+        "--side",
+        type=count(16, 1024),
+        default=256,
+        metavar="N",
+        help="cells along an edge, a power of two (default: 256)",
+    )
+    add("-o", "--output", type=Path, default=Path("cube.png"), metavar="FILE", help="the picture (default: cube.png)")
+    add_moment(parser)
+    add_tracing_options(parser, "bvh8")
+    parser.set_defaults(verify=False, samples=1, size=(16, 16), zoom_factor=4.0)
+    return parser
+
+
 def info() -> Parser:
     """Of `info`."""
     parser = Parser(

@@ -23,6 +23,9 @@ SAID: dict[Verdict, str] = {
     Verdict.CANDIDATES: "candidates only",
     Verdict.BEAM: "culled by a beam",
     Verdict.CACHED: "cached occluder",
+    Verdict.BUFFER_LIT: "light buffer: nothing in front",
+    Verdict.BUFFER_FULL: "light buffer: behind what covers the cell",
+    Verdict.BUFFER_TESTED: "light buffer: candidates only",
     Verdict.ANSWERED: "culled",
     Verdict.TRACED: "traced",
 }
@@ -38,6 +41,9 @@ MEANING: dict[Verdict, str] = {
     Verdict.CANDIDATES: "Only a few primitives can block the light here: these are tested, and objects that move.",
     Verdict.BEAM: "What is between the lamp and neighbouring points was asked about all of its samples at once.",
     Verdict.CACHED: "The primitive that blocked a ray there before was tested first, and blocks this one too.",
+    Verdict.BUFFER_LIT: "Nothing that the light sees in this direction is nearer to it than the point.",
+    Verdict.BUFFER_FULL: "The point is behind a triangle that hides all of a cell of the light's cube.",
+    Verdict.BUFFER_TESTED: "Only a few primitives are in the point's cell of the light's cube: these are tested.",
     Verdict.ANSWERED: "The method knew the answer.",
     Verdict.TRACED: "Nothing was known: the ray was traced through the scene.",
 }

@@ -106,6 +106,27 @@ def joined(shapes: list[Topology]) -> tuple[Topology, NDArray[np.int32]]:
     return whole, np.array(roots, np.int32)
 
 
+@inlined
+def error_radius(row, t, farthest, rounded):
+    """How far from each of sixteen triangles, as columns of their rows and as seen, a ray no longer than `farthest` can
+    report a hit; `rounded` more, for what is computed with it."""
+    # |D| enters the bounds by the same part of itself, whatever it is: that is added at the end.
+    m = error_bounds(t, TWO * farthest, farthest, t.highest, ZERO)
+    depth = t.height - m.behind
+    part = maximum(m.u, maximum(m.v, m.w)) / depth + np.float32(1e-5)
+    apart = part * (t.first + t.second) + (m.behind / depth + np.float32(1e-6)) * farthest + t.blur
+    apart = select(t.firm & (depth > ZERO), apart, FAR)
+
+    # No hit is reported outside of the primitive's box: how far is that from the triangle, along an axis?
+    room = f32x16(ZERO)
+    for axis in range(3):
+        corner, e1, e2 = row[axis], row[3 + axis], row[6 + axis]
+        low, high = corner + minimum(ZERO, minimum(e1, e2)), corner + maximum(ZERO, maximum(e1, e2))
+        room = maximum(room, maximum(high - row[BOX + axis], row[BOX + 3 + axis] - low))
+    room = DIAGONAL * (room + np.float32(REPORTED) * t.away)
+    return minimum(minimum(apart, room) + rounded, FAR)
+
+
 @subkernel
 def _find_error_radii(o, number, light, radius, farthest, rounded):
     """Put how far from each triangle a ray from a lamp, a ball around light (3,), can report a hit into
@@ -118,21 +139,7 @@ def _find_error_radii(o, number, light, radius, farthest, rounded):
         store(numbers, which)
         row = rows_at(o.rows, numbers)
         t = seen_from(place, np.float32(radius), row)
-        # |D| enters the bounds by the same part of itself, whatever it is: that is added at the end.
-        m = error_bounds(t, TWO * farthest, farthest, t.highest, ZERO)
-        depth = t.height - m.behind
-        part = maximum(m.u, maximum(m.v, m.w)) / depth + np.float32(1e-5)
-        apart = part * (t.first + t.second) + (m.behind / depth + np.float32(1e-6)) * farthest + t.blur
-        apart = select(t.firm & (depth > ZERO), apart, FAR)
-
-        # No hit is reported outside of the primitive's box: how far is that from the triangle, along an axis?
-        room = f32x16(ZERO)
-        for axis in range(3):
-            corner, e1, e2 = row[axis], row[3 + axis], row[6 + axis]
-            low, high = corner + minimum(ZERO, minimum(e1, e2)), corner + maximum(ZERO, maximum(e1, e2))
-            room = maximum(room, maximum(high - row[BOX + axis], row[BOX + 3 + axis] - low))
-        room = DIAGONAL * (room + np.float32(REPORTED) * t.away)
-        store(error_radii + 4 * first, minimum(minimum(apart, room) + rounded, FAR))
+        store(error_radii + 4 * first, error_radius(row, t, farthest, rounded))
 
 
 @inlined

@@ -26,6 +26,24 @@ GROWTH = 4  # times that what moves may grow before all is certified anew
 QUADRIC = 4e-6  # of the coordinates: how far from a quadric a ray that is transformed to it may hit it
 
 
+def put_rows(
+    world: World, index: int, outlines: Outlines, triangles: NDArray[np.float32], quadrics: NDArray[np.float32]
+) -> None:
+    """Put the rows (n, ROW) of an object that is present (`error_bounds`), where it is now.
+
+    They hold of one that rests until the extent of what moves has grown GROWTH times."""
+    triangles[:, :BLUR], triangles[:, BLUR], triangles[:, BOX:] = world.triangles_of(index)
+    quadrics[:, BOX:] = outlines.boxes[world.primitives.quadrics_of(index)]
+    room = 0.0
+    if index > 0:
+        there = outlines.to_world[index].reshape(3, 4)[:, 3]
+        reach = np.abs(quadrics[:, BOX:]).max(initial=0.0)
+        room = PADDING * GROWTH * world.extent + QUADRIC * (np.abs(there).max() + reach)
+    outwards = OUTWARDS.astype(np.float32)
+    for rows in (triangles[:, BOX:], quadrics[:, BOX:]):
+        rows += (ROUNDED * np.abs(rows).max(1, initial=0.0, keepdims=True) + room) * outwards
+
+
 class StaticGeometry:
     """Rows, trees and bounds of all static geometry.
 
@@ -56,19 +74,9 @@ class StaticGeometry:
     def _add(self, index: int, outlines: Outlines) -> None:
         """Let an object be static from now on, where it is."""
         triangles, quadrics = self._rows_of(index)
-        placed = self._world.triangles_of(index)
-        self.rows[triangles, :BLUR], self.rows[triangles, BLUR], self.rows[triangles, BOX:] = placed
-        self.rows[quadrics, BOX:] = outlines.boxes[self._primitives.quadrics_of(index)]
-        room = 0.0
         if index > 0:
-            extent = GROWTH * self._world.extent
-            self.allowed = min(self.allowed, extent)
-            there = outlines.to_world[index].reshape(3, 4)[:, 3]
-            world = np.abs(self.rows[quadrics, BOX:]).max(initial=0.0)
-            room = PADDING * extent + QUADRIC * (np.abs(there).max() + world)
-        outwards = OUTWARDS.astype(np.float32)
-        for rows in (self.rows[triangles, BOX:], self.rows[quadrics, BOX:]):
-            rows += (ROUNDED * np.abs(rows).max(1, initial=0.0, keepdims=True) + room) * outwards
+            self.allowed = min(self.allowed, GROWTH * self._world.extent)
+        put_rows(self._world, index, outlines, self.rows[triangles], self.rows[quadrics])
         boxes, numbers = self.rows[quadrics, BOX:], np.r_[triangles, quadrics].astype(np.int32)
         self._shapes[index] = shape_of(self.rows[triangles, :BLUR], boxes, numbers, self._threads)
         self._bounds_of[index] = self._bounds(index)

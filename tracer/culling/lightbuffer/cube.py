@@ -1,0 +1,44 @@
+"""The cube around a light: six faces of cells, by direction.
+
+Face 2 k looks up along axis k, face 2 k + 1 down.  A direction belongs to the face of its largest component, its
+*depth* z, and lies there at (x / z, y / z), which are the other two components in their order: between -1 and 1.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracer.kernels import inlined
+from tracer.simd import maximum, minimum, select, to_i32
+
+FACES = 6
+HALF, ONE, ZERO = np.float32(0.5), np.float32(1), np.float32(0)
+SEAM = 1e-6  # by so much a cell reaches over its edge: more than the roundings that may send a direction next door
+
+
+@inlined
+def axes_of(face):
+    """The axes of x, y and z on a face, and the sign of the last."""
+    axis = face >> 1
+    return (1 if axis == 0 else 0), (1 if axis == 2 else 2), axis, (-1.0 if face & 1 else 1.0)
+
+
+@inlined
+def cells_of(direction, side):
+    """(depth, face, column, row) of sixteen directions, the last three int32; `side` cells are a face's edge.
+
+    Where a direction is no number, or nothing, they are any that there are."""
+    dx, dy, dz = direction
+    ax, ay, az = maximum(dx, -dx), maximum(dy, -dy), maximum(dz, -dz)
+    along_x = (ax >= ay) & (ax >= az)
+    along_z = ~along_x & (az > ay)
+    depth = maximum(maximum(ax, ay), az)
+    major = select(along_x, dx, select(along_z, dz, dy))
+    face = select(along_x, np.int32(0), select(along_z, np.int32(4), np.int32(2)))
+    face = face + select(major < ZERO, np.int32(1), np.int32(0))
+    half = HALF * np.float32(side)
+    scale = half / depth
+    most = np.float32(side) - HALF
+    column = minimum(maximum(select(along_x, dy, dx) * scale + half, ZERO), most)
+    row = minimum(maximum(select(along_z, dy, dz) * scale + half, ZERO), most)
+    return depth, face, to_i32(column), to_i32(row)
