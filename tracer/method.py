@@ -210,5 +210,14 @@ register(
         measures=True,
     )
 )
+register(
+    Kind(
+        "voxels",
+        "Culls by cubes of space that are lit, or in shadow, as a whole; never wrong.",
+        "tracer.methods.voxels:Voxels",
+        addition=True,
+        alone=True,
+    )
+)
 register(Kind("cache", "Tests what blocked a light before first.", "tracer.methods.cache:OccluderCache", addition=True))
 register(Kind("rest", "Counts objects that rest as static.", "tracer.methods.rest:Resting", culls=False, addition=True))

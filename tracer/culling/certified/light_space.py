@@ -110,7 +110,12 @@ def verdicts(light_space, numbers, light, direction, end):
 
     Rays go from a light (3,) in a direction to their end, three vectors of sixteen each.  The primitives' numbers,
     int32, are at an address, their rows (n, LIGHT_ROW) at the address `light_space`."""
-    t = load_columns(light_space, numbers, LIGHT_ROW)
+    return judge(load_columns(light_space, numbers, LIGHT_ROW), light, direction, end)
+
+
+@inlined
+def judge(t, light, direction, end):
+    """`verdicts` of rays that each ask the primitive of its lane, by the columns of their rows."""
     x, y, z = direction
     ax, ay, az = end[0] - t[CORNER], end[1] - t[CORNER + 1], end[2] - t[CORNER + 2]
     longest, near = size_of(direction), length16((ax, ay, az))
