@@ -219,5 +219,24 @@ register(
         alone=True,
     )
 )
+register(
+    Kind(
+        "lie-exact",
+        "Asks what is proven to block a light from a cell of space, and no light hidden from it; never wrong.",
+        "tracer.methods.lie:Environments",
+        addition=True,
+        alone=True,
+    )
+)
+register(
+    Kind(
+        "lie",
+        "Local illumination environments, by samples as published; wrong now and then.",
+        "tracer.methods.lie:SampledEnvironments",
+        exact=False,
+        addition=True,
+        alone=True,
+    )
+)
 register(Kind("cache", "Tests what blocked a light before first.", "tracer.methods.cache:OccluderCache", addition=True))
 register(Kind("rest", "Counts objects that rest as static.", "tracer.methods.rest:Resting", culls=False, addition=True))

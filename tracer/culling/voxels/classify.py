@@ -59,9 +59,10 @@ HUGE = np.float32(3e38)
 
 
 class Light(NamedTuple):
-    """Light `number` at place (3,) float32; no ray from it is longer than `longest`."""
+    """Light `number` at place (3,) float32, in a slot of `Occluders`; no ray from it is longer than `longest`."""
 
     number: int
+    slot: int
     place: NDArray[np.float32]
     longest: float
 
@@ -122,8 +123,8 @@ def _meet(o, light, room, center, half, numbers, n, found, count, counts):
 
     How many there are then, or HIDDEN where one hides the whole cube."""
     counts[TESTS] += n
-    rows, radii = address_of(o.rows), address_of(o.error_radii[0])
-    hit, missed = _judge(rows, radii, address_of(o.light_space[0]), numbers, light, room.shaft, center, half)
+    rows, radii = address_of(o.rows), address_of(o.error_radii[light.slot])
+    hit, missed = _judge(rows, radii, address_of(o.light_space[light.slot]), numbers, light, room.shaft, center, half)
     there = lanes_below(n, 0)
     hit &= there
     if hit != 0:
@@ -141,8 +142,8 @@ def _hidden(o, light, room, center, half, counts):
     if room.state[0] == 0:
         return False
     counts[TESTS] += room.state[0]
-    rows, radii, numbers = address_of(o.rows), address_of(o.error_radii[0]), address_of(room.hiders)
-    hit, _missed = _judge(rows, radii, address_of(o.light_space[0]), numbers, light, room.shaft, center, half)
+    rows, radii, numbers = address_of(o.rows), address_of(o.error_radii[light.slot]), address_of(room.hiders)
+    hit, _missed = _judge(rows, radii, address_of(o.light_space[light.slot]), numbers, light, room.shaft, center, half)
     return hit & lanes_below(room.state[0], 0) != 0
 
 
@@ -167,7 +168,11 @@ def _from_tree(o, light, room, center, half, found, counts):
     numbers, n, shaft = i32_at(waiting), 0, room.shaft
     for k in range(LANES + WIDTH):
         numbers[k] = 0
-    boxes, blocks, leaf_radii = address_of(o.boxes[0]), address_of(o.blocks), address_of(o.leaf_radii[0])
+    boxes, blocks, leaf_radii = (
+        address_of(o.boxes[light.slot]),
+        address_of(o.blocks),
+        address_of(o.leaf_radii[light.slot]),
+    )
     for root in o.roots:
         stack[0], pending = np.int64(root), 1
         while pending > 0:
@@ -204,12 +209,33 @@ def _from_tree(o, light, room, center, half, found, counts):
 
 
 @subkernel
+def come_between(o, light, room, center, half, given, given_count, found, counts):
+    """Find what may come between a light and the cube around center (3,) float32, to which room.shaft was put: how many
+    primitives, more than MOST for too many, or HIDDEN where one hides the whole cube.
+
+    Their numbers go into found (MOST + 2 LANES,) int32.  They are among given (given_count,) int32, or anywhere where
+    that is more than MOST."""
+    if _hidden(o, light, room, center, half, counts):
+        return np.int64(HIDDEN)
+    if given_count <= MOST:
+        return _from_list(o, light, room, center, half, given, given_count, found, counts)
+    return _from_tree(o, light, room, center, half, found, counts)
+
+
+@subkernel
 def _fill(words, grid, light, x, y, z, size, mode):
     """Let all voxels of a node have a state."""
     for i in range(x, x + size):
         for j in range(y, y + size):
             for k in range(z, z + size):
                 add_shadow(words, (i * grid.ny + j) * grid.nz + k, light, mode)
+
+
+@inlined
+def make_room():
+    """Memory to classify in."""
+    found = np.zeros((DEPTHS, MOST + 2 * LANES), np.int32)
+    return Room(make_box_shaft(), found, np.zeros(LANES, np.int32), np.zeros(2, np.int64))
 
 
 @kernel
@@ -219,8 +245,7 @@ def classify_blocks(o, grid, words, light, rounded, blocks, counts):
     o are `Occluders` whose only light that is; words are `Words` of voxels; rounded is more, in units of the scene,
     than planes are wrong by in float32.  counts (COUNTERS,) int64 are added to."""
     o = borrowed(o)
-    found = np.zeros((DEPTHS, MOST + 2 * LANES), np.int32)
-    room = Room(make_box_shaft(), found, np.zeros(LANES, np.int32), np.zeros(2, np.int64))
+    room = make_room()
     met = np.zeros(DEPTHS, np.int64)  # how many primitives each depth has found
     waiting, side = i64_at(local_memory(NODES)), 1.0 / grid.per_unit
     place = np.float64(light.place[0]), np.float64(light.place[1]), np.float64(light.place[2])
@@ -243,14 +268,10 @@ def classify_blocks(o, grid, words, light, rounded, blocks, counts):
             put_box(room.shaft, place, middle, half, rounded)
             center, reach = (np.float32(middle[0]), np.float32(middle[1]), np.float32(middle[2])), np.float32(half)
             counts[CERTIFICATES] += 1
-            found, known = room.found[depth], _hidden(o, light, room, center, reach, counts)
-            if known:
-                count = np.int64(HIDDEN)
-            elif depth > 0 and met[depth - 1] <= MOST:
-                above = room.found[depth - 1]
-                count = _from_list(o, light, room, center, reach, above, met[depth - 1], found, counts)
-            else:
-                count = _from_tree(o, light, room, center, reach, found, counts)
+            found, given, above = room.found[depth], np.int64(MOST + 1), room.found[max(depth, 1) - 1]
+            if depth > 0:
+                given = met[depth - 1]
+            count = come_between(o, light, room, center, reach, above, given, found, counts)
             if count < 0:
                 _fill(words, grid, light.number, x, y, z, size, FULL_SHADOW)
             elif count == 0:

@@ -41,6 +41,24 @@ NEVER_HIT[OF_U] = -1.0
 STATES = "unknown", "full", "null"
 
 
+def boxes_at_rest(resting: Resting, largest: float) -> NDArray[np.float32]:
+    """Boxes (k, 6) around what rests, with room for all hits on it, in a scene with this largest coordinate."""
+    boxes = resting.boxes[resting.since > 0]
+    if len(boxes) > FEW:
+        boxes = np.concatenate([boxes[:, :3].min(0), boxes[:, 3:].max(0)])[None]
+    if len(boxes):
+        boxes = boxes - NO_BOX * np.float32(AWAY * max(float(np.abs(boxes).max()), largest))
+    return np.ascontiguousarray(boxes, np.float32)
+
+
+def without_area(geometry: StaticGeometry) -> NDArray[np.bool_]:
+    """(n,) which primitives are triangles with an edge of no length, which nothing hits."""
+    rows = geometry.rows
+    flat = (rows[:, 3:6] == 0).all(1) | (rows[:, 6:9] == 0).all(1)
+    flat[geometry.first_quadric :] = False
+    return flat
+
+
 class VoxelStore:
     """Voxels and their states, in no more than about `memory` bytes."""
 
@@ -67,7 +85,7 @@ class VoxelStore:
         # How far from each primitive a hit may be reported: inf where its box alone tells, negative for none at all.
         self._reach, self._more = np.zeros(len(rows), np.float32), 0.0
         self._reach[self._geometry.first_quadric :] = np.inf
-        self._flat = ((rows[:, 3:6] == 0).all(1) | (rows[:, 6:9] == 0).all(1)) & (self._reach == 0)
+        self._flat = without_area(self._geometry)
         self._reach[self._flat] = -1.0
         self._listed = False
         self._starts, self._names = np.zeros(self.grid.voxels + 1, np.int32), np.zeros(LANES, np.int32)
@@ -98,13 +116,7 @@ class VoxelStore:
         forget_lights(self.words, moved.tolist())
         self.places[moved] = np.nan
         self._wanted = wanted
-        boxes = resting.boxes[resting.since > 0]
-        if len(boxes) > FEW:
-            boxes = np.concatenate([boxes[:, :3].min(0), boxes[:, 3:].max(0)])[None]
-        if len(boxes):
-            room = np.float32(AWAY * max(float(np.abs(boxes).max()), self._geometry.largest))
-            boxes = boxes - NO_BOX * room
-        self._resting = np.ascontiguousarray(boxes, np.float32)
+        self._resting = boxes_at_rest(resting, self._geometry.largest)
 
     def classify(self, seconds: float, threads: int, cancel: Callable[[], bool] | None = None) -> Counts:
         """Classify the voxels for one light after another that has none, until the time is up.
@@ -131,7 +143,7 @@ class VoxelStore:
         self._prepare(light, longest)
         many = grid.voxels // BLOCK**3
         shares = np.array_split(np.arange(many), max(1, many // CHUNK))
-        known, rounded = Light(light, place, longest), 2e-6 * max(geometry.largest, float(np.abs(place).max()))
+        known, rounded = Light(light, 0, place, longest), 2e-6 * max(geometry.largest, float(np.abs(place).max()))
 
         def work(chunk: int, worker: int) -> None:
             words = words_at(self.words)

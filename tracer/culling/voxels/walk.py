@@ -113,6 +113,40 @@ def _range(x, there):
 
 
 @subkernel
+def ask(rows, names, count, light, end, direction, here, seen, masks, by_ray, counts):
+    """Ask `count` primitives, whose numbers are at the address `names`, with room for fifteen more, of the rays whose
+    bits are `here`: those that are blocked for certain, and those of which nobody can tell.
+
+    rows is the address of their rows in light space.  seen and masks are addresses of SEEN int32 and int64: primitives
+    and the rays that have asked them."""
+    blocked = unsure = np.int64(0)
+    if count <= FEW:
+        left = lanes_below(count, 0)
+        free, unclear = _ask_each(rows, names, left, light, end, direction, here, seen, masks, by_ray, counts)
+        return here & ~(free | unclear), unclear
+    there = mask16(here)
+    (mx, hx), (my, hy), (mz, hz) = _range(end[0], there), _range(end[1], there), _range(end[2], there)
+    longest = abs(mx - light[0]) + abs(my - light[1]) + abs(mz - light[2]) + hx + hy + hz
+    for k in range(0, count, 16):
+        # Sixteen primitives and all of these rays at once.
+        those, left = names + 4 * np.int64(k), lanes_below(count - k, 0)
+        counts[TESTS] += ones(left) if by_ray else 1
+        hit16, missed16 = judge_box(
+            load_columns(rows, those, LIGHT_ROW), light, (mx, my, mz), (hx, hy, hz), np.float32(1.000001) * longest
+        )
+        if bits_of(hit16) & left != 0:
+            return blocked | here, unsure
+        left &= ~bits_of(missed16)
+        free, unclear = _ask_each(rows, those, left, light, end, direction, here, seen, masks, by_ray, counts)
+        blocked |= here & ~(free | unclear)
+        unsure |= unclear
+        here = free
+        if here == 0:
+            break
+    return blocked, unsure
+
+
+@subkernel
 def _ask(voxels, rows, light, end, direction, number, occupied, seen, masks, counts):
     """Ask what lies in the voxels `number`, at an address, of the rays `occupied`, bits: those that are blocked for
     certain, and those of which nobody can tell.
@@ -125,38 +159,15 @@ def _ask(voxels, rows, light, end, direction, number, occupied, seen, masks, cou
         here = bits_of(load_i32x16(number) == np.int32(voxel)) & occupied
         occupied &= ~here
         first, last = voxels.starts[voxel], voxels.starts[voxel + 1]
-        if last - first <= FEW:
-            names, left = address_of(voxels.names) + 4 * np.int64(first), lanes_below(last - first, 0)
-            free, unclear = _ask_each(voxels, rows, names, left, light, end, direction, here, seen, masks, counts)
-            blocked |= here & ~(free | unclear)
-            unsure |= unclear
-            continue
-        there = mask16(here)
-        (mx, hx), (my, hy), (mz, hz) = _range(end[0], there), _range(end[1], there), _range(end[2], there)
-        longest = abs(mx - light[0]) + abs(my - light[1]) + abs(mz - light[2]) + hx + hy + hz
-        for k in range(first, last, 16):
-            # Sixteen primitives and all of these rays at once.
-            n, names = min(16, last - k), address_of(voxels.names) + 4 * np.int64(k)
-            counts[TESTS] += n if voxels.by_ray else 1
-            hit16, missed16 = judge_box(
-                load_columns(rows, names, LIGHT_ROW), light, (mx, my, mz), (hx, hy, hz), np.float32(1.000001) * longest
-            )
-            left = lanes_below(last - k, 0)
-            if bits_of(hit16) & left != 0:
-                blocked |= here
-                break
-            left &= ~bits_of(missed16)
-            free, unclear = _ask_each(voxels, rows, names, left, light, end, direction, here, seen, masks, counts)
-            blocked |= here & ~(free | unclear)
-            unsure |= unclear
-            here = free
-            if here == 0:
-                break
+        names = address_of(voxels.names) + 4 * np.int64(first)
+        hit, unclear = ask(rows, names, last - first, light, end, direction, here, seen, masks, voxels.by_ray, counts)
+        blocked |= hit
+        unsure |= unclear
     return blocked, unsure
 
 
 @inlined
-def _ask_each(voxels, rows, names, left, light, end, direction, here, seen, masks, counts):
+def _ask_each(rows, names, left, light, end, direction, here, seen, masks, by_ray, counts):
     """Ask those of sixteen primitives, their numbers at an address, whose bits are `left` of the rays `here`: which of
     these none blocks, and of which one cannot tell; any other is blocked."""
     known, asked, unclear = i32_at(seen), i64_at(masks), np.int64(0)
@@ -168,7 +179,7 @@ def _ask_each(voxels, rows, names, left, light, end, direction, here, seen, mask
             continue
         asked[at] = asked[at] | here if known[at] == name else here
         known[at] = name
-        counts[TESTS] += ones(here) if voxels.by_ray else 1
+        counts[TESTS] += ones(here) if by_ray else 1
         hit, missed = judge(_row(rows + 4 * LIGHT_ROW * np.int64(name)), light, direction, end)
         unclear |= here & ~(hit | missed)
         here &= missed
