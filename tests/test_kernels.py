@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import multiprocessing
 import os
 import shutil
 import signal
@@ -11,10 +12,13 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from multiprocessing.connection import Connection
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from tests import kernel_processes
 from tests.platforms import linux_only, posix_only
 from tests.sweeps import cases
 from tracer import compilation, compile_beside, compile_steps, kernel_cache
@@ -22,24 +26,9 @@ from tracer.kernel_cache import cache_root, sources_of
 from tracer.scene.model import Cancelled
 
 ROOT = Path(__file__).resolve().parent.parent
-TINY = """
-import sys
-from pathlib import Path
-import tracer.geometry.tiny
-from tracer.geometry.tiny import ask
-from tracer.kernel_cache import folder_of
-for name in sys.argv[1:]:
-    print(ask(eval(name)), end=" ")
-print(sum(ask.stats.cache_hits.values()), folder_of(Path(tracer.geometry.tiny.__file__)))
-"""
-
-# Between reading which versions of a kernel there are and writing that there is one more, others have time to do so.
-SLOW = """
-import time
-from numba.core.caching import IndexDataCacheFile
-save = IndexDataCacheFile._save_index
-IndexDataCacheFile._save_index = lambda *a: (time.sleep(0.2), save(*a))
-"""
+# What each process takes longest to load.
+PROCESSES = multiprocessing.get_context("forkserver" if os.name == "posix" else "spawn")
+PROCESSES.set_forkserver_preload(["tests.kernel_processes", "platformdirs"])
 
 
 @pytest.fixture
@@ -61,24 +50,28 @@ def write_helper(package: Path, value: int) -> None:
     )
 
 
-def start(package: Path, folder: Path, *numbers: str, before: str = "") -> subprocess.Popen:
-    environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(folder), "PYTHONPATH": str(package)}
-    command = [sys.executable, "-c", before + TINY, *numbers]
-    return subprocess.Popen(
-        command, cwd=package, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+def start(package: Path, folder: Path, *numbers: str, slow: bool = False, **more: str) -> tuple[Any, Connection]:
+    """A process that asks the kernel for numbers, and where its answer will come from."""
+    answer, other = PROCESSES.Pipe(duplex=False)
+    environment = {"SHADOWCULL_CACHE_DIR": str(folder)} | more
+    process = PROCESSES.Process(target=kernel_processes.ask, args=(str(package), environment, numbers, slow, other))
+    process.start()
+    other.close()
+    return process, answer
 
 
-def finish(process: subprocess.Popen) -> tuple[list[float], int, Path]:
-    """What a process printed: the kernel's answers, how many versions of it came from the cache, and from where."""
-    out, err = process.communicate(timeout=120)
-    assert process.returncode == 0, err
-    *answers, hits, folder = out.split()
-    return [float(answer) for answer in answers], int(hits), Path(folder)
+def finish(started: tuple[Any, Connection]) -> tuple[list[float], int, Path]:
+    """What a process says: the kernel's answers, how many versions of it came from the cache, and from where."""
+    process, answer = started
+    assert answer.poll(120)
+    said = answer.recv()
+    process.join(120)
+    assert not isinstance(said, str), said
+    return said
 
 
-def ask(package: Path, folder: Path, *numbers: str) -> tuple[list[float], int, Path]:
-    return finish(start(package, folder, *numbers))
+def ask(package: Path, folder: Path, *numbers: str, **more: str) -> tuple[list[float], int, Path]:
+    return finish(start(package, folder, *numbers, **more))
 
 
 def test_a_changed_helper_never_meets_a_stale_kernel(package: Path) -> None:
@@ -152,7 +145,7 @@ def test_shading_depends_on_vectors_and_not_on_methods() -> None:
 def test_processes_that_compile_at_once_lose_and_mix_up_nothing(package: Path) -> None:
     cached = package / "cache"
     numbers = [f"__import__('numpy').{kind}(3)" for kind in ("int8", "uint8", "int16", "uint16")]
-    processes = [start(package, cached, *half, before=SLOW) for half in (numbers[:2], numbers[2:])]
+    processes = [start(package, cached, *half, slow=True) for half in (numbers[:2], numbers[2:])]
     assert [finish(process)[0] for process in processes] == [[4.0] * 2] * 2
     assert ask(package, cached, *numbers)[:2] == ([4.0] * 4, 4)
 
@@ -194,12 +187,8 @@ def test_a_full_disk_is_survived(package: Path) -> None:
     with mounted(cached, "64k"):
         answers, _, folder = ask(package, cached, "1")
         assert answers == [2.0] and cached not in folder.parents
-        tight = {"SHADOWCULL_CACHE_DIR": str(cached), "TMPDIR": str(cached), "PYTHONPATH": str(package)}
         (cached / "filling").write_bytes(bytes(40_000))
-        command = [sys.executable, "-c", TINY, "1", "1.5"]
-        done = subprocess.run(command, cwd=package, env=os.environ | tight, capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
-        assert done.stdout.split()[:2] == ["2", "2.5"]
+        assert ask(package, cached, "1", "1.5", TMPDIR=str(cached))[0] == [2.0, 2.5]
 
 
 def test_a_folder_that_may_only_be_read_is_read(package: Path) -> None:

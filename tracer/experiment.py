@@ -34,8 +34,6 @@ _FIGURES: dict[str, Callable[[FrameStatistics], float]] = {
     "wrong": lambda s: s.shadow.wrong,
     "frame_seconds": lambda s: s.seconds,
 }
-
-
 # Settings of all methods.
 _SHARED = ("depth", "zoom_factor", "symmetric", "verify", "accelerator", "threads", "lamp_radius", "lamp_samples")
 
@@ -62,6 +60,8 @@ class Results:
         Whether the run was ended early.
     settings : dict
         The settings that all methods share, by name.
+    build_seconds, memory_bytes : dict
+        For each method, how long it made what it culls by, before each frame's shading, and what it held after it.
     """
 
     scene: str
@@ -72,6 +72,8 @@ class Results:
     planned: int = 0
     stopped: bool = False
     settings: dict[str, Any] = field(default_factory=dict)
+    build_seconds: dict[str, list[float]] = field(default_factory=dict)
+    memory_bytes: dict[str, list[int]] = field(default_factory=dict)
 
     @property
     def path_frames(self) -> int:
@@ -95,6 +97,8 @@ class Results:
             "planned_frames": self.planned,
             "stopped": self.stopped,
             "settings": self.settings,
+            "build_seconds": self.build_seconds,
+            "memory_bytes": self.memory_bytes,
         }
 
     def reductions(self, method: str, work: str) -> np.ndarray:
@@ -123,8 +127,9 @@ class Row:
     """A line of the paper's Table 1.
 
     Savings are parts of 1. `most_steps_frame` and `most_tests_frame` are the frames that save the most, `wrong_part` is
-    the
-    part of the shadow rays due that had a wrong answer, and `frame_seconds` is the median.
+    the part of the shadow rays due that had a wrong answer, and `frame_seconds` is the median. `path_seconds` is what
+    all frames took, `build_seconds` the part of it in which the method made what it culls by, and `memory_bytes` what
+    it held at most.
     """
 
     method: str
@@ -138,7 +143,9 @@ class Row:
     wrong: int
     wrong_part: float
     frame_seconds: float
-    """The median."""
+    path_seconds: float
+    build_seconds: float
+    memory_bytes: int
 
 
 def table(results: Results) -> list[Row]:
@@ -162,6 +169,9 @@ def _row(results: Results, method: str) -> Row:
         wrong=int(figures["wrong"].sum()),
         wrong_part=float(figures["wrong"].sum() / max(1.0, figures["shadow_rays_due"].sum())),
         frame_seconds=float(np.median(figures["frame_seconds"])),
+        path_seconds=float(figures["frame_seconds"].sum()),
+        build_seconds=float(sum(results.build_seconds.get(method, ()))),
+        memory_bytes=max(results.memory_bytes.get(method, (0,))),
     )
 
 
@@ -254,4 +264,6 @@ def run(
         for name, frame in frames.items():
             for figure, of in _FIGURES.items():
                 results.methods[name][figure].append(of(frame.statistics))
+            results.build_seconds.setdefault(name, []).append(frame.statistics.phases.get("certification", 0.0))
+            results.memory_bytes.setdefault(name, []).append(renderers[name].memory_bytes)
         yield results

@@ -123,11 +123,12 @@ class FrameInProgress:
         state = self._state
         world = state.world
         poses = world.pose(self._time)
+        together = min(method.together for method in self.methods)
         if any([method.follows_rest() for method in self.methods]):
-            world.place(poses, state.rest.follow(poses, world.primitives, world.certain(poses)))
+            world.place(poses, state.rest.follow(poses, world.primitives, world.certain(poses)), together)
         else:
             state.rest.forget()
-            world.place(poses)
+            world.place(poses, together=together)
         self._use_lamps(self._lamps.at(state.scene.light_positions(self._time)))
         self.resting = state.rest.now
         self.history.follow_lights(self.lights, self._lamps)

@@ -13,6 +13,18 @@ from functools import cache
 from importlib import import_module
 from typing import Any
 
+ANY_NUMBER = 1 << 31
+#: Methods that are made of others and are worth a look (`line_up`), as far as these are known.
+TOGETHER = (
+    "paper+cache",
+    "certified+cache",
+    "paper+lightbuffer",
+    "certified+lightbuffer",
+    "paper+voxels",
+    "certified+voxels",
+    "certified+lie-exact",
+)
+
 
 @dataclass(frozen=True)
 class Kind:
@@ -25,7 +37,8 @@ class Kind:
     them in any case.  `uses_cells`: its modes belong to cells of large primitives.  `has_certificates`: it makes
     certificates, or may make some.  `adaptive`: it chooses by itself whether to cull.  `measures`: it serves
     measurements only and is not offered in the window.  `addition`: it can be added to a base; `alone`: and be the base
-    itself, with nothing below it.
+    itself, with nothing below it.  `lights`: of scenes with so many it has something to say, from least to most; it
+    is right for others, too.
     """
 
     name: str
@@ -40,6 +53,7 @@ class Kind:
     measures: bool = False
     addition: bool = False
     alone: bool = False
+    lights: tuple[int, int] = (0, ANY_NUMBER)
 
     def load(self) -> Any:
         """The class that implements it."""
@@ -72,9 +86,11 @@ def bases(measures: bool = False) -> tuple[Kind, ...]:
     return tuple(kind for kind in _KINDS.values() if _can_be_base(kind) and (measures or not kind.measures))
 
 
-def additions(base: str = "") -> tuple[Kind, ...]:
-    """All that can be added to a base: all but itself."""
-    return tuple(kind for kind in _KINDS.values() if kind.addition and kind.name != base)
+def additions(base: str = "", measures: bool = False) -> tuple[Kind, ...]:
+    """All that can be added to a base, all but itself; with those that only measure, where asked for."""
+    return tuple(
+        kind for kind in _KINDS.values() if kind.addition and kind.name != base and (measures or not kind.measures)
+    )
 
 
 def _can_be_base(kind: Kind | None) -> bool:
@@ -84,7 +100,17 @@ def _can_be_base(kind: Kind | None) -> bool:
 def choice() -> str:
     """What there is to choose from, in words."""
     names = ", ".join(kind.name for kind in bases(measures=True))
-    return f"one of {names}, which may be followed by {' and '.join('+' + kind.name for kind in additions())}"
+    return f"one of {names}, which may be followed by {' and '.join(f'+{kind.name}' for kind in additions())}"
+
+
+def line_up(lights: int) -> list[str]:
+    """The methods that are worth comparing in a scene of so many lights: all bases, and what goes well together."""
+    names = [kind.name for kind in bases(measures=True)] + [name for name in TOGETHER if _is_known(name)]
+    return [name for name in names if Method.parse(name).fits(lights)]
+
+
+def _is_known(name: str) -> bool:
+    return all(part in _KINDS for part in name.split("+"))
 
 
 @dataclass(frozen=True)
@@ -126,6 +152,10 @@ class Method:
     def has(self, addition: str) -> bool:
         """Whether an addition is part of the method."""
         return addition in self.additions
+
+    def fits(self, lights: int) -> bool:
+        """Whether it has anything to say of a scene with so many lights."""
+        return all(kind.lights[0] <= lights <= kind.lights[1] for kind in self.kinds)
 
     @property
     def exact(self) -> bool:
@@ -240,3 +270,41 @@ register(
 )
 register(Kind("cache", "Tests what blocked a light before first.", "tracer.methods.cache:OccluderCache", addition=True))
 register(Kind("rest", "Counts objects that rest as static.", "tracer.methods.rest:Resting", culls=False, addition=True))
+register(
+    Kind(
+        "cache-directions",
+        "Tests first what blocked a light before in this direction.",
+        "tracer.methods.cache:DirectionCache",
+        addition=True,
+        measures=True,
+    )
+)
+register(
+    Kind(
+        "cache-tile",
+        "Tests first what blocked a light before in this tile of the picture.",
+        "tracer.methods.cache:TileCache",
+        addition=True,
+        measures=True,
+    )
+)
+register(
+    Kind(
+        "packets16",
+        "Traces rays in packets of 16 instead of 128.",
+        "tracer.methods.packets:Packets16",
+        culls=False,
+        addition=True,
+        measures=True,
+    )
+)
+register(
+    Kind(
+        "packets1",
+        "Traces rays one by one instead of in packets.",
+        "tracer.methods.packets:Packets1",
+        culls=False,
+        addition=True,
+        measures=True,
+    )
+)

@@ -4,6 +4,8 @@ Neighbouring points are shadowed by the same triangle as a rule.  So for every p
 at large primitives for every small range of directions in which the light sees them, the last occluder is
 kept.  A shadow ray is tested against that; only where it does not surely block the ray, the trees are
 asked.  Cells of a primitive share what is kept: the light cannot tell them apart.
+For comparison, a slot can also hold the last occluder of a light in a range of directions, whatever the primitive
+(theirs), or in a whole tile of the picture (Wald 2004).
 The slots are a hash table of fixed size: where two want the same, one is forgotten, which costs a test.
 Slots are read as the last frame left them.  Of what workers find for the next frame, the occluder of the
 highest number is kept, so that pictures and counters are the same for any number of threads.
@@ -30,6 +32,8 @@ Only triangles that never move are cached.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,6 +70,15 @@ DIRECTIONS = np.float32(64)  # ranges of directions along half an edge of a cube
 ROUNDINGS = np.float32(32 * 2.0**-24)
 SMALLEST, LARGEST = np.float32(1e-30), np.float32(1e12)  # volumes and lengths outside of which float32 may lose more
 ZERO, ONE = np.float32(0), np.float32(1)
+
+
+class SlotKey(NamedTuple):
+    """What a slot is found by besides the light, 1 for yes: the primitive, the range of directions in which the light
+    sees the point, and the tile of the picture."""
+
+    primitive: int
+    direction: int
+    tile: int
 
 
 class OccluderSlots:
@@ -115,14 +128,17 @@ def _range_of(x, scale):
 
 
 @inlined
-def slots_of(points, v, direction, number):
-    """Slots of the v-th vector of points, seen from light `number` in these directions."""
+def slots_of(key, tile, points, v, direction, number):
+    """Slots of the v-th vector of points of a tile, seen from light `number` in these directions, by a `SlotKey`."""
     x, y, z = direction
+    of_primitive, of_direction, of_tile = np.int32(key.primitive), np.int32(key.direction), np.int32(key.tile)
     scale = DIRECTIONS / maximum(maximum(maximum(x, -x), maximum(y, -y)), maximum(maximum(z, -z), SMALLEST))
     primitive = load_i32x16(address_of(points.primitive) + 64 * v)
-    mixed = primitive * np.int32(0x1E3779B1) + np.int32(0x3C6EF372) * np.int32(number + 1)
-    mixed = mixed + _range_of(x, scale) * np.int32(0x05EBCA77) + _range_of(y, scale) * np.int32(0x2B2AE3D3)
-    mixed = mixed + _range_of(z, scale) * np.int32(0x27D4EB2F)
+    mixed = primitive * (of_primitive * np.int32(0x1E3779B1)) + np.int32(0x3C6EF372) * np.int32(number + 1)
+    mixed = mixed + of_tile * np.int32(0x165667B1) * np.int32(tile + 1)
+    mixed = mixed + _range_of(x, scale) * (of_direction * np.int32(0x05EBCA77))
+    mixed = mixed + _range_of(y, scale) * (of_direction * np.int32(0x2B2AE3D3))
+    mixed = mixed + _range_of(z, scale) * (of_direction * np.int32(0x27D4EB2F))
     mixed = (mixed ^ (mixed >> np.int32(15))) * np.int32(0x2C1B3C6D)
     return (mixed ^ (mixed >> np.int32(13))) & np.int32(SLOTS - 1)
 
@@ -163,7 +179,7 @@ def surely_blocked(triangles, light, direction, t_min, numbers, padding):
 
 
 @subkernel
-def test_slots(cache, points, light, number, count, batch, slots, counts):
+def test_slots(cache, tile, points, light, number, count, batch, slots, counts):
     """Test the points that are to be traced against what blocked their light before; `slots` (n,) get theirs."""
     for v in range(vectors(count)):
         live = np.int64(batch.live[v])
@@ -171,7 +187,7 @@ def test_slots(cache, points, light, number, count, batch, slots, counts):
             continue
         x, y, z = load_three(points.lifted, v)
         direction = x - light[0], y - light[1], z - light[2]
-        mine = slots_of(points, v, direction, number)
+        mine = slots_of(cache, tile, points, v, direction, number)
         store(address_of(slots) + 64 * v, mine)
         known = gather_i32x16(address_of(cache.occluders), mine)
         there = known > np.int32(MISS)

@@ -27,12 +27,14 @@ class Structure(Protocol):
     all, which certificates need to know: a hit on a triangle counts only where t lies inside a box around it, which
     is larger than the triangle by the part `hit_padding` of the largest coordinate in the triangle's tree; `extent`
     is that coordinate for the trees of dynamic objects as they are placed now, 0 where their boxes are not padded.
+    `together` is how many rays may go through a tree side by side: 128, 16, or 1; set before a world is placed.
     """
 
     closest: Entry
     any_hit: Entry
     hit_padding: float
     extent: float
+    together: int
 
     def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
         """Move all present objects to their poses; `resting` (objects,) tells which count as static geometry."""

@@ -1,4 +1,8 @@
-"""The addition `cache`: what blocked a light before is tested first (`tracer.culling.occluder_cache`)."""
+"""The addition `cache`: what blocked a light before is tested first (`tracer.culling.occluder_cache`).
+
+Two older ways of remembering it stand beside ours for comparison: by direction alone (Haines, Greenberg 1986), and the
+last one of a tile (Wald 2004).
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tracer.culling.occluder_cache import OccluderSlots, remember, test_slots
+from tracer.culling.occluder_cache import OccluderSlots, SlotKey, remember, test_slots
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
 from tracer.culling.verdicts import Answered, Because, Verdict
@@ -19,13 +23,16 @@ from tracer.simd.records import I32, F32x2D, reading
 
 class Cache(NamedTuple):
     """The occluder in each slot, what this worker has found for the next frame, all triangles (t, 9), how many of them
-    never move, and the padding of boxes."""
+    never move, the padding of boxes, and what slots are found by (`SlotKey`)."""
 
     occluders: I32
     found: I32
     triangles: F32x2D
     static: int
     padding: float
+    primitive: int
+    direction: int
+    tile: int
 
 
 cache_at = reading(Cache)
@@ -37,7 +44,7 @@ def choose(data, call, light, count, counts):
     """Rays that a cached occluder surely blocks need not be traced."""
     given, cache = call_at(call), cache_at(data)
     points, batch, slots = points_in(given.points), shadow_batch_in(given.shadows), scratch_of(given)[0].view(np.int32)
-    test_slots(cache, points, given.samples[given.sample], light, count, batch, slots, i64_at(counts))
+    test_slots(cache, given.tile, points, given.samples[given.sample], light, count, batch, slots, i64_at(counts))
 
 
 @entry
@@ -49,6 +56,8 @@ def learn(data, call, light, count, counts):
 
 class OccluderCache(ShadowMethod):
     """Keeps the last occluder for every primitive, light and range of directions."""
+
+    key = SlotKey(primitive=1, direction=1, tile=0)
 
     def __init__(self, services: Services) -> None:
         super().__init__(services)
@@ -63,7 +72,7 @@ class OccluderCache(ShadowMethod):
         slots = self._slots
         slots.make_room(frame.workers)
         triangles = self.services.world.placed.triangles
-        cache = Cache(self._read, slots.found[worker], triangles, slots.static, slots.padding)
+        cache = Cache(self._read, slots.found[worker], triangles, slots.static, slots.padding, *self.key)
         return [Stage(cache, choose=choose, learn=learn if learns else None, rows=SLOT_ROWS, occluders=learns)]
 
     def keep(self, frame: FrameView) -> None:
@@ -82,3 +91,15 @@ class OccluderCache(ShadowMethod):
     @property
     def memory_bytes(self) -> int:
         return self._slots.occluders.nbytes + self._slots.found.nbytes
+
+
+class DirectionCache(OccluderCache):
+    """Keeps the last occluder for every light and range of directions, whatever primitive it shines on."""
+
+    key = SlotKey(primitive=0, direction=1, tile=0)
+
+
+class TileCache(OccluderCache):
+    """Keeps the last occluder for every light and tile of the picture."""
+
+    key = SlotKey(primitive=0, direction=0, tile=1)

@@ -28,6 +28,7 @@ from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.rest import Resting
 from tracer.culling.stages import COLUMNS, Stages
 from tracer.culling.verdicts import Answered, Because, Verdict
+from tracer.geometry.accelerators import MOST_TOGETHER
 from tracer.geometry.camera import Pinhole
 from tracer.kernels import Entry
 from tracer.shading.buffers import Buffers
@@ -106,6 +107,10 @@ class ShadowMethod:
 
     #: Other methods that this one is made of, which live as long as it does.
     parts: tuple[ShadowMethod, ...] = ()
+    #: The kernels of its stages, to be made ready before a frame needs them.
+    entries: tuple[Entry, ...] = ()
+    #: How many rays may go through a tree side by side in its frames (`tracer.geometry.world.World.place`).
+    together: int = MOST_TOGETHER
 
     def __init__(self, services: Services) -> None:
         self.services = services

@@ -220,3 +220,8 @@ def method(text: str) -> str:
         return str(Method.parse(text))
     except ValueError:
         raise argparse.ArgumentTypeError(f"invalid choice: {text!r}; it is {choice()}") from None
+
+
+def methods_or_all(text: str) -> list[str]:
+    """Names of methods, or ["all"]."""
+    return ["all"] if text.strip() == "all" else several(method)(text)

@@ -16,6 +16,7 @@ from tracer.experiment import REFERENCE, Results
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.lamp_experiment import kinds_of_lamps
+from tracer.method import line_up
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli import lamp_bench
@@ -23,8 +24,21 @@ from viewer.cli.console import Work, print_table, working
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import exports
-from viewer.output.reports import LINES, WRONG, frames_in_words
+from viewer.output.reports import LINES, WRONG, frames_in_words, leaders
 from viewer.util.messages import printable
+
+ALL = "all"  # methods that are worth comparing in the scene
+MOST_COLUMNS = 5  # of methods
+# What columns are called where methods have lines; the other figures are left to the files.
+_COLUMNS = {
+    "traversal steps saved, average": "steps saved",
+    "intersection tests saved, average": "tests saved",
+    WRONG: "wrong",
+    "time of a frame, median": "a frame",
+    "time of all frames": "all frames",
+    "  of it preparing": "preparing",
+    "memory of the method": "memory",
+}
 
 
 def bench(path: Path, options: Namespace) -> bool:
@@ -36,7 +50,7 @@ def bench(path: Path, options: Namespace) -> bool:
     radii, samples = options.lamp_radius or [None], options.lamp_samples or [None]
     options.lamp_radius, options.lamp_samples = radii[0], samples[0]
     settings = tracing_settings(options)
-    methods = experiment.with_reference(options.methods)
+    methods = options.methods if options.methods == [ALL] else experiment.with_reference(options.methods)
     wanted = exports.wanted_files(options)
     if "plot" in wanted and methods == [REFERENCE]:
         raise ValueError(f"--plot: nothing to compare with {REFERENCE}; give another of --methods")
@@ -47,6 +61,8 @@ def bench(path: Path, options: Namespace) -> bool:
         scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
+        if methods == [ALL]:
+            methods = line_up(len(scene.lights))
         times = experiment.path_times(scene, options.path_frames)
         numbers = frame_range(options.frames, len(times))
         prepare_kernels(work, len(scene.lights), options.accelerator, *methods)
@@ -58,6 +74,8 @@ def bench(path: Path, options: Namespace) -> bool:
             work.note(f"cancelled after {len(results.frames)} of {len(numbers)} frames; the table is of these")
         failures = exports.write_files(exports.experiment_writers(options.verify), results, wanted)
     print_table(_table(results, options.verify))
+    for line in leaders(experiment.table(results)):
+        print(line)
     if failures:
         raise OSError("; ".join(failures))
     return finished
@@ -128,18 +146,26 @@ def frame_range(text: str | None, count: int) -> range:
 
 
 def _table(results: Results, verified: bool) -> Table:
-    """A column per method, so that it fits terminals of 80 columns."""
+    """A column for each of a few methods, which fits terminals of 80 columns, or else a line for each."""
     width, height = results.size
     title = (
         f"Work of shadow rays\n{printable(Path(results.scene).name)}, {width} × {height}, {frames_in_words(results)}"
     )
     table = Table(title=title, title_justify="left", title_style="bold", caption_justify="left")
     rows = experiment.table(results)
-    table.add_column("")
-    for row in rows:
-        table.add_column(row.method.replace("+", "\n+"), justify="right")
-    for heading, cell in LINES:
-        if verified or heading != WRONG:
+    lines = [line for line in LINES if verified or line[0] != WRONG]
+    if len(rows) <= MOST_COLUMNS:
+        table.add_column("")
+        for row in rows:
+            table.add_column(row.method.replace("+", "\n+"), justify="right")
+        for heading, cell in lines:
             table.add_row(heading, *(cell(row) for row in rows))
+    else:
+        table.add_column("method", no_wrap=True)
+        shown = [(_COLUMNS[heading], cell) for heading, cell in lines if heading in _COLUMNS]
+        for heading, _ in shown:
+            table.add_column(heading, justify="right")
+        for row in rows:
+            table.add_row(row.method, *(cell(row) for _, cell in shown))
     table.caption = "times include verifying" if verified else "--verify counts wrong answers"
     return table

@@ -194,5 +194,5 @@ def methods() -> str:
     from tracer.method import additions, bases
 
     lines = [(kind.name, kind.summary) for kind in bases(measures=True)]
-    lines += [(f"+{kind.name}", kind.summary) for kind in additions()]
+    lines += [(f"+{kind.name}", kind.summary) for kind in additions(measures=True)]
     return "\nmethods:\n" + "".join(f"  {name:10} {summary}\n" for name, summary in lines)

@@ -15,6 +15,7 @@ from viewer.cli.argument_types import (
     factors,
     lamp_samples,
     method,
+    methods_or_all,
     number,
     pixel,
     several,
@@ -78,10 +79,11 @@ def bench() -> Parser:
     add_scene(parser)
     add(
         "--methods",
-        type=several(method),
+        type=methods_or_all,
         default=["paper"],
         metavar="M,...",
-        help=f"which methods: {methods()}; none is always measured too (default: paper)",
+        help=f"which methods: {methods()}; none is always measured too; or all, for those that are worth comparing in "
+        "the scene (default: paper)",
     )
     add("--path-frames", type=count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
     add("--frames", metavar="A:B", help="only the frames A to B - 1 of the path")
@@ -225,7 +227,7 @@ def methods() -> str:
     from tracer.method import additions, bases
 
     names = [kind.name for kind in bases(measures=True)]
-    added = " or ".join(f"+{kind.name}" for kind in additions())
+    added = " or ".join(f"+{kind.name}" for kind in additions(measures=True))
     return f"{', '.join(names[:-1])} or {names[-1]}, each with or without {added}, as in certified+cache"
 
 

@@ -11,8 +11,10 @@ from pathlib import Path
 from tracer import experiment, lamp_experiment, zoom
 from tracer.experiment import REFERENCE, Row
 from tracer.lamp_experiment import LampResults, LampRow
+from tracer.method import Method
 from tracer.zoom import Approach, Change, Step
 from viewer.state import terms
+from viewer.util.numbers import memory
 
 # --- experiments -----------------------------------------------------------------------------------
 
@@ -31,8 +33,34 @@ LINES: tuple[tuple[str, Callable[[Row], str]], ...] = (
     ("extra occlusion tests per pixel", lambda row: f"{row.extra_tests_per_pixel:.3f}"),
     (WRONG, lambda row: f"{row.wrong:,} ({row.wrong_part:.3%})"),
     ("time of a frame, median", lambda row: f"{1000.0 * row.frame_seconds:,.0f} ms"),
+    ("time of all frames", lambda row: f"{row.path_seconds:,.2f} s"),
+    ("  of it preparing", lambda row: f"{row.build_seconds:,.2f} s" if row.build_seconds >= 0.005 else ""),
+    ("memory of the method", lambda row: memory(row.memory_bytes) if row.memory_bytes else ""),
 )
 """The table's lines: what each is called, and what it says of a method; WRONG means nothing unless verified."""
+
+
+def leaders(rows: Sequence[Row]) -> list[str]:
+    """Which exact method is the best of several in each respect, a line for each; none where there is nothing to
+    choose from."""
+    choice = [row for row in rows if Method.parse(row.method).exact and not _measures_only(row.method)]
+    if len(choice) < 3:
+        return []
+    steps, tests, time = (
+        max(choice, key=lambda row: row.average_steps),
+        max(choice, key=lambda row: row.average_tests),
+        min(choice, key=lambda row: row.path_seconds),
+    )
+    (none,) = (row for row in rows if row.method == REFERENCE)
+    return [
+        f"fewest steps: {steps.method} ({steps.average_steps:.1%} saved)",
+        f"fewest tests: {tests.method} ({tests.average_tests:.1%} saved)",
+        f"least time: {time.method} ({time.path_seconds / none.path_seconds:.2f} times that of {REFERENCE})",
+    ]
+
+
+def _measures_only(method: str) -> bool:
+    return any(kind.measures for kind in Method.parse(method).kinds)
 
 
 def frames_in_words(results: experiment.Results) -> str:

@@ -48,7 +48,7 @@ def toggled(method: str, addition: str) -> str:
 
 def in_order(methods: Iterable[str]) -> list[str]:
     """Each once: in the order of bases, and those with more additions later."""
-    names, extras = [kind.name for kind in bases(measures=True)], [kind.name for kind in additions()]
+    names, extras = [kind.name for kind in bases(measures=True)], [kind.name for kind in additions(measures=True)]
 
     def rank(name: str) -> tuple[int, list[bool]]:
         method = Method.parse(name)
@@ -60,4 +60,4 @@ def in_order(methods: Iterable[str]) -> list[str]:
 def _named(base: str, chosen: Iterable[str]) -> str:
     """The name of a method with these additions, in their usual order."""
     wanted = set(chosen)
-    return "+".join([base, *(kind.name for kind in additions(base) if kind.name in wanted)])
+    return "+".join([base, *(kind.name for kind in additions(base, measures=True) if kind.name in wanted)])

@@ -19,3 +19,8 @@ def percent(part: float, whole: float) -> str:
 def several(number: int, name: str, names: str = "") -> str:
     """So many of something: 1 node, 2 nodes."""
     return f"{count(number)} {name if number == 1 else names or name + 's'}"
+
+
+def memory(size: int) -> str:
+    """So many bytes, as people say it: 850 kB, 12.3 MB."""
+    return f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{max(size / 1e3, 0.1):.3g} kB"

@@ -40,6 +40,7 @@ def test_bench_writes_an_entry_per_frame_and_prints_the_table(tmp_path: Path, ca
     shared |= {"lamp_radius": None, "lamp_samples": None}
     assert results["settings"] == {**shared, "verify": True} and whole["settings"] == {**shared, "verify": False}
     assert results["version"] == program_version()
+    assert {len(v) for figures in ("build_seconds", "memory_bytes") for v in results[figures].values()} == {4}
     assert results["size"] == [48, 32]
     assert results["frames"] == [1, 2, 3, 4]
     assert list(results["methods"]) == ["none", "paper"]
@@ -250,3 +251,16 @@ def test_ctrl_c_keeps_what_is_done(tmp_path: Path):
     assert told and len(json.loads(path.read_text())["frames"]) == int(told[1]) >= 2
     assert f"default.aff, 64 × 64, {told[1]} of 100000 frames, stopped" in terminal.said
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_all_methods_have_a_line_each_and_the_best_is_named(tmp_path: Path, capsys) -> None:
+    results = bench(tmp_path, "--methods", "all", "--frames", "0:3")
+    assert {"none", "paper", "certified", "free", "certified+cache"} <= set(results["methods"])
+    out = capsys.readouterr().out
+    for name in results["methods"]:
+        assert re.search(rf"^\│ {re.escape(name)} +│", out, re.MULTILINE), name
+    steps = {name: sum(figures["shadow_traversal_steps"]) for name, figures in results["methods"].items()}
+    assert 0 == steps["free"] < steps["none"]
+    (best,) = re.findall(r"^fewest steps: (\S+) ", out, re.MULTILINE)
+    assert best not in ("free", "paper", "cells"), "it measures only, or is not exact"
+    assert max(results["memory_bytes"]["certified"]) > max(results["memory_bytes"]["none"]) == 0

@@ -10,6 +10,7 @@ import numpy as np
 from numba.core import types
 from numba.extending import overload
 
+from tracer.geometry.accelerators import MOST_TOGETHER
 from tracer.geometry.boxes import inverse
 from tracer.geometry.queries import (
     BLOCKED,
@@ -52,7 +53,7 @@ from tracer.simd import (
 )
 
 LANES = 16
-PACKET = 128  # rays
+PACKET = MOST_TOGETHER  # rays
 ROW = 4 * PACKET  # bytes of one number of each ray
 FAR = np.float32(1e30)  # no hit is farther, and every empty child is
 LARGEST = np.float32(1e29)  # of t_max, short of what stands for a blocked ray

@@ -15,10 +15,10 @@ CHILDREN = 4 * layout.CHILDREN  # offset of the children's codes in a node
 NUMBERS, BOX, COUNT = 4 * layout.PRIMITIVES, 4 * layout.BOX, 4 * layout.COUNT  # offsets in a block
 
 # A placed world, as offsets in bytes: for each of its trees the addresses of nodes and blocks and the number of the
-# root; then the address of the quadrics as seen from the world, the number of triangles, and the trees that are worth
-# asking, as bits: the static one, and those of the others that hold anything.
+# root; then the address of the quadrics as seen from the world, the number of triangles, the trees that are worth
+# asking, as bits: the static one, and those of the others that hold anything; and how many rays may go together.
 NODES, BLOCKS, ROOT, TREE = 0, 8, 16, 24
-QUADRICS, TRIANGLE_COUNT, TREES = range(3 * TREE, 3 * TREE + 24, 8)
+QUADRICS, TRIANGLE_COUNT, TREES, TOGETHER = range(3 * TREE, 3 * TREE + 32, 8)
 STATIC_TREE, RESTING_TREE, MOVING_TREE = range(3)
 STATIC_TREES, DYNAMIC_TREES = 1 << STATIC_TREE | 1 << RESTING_TREE, 1 << MOVING_TREE  # as bits, by what is asked for
 

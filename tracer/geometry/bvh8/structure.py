@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.geometry.accelerators import MOST_TOGETHER
 from tracer.geometry.boxes import NO_BOX, PADDING, union_of
 from tracer.geometry.building import watched
 from tracer.geometry.bvh8 import traverse
@@ -38,6 +39,7 @@ class Bvh8:
 
     closest, any_hit = traverse.closest, traverse.any_hit
     hit_padding = PADDING
+    together = MOST_TOGETHER
 
     def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
         self._primitives, self._objects = primitives, objects
@@ -112,7 +114,7 @@ class Bvh8:
         there = 1 << STATIC_TREE | bool(resting.any()) << RESTING_TREE | bool(moving.any()) << MOVING_TREE
         self._there = there
         triangles, quadrics = len(primitives.triangles), self.world_quadrics.ctypes.data
-        self._data = np.array([*trees, quadrics, triangles, there], np.int64)
+        self._data = np.array([*trees, quadrics, triangles, there, self.together], np.int64)
         return Placed(
             primitives.triangles,
             primitives.quadrics,

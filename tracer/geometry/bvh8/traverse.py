@@ -3,7 +3,8 @@
 The rays of a packet lie in vectors of sixteen.  Vectors whose rays head the same way go through the trees together, as
 one group (`packet_tree`).  Each ray of the others goes its own way, for the nearest hits all at the same time
 (`stream`), for any one after the other (`single_ray`).  The directions decide which.  A ray's answer does not depend on
-the company it travels in, so that only time is at stake.
+the company it travels in, so that only time is at stake: to see how much, a world can be placed for
+smaller packets.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from tracer.geometry.bvh8.packet import (
 )
 from tracer.geometry.bvh8.packet_group import WIDEST, WIDEST_NEAREST, group_of, lead_of
 from tracer.geometry.bvh8.packet_tree import STACK, any_in_tree, closest_in_tree
-from tracer.geometry.bvh8.placed import MOVING_TREE, TREES, tree_of, trees_asked
+from tracer.geometry.bvh8.placed import MOVING_TREE, TOGETHER, TREES, tree_of, trees_asked
 from tracer.geometry.bvh8.single_ray import ROOM, SINGLE_MEMORY, any_one_by_one
 from tracer.geometry.bvh8.stream import STREAM_MEMORY, closest_in_stream
 from tracer.geometry.queries import WHICH
@@ -60,19 +61,21 @@ def _trace(data, batch, first, last, counts, nearest):
     stream = local_memory(STREAM_MEMORY) if nearest else local_memory(SINGLE_MEMORY)
     which, widest = load_i64(batch + WHICH), WIDEST_NEAREST if nearest else WIDEST
     trees = load_i64(data + TREES) if nearest else trees_asked(data, which)
+    together_at_most = load_i64(data + TOGETHER)
+    size = PACKET if together_at_most == 1 else together_at_most  # rays that go alone are read as many at a time
     occluders = local_memory(24)  # the last block met in each tree; block 0 is empty
     for number in range(3):
         store(occluders + 8 * number, np.int64(0))
-    for start in range(first, last, PACKET):
+    for start in range(first, last, size):
         # Read the packet, and see which of its vectors hold a ray to trace.
-        n = min(PACKET, last - start)
+        n = min(size, last - start)
         vectors, low, high, finite = fill(memory, batch, start, n)
         todo, apart = open_vectors(memory, vectors), np.int64(0)
         while todo != 0:
             # Leave the first vector for later, or trace its rays one by one, if they have no direction in common.
             v = lowest_bit(todo)
             axis, way, together = lead_of(memory, v, widest)
-            if not (finite and together):
+            if not (finite and together and together_at_most > 1):
                 if nearest:
                     apart |= np.int64(1) << v
                 else:

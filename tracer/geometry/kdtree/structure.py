@@ -12,6 +12,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.geometry.accelerators import MOST_TOGETHER
 from tracer.geometry.boxes import OUTWARDS, transform_boxes, triangle_boxes
 from tracer.geometry.building import watched
 from tracer.geometry.kdtree import traverse
@@ -38,6 +39,7 @@ class KdTree:
     """See `tracer.geometry.structure`; raises Cancelled if `progress` does while trees are being built."""
 
     closest, any_hit = traverse.closest, traverse.any_hit
+    together = MOST_TOGETHER  # of which it takes no note: it traces rays one by one
     extent = 0.0  # boxes of dynamic objects are not padded
     hit_padding = 1e30  # and a hit need not lie in any
 

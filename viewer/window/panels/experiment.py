@@ -33,7 +33,11 @@ from viewer.window.widgets import (
 )
 
 _WORKS = (("steps", "steps"), ("tests", "tests"))
-_SHORT = ("steps saved", "  most (frame)", "tests saved", "  most (frame)", "extra / pixel", "wrong", "time in window")
+_SHORT = (
+    "steps saved", "  most (frame)", "tests saved", "  most (frame)", "extra / pixel", "wrong", "time in window",
+    "  all frames", "  preparing", "memory",
+)  # fmt: skip
+_TIMES = _SHORT[6:9]
 _TIME_TIP = "measured while the window draws as well: do not compare it with times of shadowcull bench"
 _FEWEST_FRAMES, _LEAST_TOP = 10, 2.0  # frames and percents that the plot's axes span at least
 _HEADING, _REFERENCE, _METHOD = 6.8, 5.4, 7.4  # widths of the table's columns in ems
@@ -102,8 +106,9 @@ def _methods(plan: ExperimentPlan) -> None:
 
 
 def _method_ticks(plan: ExperimentPlan) -> None:
-    every = additions()
-    sets: list[tuple[Kind, ...]] = [added for n in range(len(every) + 1) for added in combinations(every, n)]
+    small, whole = ([kind for kind in additions() if kind.alone is alone] for alone in (False, True))
+    sets: list[tuple[Kind, ...]] = [added for n in range(len(small) + 1) for added in combinations(small, n)]
+    sets += [(kind,) for kind in whole]  # methods in their own right: one of them at a time
     if not imgui.begin_table("methods", 1 + len(sets), int(imgui.TableFlags_.sizing_fixed_fit)):
         return
     imgui.table_next_column()
@@ -116,8 +121,11 @@ def _method_ticks(plan: ExperimentPlan) -> None:
         imgui.table_next_column()
         imgui.text_unformatted(base.name)
         tooltip(base.summary)
-        for method in ("+".join(kind.name for kind in (base, *added)) for added in sets):
+        for added in sets:
             imgui.table_next_column()
+            if base in added:
+                continue
+            method = "+".join(kind.name for kind in (base, *added))
             imgui.begin_disabled(method == REFERENCE)
             changed, _ = imgui.checkbox(f"##{method}", method == REFERENCE or method in plan.methods)
             imgui.end_disabled()
@@ -236,7 +244,7 @@ def _table(ui: Ui, run: Experiment | None, results: Results | None) -> None:
             continue
         imgui.table_next_column()
         clipped(short, QUIET)
-        tooltip(f"{heading.strip()}, {_TIME_TIP}" if short is _SHORT[-1] else heading.strip())
+        tooltip(f"{heading.strip()}, {_TIME_TIP}" if short in _TIMES else heading.strip())
         for line in rows:
             imgui.table_next_column()
             clipped(in_window_style(cell(line)), ERROR if heading == WRONG and line.wrong else None)
