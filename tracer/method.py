@@ -245,6 +245,7 @@ register(
         "voxels",
         "Culls by cubes of space that are lit, or in shadow, as a whole; never wrong.",
         "tracer.methods.voxels:Voxels",
+        has_certificates=True,
         addition=True,
         alone=True,
     )
@@ -254,6 +255,7 @@ register(
         "lie-exact",
         "Asks what is proven to block a light from a cell of space, and no light hidden from it; never wrong.",
         "tracer.methods.lie:Environments",
+        has_certificates=True,
         addition=True,
         alone=True,
     )
@@ -264,6 +266,7 @@ register(
         "Local illumination environments, by samples as published; wrong now and then.",
         "tracer.methods.lie:SampledEnvironments",
         exact=False,
+        has_certificates=True,
         addition=True,
         alone=True,
     )

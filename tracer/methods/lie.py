@@ -28,6 +28,7 @@ from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.parallel import for_each_chunk
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of
+from tracer.shading.wave import wave_in
 from tracer.simd import (
     address_of,
     bits_of,
@@ -48,12 +49,18 @@ from tracer.statistics import FrameStatistics
 CELL_ROWS = 1
 WORDS = 16  # of 64 vectors: as many as the waves of four tiles have
 
+NOWHERE = np.empty(0, np.int32)
+
 
 @entry
 def find(data, call, light, count, counts):
     """In which cell does the shadow ray of each point end?"""
-    given = call_at(call)
-    find_cells(environments_at(data), points_in(given.points), count, scratch_of(given)[0].view(np.int32))
+    given, environments, cells = call_at(call), environments_at(data), scratch_of(call_at(call))[0].view(np.int32)
+    find_cells(environments, points_in(given.points), count, cells)
+    if given.bounce == 0 and len(environments.cell) > 0:
+        wave = wave_in(given.rays, count)
+        for i in range(wave.size):
+            environments.cell[given.place[wave.pixel[i]]] = cells[i]
 
 
 @entry
@@ -119,10 +126,11 @@ class Environments(ShadowMethod):
         super().__init__(services)
         self.store: EnvironmentStore | None = None
         self._memory = 0.0
-        self._counts = Counts()
+        self._counts, self._cell = Counts(), NOWHERE
 
     def begin(self, frame: FrameView) -> None:
         self._counts = Counts()
+        self._cell = np.full(frame.settings.width * frame.settings.height, -1, np.int32)
 
     def follow(self, frame: FrameView) -> None:
         settings, lamps = frame.settings, frame.shading.lamps
@@ -143,7 +151,10 @@ class Environments(ShadowMethod):
 
     def _want(self, frame: FrameView, store: EnvironmentStore) -> None:
         """Want the cells in which primary hits lie."""
-        view, shares = store.view(np.zeros((0, WORDS), np.int64)), np.array_split(np.arange(len(frame.tiles)), 16)
+        view, shares = (
+            store.view(np.zeros((0, WORDS), np.int64), NOWHERE),
+            np.array_split(np.arange(len(frame.tiles)), 16),
+        )
         block = pack(view)
 
         def work(chunk: int, worker: int) -> None:
@@ -156,7 +167,7 @@ class Environments(ShadowMethod):
         if not len(self.store.places):
             return []
         looks = np.zeros((len(self.store.places), WORDS), np.int64)
-        view = self.store.view(looks)
+        view = self.store.view(looks, self._cell if learns else NOWHERE)
         chooses = choose if self.store.held else None
         return [Stage(view, find=find, select=select, choose=chooses, rows=CELL_ROWS, looks=looks)]
 
@@ -164,10 +175,17 @@ class Environments(ShadowMethod):
         assert self.store is not None, "followed before"
         self.store.keep_within()
 
+    def layers(self, frame: FrameView) -> dict[str, NDArray]:
+        assert self.store is not None, "followed before"
+        cell = self._cell.reshape(frame.buffers.primitive.shape)
+        return {"cells": cell, "certificates": self.store.at_pixels(cell)}
+
     def report(self, statistics: FrameStatistics) -> None:
         statistics.certificates = self._counts.certificates
         statistics.certificate_steps = self._counts.steps
         statistics.certificate_tests = self._counts.tests
+        if self.store is not None:
+            statistics.decision = statistics.decision or self.store.told
 
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
         return None if self.store is None else self.store.state_at(point, light)

@@ -25,19 +25,27 @@ from tracer.geometry.boxes import segments_miss_box
 from tracer.kernels import Entry, entry
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.shading.points import points_in
+from tracer.shading.wave import wave_in
 from tracer.simd import address_of, bits_of, i32x16, i64_at, load_i32x16, load_three, mask16, ones, select, store
 from tracer.statistics import FrameStatistics
+
+NOWHERE = np.empty(0, np.int32)
 
 
 @entry
 def find(data, call, light, count, counts):
     """In which voxel does the shadow ray of each point end?"""
-    given, grid = call_at(call), voxel_view_at(data).grid
+    given, voxels = call_at(call), voxel_view_at(data)
+    grid = voxels.grid
     points, found = points_in(given.points), point_words_in(scratch_of(given))
     start_wave(found, count)
     for v in range(vectors(count)):
         x, y, z = load_three(points.lifted, v)
         store(address_of(found.unit) + 64 * v, voxels_at(grid, x, y, z))
+    if given.bounce == 0 and len(voxels.cell) > 0:
+        wave = wave_in(given.rays, count)
+        for i in range(wave.size):
+            voxels.cell[given.place[wave.pixel[i]]] = found.unit[i]
 
 
 @entry
@@ -86,10 +94,11 @@ class Voxels(ShadowMethod):
         super().__init__(services)
         self.store: VoxelStore | None = None
         self._memory = 0.0
-        self._counts = Counts()
+        self._counts, self._cell = Counts(), NOWHERE
 
     def begin(self, frame: FrameView) -> None:
         self._counts = Counts()
+        self._cell = np.full(frame.settings.width * frame.settings.height, -1, np.int32)
 
     def follow(self, frame: FrameView) -> None:
         settings = frame.settings
@@ -108,12 +117,21 @@ class Voxels(ShadowMethod):
 
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
         assert self.store is not None, "followed before"
-        return [Stage(self.store.view(), find=find, choose=choose, rows=POINT_WORD_ROWS)]
+        return [
+            Stage(self.store.view(self._cell if learns else NOWHERE), find=find, choose=choose, rows=POINT_WORD_ROWS)
+        ]
+
+    def layers(self, frame: FrameView) -> dict[str, NDArray]:
+        assert self.store is not None, "followed before"
+        cell = self._cell.reshape(frame.buffers.primitive.shape)
+        return {"cells": cell, "certificates": self.store.at_pixels(cell)}
 
     def report(self, statistics: FrameStatistics) -> None:
         statistics.certificates = self._counts.certificates
         statistics.certificate_steps = self._counts.steps
         statistics.certificate_tests = self._counts.tests
+        if self.store is not None:
+            statistics.decision = statistics.decision or self.store.told
 
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
         return None if self.store is None else (self.store.state_at(point, light), ())

@@ -57,6 +57,7 @@ class EnvironmentView(NamedTuple):
         resting: (k, 6) float32, boxes around what rests now.
         by_ray: whether steps and tests are counted ray by ray, or for vectors of sixteen.
         looks: (lights, words) int64 (`tracer.culling.stages.Stages`), or without rows.
+        cell: (pixels,) int32, gets the cell at each primary hit; empty where nobody wants to know.
     """
 
     frame: Frame
@@ -74,6 +75,7 @@ class EnvironmentView(NamedTuple):
     resting: F32x2D
     by_ray: bool
     looks: I64x2D
+    cell: I32
 
 
 environments_at = reading(EnvironmentView)

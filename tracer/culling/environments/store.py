@@ -29,7 +29,7 @@ from tracer.culling.environments.octree import (
     make_frame,
 )
 from tracer.culling.environments.settle import settle
-from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.culling.modes import FULL_SHADOW, FULLY_RENDERED, MAX_CULLED_LIGHTS, NON_SHADOW, word_type
 from tracer.culling.regions import certify
 from tracer.culling.regions.blockers import find_blockers
 from tracer.culling.regions.certify import leaves_left
@@ -48,6 +48,7 @@ BLOCKERS = 8  # of a light, at most, or a cell is divided
 CHUNK, BATCH = 64, 4096  # cells that a thread takes at a time, and that are settled before the clock is looked at
 SHARE = 6  # levels below the root down to which cells are divided for the lights that are not held
 FEW_LIGHTS = 4  # of these: cells with no more are not divided for their sake
+CANDIDATES = 3  # in a word, instead of a shadow mode
 MOVED = 8  # the part, one in so many, of lights that may have moved before all is proved anew
 EACH = 80  # bytes of a light and primitive, about
 
@@ -331,9 +332,9 @@ class EnvironmentStore:
 
     # What is known.
 
-    def view(self, looks: NDArray[np.int64]) -> EnvironmentView:
-        """What kernels are given now; `looks` has rows where lights are to be selected."""
-        known = self._known.copy()
+    def view(self, looks: NDArray[np.int64], cell: NDArray[np.int32]) -> EnvironmentView:
+        """What kernels are given now; `looks` has rows where lights are to be selected, and cell (pixels,) int32 gets
+        the cells of primary hits, if it is not empty."""
         return EnvironmentView(
             self.frame,
             self.child,
@@ -346,10 +347,42 @@ class EnvironmentStore:
             self.last,
             self.lights,
             self.geometry.occluders.light_space,
-            known,
+            self._known.copy(),
             self._resting,
             self._by_ray,
             looks,
+            cell,
+        )
+
+    def at_pixels(self, cell: NDArray[np.int32]) -> NDArray[np.unsignedinteger]:
+        """What is known of cells, of any shape, as words like those of `tracer.culling.certified.cells`."""
+        word = word_type(len(self.places))
+        cells, where = np.unique(cell, return_inverse=True)
+        words = np.full(len(cells), FULLY_RENDERED, word)
+        for light in range(min(len(self.places), MAX_CULLED_LIGHTS)):
+            if light in self.further:
+                state = np.array([self._hides(int(number), light) for number in cells]) * FULL_SHADOW
+            else:
+                code = self.codes[np.maximum(cells, 0), light] if light < self.held else np.full(len(cells), UNKNOWN)
+                state = np.select([code == HIDDEN, code == LIT, code > LIT], [FULL_SHADOW, NON_SHADOW, CANDIDATES], 0)
+            words |= state.astype(word) << word(2 + 2 * light)
+        words[cells <= OUTSIDE] = 0
+        return words[where].reshape(cell.shape)
+
+    def _hides(self, cell: int, light: int) -> bool:
+        """Whether a light that is not held is known to be hidden from a cell."""
+        if cell <= OUTSIDE or self.first[cell] < 0 or not self._known[light]:
+            return False
+        return light not in self.lights[self.first[cell] : self.last[cell]]
+
+    @property
+    def told(self) -> str:
+        """What there is no memory for, in a sentence, or nothing."""
+        lacking = min(len(self.places), MAX_CULLED_LIGHTS) - self.held
+        if lacking <= 0 or not len(self.geometry.rows):
+            return ""
+        return (
+            f"There is memory for the blockers of {self.held} lights; of {lacking} more only what hides them is known."
         )
 
     def cell_at(self, point: NDArray[np.float32]) -> int:
@@ -366,16 +399,15 @@ class EnvironmentStore:
         return cell
 
     def state_at(self, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
-        """What is known of a light in the cell of a point (3,): "full", "null", "blockers" with these, or "unknown"."""
+        """What is known of a light in the cell of a point (3,), and its blockers there: "full", "lit", "candidates" or
+        "none", the words that certificates have."""
         cell = self.cell_at(point)
         if light in self.further:
-            if cell == OUTSIDE or self.first[cell] < 0 or not self._known[light]:
-                return "unknown", ()
-            return ("unknown" if light in self.lights[self.first[cell] : self.last[cell]] else "full"), ()
+            return ("full" if self._hides(cell, light) else "none"), ()
         code = int(self.codes[cell, light]) if light < self.held else UNKNOWN
         if code > LIT:
-            return "blockers", tuple(self.names[code + 1 : code + 1 + self.names[code]].tolist())
-        return {LIT: "null", HIDDEN: "full", UNKNOWN: "unknown"}[code], ()
+            return "candidates", tuple(self.names[code + 1 : code + 1 + self.names[code]].tolist())
+        return {LIT: "lit", HIDDEN: "full", UNKNOWN: "none"}[code], ()
 
 
 def _room_for(array: NDArray[np.int32], count: int) -> NDArray[np.int32]:

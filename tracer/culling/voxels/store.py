@@ -17,7 +17,7 @@ from tracer.culling.certified.error_bounds import BOX, LANES, REPORTED
 from tracer.culling.certified.light_space import FARTHEST, LIGHT_ROW, OF_U
 from tracer.culling.certified.scheduler import Counts
 from tracer.culling.certified.static_geometry import StaticGeometry
-from tracer.culling.modes import MAX_CULLED_LIGHTS, forget_lights, shadow_mode, word_type
+from tracer.culling.modes import FULLY_RENDERED, MAX_CULLED_LIGHTS, forget_lights, shadow_mode, word_type
 from tracer.culling.rest import Resting
 from tracer.culling.shadow_modes import words_at
 from tracer.culling.voxels.classify import CERTIFICATES, COUNTERS, STEPS, TESTS, Light, classify_blocks
@@ -38,7 +38,7 @@ FEW = 8  # boxes of objects that rest, at most: more become one
 AWAY = 1e-4  # of a scene's largest coordinate, by which these boxes are larger
 NEVER_HIT = np.zeros(LIGHT_ROW, np.float32)  # in light space: a triangle without any area misses for certain
 NEVER_HIT[OF_U] = -1.0
-STATES = "unknown", "full", "null"
+STATES = "none", "full", "lit"  # of a voxel that is unknown, full and null: the words that certificates have
 
 
 def boxes_at_rest(resting: Resting, largest: float) -> NDArray[np.float32]:
@@ -78,7 +78,9 @@ class VoxelStore:
         held = min(lights, MAX_CULLED_LIGHTS, int(memory / 2) // max(1, 4 * LIGHT_ROW * len(rows)))
         self._held = held if len(rows) else 0
         word = word_type(self._held)
-        wanted = voxels_for(len(rows), np.dtype(word).itemsize + 4 + NAMED, memory / 2)
+        each = np.dtype(word).itemsize + 4 + NAMED
+        wanted = voxels_for(len(rows), each, memory / 2)
+        self._coarser = wanted < voxels_for(len(rows), each, np.inf)
         self.grid: VoxelGrid = make_grid(self._geometry.bounds, wanted)
         self.words = np.zeros(self.grid.voxels + 1, word)
         self._light_space = aligned_rows(self._held * len(rows), LIGHT_ROW).reshape(self._held, len(rows), LIGHT_ROW)
@@ -105,6 +107,17 @@ class VoxelStore:
     def held(self) -> int:
         """How many lights, the first ones, there is room for."""
         return self._held
+
+    @property
+    def told(self) -> str:
+        """What there is no memory for, in a sentence, or nothing."""
+        lights, grid = min(len(self.places), MAX_CULLED_LIGHTS), self.grid
+        said = []
+        if self._coarser:
+            said.append(f"Memory lowers the grid to {grid.nx} x {grid.ny} x {grid.nz} voxels.")
+        if self._held < lights and len(self._geometry.rows):
+            said.append(f"There is memory for {self._held} of {lights} lights; rays to the others are traced.")
+        return " ".join(said)
 
     def follow(self, lamps: Lamps, resting: Resting) -> None:
         """Lights are where these lamps have them now, and this rests."""
@@ -182,10 +195,9 @@ class VoxelStore:
         self.words &= ~self.words.dtype.type(3)
         self.words[:-1] |= (counts[1:] > 0).astype(self.words.dtype)
 
-    def view(self) -> VoxelView:
-        """What kernels are given now."""
+    def view(self, cell: NDArray[np.int32]) -> VoxelView:
+        """What kernels are given now; cell (pixels,) int32 gets the voxels of primary hits, if it is not empty."""
         slot = np.where(np.isnan(self.places[:, 0]), -1, np.arange(len(self.places))).astype(np.int32)
-        self._slot = slot
         return VoxelView(
             self.grid,
             words_at(self.words),
@@ -195,14 +207,22 @@ class VoxelStore:
             slot,
             self._resting,
             self._by_ray,
+            cell,
         )
 
     def state_at(self, point: NDArray[np.float32], light: int) -> str:
-        """What is known of a light in the voxel of a point (3,): "full", "null" or "unknown"."""
+        """What is known of a light in the voxel of a point (3,): one of STATES."""
         number = voxel_at(self.grid, point)
         if number < 0 or not 0 <= light < len(self.places) or np.isnan(self.places[light, 0]):
             return STATES[0]
         return STATES[int(shadow_mode(self.words[number], light))]
+
+    def at_pixels(self, cell: NDArray[np.int32]) -> NDArray[np.unsignedinteger]:
+        """The words of voxels, of any shape, like those of `tracer.culling.certified.cells`."""
+        word = self.words.dtype.type
+        return np.where(
+            (cell >= 0) & (cell < self.grid.voxels), self.words[cell] & ~word(3) | word(FULLY_RENDERED), word(0)
+        )
 
     def contents(self, number: int) -> NDArray[np.int32]:
         """The numbers of the primitives in a voxel."""

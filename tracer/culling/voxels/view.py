@@ -22,6 +22,7 @@ class VoxelView(NamedTuple):
         slot: (lights,) int32, which of the held lights each is; -1 for those about which nothing is known.
         resting: (k, 6) float32, boxes around what rests now.
         by_ray: whether steps and tests are counted ray by ray, or for vectors of sixteen.
+        cell: (pixels,) int32, gets the voxel at each primary hit; empty where nobody wants to know.
     """
 
     grid: VoxelGrid
@@ -32,6 +33,7 @@ class VoxelView(NamedTuple):
     slot: I32
     resting: F32x2D
     by_ray: bool
+    cell: I32
 
 
 voxel_view_at = reading(VoxelView)
