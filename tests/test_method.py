@@ -13,7 +13,7 @@ def test_a_name_gives_a_base_additions_and_capabilities():
     assert method.has("cache") and not method.has("certified")
     assert Method.parse("cells").uses_cells and Method.parse("auto").adaptive
     assert not Method.parse("none+rest").culls and Method.parse("none+cache").culls
-    assert {kind.name for kind in bases() if not kind.exact} == {"paper", "cells"}
+    assert {kind.name for kind in bases() if not kind.exact} == {"paper", "cells", "lie"}
 
 
 @pytest.mark.parametrize(

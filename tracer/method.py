@@ -246,6 +246,7 @@ register(
         "Culls by cubes of space that are lit, or in shadow, as a whole; never wrong.",
         "tracer.methods.voxels:Voxels",
         has_certificates=True,
+        lights=(0, 31),
         addition=True,
         alone=True,
     )

@@ -14,15 +14,17 @@ from tests.tracing.nasty_worlds import NastyWalk, flattened_walk, nasty_walk, st
 from tests.tracing.worlds import scene, wall
 from tracer.culling.environments.octree import HIDDEN, LIT, OUTSIDE, UNKNOWN, boxes_of, make_frame
 from tracer.culling.environments.sample import cells_of
-from tracer.culling.environments.store import EnvironmentStore
-from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.culling.environments.store import CANDIDATES, EnvironmentStore
+from tracer.culling.modes import FULL_SHADOW, MAX_CULLED_LIGHTS, NON_SHADOW
 from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import ACCELERATORS, World
 from tracer.scene.lamps import Lamps, LampTable
 from tracer.scene.lights import Light
+from tracer.scene.load import load_scene
 from tracer.settings import Settings
+from viewer.util.resources import embedded_scenes
 
 
 def _lamps(places: np.ndarray) -> Lamps:
@@ -164,3 +166,43 @@ def test_memory_is_bounded_and_lights_without_room_are_traced():
         none = tracer.Renderer(walk.scene, replace(settings, method="none"))
         for time, camera in walk.frames:
             assert small.render(time, camera).color.tobytes() == none.render(time, camera).color.tobytes()
+
+
+def test_what_is_shown_of_cells_is_true_and_lights_behind_a_wall_are_passed_over():
+    """Three walls one behind the other, with lights on either side of that in the middle."""
+    one = np.array(wall(1, 1))
+    corners = (one + np.array([0.0, -3.0, 3.0])[:, None, None, None] * (0, 0, 1)).reshape(-1, 3, 3)
+    rng = np.random.default_rng(4)
+    places = rng.random((2 * MAX_CULLED_LIGHTS, 3)) * (2.0, 1.5, 1.0) + (1.0, 0.7, 0.5)
+    places[::2, 2] *= -1.0
+    lights = tuple(Light(f"light {i}", tuple(place), (0.1, 0.1, 0.1)) for i, place in enumerate(places.tolist()))
+    made = replace(scene(corners), lights=lights)
+    camera = tracer.Camera((2.0, 1.5, -0.1), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0), 60.0)
+    settings = Settings(width=64, height=48, depth=1, method="lie-exact", threads=1)
+    none = tracer.Renderer(made, replace(settings, method="none")).render(0.0, camera)
+    renderer = tracer.Renderer(made, settings)
+    frame = renderer.render(0.0, camera)
+    assert frame.color.tobytes() == none.color.tobytes()
+    assert frame.statistics.shadow.passed_over > 0.4 * none.statistics.shadow.due
+    renderer.settings = replace(settings, record_lights=True)
+    frame = renderer.render(0.0, camera)
+    assert frame.certificates is not None and frame.asked is not None and frame.reached is not None
+    shown = Counter[int]()
+    for light in range(MAX_CULLED_LIGHTS):
+        state = (frame.certificates >> frame.certificates.dtype.type(2 + 2 * light)) & 3
+        shown.update(state[frame.primitive >= 0].tolist())
+        assert (frame.reached[..., light][state == FULL_SHADOW] == 0).all()
+        lit = state == NON_SHADOW
+        assert (frame.reached[..., light][lit] == frame.asked[..., light][lit]).all()
+    assert shown[FULL_SHADOW] > 0.4 * shown.total() and shown[CANDIDATES] > 0, shown
+
+
+def test_embedded_scenes_look_the_same():
+    for name in ("figure3", "default"):
+        made = load_scene(embedded_scenes()[name])
+        settings = Settings(width=72, height=54, depth=2, method="none", threads=1)
+        world = World(made)
+        none = tracer.Renderer(made, settings, world=world).render()
+        for method in ("voxels", "lie-exact", "paper+lie-exact"):
+            frame = tracer.Renderer(made, replace(settings, method=method), world=world).render()
+            assert frame.color.tobytes() == none.color.tobytes(), (name, method)

@@ -140,12 +140,13 @@ class Environments(ShadowMethod):
             clock = self.services.clock
             self.store = EnvironmentStore(world, lamps, frame.workers, memory, by_ray, clock, self.coarse)
             self._memory = settings.certificate_memory
+        self.store.keep_within()
         self.store.follow(lamps, frame.resting)
 
     def prepare(self, frame: FrameView) -> None:
         store, settings = self.store, frame.settings
         assert store is not None, "followed before"
-        if settings.certificates > 0 and len(store.places):
+        if settings.certificates > 0 and store.waits:
             want = partial(self._want, frame, store)
             self._counts = store.work(want, settings.certificate_seconds, frame.cancel)
 
@@ -170,10 +171,6 @@ class Environments(ShadowMethod):
         view = self.store.view(looks, self._cell if learns else NOWHERE)
         chooses = choose if self.store.held else None
         return [Stage(view, find=find, select=select, choose=chooses, rows=CELL_ROWS, looks=looks)]
-
-    def keep(self, frame: FrameView) -> None:
-        assert self.store is not None, "followed before"
-        self.store.keep_within()
 
     def layers(self, frame: FrameView) -> dict[str, NDArray]:
         assert self.store is not None, "followed before"
@@ -209,6 +206,7 @@ class SampledEnvironments(Environments):
     def prepare(self, frame: FrameView) -> None:
         store, settings = self.store, frame.settings
         assert store is not None, "followed before"
-        if settings.certificates > 0 and len(store.places):
-            want, by = partial(self._want, frame, store), settle_by_samples(self.services.world, seen_points(frame))
+        if settings.certificates > 0 and store.waits:
+            points = seen_points(frame.buffers.primitive, frame.buffers.depth, frame.rays)
+            want, by = partial(self._want, frame, store), settle_by_samples(self.services.world, points)
             self._counts = store.work(want, settings.certificate_seconds, frame.cancel, by)

@@ -16,25 +16,23 @@ from tracer.culling.environments.octree import HIDDEN, LIT, OUTSIDE, ROOT, UNKNO
 from tracer.culling.environments.store import By, EnvironmentStore, Settle
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.voxels.classify import MOST, Light
+from tracer.geometry.camera import Pinhole
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.rays import ray_batch
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World
-    from tracer.methods.interface import FrameView
 
 SAMPLES, FEWEST = 16, 4  # rays to a cell, at most; with fewer points than that nothing is said of it
 COARSEST = 3  # levels above the smallest cells from which on samples that agree are believed
 POINTS = 1 << 17  # of a picture, at most
 
 
-def seen_points(frame: FrameView) -> NDArray[np.float32]:
-    """Points (n, 3) just before what primary rays have hit, evenly spread over the picture."""
-    primitive, depth = frame.buffers.primitive, frame.buffers.depth
+def seen_points(primitive: NDArray[np.int32], depth: NDArray[np.float32], rays: Pinhole) -> NDArray[np.float32]:
+    """Points (n, 3) just before what primary rays have hit, by its buffers (h, w), evenly spread over the picture."""
     step = max(1, int(np.ceil(np.sqrt(primitive.size / POINTS))))
     rows, columns = np.nonzero(primitive[::step, ::step] >= 0)
     y, x = step * rows, step * columns
-    rays = frame.rays
     way = rays.corner + x[:, None] * rays.column + y[:, None] * rays.row
     way /= np.linalg.norm(way, axis=1, keepdims=True)
     far = depth[y, x][:, None]

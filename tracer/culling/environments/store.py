@@ -46,8 +46,9 @@ if TYPE_CHECKING:
 
 BLOCKERS = 8  # of a light, at most, or a cell is divided
 CHUNK, BATCH = 64, 4096  # cells that a thread takes at a time, and that are settled before the clock is looked at
-SHARE = 6  # levels below the root down to which cells are divided for the lights that are not held
+SHARE = 8  # levels below the root down to which cells are divided for the lights that are not held
 FEW_LIGHTS = 4  # of these: cells with no more are not divided for their sake
+COARSE, HARDLY = 6, 0.8  # levels that are divided in any case; further ones where the last left this part of the lights
 CANDIDATES = 3  # in a word, instead of a shadow mode
 MOVED = 8  # the part, one in so many, of lights that may have moved before all is proved anew
 EACH = 80  # bytes of a light and primitive, about
@@ -75,7 +76,9 @@ class EnvironmentStore:
         self._clock, self._memory, self._by_ray, self._threads = clock, memory, by_ray, threads
         single, count = np.diff(lamps.first) == 1, len(lamps.places)
         primitives = len(world.object_of)
-        held = min(count, MAX_CULLED_LIGHTS, int(memory / 2) // max(1, EACH * primitives))
+        last = int(np.max(np.flatnonzero(single[:MAX_CULLED_LIGHTS]), initial=-1)) + 1  # lamps have no codes
+        held = min(last, int(memory / 2) // max(1, EACH * primitives))
+        self._wants = last
         #: How many lights, the first ones, have codes.
         self.held = held if len(world.triangles_of(0).rows) else 0
         self.geometry = StaticGeometry(world, self.held, threads, True)
@@ -112,6 +115,7 @@ class EnvironmentStore:
         self.lights, self._lit = np.zeros(1024, np.int32), 0
         self.cells[ROOT, 3] = self.frame.levels
         self.open[ROOT], self._todo[ROOT] = True, -1
+        self._anew = True  # whether lights have moved, or all is new
 
     @property
     def bytes(self) -> int:
@@ -123,7 +127,7 @@ class EnvironmentStore:
     @property
     def _cell_bytes(self) -> int:
         each = 4 * (self.held + 9) + 10
-        leaves = sum(leaves.nbytes for leaves in self._leaves.values())
+        leaves = sum(leaves.nbytes for leaves in {id(leaves): leaves for leaves in self._leaves.values()}.values())
         return self.count * each + 4 * (self._named + self._lit) + leaves
 
     def keep_within(self) -> None:
@@ -170,6 +174,7 @@ class EnvironmentStore:
         self._todo[: self.count] |= int(sum(1 << int(light) for light in lights))
         self.open[: self.count] |= self.child[: self.count] == 0
         self.open[OUTSIDE] = False
+        self._anew = True
 
     def _beyond(self) -> float:
         """How far the octree reaches beyond what is static, at most."""
@@ -187,6 +192,11 @@ class EnvironmentStore:
 
     # Settling cells.
 
+    @property
+    def waits(self) -> bool:
+        """Whether it is worth looking for cells to settle: rays of the last frame have ended in some, or all is new."""
+        return self._anew or bool((self.wanted[: self.count] & self.open[: self.count]).any())
+
     def work(
         self,
         want: Callable[[], None],
@@ -198,6 +208,7 @@ class EnvironmentStore:
 
         `by` gives, for cells, what finds their codes, instead of proofs.  Raises Cancelled if `cancel` turns true."""
         until, counts = self._clock() + seconds, np.zeros((self._threads, COUNTERS), np.int64)
+        self._anew = False
         while self._clock() < until:
             want()
             wanted = np.flatnonzero(self.wanted[: self.count] & self.open[: self.count])
@@ -296,14 +307,21 @@ class EnvironmentStore:
         counts[0, TESTS] += counted[:, certify.TESTS].sum()
         counts[0, CERTIFICATES] += len(those)
         for cell, found in zip(those.tolist(), (leaves for chunk in results for leaves in chunk), strict=True):
+            parent = int(self.parent[cell])
+            if parent in self._leaves and len(found) == len(self._leaves[parent]):  # they share all
+                self.first[cell], self.last[cell] = self.first[parent], self.last[parent]
+                self._leaves[cell] = self._leaves[parent]
+                continue
             spans = [self._tree.order[first:last] for first, last in self._tree.lights[found].tolist()]
             numbers = self.further[np.sort(np.concatenate([np.empty(0, np.int32), *spans]))].astype(np.int32)
             self.lights = _room_for(self.lights, self._lit + len(numbers))
             self.lights[self._lit : self._lit + len(numbers)] = numbers
             self.first[cell], self._lit = self._lit, self._lit + len(numbers)
             self.last[cell], self._leaves[cell] = self._lit, found
-        many = self.last[cells] - self.first[cells] > FEW_LIGHTS
-        return many & (self.cells[cells, 3] > self.frame.levels - SHARE)
+        parents = self.parent[cells]
+        left, before = (self.last[of] - self.first[of] for of in (cells, parents))
+        gains = (left < HARDLY * before) | (self.cells[cells, 3] > self.frame.levels - COARSE)
+        return (left > FEW_LIGHTS) & gains & (self.cells[cells, 3] > self.frame.levels - SHARE)
 
     def _divide(self, cells: NDArray[np.int64]) -> None:
         """Divide leaves (n,) into eight children each, of which nothing is known yet."""
@@ -357,17 +375,24 @@ class EnvironmentStore:
     def at_pixels(self, cell: NDArray[np.int32]) -> NDArray[np.unsignedinteger]:
         """What is known of cells, of any shape, as words like those of `tracer.culling.certified.cells`."""
         word = word_type(len(self.places))
-        cells, where = np.unique(cell, return_inverse=True)
-        words = np.full(len(cells), FULLY_RENDERED, word)
+        words = np.full(self.count, FULLY_RENDERED, word)
+        # Lists of the lights that are not held, some of them shared, and to which each number belongs.
+        first, last = self.first[: self.count].astype(np.int64), self.last[: self.count]
+        _, one, which = np.unique(2 * first + (last > first), return_index=True, return_inverse=True)
+        owner = np.repeat(np.arange(len(one)), np.maximum(last[one] - first[one], 0))
         for light in range(min(len(self.places), MAX_CULLED_LIGHTS)):
             if light in self.further:
-                state = np.array([self._hides(int(number), light) for number in cells]) * FULL_SHADOW
-            else:
-                code = self.codes[np.maximum(cells, 0), light] if light < self.held else np.full(len(cells), UNKNOWN)
+                full = (first[one] >= 0) & self._known[light]
+                full[owner[self.lights[: len(owner)] == light]] = False
+                state = np.where(full[which], FULL_SHADOW, 0)
+            elif light < self.held:
+                code = self.codes[: self.count, light]
                 state = np.select([code == HIDDEN, code == LIT, code > LIT], [FULL_SHADOW, NON_SHADOW, CANDIDATES], 0)
+            else:
+                continue
             words |= state.astype(word) << word(2 + 2 * light)
-        words[cells <= OUTSIDE] = 0
-        return words[where].reshape(cell.shape)
+        words[OUTSIDE] = 0
+        return words[np.maximum(cell, OUTSIDE)]
 
     def _hides(self, cell: int, light: int) -> bool:
         """Whether a light that is not held is known to be hidden from a cell."""
@@ -378,7 +403,7 @@ class EnvironmentStore:
     @property
     def told(self) -> str:
         """What there is no memory for, in a sentence, or nothing."""
-        lacking = min(len(self.places), MAX_CULLED_LIGHTS) - self.held
+        lacking = self._wants - self.held
         if lacking <= 0 or not len(self.geometry.rows):
             return ""
         return (

@@ -42,7 +42,7 @@ from tracer.simd import (
     to_i32,
 )
 
-FEW = 3  # primitives are asked one by one, more of them together first
+FEW = 4  # primitives are asked one by one, more of them together first
 SEEN = 16  # primitives that were tested last are known, and not tested again
 KNOWN, ASKED = 4 * SEEN, 8 * SEEN  # bytes
 ZERO, ONE, HUGE = np.float32(0), np.float32(1), np.float32(3e38)
