@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz soak golden bench frames quickest lamps counters window table motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help
+.PHONY: run kernels test quick test-all fuzz bounds soak golden bench methods frames quickest lamps counters window table motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -48,6 +48,10 @@ fuzz:  ## read damaged files of all kinds, and trace what is left of them (ARGS=
 	@tools/environment.sh dev
 	@$(RUN) -m tests.fuzz.readers $(ARGS)
 
+bounds:  ## have kernels checked for reading or writing past an array's end (ARGS="--seconds 600 --seed 1000")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.fuzz.bounds $(ARGS)
+
 soak:  ## use the program for long, and watch memory, threads and files (ARGS="--seconds 3600 SCENE ...")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.fuzz.soak $(ARGS)
@@ -68,6 +72,10 @@ frames:  ## time frames with and without culling, phase by phase (ARGS="--frames
 quickest:  ## hold frames by `auto` against those by `none`, fifty at a time (ARGS="--frames 100 SCENE ...")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.quickest $(ARGS)
+
+methods:  ## hold all methods side by side, scene by scene (ARGS="--write" into their page, "--frames 4 SCENE ...")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.methods $(ARGS)
 
 lamps:  ## hold frames by the light of lamps against those by `none` (ARGS="--radius 0.1 --frames 20 SCENE ...")
 	@tools/environment.sh dev

@@ -102,6 +102,15 @@ def test_a_copy_of_the_sources_finds_what_is_compiled(package: Path) -> None:
     assert ask(package / "copy", cached, "1") == ([2.0], 1, folder)
 
 
+def test_a_kernel_from_no_file_is_compiled_and_not_kept(tmp_path: Path) -> None:
+    """As in a notebook, where another cell may stand in the same line."""
+    code = "from tracer.kernels import kernel\n\n@kernel\ndef twice(x):\n    return 2 * x\nprint(twice(21))\n"
+    environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("42\n", "")
+    assert not list(tmp_path.rglob("*.nbc"))
+
+
 def test_all_that_a_source_imports_is_found() -> None:
     """The imports that are found by their form are those that Python's own parser finds."""
     for path in sorted((ROOT / "tracer").rglob("*.py")):
@@ -328,3 +337,15 @@ def _lives(process: Path) -> bool:
         return process.joinpath("stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except OSError:
         return False
+
+
+def test_a_method_with_kernels_of_its_own_is_made_ready_by_name() -> None:
+    """What `warm_up` makes is ready with it; `free` has kernels of its own, which make_ready names as it compiles."""
+    assert all(compilation.ready_for(name) for name in ("none", "paper+cache+rest", "cells", "certified", "auto"))
+    told: list[str] = []
+    compilation._methods.discard(compilation._variant(1, "bvh8", "free"))
+    assert not compilation.ready_for("free")
+    compilation.make_ready("free", progress=lambda what, fraction: told.append(what))
+    compilation.make_ready("free", progress=lambda what, fraction: told.append(what))
+    assert told == ["compiling the kernels of free"] and compilation.ready_for("free")
+    assert not compilation.ready_for("free", lights=40)

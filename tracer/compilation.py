@@ -16,14 +16,24 @@ from pathlib import Path
 from numba.core.registry import cpu_target
 
 from tracer.compile_beside import compile_beside
-from tracer.compile_steps import FOR_A_PICTURE, PARTS, SHARES, certificate_steps, picture_steps
-from tracer.culling.modes import word_type
+from tracer.compile_steps import (
+    FOR_A_PICTURE,
+    PARTS,
+    SHARES,
+    certificate_steps,
+    picture_steps,
+    render_tiny,
+    warm_kinds,
+)
+from tracer.culling.modes import MAX_CULLED_LIGHTS, word_type
 from tracer.kernel_cache import anything_kept, version_folder
+from tracer.method import Method
 from tracer.scene.model import Progress
 
 _lock = threading.Lock()
 _ready: set[str] = set()
 _draws: set[str] = set()  # of which all but certificates is ready
+_methods: set[str] = set()  # with kernels of their own, which are ready
 
 
 def warm_up(
@@ -69,6 +79,20 @@ def warm_up(
         report("ready", 1.0)
 
 
+def ready_for(method: str, lights: int = 1, accelerator: str = "bvh8") -> bool:
+    """Whether the kernels of a method have been made ready (`make_ready`), or are among those that `warm_up` makes."""
+    return _variant(lights, accelerator, method) in _methods or set(Method.parse(method).kinds) <= warm_kinds()
+
+
+def make_ready(method: str, lights: int = 1, accelerator: str = "bvh8", progress: Progress | None = None) -> None:
+    """Compile or load what a method has of its own, besides what all pictures need."""
+    if not ready_for(method, lights, accelerator):
+        if progress is not None:
+            progress(f"compiling the kernels of {method}", 0.0)
+        render_tiny(method, lights, accelerator)
+        _methods.add(_variant(lights, accelerator, method))
+
+
 def can_draw(lights: int = 1, accelerator: str = "bvh8") -> bool:
     """Whether pictures can be traced by any method but those that make certificates, which may not be ready yet."""
     return _variant(lights, accelerator) in _draws
@@ -81,8 +105,9 @@ def compiled_before(lights: int = 1, accelerator: str = "bvh8", certificates: bo
     return _mark(name, True).exists() or (not certificates and _mark(name, False).exists())
 
 
-def _variant(lights: int, accelerator: str) -> str:
-    return f"{accelerator}-{word_type(lights).__name__}"
+def _variant(lights: int, accelerator: str, method: str = "") -> str:
+    many = "-many" if method and lights > MAX_CULLED_LIGHTS else ""
+    return f"{accelerator}-{word_type(lights).__name__}{many}{method}"
 
 
 def _mark(variant: str, certificates: bool) -> Path:

@@ -7,12 +7,15 @@ Steps are grouped into parts, so that processes can compile a part each.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+import tracer.methods.cache
+import tracer.methods.cells  # noqa: F401
 from tracer.culling.certified.certify import COUNTERS as CERTIFYING
 from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.certified.scheduler import Budget
@@ -24,7 +27,8 @@ from tracer.geometry.queries import HIT_PRIMITIVE, HIT_T, Placed
 from tracer.geometry.rays import INFINITY, MISS
 from tracer.geometry.world import STRUCTURES
 from tracer.kernels import entry
-from tracer.methods import cache, cells, certified_lights, watching  # noqa: F401  (what is ready goes by imports)
+from tracer.method import Kind, Method
+from tracer.methods import certified_lights, watching
 from tracer.methods.certified import CertifiedCells
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import StageTable
@@ -154,6 +158,22 @@ def _certify_regions(accelerator: str) -> None:
     store.grid.wanted[:1] = True
     store.certify(Budget(), 1)
     store.hidden_by(np.zeros(3, np.float32), 0)
+
+
+def render_tiny(method: str, lights: int, accelerator: str) -> None:
+    """Render with a method, so that its kernels are there: by few lights, by more, or by more than words hold."""
+    few = 1 if lights <= 15 else 16 if lights <= MAX_CULLED_LIGHTS else MAX_CULLED_LIGHTS + 1
+    settings = Settings(width=4, height=4, method=method, threads=1, accelerator=accelerator)
+    renderer = Renderer(_tiny_scene(few), settings)
+    for time in (0.0, 1.0):  # what a first frame teaches is asked in the second
+        renderer.render(time)
+
+
+@cache
+def warm_kinds() -> frozenset[Kind]:
+    """The methods, and additions, whose kernels the steps here make ready."""
+    names = ("none+cache+rest", "paper", "cells", "certified", "auto")
+    return frozenset(kind for name in names for kind in Method.parse(name).kinds)
 
 
 def _renderer(lights: int, accelerator: str, method: str = "cells+cache+rest") -> Renderer:

@@ -27,12 +27,12 @@ from typing import Any
 
 import numba
 import platformdirs
-from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, NullCache, UserProvidedCacheLocator
 
 _ROOT = Path(__file__).parents[1]  # of the packages
 # What kernels are made of: nothing else in the package ends up in machine code.
 _KERNEL_SOURCES = ("simd/", "geometry/", "culling/", "shading/", "methods/", "scene/model.py", "scene/lamps.py")
-_COMPILERS = ("kernels.py", "kernel_cache.py", "subkernels.py")
+_COMPILERS = ("kernels.py", "subkernels.py")
 _STEPS = Path(__file__).with_name("compile_steps.py")  # imports all that a program starts with
 _ROOM = 1 << 25  # bytes; all kernels take a tenth of it
 _KEPT = 640  # folders: those of about sixteen versions of all sources, some 3 MB each
@@ -205,6 +205,11 @@ class _Locator(UserProvidedCacheLocator):
 
 class _CacheImpl(CompileResultCacheImpl):
     _locator_classes: Any = (_Locator,)
+
+
+def cache_of(function: Callable) -> Any:
+    """The cache of a function; one that keeps nothing where its source is no file, as in a notebook's cell."""
+    return KernelCache(function) if os.path.isfile(function.__code__.co_filename) else NullCache()
 
 
 class KernelCache(FunctionCache):

@@ -9,7 +9,7 @@ from typing import Any
 from numba import njit, types
 from numba.core.ccallback import CFunc
 
-from tracer.kernel_cache import KernelCache
+from tracer.kernel_cache import cache_of
 from tracer.subkernels import SubkernelCompiler
 
 _njit: Any = njit
@@ -21,7 +21,7 @@ _LINKED = _OPTIONS | {"no_cpython_wrapper": True, "pipeline_class": SubkernelCom
 def kernel(function: Callable) -> Any:
     """Compile a function that Python calls: cached, free of the GIL, division by zero as in IEEE 754."""
     dispatcher = _njit(**_OPTIONS)(function)
-    dispatcher._cache = KernelCache(function)
+    dispatcher._cache = cache_of(function)
     return dispatcher
 
 
@@ -51,7 +51,7 @@ class Entry:
     @cached_property
     def _compiled(self) -> Any:
         compiled = _cfunc(self._function, (_ENTRY.args, _ENTRY.return_type), {}, {"error_model": "numpy"})
-        compiled._cache = KernelCache(self._function)
+        compiled._cache = cache_of(self._function)
         compiled.compile()
         return compiled
 

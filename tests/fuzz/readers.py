@@ -61,6 +61,12 @@ def attempt(path: Path) -> Scene | None:
 def _traced(path: Path) -> Scene:
     scene = load_scene(path)
     scene_info(scene)
+    trace(scene)
+    return scene
+
+
+def trace(scene: Scene) -> None:
+    """Trace a few pixels of a scene by both structures."""
     if scene.primitive_count and len(scene.lights) < 16:  # more need kernels of their own
         start, end = scene.time_range
         for accelerator in ("bvh8", "kdtree"):
@@ -68,7 +74,6 @@ def _traced(path: Path) -> Scene:
             renderer = tracer.Renderer(scene, settings)
             for moment in (start, (start + end) / 2):
                 renderer.render(moment)
-    return scene
 
 
 def run(seconds: float, seed: int) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from argparse import Namespace
 
-from tracer.compilation import compiled_before, warm_up
+from tracer.compilation import compiled_before, make_ready, warm_up
 from tracer.frame import Settings
 from tracer.kernel_cache import outlives_process
 from tracer.method import Method
@@ -25,6 +25,8 @@ def prepare_kernels(work: Work, lights: int, accelerator: str, *methods: str) ->
         often = "once for this version" if outlives_process() else always
         work.note(f"compiling the kernels, {often}; this takes a minute or less")
     warm_up(work.progress, lights, accelerator, certificates)
+    for name in methods:
+        make_ready(name, lights, accelerator, work.progress)
 
 
 def tracing_settings(options: Namespace) -> Settings:

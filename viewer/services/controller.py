@@ -153,6 +153,9 @@ class Controller:
         self.rays.follow(traced)  # before the next frame is asked for
         self.table.follow(traced, motion.lively)
         edits, focus = self.editing.at_work, self.selection.hovered
+        scene, settings = self.session.scene, self.session.settings
+        if scene is not None:
+            self.loader.prepare(settings.method, len(scene.lights), settings.accelerator)
         self.tracing.ask(Conditions(size, motion.under_way, run, edits, self.loader.ready, focus))
         if run is None:
             self.recorder.follow()

@@ -9,10 +9,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tracer.compilation import can_draw, compiled_before, warm_up
+from tracer.compilation import can_draw, compiled_before, make_ready, ready_for, warm_up
 from tracer.scene.files import Stamp
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Scene
@@ -55,6 +56,7 @@ class SceneLoader:
         self._session, self._preferences, self._notices = session, preferences, notices
         self._ask_first, self._wake = ask_first, wake
         self.warm_up_job: Job[None] | None = None
+        self.method_job: Job[None] | None = None
         self.compiles = False  # whether this is a first start, whose kernels are to be compiled
         self.load_job: Job[scene_files.Opened] | None = None
         self._cancelled_at = 0.0
@@ -106,6 +108,16 @@ class SceneLoader:
         if path is not None:
             self._from_shell = True
             self._open(path)
+
+    def prepare(self, method: str, lights: int, accelerator: str) -> None:
+        """Compile in the background what a method has of its own, the first time that it is chosen."""
+        if self.method_job is not None and self.method_job.done:
+            job, self.method_job = self.method_job, None
+            if job.failure is not None:
+                self._notices.report(replace(job.failure, text=f"{job.title} failed: {job.failure.text}"))
+        if self.method_job is None and can_draw(lights, accelerator) and not ready_for(method, lights, accelerator):
+            compile_it = partial(make_ready, method, lights, accelerator)
+            self.method_job = Job(f"compiling the kernels of {method}", compile_it, self._wake)
 
     def follow(self) -> Arrival | None:
         """Take up what the jobs have finished; returns what has been opened, once."""
@@ -212,7 +224,7 @@ class SceneLoader:
 
     def cancel_all(self) -> list[Job]:
         """Ask every job to stop; returns them, to be waited for."""
-        jobs = [job for job in (self.warm_up_job, self.load_job, *self._abandoned) if job is not None]
+        jobs = [job for job in (self.warm_up_job, self.method_job, self.load_job, *self._abandoned) if job is not None]
         for job in jobs:
             job.cancel()
         return jobs

@@ -11,7 +11,7 @@ from viewer.window.panels.status import doing
 
 def test_a_start_says_one_thing_until_it_is_over() -> None:
     job = SimpleNamespace(title="Compiling the tracer (first start only)", label="compiling shading", fraction=0.25)
-    loader = SimpleNamespace(warm_up_job=job, load_job=None, compiles=True)
+    loader = SimpleNamespace(warm_up_job=job, load_job=None, method_job=None, compiles=True)
     c = SimpleNamespace(loader=loader, frame=None, runs=SimpleNamespace(current=None))
     said = {}
     for fraction, label in ((0.25, "compiling shading"), (0.5, "loading shading")):

@@ -74,6 +74,8 @@ def doing(c: Controller) -> str:
     if preparing is not None:
         what = "compiling what makes certificates (first start only)"
         return f"{what if c.loader.compiles else 'loading what makes certificates'}: {100.0 * preparing.fraction:.0f} %"
+    if c.loader.method_job is not None:
+        return f"{c.loader.method_job.title}, once for this version"
     if c.session.scene is None:
         return "no scene is open"
     if c.motion.under_way or c.session.playing:
