@@ -23,6 +23,7 @@ from tracer.scene.load import load_scene
 from viewer.__main__ import main
 from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
+from viewer.state.study_file import read_study
 from viewer.window import commands
 from viewer.window.command import key_label
 from viewer.window.ui import Ui
@@ -125,11 +126,11 @@ def test_commands_are_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_options_in_the_text_exist(capsys: pytest.CaptureFixture[str]) -> None:
     """Options that the text names, as in `--verify`, are options of some command."""
     known = {"--help", "--version"}
-    for command in ("render", "film", "figure", "check", "bench", "zoom", "explain", "hunt", "info"):
+    for command in ("render", "film", "figure", "check", "bench", "sweep", "zoom", "explain", "hunt", "info"):
         with pytest.raises(SystemExit):
             main([command, "--help"])
         known |= set(re.findall(r"--[a-z-]+", capsys.readouterr().out))
-    for page in (README, *(DOCS / f"{name}.md" for name in ("viewer", "command-line", "methods", "results"))):
+    for page in (README, *(DOCS / f"{name}.md" for name in ("viewer", "command-line", "sweeps", "methods", "results"))):
         named = set(re.findall(r"`[^`\n]*?(--[a-z-]+)", page.read_text()))
         assert named <= known, page
 
@@ -141,6 +142,18 @@ def test_lamps_are_read_as_shown(tmp_path: Path) -> None:
     scene = load_scene(path)
     assert [light.kind for light in scene.lights] == ["sphere", "rectangle", "dome", "point"]
     assert scene.warnings == ()
+
+
+def test_studies_are_read(tmp_path: Path) -> None:
+    """Those that come with the documentation, and the one that a page shows."""
+    studies = sorted((DOCS / "studies").glob("*.toml"))
+    assert studies and all(read_study(path).methods[0] == "none" for path in studies)
+    (shown,) = blocks(DOCS / "sweeps.md", "toml")
+    (tmp_path / "kitchen").mkdir()
+    (tmp_path / "kitchen/kitchen.aff").touch()
+    (tmp_path / "study.toml").write_text(shown)
+    study = read_study(tmp_path / "study.toml")
+    assert len(study.settings) == 4 and study.seeds == (1, 2, 3) and study.shake == 0.01
 
 
 @each_page

@@ -34,6 +34,16 @@ _FIGURES: dict[str, Callable[[FrameStatistics], float]] = {
     "wrong": lambda s: s.shadow.wrong,
     "frame_seconds": lambda s: s.seconds,
 }
+
+FIGURES = tuple(_FIGURES)
+"""Names of what is measured of each frame, as in the JSON of `shadowcull bench`."""
+
+
+def figures_of(statistics: FrameStatistics) -> dict[str, float]:
+    """What is measured of a frame, by the names in `FIGURES`; all but "frame_seconds" are whole numbers."""
+    return {name: of(statistics) for name, of in _FIGURES.items()}
+
+
 # Settings of all methods.
 _SHARED = ("depth", "zoom_factor", "symmetric", "verify", "accelerator", "threads", "lamp_radius", "lamp_samples")
 
@@ -245,7 +255,7 @@ def run(
     results = Results(
         str(scene.path),
         (settings.width, settings.height),
-        methods={name: {figure: [] for figure in _FIGURES} for name in names},
+        methods={name: {figure: [] for figure in FIGURES} for name in names},
         path_times=tuple(times),
         planned=len(numbers),
         settings={name: getattr(settings, name) for name in _SHARED},
@@ -262,8 +272,8 @@ def run(
             return
         results.frames.append(number)
         for name, frame in frames.items():
-            for figure, of in _FIGURES.items():
-                results.methods[name][figure].append(of(frame.statistics))
+            for figure, value in figures_of(frame.statistics).items():
+                results.methods[name][figure].append(value)
             results.build_seconds.setdefault(name, []).append(frame.statistics.phases.get("certification", 0.0))
             results.memory_bytes.setdefault(name, []).append(renderers[name].memory_bytes)
         yield results

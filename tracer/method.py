@@ -183,6 +183,11 @@ class Method:
         return any(kind.has_certificates for kind in self.kinds)
 
     @property
+    def learns(self) -> bool:
+        """Whether what it counts in a frame may depend on the frames before it: it knows something of them."""
+        return self.culls or bool(self.added)
+
+    @property
     def adaptive(self) -> bool:
         """Whether it chooses by itself whether to cull."""
         return any(kind.adaptive for kind in self.kinds)

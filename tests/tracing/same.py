@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import asdict, fields
 from typing import Any
 
 import numpy as np
@@ -35,3 +35,14 @@ def assert_verified(frame: tracer.Frame, none: tracer.Frame) -> None:
     assert (frame.color[frame.wrong == 0] == none.color[frame.wrong == 0]).all()
     assert none.reference.tobytes() == none.color.tobytes()
     assert none.statistics.shadow.wrong == 0 == none.wrong.sum()
+
+
+def assert_only_asked_less(frame: tracer.Frame, without: tracer.Frame) -> None:
+    """Everything is the same, bit for bit, but that hits of the cache are not traced."""
+    for name in ("color", "primitive", "modes", "pixel_count", "highest_count", "due", "lit", "reference", "wrong"):
+        assert getattr(frame, name).tobytes() == getattr(without, name).tobytes(), name
+    shadow, before = asdict(frame.statistics.shadow), asdict(without.statistics.shadow)
+    assert shadow["rays"] + shadow["cache_hits"] == before["rays"]
+    for name in ("due", "culled", "dynamic_only", "wrong"):
+        assert shadow[name] == before[name], name
+    assert before["cache_hits"] == 0

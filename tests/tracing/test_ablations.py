@@ -9,7 +9,7 @@ from hypothesis import given
 
 import tracer
 from tests.tracing.random_worlds import Walk, quickly, walks
-from tests.tracing.test_cache import assert_only_asked_less
+from tests.tracing.same import assert_only_asked_less
 
 SETTINGS = tracer.Settings(48, 40, 2, "none", threads=2, verify=True, record_lights=True)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 import tracer
 from tests.scenes import world_of
 from tests.tracing.random_worlds import Walk, quickly, walks
+from tests.tracing.same import assert_only_asked_less
 from tests.tracing.worlds import affine, moved, quad, quadrics, scene
 from tracer.culling import cells
 from tracer.culling.occluder_cache import OccluderSlots, merge_occluders, surely_blocked
@@ -116,17 +117,6 @@ def test_of_what_workers_find_the_highest_number_is_kept(workers: int, seed: int
     merge_occluders(occluders, found)
     assert np.array_equal(occluders, expected)
     assert (found == -1).all()
-
-
-def assert_only_asked_less(frame: tracer.Frame, without: tracer.Frame) -> None:
-    """Everything is the same, bit for bit, but that hits of the cache are not traced."""
-    for name in ("color", "primitive", "modes", "pixel_count", "highest_count", "due", "lit", "reference", "wrong"):
-        assert getattr(frame, name).tobytes() == getattr(without, name).tobytes(), name
-    shadow, before = asdict(frame.statistics.shadow), asdict(without.statistics.shadow)
-    assert shadow["rays"] + shadow["cache_hits"] == before["rays"]
-    for name in ("due", "culled", "dynamic_only", "wrong"):
-        assert shadow[name] == before[name], name
-    assert before["cache_hits"] == 0
 
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)

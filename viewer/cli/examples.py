@@ -8,6 +8,7 @@ commands:
   shadowcull render SCENE  trace one frame into a picture, its buffers, or both; needs no display
   shadowcull film SCENE    trace a path, or a flight through bookmarks, into pictures and a video
   shadowcull bench SCENE   measure, over a path of frames, what culling saves
+  shadowcull sweep STUDY   measure many scenes, methods and settings by several processes, or machines
   shadowcull zoom SCENE    move towards a primitive, and see whether its shadows stay right
   shadowcull explain SCENE say what became of each ray of one pixel
   shadowcull hunt SCENE    search a path for the worst wrong pixels of a method

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from argparse import Namespace
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +15,8 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
-from viewer.cli.console import working
+from viewer.cli import film_elsewhere
+from viewer.cli.console import Work, working
 from viewer.cli.edit_options import edited_scene
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.render import check_certificates, check_display, recipe_of
@@ -58,30 +60,40 @@ def film(path: Path, options: Namespace) -> bool:
         if not stills.lights_fit(recipe, scene):
             raise ValueError(f"--view {recipe.view.value}: too many lights for pictures of this size")
         takes = _takes(scene, stops, options)
-        filming.check_folder(folder)
-        prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
-        renderer = Renderer(scene, settings, work.progress)
         script = Script(takes, recipe, folder, video, options.fps)
-        done = 0
-
-        def on_frame(number: int, frame: Frame) -> None:
-            nonlocal done
-            done = number + 1
-            work.count(f"frame {done} of {len(takes)}", done, len(takes))
-
-        work.count(f"frame 1 of {len(takes)}", 0, len(takes))
-        try:
-            for _ in filming.shoot(renderer, script, work.cancelled, on_frame):
-                if work.stopped and done < len(takes):
-                    raise Cancelled("cancelled")
-        except Cancelled:
+        shared = film_elsewhere.is_wanted(recipe, options, work)
+        if not shared:
+            filming.check_folder(folder)
+        if options.scheduler is None or not shared:
+            prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
+        shoot = film_elsewhere.shoot if shared else _shoot
+        done = shoot(scene, script, options, work)
+        if done < len(takes):
             if not done:
-                raise
+                raise Cancelled("cancelled")
             work.note(f"cancelled after {done} of {len(takes)} frames; these are kept")
     for written in (folder, video):
         if written is not None:
             print(printable(written))
     return done == len(takes)
+
+
+def _shoot(scene: Scene, script: Script, options: Namespace, work: Work) -> int:
+    """Trace frame after frame; returns how many there are, fewer than all where that was cancelled."""
+    renderer = Renderer(scene, script.recipe.settings, work.progress)
+    done, count = 0, len(script.takes)
+
+    def on_frame(number: int, frame: Frame) -> None:
+        nonlocal done
+        done = number + 1
+        work.count(f"frame {done} of {count}", done, count)
+
+    work.count(f"frame 1 of {count}", 0, count)
+    with suppress(Cancelled):
+        for _ in filming.shoot(renderer, script, work.cancelled, on_frame):
+            if work.stopped and done < count:
+                break
+    return done
 
 
 def _takes(scene: Scene, stops: Sequence[Stop], options: Namespace) -> list[Take]:

@@ -4,6 +4,7 @@
     shadowcull render SCENE     one frame into files
     shadowcull film SCENE       a path, or a flight, into pictures and a video
     shadowcull bench SCENE      the paper's table over a path of frames
+    shadowcull sweep STUDY      many scenes, methods and settings, by several processes
     shadowcull zoom SCENE       towards a primitive, and whether its shadows keep up
     shadowcull explain SCENE    what became of the rays of one pixel
     shadowcull hunt SCENE       the worst wrong pixels of a method
@@ -25,7 +26,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from viewer.cli import hunt_parser, parsers, picture_parsers
+from viewer.cli import hunt_parser, parsers, picture_parsers, sweep_parser
 from viewer.cli.mesh_arguments import as_arguments, mesh_options
 from viewer.cli.parsers import MISUSED
 from viewer.util import resources
@@ -49,6 +50,7 @@ def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
     commands: dict[str, Callable[[list[str]], int]] = {
         "render": _render,
         "bench": _bench,
+        "sweep": _sweep,
         "zoom": _zoom,
         "explain": _explain,
         "info": _info,
@@ -198,6 +200,14 @@ def _bench(arguments: list[str]) -> int:
     from viewer.cli import bench
 
     return 0 if bench.bench(resources.scene_path(options.scene), options) else INTERRUPTED
+
+
+def _sweep(arguments: list[str]) -> int:
+    options = sweep_parser.sweep().parse_args(arguments)
+
+    from viewer.cli import sweep
+
+    return 0 if sweep.sweep(options.study, options) else INTERRUPTED
 
 
 def _zoom(arguments: list[str]) -> int:

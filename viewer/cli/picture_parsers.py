@@ -22,6 +22,7 @@ from viewer.cli.argument_types import (
 )
 from viewer.cli.edit_options import add_edits
 from viewer.cli.parsers import Parser
+from viewer.cli.sweep_parser import add_processes
 
 
 def render() -> Parser:
@@ -98,6 +99,7 @@ def film() -> Parser:
     help_ = "how long the film is (default: every frame of the path once; 2 seconds from bookmark to bookmark)"
     add("--seconds", type=number(0.01, 86_400.0), metavar="S", help=help_)
     add("--fps", type=number(1.0, 240.0), default=25.0, metavar="F", help="frames a second (default: 25)")
+    add_processes(parser)
     _add_picture(parser)
     parsers.add_tracing_options(parser, "bvh8")
     parsers.add_zoom_factor(parser)

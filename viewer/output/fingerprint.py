@@ -34,8 +34,13 @@ def of_scene(scene: Scene) -> dict[str, str]:
     return dict(_last[1])
 
 
-def of_pixels(pixels: NDArray[np.uint8]) -> str:
-    """A code of a picture's size and pixels."""
+def code_of(scene: Scene) -> str:
+    """One code of all that a scene holds."""
+    return "-".join(of_scene(scene).values())
+
+
+def of_pixels(pixels: NDArray[np.uint8] | NDArray[np.float32]) -> str:
+    """A code of a picture's size and pixels, to the bit."""
     return _code([pixels])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -19,6 +20,13 @@ def notes(text: str) -> PngImagePlugin.PngInfo:
     info.add_itxt(CHUNK, text)
     info.add_text("Software", "Shadowcull")
     return info
+
+
+def encoded(pixels: NDArray[np.uint8], text: str) -> bytes:
+    """The file that `write` would write."""
+    file = BytesIO()
+    Image.fromarray(np.ascontiguousarray(pixels)).save(file, "PNG", pnginfo=notes(text))
+    return file.getvalue()
 
 
 def write(path: Path, pixels: NDArray[np.uint8], text: str, **options: Any) -> None:

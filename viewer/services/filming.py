@@ -46,14 +46,27 @@ def places(output: Path) -> tuple[Path, Path | None]:
 
 def check_folder(folder: Path) -> None:
     """Make the folder; raise OSError, in one line, where that cannot be, or where it holds another film's pictures."""
+    make_folder(folder)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        taken = sorted((path.name for path in folder.iterdir() if _NUMBERED.fullmatch(path.name)), key=_by_number)
+        taken = sorted((path.name for path in folder.iterdir() if is_numbered(path.name)), key=_by_number)
     except OSError as error:
         raise OSError(f"{folder}: no folder for the pictures: {error.strerror or error}") from None
     if taken:
         which = taken[0] if len(taken) == 1 else f"{taken[0]} to {taken[-1]}"
         raise OSError(f"{folder}: there are numbered pictures in it already, {which}; give another folder")
+
+
+def make_folder(folder: Path) -> None:
+    """Make the folder; raise OSError, in one line, where that cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OSError(f"{folder}: no folder for the pictures: {error.strerror or error}") from None
+
+
+def is_numbered(name: str) -> bool:
+    """Whether a file's name is that of a picture of a film."""
+    return _NUMBERED.fullmatch(name) is not None
 
 
 def _by_number(name: str) -> int:
@@ -70,11 +83,11 @@ def shoot(
 
     `on_frame` gets a frame's number, from 0, and the frame.  Raises Cancelled, with the pictures so far written and the
     video as long as these, and OSError, in one line, as when the disk is full."""
-    scene, numbers = renderer.scene, _numbers(script.takes)
+    scene, numbers = renderer.scene, picture_numbers(script.takes)
     with ExitStack() as stack:
         video: Video | None = None
         for number, take in enumerate(script.takes):
-            recipe = stills.with_caption_filled(_recipe(script.recipe, take), scene)
+            recipe = stills.with_caption_filled(recipe_of(script.recipe, take), scene)
             frame = stills.trace(renderer, replace(recipe, warmup=0), cancelled=cancelled)
             pixels, _ = stills.draw(frame, scene, recipe)
             if video is None and script.video is not None:
@@ -88,13 +101,13 @@ def shoot(
             yield path
 
 
-def _numbers(takes: Sequence[Take]) -> list[int]:
+def picture_numbers(takes: Sequence[Take]) -> list[int]:
     """What numbers the pictures have: those of their frames, or else they are counted from 0."""
     of_path = [take.number for take in takes if take.number is not None]
     return of_path if len(of_path) == len(takes) else list(range(len(takes)))
 
 
-def _recipe(recipe: Recipe, take: Take) -> Recipe:
+def recipe_of(recipe: Recipe, take: Take) -> Recipe:
     """How to make a take again, alone: after as many frames of the scene's path, where these were before it."""
     taken = replace(recipe, time=take.time, camera=take.camera)
     if not taken.needs_history or taken.history:  # where chance has a part in it, nothing brings it back

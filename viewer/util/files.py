@@ -80,6 +80,11 @@ def write_text(path: Path, text: str) -> None:
     write_whole(path, lambda file: file.write(text.encode()))
 
 
+def write_bytes(path: Path, data: bytes) -> None:
+    """As `write_whole`."""
+    write_whole(path, lambda file: file.write(data))
+
+
 def reserve(folder: Path, stem: str, ending: str) -> Path:
     """Create an empty file of a name that nobody has: stem and ending, or with -2, -3, ... between them.
 

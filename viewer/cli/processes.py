@@ -1,0 +1,46 @@
+"""The processes that `--workers` and `--scheduler` ask for, and what a command says of them."""
+
+from __future__ import annotations
+
+import os
+import time
+from argparse import Namespace
+from contextlib import AbstractContextManager
+
+from viewer.cli.console import Work
+from viewer.services.cluster import Cluster, connected, local_cluster
+
+
+def cluster_of(options: Namespace, tasks: int) -> AbstractContextManager[Cluster]:
+    """The processes that the options ask for; no more of this machine than there are tasks."""
+    if options.scheduler is not None:
+        return connected(options.scheduler)
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return local_cluster(min(options.workers or cores, max(tasks, 1)))
+
+
+class Watch:
+    """Says how many processes there are, and when one has died, as they were at the last look: once a second."""
+
+    EVERY = 1.0
+
+    def __init__(self, cluster: Cluster, work: Work) -> None:
+        self._cluster, self._work, self._known = cluster, work, set(cluster.process_ids())
+        self._started, self._next = 0, 0.0
+
+    def look(self, at_once: bool = False) -> None:
+        """Note which processes have died since."""
+        if time.monotonic() < self._next and not at_once:
+            return
+        self._next, self._started = time.monotonic() + self.EVERY, self._cluster.started()
+        now = set(self._cluster.process_ids())
+        for number in self._known - now:
+            self._work.note(f"process {number} has died; another takes its place, and does its task again")
+        self._known = now
+
+    def __str__(self) -> str:
+        started = self._started
+        size = self._cluster.size() if self._cluster.is_local else started
+        if not started:
+            return "waiting for workers"
+        return f"{started} of {size} workers" if started < size else f"{size} worker{'s' * (size > 1)}"
