@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz bounds soak golden bench methods frames quickest lamps counters window table motion memory growth docs notebooks linkcheck pictures lint format lock clean distclean help
+.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table motion memory growth dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -47,6 +47,10 @@ test-all:  ## run the tests with many times as many random scenes and frames as 
 fuzz:  ## read damaged files of all kinds, and trace what is left of them (ARGS="--seconds 600 --seed 1000")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.fuzz.readers $(ARGS)
+
+faults:  ## kill what writes, fill its disk, and let several write at once (ARGS="--kills 1000 --only disk")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.fuzz.faults $(ARGS)
 
 bounds:  ## have kernels checked for reading or writing past an array's end (ARGS="--seconds 600 --seed 1000")
 	@tools/environment.sh dev
@@ -104,6 +108,10 @@ memory:  ## measure the memory of Kitchen and of a million triangles, and build 
 growth:  ## measure how the cost of a ray grows from 10,000 to 2,000,000 triangles (ARGS="--most 200000")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.growth $(ARGS)
+
+dist:  ## build the wheel and the source distribution, and check them (ARGS="--newest --oldest": install and use them)
+	@tools/environment.sh dev
+	@$(RUN) tools/dist.py $(ARGS)
 
 docs:  ## build the documentation in build/docs; every warning is an error
 	@tools/environment.sh dev

@@ -131,7 +131,7 @@ def _make_folder(name: str) -> Path:
     try:
         if not folder.is_dir():
             folder.mkdir(parents=True, exist_ok=True)
-            _remove_oldest(root)
+            _remove_oldest(root, folder)
         if not any(folder.iterdir()):
             if shutil.disk_usage(folder).free < _ROOM:
                 raise OSError("no room")
@@ -171,13 +171,13 @@ def _temporary_folder() -> tempfile.TemporaryDirectory:
     return tempfile.TemporaryDirectory(prefix="shadowcull-kernels-", ignore_cleanup_errors=True)
 
 
-def _remove_oldest(root: Path) -> None:
-    """Keep the folders that were used last; a process that still runs with another compiles what
-    it has not loaded yet."""
+def _remove_oldest(root: Path, new: Path) -> None:
+    """Keep the new folder, whatever the clock says, and those that were used last; a process that still runs with
+    another compiles what it has not loaded yet."""
     with suppress(OSError):
-        folders = [folder for folder in root.iterdir() if re.fullmatch("[0-9a-f]{16}", folder.name)]
+        folders = [folder for folder in root.iterdir() if re.fullmatch("[0-9a-f]{16}", folder.name) and folder != new]
         folders.sort(key=lambda folder: folder.stat().st_mtime, reverse=True)
-        for folder in folders[_KEPT:]:
+        for folder in folders[_KEPT - 1 :]:
             shutil.rmtree(folder, ignore_errors=True)
 
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Container, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -24,7 +23,7 @@ from tracer.scene.framing import quadric_box
 from tracer.scene.limits import LARGEST, SMALLEST
 from tracer.scene.model import CONE, Quadrics, SceneObject, Triangles, empty_quadrics, empty_triangles
 from tracer.scene.normals import unit_normals
-from tracer.scene.pieces import Mesh, Morph, Piece, Place, Quadric
+from tracer.scene.pieces import BLOCK, IndexedMesh, Mesh, Morph, Piece, Place, Quadric
 
 PIECES_BETWEEN_REPORTS = 4096
 
@@ -35,7 +34,7 @@ class Group:
 
     name: str
     chain: Chain
-    meshes: list[tuple[Piece[Mesh], Float64]] = field(default_factory=list)
+    meshes: list[tuple[Piece[Mesh | IndexedMesh], Float64]] = field(default_factory=list)
     quadrics: list[tuple[Piece[Quadric], Float64]] = field(default_factory=list)
     morphs: dict[int, list[tuple[Piece[Morph], Float64]]] = field(default_factory=dict)  # by number of keys
 
@@ -75,7 +74,7 @@ def resolve(chain: Chain, moving: Container[str]) -> tuple[Chain, Float64]:
 class Geometry:
     """All pieces of a scene, in the order in which they were read."""
 
-    meshes: list[Piece[Mesh]] = field(default_factory=list)
+    meshes: list[Piece[Mesh | IndexedMesh]] = field(default_factory=list)
     quadrics: list[Piece[Quadric]] = field(default_factory=list)
     morphs: list[Piece[Morph]] = field(default_factory=list)
 
@@ -159,18 +158,16 @@ class _Origin:
             piece = int(np.searchsorted(self._starts, triangle, side="right")) - 1
             remarks.add(self._places[piece], int(triangle - self._starts[piece]), what)
 
+    def remark_lost(self, finite: NDArray[np.bool_], good: NDArray[np.bool_], remarks: Remarks) -> None:
+        """Say of what is not `good` why it is dropped."""
+        self.remark(~finite, "a triangle with a corner that is not a finite number is dropped; correct it", remarks)
+        self.remark(finite & ~good, f"a triangle with a corner beyond {LARGEST:g} is dropped; bring it nearer", remarks)
 
-def _finite(corners: Float64, origin: _Origin, remarks: Remarks) -> NDArray[np.bool_]:
-    """(n,) which of n triangles (n, ...) tracing can bear; the others are remarked on."""
-    inside = (np.abs(corners) <= LARGEST).reshape(len(corners), -1)
-    good: NDArray[np.bool_] = np.all(inside, axis=1)
-    if not good.all():
-        finite = np.all(np.isfinite(corners).reshape(len(corners), -1), axis=1)
-        origin.remark(~finite, "a triangle with a corner that is not a finite number is dropped; correct it", remarks)
-        origin.remark(
-            finite & ~good, f"a triangle with a corner beyond {LARGEST:g} is dropped; bring it nearer", remarks
-        )
-    return good
+
+def _finite(corners: Float64) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """(n,) which of n triangles (n, ...) are finite, and which of these tracing can bear."""
+    others = tuple(range(1, corners.ndim))
+    return np.all(np.isfinite(corners), axis=others), np.all(np.abs(corners) <= LARGEST, axis=others)
 
 
 Counted = tuple[Piece, int]
@@ -198,40 +195,59 @@ def _told(pieces: list[Any], report: Callable[[], None]) -> Iterator[Any]:
         yield piece
 
 
-def _placed_in_runs(pieces: Iterable[tuple[Piece[Mesh], Float64]]) -> Iterator[tuple[Float64, Float64]]:
-    """Corners and normals of all pieces in their order: at once of those in a row that have the same matrix, as a scene
-    may consist of a million polygons."""
-    for (_, bare), run in groupby(pieces, key=lambda piece: (id(piece[1]), piece[0].shape.normals is None)):
-        shapes, matrices = zip(*((piece.shape, baked) for piece, baked in run))
-        normals = None if bare else np.concatenate([shape.normals for shape in shapes])
-        yield under_matrix(np.concatenate([shape.corners for shape in shapes]), normals, matrices[0])
+Meshes = list[tuple[Piece[Mesh | IndexedMesh], Float64]]
 
 
-def _triangles(
-    pieces: list[tuple[Piece[Mesh], Float64]], remarks: Remarks, report: Callable[[], None]
-) -> tuple[Triangles, list[Counted]]:
+def _blocks(pieces: Meshes, report: Callable[[], None]) -> Iterator[tuple[list[Mesh], Float64]]:
+    """All meshes in their order, with the matrix to bake into them: those in a row that have the same one at once, as a
+    scene may consist of a million polygons, but not too many triangles, as others consist of one mesh of millions."""
+    run: list[Mesh] = []
+    triangles, kind, matrix = 0, None, np.eye(4)
+    for piece, baked in _told(pieces, report):
+        for mesh in piece.shape.blocks():
+            if run and (kind != (id(baked), mesh.normals is None) or triangles + len(mesh) > BLOCK):
+                report()
+                yield run, matrix
+                run, triangles = [], 0
+            kind, matrix = (id(baked), mesh.normals is None), baked
+            run.append(mesh)
+            triangles += len(mesh)
+    if run:
+        yield run, matrix
+
+
+def _triangles(pieces: Meshes, remarks: Remarks, report: Callable[[], None]) -> tuple[Triangles, list[Counted]]:
     """All triangles of an object.  Those without area stay, although no ray meets them: BART counts them."""
     if not pieces:
         return empty_triangles(), []
-    placed = list(_placed_in_runs(_told(pieces, report)))
-    lengths = [len(piece.shape.corners) for piece, _ in pieces]
-    corners = np.concatenate([c for c, _ in placed])
-    normals = np.concatenate([n for _, n in placed])
-    uvs = np.concatenate([_uvs(piece.shape, baked) for piece, baked in _told(pieces, report)])
+    lengths = [len(piece.shape) for piece, _ in pieces]
+    n = sum(lengths)
+    single, units = np.empty((n, 3, 3), np.float32), np.empty((n, 3, 3), np.float32)
+    uvs = np.empty((n, 3, 2), np.float32)
+    good, finite, flat = np.empty(n, np.bool_), np.empty(n, np.bool_), np.empty(n, np.bool_)
+    start = 0
+    for run, matrix in _blocks(pieces, report):
+        bare = run[0].normals is None
+        normals = None if bare else np.concatenate([mesh.normals for mesh in run])
+        corners, normals = under_matrix(np.concatenate([mesh.corners for mesh in run]), normals, matrix)
+        part = slice(start, start + len(corners))
+        start = part.stop
+        finite[part], good[part] = _finite(corners)
+        single[part] = rounded = corners.astype(np.float32)
+        flat[part] = good[part] & ~np.cross(rounded[:, 1] - rounded[:, 0], rounded[:, 2] - rounded[:, 0]).any(axis=1)
+        uvs[part] = np.concatenate([_uvs(mesh, matrix) for mesh in run])
+        units[part] = unit_normals(normals, corners)
     material = np.repeat(np.array([piece.material for piece, _ in pieces], np.int32), lengths)
     texture = np.repeat(np.array([piece.texture for piece, _ in pieces], np.int32), lengths)
     origin = _Origin([piece.shape.place for piece, _ in pieces], lengths)
-    good = _finite(corners, origin, remarks)
+    origin.remark_lost(finite, good, remarks)
     kept = np.diff(np.concatenate([[0], np.cumsum(good)])[np.cumsum([0, *lengths])])
     counted: list[Counted] = [(piece, int(count)) for (piece, _), count in zip(pieces, kept)]
-    single = corners.astype(np.float32)
-    flat = good & ~np.cross(single[:, 1] - single[:, 0], single[:, 2] - single[:, 0]).any(axis=1)
     if flat.any():
         origin.remark(flat, "a triangle without area is kept, but no ray can meet it", remarks)
     if not good.all():
-        single, corners, normals, uvs = single[good], corners[good], normals[good], uvs[good]
-        material, texture = material[good], texture[good]
-    return Triangles(single, unit_normals(normals, corners), uvs, material, texture), counted
+        single, units, uvs, material, texture = single[good], units[good], uvs[good], material[good], texture[good]
+    return Triangles(single, units, uvs, material, texture), counted
 
 
 def _uvs(mesh: Mesh, matrix: Float64) -> NDArray[np.float32]:
@@ -283,7 +299,8 @@ def _deforming(pieces: list[tuple[Piece[Morph], Float64]], remarks: Remarks) -> 
     corners, normals = np.stack([c for c, _ in placed]), np.stack([n for _, n in placed])
     times = np.stack([piece.shape.times for piece, _ in pieces])
     origin = _Origin([piece.shape.place for piece, _ in pieces], [1] * len(pieces))
-    good = _finite(np.concatenate([corners.reshape(len(corners), -1), times], axis=1), origin, remarks)
+    finite, good = _finite(np.concatenate([corners.reshape(len(corners), -1), times], axis=1))
+    origin.remark_lost(finite, good, remarks)
     corners, times = corners[good], times[good]
     single = np.nan_to_num(normals[good].astype(np.float32), nan=0.0, posinf=0.0, neginf=0.0)
     first = Triangles(

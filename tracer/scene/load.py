@@ -15,6 +15,7 @@ from tracer.scene.framing import bounds
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.meshes import MESH_EXTENSIONS, load_mesh
 from tracer.scene.model import CONE, SPHERE, Progress, Scene, SceneError
+from tracer.scene.room import check_reading, check_showing
 
 AFF_EXTENSIONS = (".aff", ".nff")
 SCENE_EXTENSIONS = (*AFF_EXTENSIONS, *MESH_EXTENSIONS)
@@ -49,10 +50,11 @@ def load_scene(
     ------
     SceneError
         If the file cannot be read. The message is one line that names the file, its line if it has lines, and what to
-        do.
+        do. So is a file that needs more memory than there is, unless SHADOWCULL_BEYOND_MEMORY is set.
     """
     path = Path(path)
     check_scene_file(path)
+    check_reading(path)
     if progress is not None:
         progress(f"Reading {path.name}", 0.0)
     if path.suffix.lower() in AFF_EXTENSIONS:
@@ -88,10 +90,11 @@ def load_visible_scene(
     folders: Iterable[Path] = (),
     meshes: MeshOptions = AS_IN_FILE,
 ) -> Scene:
-    """As `load_scene`, but a scene with nothing to see in it is a SceneError too."""
+    """As `load_scene`, but a scene with nothing to see in it, or too large to be shown, is a SceneError too."""
     scene = load_scene(path, progress, folders, meshes)
     if scene.primitive_count == 0:
         raise SceneError(f"{path}: nothing to see in it: no triangles, spheres or cones")
+    check_showing(Path(path), scene.primitive_count)
     return scene
 
 

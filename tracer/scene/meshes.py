@@ -8,14 +8,14 @@ lights are added, or a studio around it.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracer.scene.animation import Animation
 from tracer.scene.arrays import Float64
@@ -28,7 +28,7 @@ from tracer.scene.mesh_materials import MaterialTable
 from tracer.scene.mesh_options import AS_IN_FILE, CREASE, MeshOptions
 from tracer.scene.mesh_reading import only_known_images, quiet
 from tracer.scene.model import Camera, Progress, Scene, SceneError
-from tracer.scene.pieces import Mesh, Piece
+from tracer.scene.pieces import IndexedMesh, Piece
 from tracer.scene.ply_lists import with_even_lists
 from tracer.scene.punctual_lights import has_lights, punctual_lights
 from tracer.scene.studio import build_studio, with_floor
@@ -79,15 +79,18 @@ def load_mesh(
     nodes = list(model.graph.nodes_geometry)
     skipped = []
     for i, node in enumerate(nodes):
-        report(f"Reading {path.name}", 0.5 + 0.5 * i / len(nodes))
+        fraction = 0.5 + 0.4 * i / len(nodes)
+        report(f"Reading {path.name}", fraction)
         matrix, name = model.graph[node]
         mesh = model.geometry[name]
         if not hasattr(mesh, "faces") or not len(mesh.faces):
             skipped.append(f"{path}: {name!a} has no triangles; it is left out")
             continue
-        for shape, material, texture in _shapes(mesh, _MeshPlace(path, name), table, crease):
+        for shape, material, texture in _shapes(
+            mesh, _MeshPlace(path, name), table, crease, partial(report, f"Smoothing {path.name}", fraction)
+        ):
             geometry.meshes.append(Piece(shape, (np.asarray(matrix, np.float64),), material, texture))
-    objects, remarks = geometry.objects(())
+    objects, remarks = geometry.objects((), lambda: report(f"Putting {path.name} together", 0.9))
     if not len(objects[0].triangles):
         remarks.append(f"{path}: no triangle; only the background is seen")
     box = bounds(objects, Animation.empty(), 0.0)
@@ -219,31 +222,25 @@ def _check(mesh: Any, path: Path) -> None:
         raise SceneError(f"{path}: a triangle refers to a vertex that is not there; repair the file")
 
 
-def _shapes(mesh: Any, place: _MeshPlace, table: MaterialTable, crease: float) -> Iterator[tuple[Mesh, int, int]]:
+def _shapes(
+    mesh: Any, place: _MeshPlace, table: MaterialTable, crease: float, report: Callable[[], None]
+) -> Iterator[tuple[IndexedMesh, int, int]]:
     """Parts of one material each, with its number and that of the texture; `crease` is the angle in degrees up to which
     edges are rounded where there are no normals."""
-    faces = np.asarray(mesh.faces, np.int64)
-    corners = np.asarray(mesh.vertices, np.float64)[faces]
-    normals = _of_corners(_vertex_normals(mesh), faces, (len(mesh.vertices), 3))
+    vertices, faces = np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64)
+    normals = _of_vertices(_vertex_normals(mesh), (len(vertices), 3))
     if normals is None and crease > 0:
-        normals = creased_normals(mesh.vertices, faces, crease)
-    uvs = _of_corners(getattr(mesh.visual, "uv", None), faces, (len(mesh.vertices), 2))
+        normals = creased_normals(vertices, faces, crease, report)
+    uvs = _of_vertices(getattr(mesh.visual, "uv", None), (len(vertices), 2))
     for which, material, texture in table.parts(mesh, place()):
-        yield (
-            Mesh(
-                corners[which],
-                place,
-                None if normals is None else normals[which],
-                None if uvs is None else uvs[which],
-            ),
-            material,
-            texture if uvs is not None else -1,
-        )
+        of_corners = normals is not None and normals.ndim == 3
+        some = normals[which] if normals is not None and of_corners else normals
+        yield IndexedMesh(vertices, faces[which], place, some, uvs), material, texture if uvs is not None else -1
 
 
-def _of_corners(values: Any, faces: NDArray[np.int64], shape: tuple[int, int]) -> Float64 | None:
-    """Numbers of vertices, as those of triangles' corners (n, 3, k), where they are of the shape that is expected."""
-    return None if values is None or np.shape(values) != shape else np.asarray(values, np.float64)[faces]
+def _of_vertices(values: Any, shape: tuple[int, int]) -> Float64 | None:
+    """Numbers of vertices (k, ...), where they are of the shape that is expected."""
+    return None if values is None or np.shape(values) != shape else np.asarray(values, np.float64)
 
 
 def _vertex_normals(mesh: Any) -> Float64 | None:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-from dataclasses import dataclass
+from collections.abc import Hashable, Iterator
+from dataclasses import dataclass, replace
 from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from tracer.scene.animation import Chain
 from tracer.scene.arrays import Float64
 
 T = TypeVar("T")
+BLOCK = 1 << 18
+"""Triangles that are worked on at once."""
 
 
 class Place(Protocol):
@@ -47,6 +52,44 @@ class Mesh:
     normals: Float64 | None = None
     uvs: Float64 | None = None
     texture: TextureName | None = None
+
+    def __len__(self) -> int:
+        return len(self.corners)
+
+    def blocks(self) -> Iterator[Mesh]:
+        """The same, in as many parts as one wants to hold in memory several times."""
+        if len(self) <= BLOCK:
+            yield self
+            return
+        for start in range(0, len(self), BLOCK):
+            part = slice(start, start + BLOCK)
+            normals, uvs = (None if a is None else a[part] for a in (self.normals, self.uvs))
+            yield replace(self, corners=self.corners[part], normals=normals, uvs=uvs)
+
+
+@dataclass(frozen=True)
+class IndexedMesh:
+    """The same as a file has it, in a third of the memory: vertices (k, 3) and faces (n, 3); normals are those
+    of corners (n, 3, 3) or of vertices (k, 3), uvs (k, 2) those of vertices."""
+
+    vertices: Float64
+    faces: NDArray[np.int64]
+    place: Place
+    normals: Float64 | None = None
+    uvs: Float64 | None = None
+    texture: TextureName | None = None
+
+    def __len__(self) -> int:
+        return len(self.faces)
+
+    def blocks(self) -> Iterator[Mesh]:
+        """As triangles by themselves, a part after the other."""
+        for start in range(0, len(self), BLOCK):
+            faces = self.faces[start : start + BLOCK]
+            normals = self.normals
+            if normals is not None:
+                normals = normals[start : start + BLOCK] if normals.ndim == 3 else normals[faces]
+            yield Mesh(self.vertices[faces], self.place, normals, None if self.uvs is None else self.uvs[faces])
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -225,3 +226,10 @@ def method(text: str) -> str:
 def methods_or_all(text: str) -> list[str]:
     """Names of methods, or ["all"]."""
     return ["all"] if text.strip() == "all" else several(method)(text)
+
+
+class BeyondMemory(argparse.Action):
+    """An option that says it to all readers of scenes, also those in other processes, by the environment."""
+
+    def __call__(self, *_: object) -> None:
+        os.environ["SHADOWCULL_BEYOND_MEMORY"] = "1"

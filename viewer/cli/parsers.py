@@ -10,6 +10,7 @@ from typing import Any, NoReturn
 
 from viewer.cli import examples
 from viewer.cli.argument_types import (
+    BeyondMemory,
     before,
     count,
     factors,
@@ -174,6 +175,13 @@ def add_scene(parser: Parser, more: str = "") -> None:
     add("scene", nargs="?", metavar="SCENE", help=_scene_help() + more)
     help_ = "another folder than its own that the scene may read files from; may be given several times"
     add("--folder", type=Path, action="append", default=[], metavar="DIR", help=help_)
+    add_beyond_memory(parser)
+
+
+def add_beyond_memory(parser: Parser) -> None:
+    """To go on where a scene needs more memory than there is."""
+    help_ = "read a scene even if it needs more memory than there is, which may end this program or others"
+    parser.add_argument("--beyond-memory", action=BeyondMemory, nargs=0, help=help_)
 
 
 def add_before(parser: Parser) -> None:

@@ -147,6 +147,7 @@ def check() -> Parser:
     add("pictures", nargs="+", type=Path, metavar="FILE", help=help_)
     help_ = "another folder than its own that a scene may read files from; may be given several times"
     add("--folder", type=Path, action="append", default=[], metavar="DIR", help=help_)
+    parsers.add_beyond_memory(parser)
     add("--threads", type=count(0, 1024), default=0, metavar="N", help="0, the default: one per core")
     return parser
 

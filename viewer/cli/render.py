@@ -10,7 +10,7 @@ import shlex
 from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -212,8 +212,4 @@ def write_picture(path: Path, scene: Scene, frame: Frame, wanted: Recipe) -> Non
     notes = png.notes(stills.text(pixels, frame, scene, wanted))
     kind = PICTURES[path.suffix.lower()]
     extras: dict[str, dict[str, Any]] = {"PNG": {"pnginfo": notes}, "JPEG": {"quality": 95}}
-
-    def write(file: BinaryIO) -> None:
-        image.save(file, kind, **extras.get(kind, {}))
-
-    write_whole(path, write)
+    png.write_image(path, image, kind, **extras.get(kind, {}))

@@ -11,6 +11,7 @@ import json
 import string
 import struct
 from collections.abc import Mapping
+from contextlib import ExitStack
 from datetime import datetime
 from io import BytesIO
 from pathlib import Path
@@ -24,7 +25,7 @@ from tracer.scene.files import read_regular
 from tracer.scene.model import SceneError
 from tracer.scene.textures import open_image
 from viewer.state.session import Snapshot
-from viewer.util.files import reserve, write_whole
+from viewer.util.files import reserved, write_whole
 
 CHUNK = "shadowcull"
 FORMAT = 1
@@ -99,17 +100,16 @@ def save(pixels: NDArray[np.uint8], folder: Path, name: str, text: str) -> Path:
     info = PngImagePlugin.PngInfo()
     info.add_itxt(CHUNK, text)
     info.add_text("Software", "Shadowcull")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        path = reserve(folder, name.removesuffix(".png"), ".png")
-    except OSError as error:
-        raise CaptureError(f"no picture saved: cannot write to {folder}: {error.strerror or error}") from None
     image = Image.fromarray(np.ascontiguousarray(pixels))
-    try:
-        write_whole(path, lambda file: image.save(file, "PNG", pnginfo=info, compress_level=4))
-    except (OSError, ValueError) as error:
-        path.unlink(missing_ok=True)
-        raise CaptureError(f"no picture saved: {error}") from None
+    with ExitStack() as stack:
+        try:
+            path = stack.enter_context(reserved(folder, name.removesuffix(".png"), ".png"))
+        except OSError as error:
+            raise CaptureError(f"no picture saved: {error}") from None
+        try:
+            write_whole(path, lambda file: image.save(file, "PNG", pnginfo=info, compress_level=4))
+        except (OSError, ValueError) as error:
+            raise CaptureError(f"no picture saved: {error}") from None
     return path
 
 

@@ -10,6 +10,7 @@ import json
 import threading
 from argparse import Namespace
 from collections.abc import Callable, Mapping
+from contextlib import ExitStack
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -17,7 +18,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from tracer import experiment, lamp_experiment, zoom
 from viewer.output import reports
-from viewer.util.files import check_outputs, reserve, write_each, write_text
+from viewer.util.files import check_outputs, reserved, write_each, write_text
 from viewer.util.version import program_version
 
 if TYPE_CHECKING:
@@ -122,14 +123,10 @@ def save(folder: Path, name: str, ending: str, write: Callable[[Path], None], no
     A name that is taken gets a number.  Raises OSError in one line, and what `write` raises; then no file is left.
     """
     stem = f"{name}-{now or datetime.now():%Y-%m-%d-%H-%M-%S}"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        path = reserve(folder, stem, ending)
-    except OSError as error:
-        raise OSError(f"nothing saved: cannot write to {folder}: {error.strerror or error}") from None
-    try:
+    with ExitStack() as stack:
+        try:
+            path = stack.enter_context(reserved(folder, stem, ending))
+        except OSError as error:
+            raise OSError(f"nothing saved: {error}") from None
         write(path)
-    except BaseException:
-        path.unlink(missing_ok=True)
-        raise
     return path

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from viewer.output.buffers import buffers
 from viewer.output.capture import CHUNK, CaptureError
-from viewer.util.files import check_writable, write_whole
+from viewer.util.files import whole_file
 
 ENDING = ".exr"
 MOST_LIGHTS = 32  # that have channels of their own
@@ -60,21 +59,20 @@ def write(path: Path, frame: Frame, text: str, half: bool = False) -> None:
     """Write the file, whole or not at all; raises OSError in one line."""
     import OpenEXR
 
-    check_writable(path)
     header = {
         "compression": OpenEXR.ZIP_COMPRESSION,
         "type": OpenEXR.scanlineimage,
         "software": "Shadowcull",
         CHUNK: text,
     }
-    with tempfile.TemporaryDirectory() as folder:
-        made = Path(folder) / "frame.exr"
+    with whole_file(path) as (part, _):
         try:
             with OpenEXR.File(header, channels(frame, half)) as file:
-                file.write(str(made))
+                file.write(str(part))
+            with OpenEXR.File(str(part)) as file:  # the library says nothing where the last bytes have no room
+                file.channels()
         except RuntimeError as error:
-            raise OSError(f"{path}: not written: {error}") from None
-        write_whole(path, lambda file: file.write(made.read_bytes()))
+            raise OSError(f"is the disk full? {str(error).replace(str(part), str(path))}") from None
 
 
 def read(path: Path) -> tuple[NDArray[Any], dict[str, Any]]:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from fractions import Fraction
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from viewer.util.files import whole_file
 
 VIDEO = ".mp4"
 QUALITY = "16"  # of x264: what the eye can hardly tell from the pictures
@@ -32,23 +34,15 @@ def frame_name(number: int, last: int) -> str:
 
 
 class Video:
-    """An mp4 that frames are added to; closed, it takes its name, and may be shorter than was planned.
+    """A video that pictures are added to, as `video` opens it."""
 
-    x264 takes even sizes only: an odd side is made even by its last row or column once more."""
-
-    def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
-        """`size` is that of the pictures.  Raises OSError in one line."""
-        import av
-
-        self.path, self._part = path, path.with_name(f".{path.name}.{os.getpid()}.part")
-        self.size = size[0] + size[0] % 2, size[1] + size[1] % 2
+    def __init__(self, file: Any, path: Path, size: tuple[int, int], fps: float) -> None:
+        """`file` is PyAV's; `size` is that of the pictures."""
+        self.path, self.size = path, (size[0] + size[0] % 2, size[1] + size[1] % 2)
         self.frames = 0
-        try:
-            self._file: Any = av.open(str(self._part), "w", format="mp4", options={"movflags": "+faststart"})
-        except OSError as error:
-            raise OSError(f"{path}: not written: {error.strerror or error}") from None
+        self._file = file
         rate = Fraction(fps).limit_denominator(1001)
-        self._stream: Any = self._file.add_stream("libx264", rate=rate, options={"crf": QUALITY, "preset": "medium"})
+        self._stream: Any = file.add_stream("libx264", rate=rate, options={"crf": QUALITY, "preset": "medium"})
         self._stream.width, self._stream.height = self.size
         self._stream.pix_fmt = "yuv420p"
         context = self._stream.codec_context
@@ -65,28 +59,46 @@ class Video:
         frame = frame.reformat(
             format="yuv420p", dst_colorspace="itu709", dst_color_range="MPEG", src_color_range="JPEG"
         )
-        self._put(frame)
-        self.frames += 1
-
-    def _put(self, frame: Any) -> None:
         try:
-            for packet in self._stream.encode(frame):
-                self._file.mux(packet)
+            self.put(frame)
         except OSError as error:
             raise OSError(f"{self.path}: not written: {error.strerror or error}") from None
+        self.frames += 1
 
-    def __enter__(self) -> Video:
-        return self
+    def put(self, frame: Any) -> None:
+        """A frame as PyAV has it, or None at the end."""
+        for packet in self._stream.encode(frame):
+            self._file.mux(packet)
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """End the file; without a frame, or after a failure to write, none is left."""
+
+@contextmanager
+def video(path: Path, size: tuple[int, int], fps: float) -> Iterator[Video]:
+    """An mp4 of pictures of this size, which takes its name at the end of the block, however many have come by then;
+    without a picture, or after a failure to write, none is left.  Raises OSError in one line.
+
+    x264 takes even sizes only: an odd side is made even by its last row or column once more."""
+    import av
+
+    stopped: BaseException | None = None
+    with suppress(_Unwanted), whole_file(path) as (part, _):
+        file: Any = av.open(str(part), "w", format="mp4", options={"movflags": "+faststart"})
         try:
-            if self.frames and not isinstance(error, OSError):
-                self._put(None)
-            self._file.close()
-            if self.frames and not isinstance(error, OSError):
-                os.replace(self._part, self.path)
-        finally:
-            self._part.unlink(missing_ok=True)
+            made = Video(file, path, size, fps)
+            try:
+                yield made
+            except BaseException as error:
+                stopped = error
+            if not made.frames or isinstance(stopped, OSError):
+                raise _Unwanted
+            made.put(None)
+        except BaseException:
+            with suppress(OSError):
+                file.close()
+            raise
+        file.close()
+    if stopped is not None:
+        raise stopped
+
+
+class _Unwanted(Exception):
+    """There is nothing to keep."""

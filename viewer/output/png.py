@@ -1,10 +1,10 @@
-"""Pictures as PNG with what they carry, whole or not at all."""
+"""Pictures as PNG with what they carry, and of other kinds, whole or not at all."""
 
 from __future__ import annotations
 
 from io import BytesIO
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,9 +31,13 @@ def encoded(pixels: NDArray[np.uint8], text: str) -> bytes:
 
 def write(path: Path, pixels: NDArray[np.uint8], text: str, **options: Any) -> None:
     """Write (h, w, 3) uint8 pixels, row 0 at the top; raises OSError in one line."""
-    image = Image.fromarray(np.ascontiguousarray(pixels))
+    write_image(path, Image.fromarray(np.ascontiguousarray(pixels)), "PNG", pnginfo=notes(text), **options)
 
-    def save(file: BinaryIO) -> None:
-        image.save(file, "PNG", pnginfo=notes(text), **options)
 
-    write_whole(path, save)
+def write_image(path: Path, image: Image.Image, kind: str, **options: Any) -> None:
+    """Write an image as Pillow's `kind` of file; raises OSError in one line.
+
+    Through memory, as Pillow, where it may write into a file itself, says nothing of a disk without room for all."""
+    file = BytesIO()
+    image.save(file, kind, **options)
+    write_whole(path, lambda target: target.write(file.getbuffer()))

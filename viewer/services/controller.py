@@ -164,8 +164,16 @@ class Controller:
                 self.bookmarks.follow(self.traced.frame, self.traced.request.divisor == 1)
         self.inspector.follow(self.frame if run is None else None, not motion.lively)
         self.travel.follow(self.traced)
+        if not motion.lively:
+            self._keep_preferences()
         self.teachers.follow(self.traced if run is None and not motion.lively else None)
         return frame
+
+    def _keep_preferences(self) -> None:
+        """Save them soon after a change."""
+        if self.preferences.start_where_left and self.session.scene is not None:
+            self.preferences.last = self.session.snapshot().to_json()
+        self.settings.follow()
 
     def _follow_before_edits(self) -> None:
         traced, tracing = self.traced, self.tracing

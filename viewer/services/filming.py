@@ -14,7 +14,7 @@ from pathlib import Path
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from viewer.output import png
-from viewer.output.movie import VIDEO, Video, frame_name
+from viewer.output.movie import VIDEO, Video, frame_name, video
 from viewer.output.recipe import Recipe
 from viewer.services import stills
 from viewer.state.flight import Take
@@ -85,18 +85,18 @@ def shoot(
     video as long as these, and OSError, in one line, as when the disk is full."""
     scene, numbers = renderer.scene, picture_numbers(script.takes)
     with ExitStack() as stack:
-        video: Video | None = None
+        film: Video | None = None
         for number, take in enumerate(script.takes):
             recipe = stills.with_caption_filled(recipe_of(script.recipe, take), scene)
             frame = stills.trace(renderer, replace(recipe, warmup=0), cancelled=cancelled)
             pixels, _ = stills.draw(frame, scene, recipe)
-            if video is None and script.video is not None:
+            if film is None and script.video is not None:
                 height, width = pixels.shape[:2]  # with a caption, these are more than the frame's
-                video = stack.enter_context(Video(script.video, (width, height), script.fps))
+                film = stack.enter_context(video(script.video, (width, height), script.fps))
             path = script.folder / frame_name(numbers[number], max(numbers))
             png.write(path, pixels, stills.text(pixels, frame, scene, recipe))
-            if video is not None:
-                video.add(pixels)
+            if film is not None:
+                film.add(pixels)
             on_frame(number, frame)
             yield path
 

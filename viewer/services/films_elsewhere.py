@@ -19,7 +19,7 @@ from PIL import Image
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from viewer.output import capture, fingerprint, png
-from viewer.output.movie import Video, frame_name
+from viewer.output.movie import Video, frame_name, video
 from viewer.output.recipe import Recipe
 from viewer.services import filming, stills
 from viewer.services.cluster import Cluster
@@ -139,7 +139,7 @@ class _Reel:
             pixels = _pixels(self._paths[self._next])
             if self._video is None:
                 size = pixels.shape[1], pixels.shape[0]
-                self._video = self._stack.enter_context(Video(self._script.video, size, self._script.fps))
+                self._video = self._stack.enter_context(video(self._script.video, size, self._script.fps))
             self._video.add(pixels)
             self._next += 1
 

@@ -31,6 +31,7 @@ SMOOTHING = 0.4
 LAMP_SAMPLE = 0.6  # of a pixel's cost by points, that each further sample of lamps adds until it has been observed
 MOVING_SAMPLES, FEWEST_SAMPLES = 4, 1  # of lamps in motion, where there is time and where there is none
 LEAST_PART = 4  # sixteenths of the pixels that there must be time for with the former
+STALLED = 10.0  # times what a frame should take, after which one alone is not believed
 PRIMARY, UNSHADED, SHADING = ("primary",), ("surfaces", "filling"), ("shading",)
 BESIDE = ("place", "certification")
 
@@ -89,12 +90,16 @@ class Governor:
         self._moving_samples = MOVING_SAMPLES
         self._beside = 0.0
         self._finest = 0.0  # pixels that the last plan shaded
-        self._known, self._last_divisor = False, 1
+        self._known, self._stalled, self._last_divisor = False, False, 1
 
     def observe(self, statistics: FrameStatistics, pixels: int, lamp_samples: int = 1) -> None:
         """Learn from a frame of so many pixels, or the first part of one, whose lamps have so many samples."""
         phases = statistics.phases
         if pixels <= 0 or "shading" not in phases:
+            return
+        taken, expected = sum(phases.values()), self.seconds(pixels, TURNS * statistics.part, lamp_samples)
+        self._stalled = self._known and not self._stalled and taken > STALLED * expected + SOON
+        if self._stalled:  # the machine was asleep, or is much slower from now on: the next frame tells which
             return
         self._primary.observe(pixels, _sum(phases, PRIMARY))
         if "surfaces" in phases:  # else it was whole at once, without what parts need

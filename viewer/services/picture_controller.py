@@ -29,10 +29,19 @@ from viewer.state.plans import MOST_MULTIPLE, PicturePlan
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
-from viewer.util.files import reserve
+from viewer.util.files import reserved
 
 MOST_PIXELS = 1 << 26
 JPEG = ".jpg"
+
+
+def write_picture(path: Path, pixels: NDArray[np.uint8], text: str) -> None:
+    """Write (h, w, 3) pixels as the ending says, whole or not at all; a PNG carries the text.  Raises OSError in one
+    line."""
+    if path.suffix == JPEG:
+        png.write_image(path, Image.fromarray(pixels), "JPEG", quality=95)
+    else:
+        png.write(path, pixels, text)
 
 
 class PictureRun(Run[Path]):
@@ -65,18 +74,11 @@ class PictureRun(Run[Path]):
         pixels, _ = (frame.pixels, "") if as_exr else stills.draw(frame, scene, self.recipe)
         text = stills.text(pixels, frame, scene, self.recipe)
         stem = f"{scene.path.stem}-{self.recipe.view.value}-{width}x{height}"
-        self.folder.mkdir(parents=True, exist_ok=True)
-        path = reserve(self.folder, stem, self.ending)
-        try:
+        with reserved(self.folder, stem, self.ending) as path:
             if as_exr:
                 exr.write(path, frame, text)
-            elif self.ending == JPEG:
-                Image.fromarray(pixels).save(path, "JPEG", quality=95)
             else:
-                png.write(path, pixels, text)
-        except BaseException:
-            path.unlink(missing_ok=True)
-            raise
+                write_picture(path, pixels, text)
         self.traced = self.frames
         yield path
 

@@ -20,12 +20,15 @@ import platformdirs
 from tracer.frame import Settings
 from tracer.method import Method
 from tracer.scene.lights import MAX_SAMPLES
+from viewer.state.merging import merged
 from viewer.state.methods import DEFAULT, NO_CULLING, is_method
 from viewer.state.views import BENEATH, View
 from viewer.util.files import write_text
 from viewer.util.json_numbers import finite
+from viewer.util.part_files import claimed
 
 SETTINGS_FILE = "settings.json"
+PATIENCE = 2.0  # seconds that one window waits for another to save
 RECENT_SCENES = 10
 RECENT_COMMANDS = 30
 THEMES = ("dark", "light")
@@ -174,36 +177,49 @@ def default_screenshot_folder() -> Path:
 
 def load_preferences(folder: Path | None = None) -> tuple[Preferences, str | None]:
     """The stored preferences, and one line about what was wrong with the file, or None."""
-    path = (folder or config_folder()) / SETTINGS_FILE
-    try:
-        text = path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        return Preferences(), None
-    except (OSError, UnicodeDecodeError) as error:
-        return Preferences(), f"settings not read: {error}"
-    try:
-        data = json.loads(text)
-        if not isinstance(data, dict):
-            raise ValueError("not an object")
-    except ValueError:
-        kept = path.with_suffix(".damaged.json")
-        try:
-            os.replace(path, kept)
-        except OSError:
-            kept = path
-        return Preferences(), f"settings were damaged, defaults are used; the old file is kept as {kept}"
-    return _from_json(data), None
+    data, problem = _read((folder or config_folder()) / SETTINGS_FILE)
+    return (Preferences() if data is None else _from_json(data)), problem
 
 
-def save_preferences(preferences: Preferences, folder: Path | None = None) -> str | None:
-    """Write the preferences in one step; returns None, or one line saying why they could not be written."""
+def save_preferences(
+    preferences: Preferences, folder: Path | None = None, base: Mapping[str, Any] | None = None
+) -> str | None:
+    """Write the preferences in one step; returns None, or one line saying why they could not be written.
+
+    With a `base`, what they were made from, as a dictionary, changes that another window has stored meanwhile stay."""
     folder = folder or config_folder()
+    path, mine = folder / SETTINGS_FILE, asdict(preferences)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        write_text(folder / SETTINGS_FILE, json.dumps(asdict(preferences), indent=2))
+        with claimed(path, PATIENCE):
+            if base is not None:
+                stored, _ = _read(path)
+                mine = merged(base, mine, {**base, **(stored or {})})
+            write_text(path, json.dumps(mine, indent=2))
     except OSError as error:
-        return f"settings not saved: {error}"
+        return f"settings not saved: {path}: {error.strerror}" if error.strerror else f"settings not saved: {error}"
     return None
+
+
+def _read(path: Path) -> tuple[Mapping[str, Any] | None, str | None]:
+    """What a file of settings holds, None where there is none to be had; and one line about what was wrong with it.
+
+    A file that cannot be read is kept under another name, so that saving does not destroy it."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        if not isinstance(data, dict):
+            raise ValueError("not an object")
+        return data, None
+    except FileNotFoundError:
+        return None, None
+    except (OSError, ValueError, RecursionError) as error:
+        why = f"could not be read ({error.strerror})" if isinstance(error, OSError) else "were damaged"
+    kept = path.with_suffix(".damaged.json")
+    try:
+        os.replace(path, kept)
+    except OSError:
+        kept = path
+    return None, f"settings {why}, defaults are used; the old file is kept as {kept}"
 
 
 def _from_json(data: Mapping[str, Any]) -> Preferences:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
-import secrets
 import stat
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import BinaryIO
+
+from viewer.util.part_files import claimed, part_file
 
 MOST_NUMBERS = 100_000
 _OF_DEVICES = "/dev"
@@ -25,10 +27,9 @@ def check_writable(path: Path) -> None:
         raise OSError(f"{path}: a folder of devices; give a folder for files")
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {path.parent if target == path else target.parent}")
-    probe = _temporary(target)
     try:
-        probe.touch(exist_ok=False)
-        probe.unlink()
+        with part_file(target):
+            pass
     except FileNotFoundError:  # of a folder that is there
         raise OSError(f"{path}: no file can be made in the folder {target.parent}") from None
     except OSError as error:
@@ -61,18 +62,24 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
     Links are followed.  Raises OSError in one line, also for what is there and no regular file, and what
     `write` raises, leaving what was there before.
     """
+    with whole_file(path) as (_, file):
+        write(file)
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[tuple[Path, BinaryIO]]:
+    """The same, as a block: the name and the open file that take the name `path` at the end of it."""
     target = _target(path)
-    temporary = _temporary(target)
     try:
-        with temporary.open("xb") as file:
-            write(file)
+        with part_file(target) as (part, file):
+            yield part, file
             file.flush()
             os.fsync(file.fileno())
-        os.replace(temporary, target)
+            if os.name == "nt":  # where open files keep their names
+                file.close()
+            os.replace(part, target)
     except OSError as error:
         raise OSError(f"{path}: not written: {error.strerror or error}") from None
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def write_text(path: Path, text: str) -> None:
@@ -85,18 +92,24 @@ def write_bytes(path: Path, data: bytes) -> None:
     write_whole(path, lambda file: file.write(data))
 
 
-def reserve(folder: Path, stem: str, ending: str) -> Path:
-    """Create an empty file of a name that nobody has: stem and ending, or with -2, -3, ... between them.
+@contextmanager
+def reserved(folder: Path, stem: str, ending: str) -> Iterator[Path]:
+    """A name for a new file in a folder, which is made if need be, that nobody has, and nobody else is given until the
+    end of the block: stem and ending, or with -2, -3, ... between them.
 
-    Raises OSError where it cannot be.
+    Nothing has this name before the block gives it to a whole file.  Raises OSError, in one line, where there is none.
     """
     for number in range(1, MOST_NUMBERS + 1):
         path = folder / f"{stem}{f'-{number}' if number > 1 else ''}{ending}"
-        try:
-            path.open("xb").close()
-        except FileExistsError:
-            continue
-        return path
+        with ExitStack() as stack:
+            try:
+                folder.mkdir(parents=True, exist_ok=True)
+                free = stack.enter_context(claimed(path)) and not os.path.lexists(path)
+            except OSError as error:
+                raise OSError(f"cannot write to {folder}: {error.strerror or error}") from None
+            if free:
+                yield path
+                return
     raise OSError(f"{stem}{ending} and {MOST_NUMBERS - 1} more exist already")
 
 
@@ -116,8 +129,3 @@ def _target(path: Path) -> Path:
     if not stat.S_ISREG(kind):
         raise OSError(f"{path}: a device, a pipe or a socket; give a regular file")
     return Path(os.path.realpath(path)) if path.is_symlink() else path
-
-
-def _temporary(path: Path) -> Path:
-    """A name beside it that nobody else has, of this process or another; tempfile's files would stay the user's own."""
-    return path.with_name(f".{path.name[:100]}.{secrets.token_hex(8)}.part")

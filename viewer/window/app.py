@@ -34,10 +34,12 @@ from viewer.window.compared import Compared
 from viewer.window.display import Display, Look
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
-from viewer.window.layout import Layout, LayoutFile
+from viewer.window.layout import Layout
+from viewer.window.layout_file import LayoutFile
 from viewer.window.magnifier import Magnifier
 from viewer.window.panels import dialogs, faults, legend, loading, picture, status, strip, tour
 from viewer.window.shots import Shots
+from viewer.window.signals import closing_by_signals
 from viewer.window.ui import CaptureKind, Ui
 from viewer.window.widgets import tell_keys
 
@@ -50,6 +52,9 @@ FASTEST = 60.0  # frames a second of the window's own
 FASTEST_BY_PROCESSOR, SLOWEST_BY_PROCESSOR = 30.0, 12.0
 IDLE = 8.0  # frames a second while nothing happens
 ACTIVE = 0.25  # seconds after an event until nothing happens
+NO_OPENGL = (
+    "no window can be opened, as this display gives no OpenGL 3.3; without one, use: shadowcull render SCENE -o out.png"
+)
 DRAWN_BY_PROCESSOR = ("llvmpipe", "softpipe", "swrast", "software")
 
 
@@ -87,16 +92,22 @@ class App:
             self.ui.tour.start()
         self._frame_began = time.perf_counter()
         self._capture_this_frame = False
-        self.drawn_by_processor = self.iconified = False
+        self.drawn_by_processor = self.iconified = self.was_open = False
         self.read_pads = glfw_pads.Pads().read
         if problem:
             self.controller.notices.say(problem, error=True)
 
     def run(self, runner: Callable[[hello_imgui.RunnerParams, immapp.AddOnsParams], None] = immapp.run) -> int:
-        """Open the window and stay until it is closed; returns the exit code."""
+        """Open the window and stay until it is closed; returns the exit code.  Raises OSError, in one line, where the
+        display has no OpenGL for it."""
         hook, threading.excepthook = threading.excepthook, self._thread_failed
         try:
-            runner(self.params, immapp.AddOnsParams(with_implot=True))
+            with closing_by_signals(self._exit):
+                runner(self.params, immapp.AddOnsParams(with_implot=True))
+        except RuntimeError as error:
+            if self.was_open:
+                raise
+            raise OSError(NO_OPENGL) from error
         finally:
             threading.excepthook = hook
             self.controller.close()
@@ -299,6 +310,7 @@ class App:
 
     def _ready(self) -> None:
         """The window and its GL context exist."""
+        self.was_open = True
         self.ui.display = Display()
         self.ui.shots = Shots(self.ui.display.context)
         self.ui.compared = Compared(self.ui.display.passes)

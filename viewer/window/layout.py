@@ -7,10 +7,7 @@ keep their place in the docking, so that they come back as they were.
 
 from __future__ import annotations
 
-import os
-import shutil
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 from imgui_bundle import ImVec2, hello_imgui, imgui
@@ -177,27 +174,6 @@ class Layout:
             imgui.end()
         if stays is False:
             self._params.docking_params.dockable_window_of_name(panel.label).is_visible = False
-
-
-class LayoutFile:
-    """Where the panels are: ImGui writes a copy of its own, which takes the file's name when the window is closed."""
-
-    def __init__(self, folder: Path) -> None:
-        self.path = folder / "layout.ini"
-        self.working_copy = folder / f".layout.{os.getpid()}.ini"
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            if self.path.exists():
-                shutil.copyfile(self.path, self.working_copy)
-        except OSError:
-            pass  # then the layout is not remembered; saving the settings says why
-
-    def keep(self) -> None:
-        try:
-            if self.working_copy.exists():
-                os.replace(self.working_copy, self.path)
-        except OSError:
-            pass
 
 
 def _splits() -> list[hello_imgui.DockingSplit]:

@@ -116,3 +116,16 @@ def test_what_else_is_in_a_frame_leaves_less_time():
 def test_divided_sizes_are_never_empty():
     assert divided(3, 1, 8) == (1, 1)
     assert divided(1000, 500, 3) == (333, 167)
+
+
+def test_a_frame_that_was_slept_through_changes_nothing_but_slow_ones_do():
+    def picture() -> FrameStatistics:
+        return frame(400_000, 8)
+
+    governor = taught(*[picture() for _ in range(20)])
+    before = governor.plan(800, 500, 0.32)
+    governor.observe(frame(400_000, 8, beside=3600.0), 400_000)
+    assert governor.plan(800, 500, 0.32) == before
+    for _ in range(10):
+        governor.observe(frame(400_000, 8, slower=50.0), 400_000)
+    assert governor.plan(800, 500, 0.32).divisor > before.divisor

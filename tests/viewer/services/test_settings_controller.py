@@ -8,7 +8,7 @@ from pathlib import Path
 from tests.viewer.fakes import make_scene
 from tracer.scene.model import Camera
 from viewer.services.bookmarks import Bookmarks
-from viewer.services.settings_controller import SettingsController
+from viewer.services.settings_controller import RESTED, SettingsController
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -23,6 +23,11 @@ class Parts:
         self.locked = False
         self.settings = SettingsController(self.session, self.preferences, self.notices, lambda: self.locked)
         self.bookmarks = Bookmarks(self.session, self.preferences, self.settings, self.notices)
+
+    def follow_settings(self) -> None:
+        self.settings.follow()
+        if self.settings._writer is not None:
+            self.settings._writer.join(30.0)
 
 
 def test_a_setting_is_changed_and_remembered_unless_it_is_no_good_or_locked():
@@ -109,3 +114,42 @@ def test_the_radius_of_lamps_is_that_of_the_scene_and_their_samples_are_kept():
     assert parts.session.settings.lamp_radius == 0.25, "the same scene, reloaded"
     parts.session.open(make_scene(path="other.aff"))
     assert (parts.session.settings.lamp_radius, parts.session.settings.lamp_samples) == (None, 64)
+
+
+def test_a_change_that_rests_is_saved_and_other_windows_changes_stay(own_settings: Path, monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr("time.monotonic", lambda: now[0])
+    one, other = Parts(), Parts()
+    saved = own_settings / "settings.json"
+
+    def pass_time() -> None:
+        now[0] += RESTED
+        for parts in (one, other):
+            parts.follow_settings()
+
+    pass_time()
+    pass_time()
+    assert not saved.exists(), "nothing was changed"
+    one.preferences.theme = "light"
+    pass_time()
+    assert not saved.exists(), "it may change on"
+    pass_time()
+    other.preferences.depth = 3
+    pass_time()
+    pass_time()
+    read = json.loads(saved.read_text())
+    assert (read["theme"], read["depth"]) == ("light", 3)
+
+
+def test_preferences_that_cannot_be_saved_are_said_once(own_settings: Path, monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr("time.monotonic", lambda: now[0])
+    own_settings.write_text("a file is in its place")
+    parts = Parts()
+    for depth in (3, 4):
+        parts.preferences.depth = depth
+        for _ in range(4):
+            now[0] += RESTED
+            parts.follow_settings()
+    said = [entry.text for entry in parts.notices.log.entries()]
+    assert len(said) == 1 and said[0].startswith("settings not saved"), said

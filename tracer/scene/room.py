@@ -1,0 +1,167 @@
+"""Whether a scene fits into the memory that this machine has left: asked before reading it takes the machine down.
+
+What reading takes is estimated from what the head of a file says, else from its size, by what was measured; what
+showing takes, from the triangles that were read.  Where a system does not tell what memory it has, nothing is asked.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import struct
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from tracer.scene.limits import MOST_PRIMITIVES
+from tracer.scene.model import SceneError
+
+ANYHOW = "SHADOWCULL_BEYOND_MEMORY"
+"""A variable of the environment: set, no scene is refused for the memory that it needs."""
+
+READING = 750.0
+"""Bytes for each triangle of a mesh, at most, while it is read; for each byte of a text, READING_TEXT."""
+READING_TEXT = 25.0
+SHOWING = 600.0
+"""Bytes for each triangle that its tree, modes, certificates and first pictures take beside the scene."""
+_SMALL = 256e6  # bytes that nobody needs to ask for
+_HEAD = 1 << 16  # bytes that the head of a PLY file may take
+_LONGEST_JSON = 1 << 28
+_SIZES = {
+    "char": 1, "int8": 1, "uchar": 1, "uint8": 1, "short": 2, "int16": 2, "ushort": 2, "uint16": 2, "int": 4,
+    "int32": 4, "uint": 4, "uint32": 4, "float": 4, "float32": 4, "double": 8, "float64": 8,
+}  # fmt: skip
+
+
+def check_reading(path: Path) -> None:
+    """Raise SceneError, in one line, where reading this file needs more memory than there is."""
+    with suppress(OSError):  # the reader says what is wrong
+        triangles = triangles_of(path)
+        size = path.stat().st_size
+        _check(path, READING_TEXT * size if triangles is None else READING * triangles, "to be read")
+
+
+def check_showing(path: Path, triangles: int) -> None:
+    """The same for building trees over a scene that was read, and for its first picture."""
+    _check(path, SHOWING * triangles, f"more to be shown, with its {triangles:,} triangles")
+
+
+def _check(path: Path, needed: float, what: str) -> None:
+    if needed < _SMALL or os.environ.get(ANYHOW):
+        return
+    there = available()
+    if there is not None and needed > there:
+        short = max(needed - there, 0.05e9)
+        raise SceneError(
+            f"{path}: it needs about {needed / 1e9:.1f} GB of memory {what}, and {there / 1e9:.1f} GB are free: "
+            f"{short / 1e9:.1f} GB too little; free some, make it simpler, or give --beyond-memory ({ANYHOW}=1)"
+        )
+
+
+def available() -> float | None:
+    """Bytes of memory that this process may still take without another being ended; None where nobody knows."""
+    found = [_of_system(), _of_group(), _of_limit()]
+    known = [bytes_ for bytes_ in found if bytes_ is not None]
+    return max(min(known), 0.0) if known else None
+
+
+def _of_system() -> float | None:
+    """What Linux can give away."""
+    return _field(Path("/proc/meminfo"), "MemAvailable:")
+
+
+def _of_group() -> float | None:
+    """What is left of what a container may take."""
+    try:
+        most = Path("/sys/fs/cgroup/memory.max").read_text().strip()
+        return None if most == "max" else float(most) - float(Path("/sys/fs/cgroup/memory.current").read_text())
+    except (OSError, ValueError):
+        return None
+
+
+def _of_limit() -> float | None:
+    """What is left of the addresses that this process may use, where `ulimit -v` bounds them."""
+    try:
+        import resource
+    except ImportError:  # on Windows
+        return None
+    most, _ = resource.getrlimit(resource.RLIMIT_AS)
+    used = _field(Path("/proc/self/status"), "VmSize:")
+    return None if most == resource.RLIM_INFINITY or used is None else most - used
+
+
+def _field(path: Path, name: str) -> float | None:
+    """Bytes that a line of one of Linux' tables tells in KiB."""
+    try:
+        line = next(line for line in path.read_text().splitlines() if line.startswith(name))
+        return 1024.0 * float(line.split()[1])
+    except (OSError, ValueError, IndexError, StopIteration):
+        return None
+
+
+# --- what the head of a file says ------------------------------------------------------------------
+
+
+def triangles_of(path: Path) -> int | None:
+    """How many triangles a mesh file says that it has, before it is read; None for a text, or where it does not say.
+
+    Raises OSError."""
+    read = {".stl": _of_stl, ".ply": _of_ply, ".glb": _of_gltf, ".gltf": _of_gltf}.get(path.suffix.lower())
+    try:
+        return None if read is None else read(path)
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError, RecursionError, struct.error):
+        return None  # damaged: the reader says so
+
+
+def _of_stl(path: Path) -> int | None:
+    with path.open("rb") as file:
+        head = file.read(84)
+    (count,) = struct.unpack("<I", head[80:84])
+    return count if 84 + 50 * count == path.stat().st_size else None
+
+
+def _of_ply(path: Path) -> int | None:
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    end = head.index(b"end_header")
+    lines = [line.split() for line in head[:end].decode("latin-1").splitlines()]
+    if ["format", "ascii", "1.0"] in lines:
+        return None
+    numbers, flat, lists = {}, {}, set()  # elements, their bytes without lists, and which have lists
+    element = ""
+    for words in lines:
+        if words[:1] == ["element"]:
+            element = words[1]
+            numbers[element], flat[element] = int(words[2]), 0
+        elif words[:2] == ["property", "list"]:
+            lists.add(element)
+        elif words[:1] == ["property"]:
+            flat[element] += _SIZES[words[1]]
+    if lists - {"face"}:
+        return None  # strips
+    left = path.stat().st_size - end - sum(numbers[name] * flat[name] for name in numbers)
+    faces = numbers.get("face", 0)
+    corners = round((left / faces - 1) / 4) if faces else 0  # in the mean
+    found = faces * max(corners - 2, 1)
+    return found if 0 <= found <= MOST_PRIMITIVES else None
+
+
+def _of_gltf(path: Path) -> int | None:
+    with path.open("rb") as file:
+        if path.suffix.lower() == ".glb":
+            _, _, _, length, _ = struct.unpack("<4sIIII", file.read(20))
+        else:
+            length = path.stat().st_size
+        data: Any = json.loads(file.read(min(length, _LONGEST_JSON)))
+    accessors = data.get("accessors", [])
+
+    def triangles(mesh: Any) -> int:
+        found = 0
+        for primitive in mesh["primitives"]:
+            corners = primitive.get("indices", primitive["attributes"]["POSITION"])
+            found += accessors[corners]["count"] // (3 if primitive.get("mode", 4) == 4 else 1)
+        return found
+
+    of_meshes = [triangles(mesh) for mesh in data.get("meshes", [])]
+    found = sum(of_meshes[node["mesh"]] for node in data.get("nodes", []) if "mesh" in node)
+    return found if 0 <= found <= MOST_PRIMITIVES else None  # more is not read, or the file is damaged
