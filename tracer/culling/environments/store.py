@@ -50,6 +50,7 @@ SHARE = 8  # levels below the root down to which cells are divided for the light
 FEW_LIGHTS = 4  # of these: cells with no more are not divided for their sake
 COARSE, HARDLY = 6, 0.8  # levels that are divided in any case; further ones where the last left this part of the lights
 CANDIDATES = 3  # in a word, instead of a shadow mode
+FILLED = 0.7  # of the memory for cells: from there on none is divided
 MOVED = 8  # the part, one in so many, of lights that may have moved before all is proved anew
 EACH = 80  # bytes of a light and primitive, about
 
@@ -265,7 +266,8 @@ class EnvironmentStore:
         if len(self.further):
             worth |= self._settle_further(cells, counts, cancel)
         self.open[cells] = False
-        self._divide(cells[worth & (self.cells[cells, 3] > self.finest)])
+        if self._cell_bytes < FILLED * self._memory / 2:
+            self._divide(cells[worth & (self.cells[cells, 3] > self.finest)])
 
     def _keep(self, codes: NDArray[np.int32], found: NDArray[np.int32]) -> NDArray[np.int32]:
         """Add lists of blockers to the names; codes (n,) are how many of found (n, MOST) each has, then where its list
