@@ -16,6 +16,7 @@ def test_a_name_gives_a_base_additions_and_capabilities():
     assert {kind.name for kind in bases() if not kind.exact} == {
         "paper",
         "cells",
+        "lie",
         "lightcuts",
         "lightcuts-stochastic",
         "lightcuts-certified",

@@ -283,6 +283,38 @@ register(
         has_certificates=True,
     )
 )
+register(
+    Kind(
+        "voxels",
+        "Culls by cubes of space that are lit, or in shadow, as a whole; never wrong.",
+        "tracer.methods.voxels:Voxels",
+        has_certificates=True,
+        lights=(0, 31),
+        addition=True,
+        alone=True,
+    )
+)
+register(
+    Kind(
+        "lie-exact",
+        "Asks what is proven to block a light from a cell of space, and no light hidden from it; never wrong.",
+        "tracer.methods.lie:Environments",
+        has_certificates=True,
+        addition=True,
+        alone=True,
+    )
+)
+register(
+    Kind(
+        "lie",
+        "Local illumination environments, by samples as published; wrong now and then.",
+        "tracer.methods.lie:SampledEnvironments",
+        exact=False,
+        has_certificates=True,
+        addition=True,
+        alone=True,
+    )
+)
 register(Kind("cache", "Tests what blocked a light before first.", "tracer.methods.cache:OccluderCache", addition=True))
 register(Kind("rest", "Counts objects that rest as static.", "tracer.methods.rest:Resting", culls=False, addition=True))
 register(

@@ -89,7 +89,7 @@ class Stage:
     """Kernels that take part in shadow testing, with the record that they are given: `tracer.culling.stages` says when
     each is called.  `rows` of memory, each with a number for every point, are the stage's own for as long as a wave
     lasts.  `occluders`: it wants to know what blocks the rays that are traced.  `looks`: the bits that `select` writes
-    (`tracer.culling.stages.Stages`), of which there can be only one among all stages."""
+    (`tracer.culling.stages.Stages`); where several stages could, the first selects."""
 
     data: NamedTuple | None = None
     _: KW_ONLY
@@ -202,13 +202,15 @@ class StageTable:
         self._stages = stages
         self._blocks = [np.zeros(1, np.int64) if stage.data is None else pack(stage.data) for stage in stages]
         table, rows = np.zeros((len(stages), COLUMNS), np.int64), 0
+        selecting = next((stage for stage in stages if stage.looks is not None), None)
         for row, stage, block in zip(table, stages, self._blocks, strict=True):
-            first: list[Any] = [stage.find, stage.select, stage.approach, stage.choose]
+            select = stage.select if stage is selecting else None
+            first: list[Any] = [stage.find, select, stage.approach, stage.choose]
             kernels = [*first, stage.learn, stage.finish, stage.shade]
             row[:] = *(0 if kernel is None else kernel.address for kernel in kernels), block.ctypes.data, rows
             rows += stage.rows
-        looks = [stage.looks for stage in stages if stage.looks is not None]
-        assert len(looks) < 2, "one stage selects"
+        # One stage selects, the first that can; what a later one would pass over it answers itself.
+        looks = [stage.looks for stage in stages if stage.looks is not None][:1]
         learns = any(stage.learn is not None for stage in stages)  # from all rays to lights that have modes
         everything = ALL_LIGHTS if verify or records else MAX_CULLED_LIGHTS if learns else 0
         self.given = Stages(

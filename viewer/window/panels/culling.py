@@ -17,7 +17,6 @@ from viewer.window.widgets import (
     QUIET,
     checkbox,
     count,
-    em,
     paragraph,
     percent,
     properties,
@@ -112,7 +111,7 @@ def _method(ui: Ui) -> None:
                 imgui.end_combo()
     for number, kind in enumerate(additions(method.base)):
         if number:
-            imgui.same_line(0.0, em(1.0))
+            same_line_for(f"+{kind.name}")
         changed, _ = imgui.checkbox(f"+{kind.name}", method.has(kind.name))
         tooltip(kind.summary)
         if changed:

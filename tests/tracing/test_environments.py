@@ -1,0 +1,211 @@
+"""Local illumination environments: what is proved of cells holds for every ray, and pictures are those of "none"."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import tracer
+from tests.sweeps import cases
+from tests.tracing.nasty_worlds import NastyWalk, flattened_walk, nasty_walk, static_part, with_lamps
+from tests.tracing.worlds import scene, wall
+from tracer.culling.environments.octree import HIDDEN, LIT, OUTSIDE, UNKNOWN, boxes_of, make_frame
+from tracer.culling.environments.sample import cells_of
+from tracer.culling.environments.store import CANDIDATES, EnvironmentStore
+from tracer.culling.modes import FULL_SHADOW, MAX_CULLED_LIGHTS, NON_SHADOW
+from tracer.culling.rest import nothing_rests
+from tracer.culling.shadow_testing import LIGHT_MARGIN
+from tracer.geometry.rays import ray_batch
+from tracer.geometry.world import ACCELERATORS, World
+from tracer.scene.lamps import Lamps, LampTable
+from tracer.scene.lights import Light
+from tracer.scene.load import load_scene
+from tracer.settings import Settings
+from viewer.util.resources import embedded_scenes
+
+
+def _lamps(places: np.ndarray) -> Lamps:
+    table = LampTable(tuple(Light(f"light {i}", (0.0, 0.0, 0.0)) for i in range(len(places))))
+    return table.at(np.asarray(places, np.float64))
+
+
+def _store(world: World, lamps: Lamps, points: np.ndarray, memory: float = 3e7) -> EnvironmentStore:
+    """Cells that are settled around points (n, 3)."""
+    store = EnvironmentStore(world, lamps, 1, memory, True)
+    store.follow(lamps, nothing_rests(len(world.scene.objects)))
+
+    def want() -> None:
+        store.wanted[cells_of(store, points)] = True
+
+    store.work(want, np.inf)
+    return store
+
+
+def test_a_point_is_in_the_box_of_its_cell_by_either_way_down():
+    rng = np.random.default_rng(2)
+    for scale, move in ((1.0, 0.0), (1e-3, 5.0), (1e4, -1e6)):
+        corners = np.array(wall(4, 3)) * scale + move
+        points = (rng.random((200, 3)) * (4.0, 3.0, 0.0) * scale + move).astype(np.float32)
+        store = _store(World(scene(corners)), _lamps(np.array([[1.0, 1.0, 2.0]]) * scale + move), points)
+        cells = cells_of(store, points)
+        boxes = boxes_of(store.frame, store.cells[cells])
+        assert (cells != OUTSIDE).all() and (store.child[cells] == 0).all()
+        assert (points >= boxes[:, :3]).all() and (points <= boxes[:, 3:]).all()
+        assert [store.cell_at(point) for point in points] == cells.tolist()
+    assert store.cell_at(np.full(3, 1e9, np.float32)) == OUTSIDE
+    assert make_frame(np.zeros((2, 3))).levels >= 0
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_whatever_is_proved_of_a_cell_holds_for_the_rays_into_it(accelerator: str):
+    """No ray reaches a cell that a light is hidden from, all reach one that it lights; others meet blockers alone."""
+    proved = Counter[str]()
+    for seed in range(cases(12, 400)):
+        rng = np.random.default_rng(seed)
+        walk = nasty_walk(seed)
+        world = World(static_part(walk.scene), 0.0, accelerator)
+        places = walk.scene.light_positions(0.0).astype(np.float32)
+        rows = world.triangles_of(0).rows.astype(np.float64)
+        at = np.sort(rng.random((300, 2)), axis=1)
+        those = rows[rng.integers(len(rows), size=300)]
+        points = those[:, :3] + at[:, :1] * those[:, 3:6] + (1 - at[:, 1:]) * those[:, 6:]
+        anywhere = points.min(0) + rng.random((300, 3)) * np.ptp(points, axis=0)
+        points = np.concatenate([points, anywhere]).astype(np.float32)
+        store = _store(world, _lamps(places), points)
+        cells = np.unique(cells_of(store, points))
+        boxes = boxes_of(store.frame, store.cells[cells])
+        part = np.where(rng.random((len(cells), 16, 1)) < 0.4, rng.integers(0, 2, (len(cells), 16, 3)),
+                        rng.random((len(cells), 16, 3)))  # fmt: skip
+        ends = (boxes[:, None, :3] + part * (boxes[:, None, 3:] - boxes[:, None, :3])).astype(np.float32)
+        for light in range(store.held):
+            flat = ends.reshape(-1, 3)
+            rays = ray_batch(np.broadcast_to(places[light], flat.shape), flat - places[light], LIGHT_MARGIN, 1.0)
+            blocked = world.any_hits(rays, threads=1).reshape(len(cells), 16)
+            hits = world.closest_hits(rays, threads=1).primitive.reshape(len(cells), 16)
+            for cell, stopped, met in zip(cells, blocked, hits, strict=True):
+                code = store.codes[cell, light]
+                if code == HIDDEN:
+                    assert stopped.all(), (seed, cell)
+                elif code == LIT:
+                    assert not stopped.any(), (seed, cell)
+                elif code > 0:
+                    named = store.names[code + 1 : code + 1 + store.names[code]]
+                    assert np.isin(met[stopped], named).all(), (seed, cell)
+                proved[{HIDDEN: "hidden", LIT: "lit", UNKNOWN: "unknown"}.get(int(code), "blockers")] += 1
+    assert min(proved[name] for name in ("hidden", "lit", "blockers")) > cases(30, 1000), proved
+
+
+def _compare(walk: NastyWalk, method: str, seen: Counter[str], settings: Settings) -> None:
+    world = World(walk.scene, walk.scene.time_range[0], settings.accelerator)
+    none, other = (
+        tracer.Renderer(walk.scene, replace(settings, method=name), world=world) for name in ("none", method)
+    )
+    for number, (time, camera) in enumerate(walk.frames):
+        expected, frame = none.render(time, camera), other.render(time, camera)
+        differing = int((expected.color != frame.color).any(axis=2).sum())
+        assert differing == 0, f"seed {walk.seed}, frame {number}, {method}, {settings.accelerator}: {differing} pixels"
+        shadow = frame.statistics.shadow
+        for name in ("due", "culled", "dynamic_only", "candidates_only", "passed_over"):
+            seen[name] += getattr(shadow, name)
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_pictures_of_nasty_scenes_are_those_without_culling(accelerator: str):
+    """Lights that jump, objects that drift, stop and rest, lamps, many lights; with other methods as well."""
+    seen = Counter[str]()
+    settings = Settings(width=64, height=48, depth=2, accelerator=accelerator)
+    for seed in range(cases(12, 400)):
+        method = ("lie-exact", "lie-exact+rest", "certified+lie-exact", "lie-exact+cache")[seed % 4]
+        _compare(nasty_walk(seed, frames=4), method, seen, replace(settings, threads=1 + seed % 2))
+    for seed in range(cases(2, 100)):
+        _compare(flattened_walk(seed, frames=3), "lie-exact+rest", seen, settings)
+        _compare(with_lamps(nasty_walk(7 + seed, frames=3)), "lie-exact", seen, settings)
+        for method in ("lie-exact", "certified+lie-exact"):
+            _compare(nasty_walk(5 + seed, MAX_CULLED_LIGHTS + 5, frames=3), method, seen, settings)
+    assert seen["candidates_only"] > 0.2 * seen["due"] and seen["passed_over"] > 0.02 * seen["due"], seen
+
+
+def test_counters_do_not_depend_on_threads_and_modes_are_those_beside_none():
+    walk = nasty_walk(3)
+    settings = Settings(width=96, height=64, depth=1, method="lie-exact", modes=True, verify=True)
+    one, two, none = (
+        tracer.Renderer(walk.scene, replace(settings, threads=threads, method=method))
+        for threads, method in ((1, "lie-exact"), (2, "lie-exact"), (1, "none"))
+    )
+    for time, camera in walk.frames:
+        a, b, c = (renderer.render(time, camera) for renderer in (one, two, none))
+        assert a.statistics.shadow == b.statistics.shadow and a.statistics.shadow.wrong == 0
+        assert np.array_equal(a.modes, c.modes) and a.color.tobytes() == c.color.tobytes()
+
+
+def test_with_samples_it_is_wrong_now_and_then_and_verify_counts():
+    wrong = right = 0
+    for seed in range(6):
+        walk = nasty_walk(seed)
+        settings = Settings(width=96, height=72, depth=1, method="lie", verify=True, threads=1)
+        sampled, none = (
+            tracer.Renderer(walk.scene, settings),
+            tracer.Renderer(walk.scene, replace(settings, method="none")),
+        )
+        for time, camera in walk.frames[:2]:
+            frame, expected = sampled.render(time, camera), none.render(time, camera)
+            assert frame.reference is not None and frame.reference.tobytes() == expected.color.tobytes()
+            shadow = frame.statistics.shadow
+            wrong, right = wrong + shadow.wrong, right + shadow.due - shadow.wrong
+    assert 0 < wrong < 0.1 * right, (wrong, right)
+
+
+def test_memory_is_bounded_and_lights_without_room_are_traced():
+    walk = nasty_walk(2)
+    settings = Settings(width=64, height=48, depth=1, method="lie-exact", threads=1)
+    for megabytes in (0.0, 0.02, 1.0):
+        small = tracer.Renderer(walk.scene, replace(settings, certificate_memory=megabytes))
+        none = tracer.Renderer(walk.scene, replace(settings, method="none"))
+        for time, camera in walk.frames:
+            assert small.render(time, camera).color.tobytes() == none.render(time, camera).color.tobytes()
+
+
+def test_what_is_shown_of_cells_is_true_and_lights_behind_a_wall_are_passed_over():
+    """Three walls one behind the other, with lights on either side of that in the middle."""
+    one = np.array(wall(1, 1))
+    corners = (one + np.array([0.0, -3.0, 3.0])[:, None, None, None] * (0, 0, 1)).reshape(-1, 3, 3)
+    rng = np.random.default_rng(4)
+    places = rng.random((2 * MAX_CULLED_LIGHTS, 3)) * (2.0, 1.5, 1.0) + (1.0, 0.7, 0.5)
+    places[::2, 2] *= -1.0
+    lights = tuple(Light(f"light {i}", tuple(place), (0.1, 0.1, 0.1)) for i, place in enumerate(places.tolist()))
+    made = replace(scene(corners), lights=lights)
+    camera = tracer.Camera((2.0, 1.5, -0.1), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0), 60.0)
+    settings = Settings(width=64, height=48, depth=1, method="lie-exact", threads=1)
+    none = tracer.Renderer(made, replace(settings, method="none")).render(0.0, camera)
+    renderer = tracer.Renderer(made, settings)
+    frame = renderer.render(0.0, camera)
+    assert frame.color.tobytes() == none.color.tobytes()
+    assert frame.statistics.shadow.passed_over > 0.4 * none.statistics.shadow.due
+    renderer.settings = replace(settings, record_lights=True)
+    frame = renderer.render(0.0, camera)
+    assert frame.certificates is not None and frame.asked is not None and frame.reached is not None
+    shown = Counter[int]()
+    for light in range(MAX_CULLED_LIGHTS):
+        state = (frame.certificates >> frame.certificates.dtype.type(2 + 2 * light)) & 3
+        shown.update(state[frame.primitive >= 0].tolist())
+        assert (frame.reached[..., light][state == FULL_SHADOW] == 0).all()
+        lit = state == NON_SHADOW
+        assert (frame.reached[..., light][lit] == frame.asked[..., light][lit]).all()
+    assert shown[FULL_SHADOW] > 0.4 * shown.total() and shown[CANDIDATES] > 0, shown
+
+
+def test_embedded_scenes_look_the_same():
+    for name, methods in (("figure3", ("voxels", "lie-exact")), ("default", ("certified+lie-exact",))):
+        made = load_scene(embedded_scenes()[name])
+        settings = Settings(width=72, height=54, depth=2, method="none", threads=1)
+        world = World(made)
+        none = tracer.Renderer(made, settings, world=world).render()
+        for method in methods:
+            renderer = tracer.Renderer(made, replace(settings, method=method, verify=True), world=world)
+            for _ in range(2):
+                frame = renderer.render()
+                assert frame.statistics.shadow.wrong == 0, (name, method)
+                assert frame.color.tobytes() == none.color.tobytes(), (name, method)

@@ -1,0 +1,204 @@
+"""Voxel occlusion testing: what is proved of voxels holds for every ray, and pictures are those of "none"."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tracer
+from tests.sweeps import cases
+from tests.tracing.nasty_worlds import flattened_walk, nasty_walk, static_part, with_lamps
+from tests.tracing.worlds import scene, wall
+from tracer.culling.modes import FULL_SHADOW, MAX_CULLED_LIGHTS, NON_SHADOW, shadow_mode
+from tracer.culling.rest import nothing_rests
+from tracer.culling.shadow_testing import LIGHT_MARGIN
+from tracer.culling.voxels.grid import BLOCK, box_of, make_grid, voxel_at, voxels_for
+from tracer.culling.voxels.store import VoxelStore
+from tracer.geometry.primitives import triangle_rows
+from tracer.geometry.rays import ray_batch
+from tracer.geometry.world import ACCELERATORS, World
+from tracer.scene.lamps import LampTable
+from tracer.scene.lights import Light
+
+
+def _store(world: World, lights: np.ndarray, memory: float = 3e6, by_ray: bool = True) -> VoxelStore:
+    """Voxels that are classified for point lights (n, 3)."""
+    store = VoxelStore(world, len(lights), 1, memory, by_ray)
+    table = LampTable(tuple(Light(f"light {i}", (0.0, 0.0, 0.0)) for i in range(len(lights))))
+    store.follow(table.at(np.asarray(lights, np.float64)), nothing_rests(len(world.scene.objects)))
+    store.classify(np.inf, 1)
+    return store
+
+
+# --- the grid -------------------------------------------------------------------------------------
+
+
+def test_points_lie_in_the_boxes_of_their_voxels_and_grids_are_no_finer_than_asked():
+    rng = np.random.default_rng(3)
+    for size, move, wanted in ((1.0, 0.0, 4096), (1e-3, 5.0, 1 << 20), (1e4, -1e6, 30000), (1.0, 0.0, 1)):
+        points = (rng.random((300, 3)) * (4.0, 1.0, 0.001) * size + move).astype(np.float32)
+        grid = make_grid(np.stack([points.min(0), points.max(0)]).astype(np.float64), wanted)
+        assert grid.voxels <= max(wanted, BLOCK**3) and grid.nx % BLOCK == grid.ny % BLOCK == grid.nz % BLOCK == 0
+        for point in points:
+            number = voxel_at(grid, point)
+            box = box_of(grid, number)
+            assert number >= 0 and (point >= box[:3]).all() and (point <= box[3:]).all()
+    assert voxel_at(grid, np.full(3, 1e9, np.float32)) == -1
+
+
+def test_less_memory_means_larger_voxels():
+    assert voxels_for(10**6, 8, 1e5) < voxels_for(10**6, 8, 1e6) <= 1e6 / 8
+    world = World(scene(wall(3, 2)))
+    light = np.array([[1.0, 1.0, 3.0]])
+    sizes = [_store(world, light, memory) for memory in (4e4, 4e5, 4e7)]
+    assert sizes[0].grid.side > sizes[1].grid.side > sizes[2].grid.side
+    assert sizes[0].bytes < 1e5 and sizes[1].bytes < 5e5
+
+
+def test_every_part_of_a_triangle_lies_in_voxels_that_name_it():
+    rng = np.random.default_rng(5)
+    for seed in range(12):
+        walk = nasty_walk(seed)
+        world = World(static_part(walk.scene))
+        store = _store(world, world.scene.light_positions(0.0))
+        rows = world.triangles_of(0).rows.astype(np.float64)
+        named = [set(store.contents(number).tolist()) for number in range(store.grid.voxels)]
+        across = np.linalg.norm(np.cross(rows[:, 3:6], rows[:, 6:]), axis=1)
+        for i in np.flatnonzero(across > 0)[:60]:
+            for u, v in np.sort(rng.random((20, 2)), axis=1):
+                point = rows[i, :3] + u * rows[i, 3:6] + (1.0 - v) * rows[i, 6:]
+                number = voxel_at(store.grid, point.astype(np.float32))
+                assert number >= 0 and i in named[number], (seed, i)
+
+
+# --- the proof ------------------------------------------------------------------------------------
+
+
+def _crossed(rows: np.ndarray, light: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """(n,) bool: whether segments from a light to ends (n, 3) cross any of triangles (t, 9), in float64."""
+    crossed = np.zeros(len(ends), np.bool_)
+    way = ends - light
+    for row in rows.astype(np.float64):
+        a, e1, e2 = row[:3], row[3:6], row[6:]
+        normal, s = np.cross(e1, e2), light - a
+        d, t = -way @ normal, s @ normal
+        sign = np.where(d < 0, -1.0, 1.0)
+        u, v = sign * (way @ np.cross(e2, s)), sign * (way @ np.cross(s, e1))
+        d, t = np.abs(d), sign * t
+        crossed |= (d > 0) & (u >= 0) & (v >= 0) & (u + v <= d) & (t > LIGHT_MARGIN * d) & (t < d)
+    return crossed
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_whatever_is_proved_of_a_voxel_holds_for_the_rays_into_it(accelerator: str):
+    """Rays to points all over each voxel, many to its corners: none passes into a full one, all into a null one."""
+    rng, proved = np.random.default_rng(11), Counter[int]()
+    for seed in range(cases(14, 400)):
+        walk = nasty_walk(seed)
+        world = World(static_part(walk.scene), 0.0, accelerator)
+        lights = walk.scene.light_positions(0.0)
+        store = _store(world, lights, 4e5)
+        rows = world.triangles_of(0).rows
+        for light, place in enumerate(lights.astype(np.float32)):
+            modes = shadow_mode(store.words[:-1], light)
+            for mode in (FULL_SHADOW, NON_SHADOW):
+                numbers = np.flatnonzero(modes == mode)
+                # Those next to others are proved by the least.
+                edge = np.flatnonzero(modes[numbers] != modes[np.minimum(numbers + 1, len(modes) - 1)])
+                some = np.unique(np.r_[rng.permutation(numbers)[:40], numbers[rng.permutation(edge)[:60]]])
+                if not len(some):
+                    continue
+                boxes = np.array([box_of(store.grid, int(number)) for number in some])
+                part = np.where(rng.random((len(some), 24, 1)) < 0.4, rng.integers(0, 2, (len(some), 24, 3)),
+                                rng.random((len(some), 24, 3)))  # fmt: skip
+                ends = (boxes[:, None, :3] + part * (boxes[:, None, 3:] - boxes[:, None, :3])).reshape(-1, 3)
+                ends = ends.astype(np.float32)
+                rays = ray_batch(np.broadcast_to(place, ends.shape), ends - place, LIGHT_MARGIN, 1.0)
+                blocked = world.any_hits(rays, threads=1)
+                assert (blocked == (mode == FULL_SHADOW)).all(), (seed, light, mode, int(blocked.sum()))
+                if not len(world.primitives.quadrics):
+                    crossed = _crossed(rows, place.astype(np.float64), ends.astype(np.float64))
+                    assert (crossed == (mode == FULL_SHADOW)).all(), (seed, light, mode)
+                proved[mode] += len(some)
+    assert min(proved.values()) > 20 * cases(14, 400), proved
+
+
+def test_a_wall_hides_the_voxels_behind_it_and_no_others():
+    """Most of what is unknown lies where the wall is, or where its shadow ends."""
+    small = (np.array(wall(1, 1)) * 0.4 + (1.2, 0.9, 0.0)).tolist()
+    corners = small + (np.array(wall(1, 1)) - (0, 0, 2)).tolist()
+    world, light = World(scene(corners)), np.array([[2.0, 1.5, 4.0]])
+    store, rows = _store(world, light, 2e7), triangle_rows(np.array(corners, np.float32))
+    rng, seen = np.random.default_rng(1), Counter[tuple[bool, str]]()
+    points = (rng.random((4000, 3)) * (4.0, 3.0, 1.6) - (0, 0, 1.8)).astype(np.float32)
+    crossed = _crossed(rows, light[0], points.astype(np.float64))
+    for point, hidden in zip(points, crossed, strict=True):
+        seen[bool(hidden), store.state_at(point, 0)] += 1
+    assert seen[True, "lit"] == seen[False, "full"] == 0
+    assert seen[True, "full"] > seen[True, "none"] and seen[False, "lit"] > 8 * seen[False, "none"], seen
+
+
+# --- frames ---------------------------------------------------------------------------------------
+
+
+def _compare(walk: Any, method: str, seen: Counter[str], **settings: Any) -> None:
+    world = World(walk.scene, walk.scene.time_range[0], settings["accelerator"])
+    none, other = (
+        tracer.Renderer(walk.scene, tracer.Settings(method=name, **settings), world=world) for name in ("none", method)
+    )
+    for number, (time, camera) in enumerate(walk.frames):
+        expected, frame = none.render(time, camera), other.render(time, camera)
+        differing = int((expected.color != frame.color).any(axis=2).sum())
+        assert differing == 0, f"seed {walk.seed}, frame {number}, {method}, {settings}: {differing} pixels"
+        shadow = frame.statistics.shadow
+        for name in ("due", "culled", "dynamic_only", "candidates_only"):
+            seen[name] += getattr(shadow, name)
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_pictures_of_nasty_scenes_are_those_without_culling(accelerator: str):
+    """Lights that jump, objects that drift, stop and rest, lamps; wherever float32 has few digits left."""
+    seen = Counter[str]()
+    settings = {"width": 64, "height": 48, "depth": 2, "accelerator": accelerator}
+    for seed in range(cases(12, 400)):
+        method = ("voxels", "voxels+rest", "voxels+cache", "certified+voxels")[seed % 4]
+        _compare(nasty_walk(seed, frames=4), method, seen, threads=1 + seed % 2, **settings)
+    for seed in range(cases(2, 100)):
+        _compare(flattened_walk(seed, frames=3), "voxels+rest", seen, threads=1, **settings)
+    _compare(with_lamps(nasty_walk(7, frames=2)), "voxels", seen, threads=1, **settings)
+    _compare(nasty_walk(5, MAX_CULLED_LIGHTS + 3, frames=2), "voxels", seen, threads=2, **settings)
+    assert seen["culled"] > 0.005 * seen["due"] and seen["candidates_only"] > 0.2 * seen["due"], seen
+    assert seen["dynamic_only"] > 0.005 * seen["due"], seen
+
+
+def test_counters_do_not_depend_on_threads_and_modes_are_those_beside_none():
+    walk = nasty_walk(3)
+    settings = tracer.Settings(width=96, height=64, depth=1, method="voxels", modes=True, verify=True)
+    one, two, none = (
+        tracer.Renderer(walk.scene, replace(settings, threads=threads, method=method))
+        for threads, method in ((1, "voxels"), (2, "voxels"), (1, "none"))
+    )
+    for time, camera in walk.frames:
+        a, b, c = (renderer.render(time, camera) for renderer in (one, two, none))
+        assert a.statistics.shadow == b.statistics.shadow and a.statistics.shadow.wrong == 0
+        assert a.statistics.certificate_tests == b.statistics.certificate_tests
+        assert np.array_equal(a.modes, c.modes) and a.color.tobytes() == c.color.tobytes()
+
+
+def test_a_light_that_moves_is_classified_anew_and_others_are_not():
+    world = World(scene(wall(3, 2, (1, 0))))
+    places = np.array([[1.0, 1.0, 3.0], [2.0, 1.0, -3.0]])
+    moved = np.array([[1.0, 1.0, 3.0], [2.25, 1.0, -3.0]])
+    store, fresh = _store(world, places), _store(world, moved)
+    table = LampTable(tuple(Light(f"light {i}", (0.0, 0.0, 0.0)) for i in range(2)))
+    store.follow(table.at(moved), nothing_rests(1))
+    assert store.state_at(np.array([1, 1, 0], np.float32), 1) == "none"
+    assert not shadow_mode(store.words, 1).any() and shadow_mode(store.words, 0).any()
+    made = store.classify(np.inf, 2).certificates
+    assert 0 < made < fresh.grid.voxels
+    assert np.array_equal(store.words, fresh.words)
+    assert store.classify(np.inf, 1).certificates == 0, "nothing is left to do"

@@ -1,0 +1,251 @@
+"""Rays walk from the points in which they end towards the light, from voxel to voxel, sixteen at a time.
+
+They step as in J. Amanatides and A. Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", Eurographics 1987, but
+where a voxel ends is computed anew for each, so that errors do not add up.  In each voxel a ray asks what lies there
+(`box_judge`, and then `light_space.judge`).  One certain hit blocks it; where any primitive cannot tell, the ray is
+traced as if nothing were known.  A ray that comes to a voxel of which all is known, or to the light, or out of the
+grid, has its answer.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracer.culling.certified.light_space import LIGHT_ROW, verdicts_on
+from tracer.culling.counters import STEPS, TESTS
+from tracer.culling.modes import FULL_SHADOW, NON_SHADOW
+from tracer.culling.voxels.box_judge import judge_box
+from tracer.geometry.boxes import inverse
+from tracer.kernels import inlined, subkernel
+from tracer.simd import (
+    address_of,
+    bits_of,
+    f32x16,
+    floor,
+    gather_i32x16,
+    i32_at,
+    i32x16,
+    i64_at,
+    lanes_below,
+    largest,
+    load_columns,
+    load_f32,
+    load_i32x16,
+    local_memory,
+    lowest_bit,
+    mask16,
+    minimum,
+    ones,
+    select,
+    smallest,
+    store,
+    to_i32,
+)
+
+FEW = 4  # primitives are asked one by one, more of them together first
+SEEN = 16  # primitives that were tested last are known, and not tested again
+KNOWN, ASKED = 4 * SEEN, 8 * SEEN  # bytes
+ZERO, ONE, HUGE = np.float32(0), np.float32(1), np.float32(3e38)
+
+
+@inlined
+def place_of(grid, x, y, z):
+    """Where points of the scene are in the grid, a voxel being 1 long."""
+    scale = np.float32(grid.per_unit)
+    return (x - np.float32(grid.x)) * scale, (y - np.float32(grid.y)) * scale, (z - np.float32(grid.z)) * scale
+
+
+@inlined
+def _inside(grid, i, j, k):
+    """Mask of voxels that are in the grid."""
+    inside = (i >= ZERO) & (j >= ZERO) & (k >= ZERO)
+    return inside & (i < np.float32(grid.nx)) & (j < np.float32(grid.ny)) & (k < np.float32(grid.nz))
+
+
+@inlined
+def voxels_at(grid, x, y, z):
+    """Numbers of the voxels in which sixteen points lie; that of the last word for those outside."""
+    px, py, pz = place_of(grid, x, y, z)
+    # floor() takes numbers below 2^31.
+    there = (px >= ZERO) & (py >= ZERO) & (pz >= ZERO)
+    there = there & (px < np.float32(grid.nx)) & (py < np.float32(grid.ny)) & (pz < np.float32(grid.nz))
+    i, j, k = to_i32(select(there, px, ZERO)), to_i32(select(there, py, ZERO)), to_i32(select(there, pz, ZERO))
+    number = (i * np.int32(grid.ny) + j) * np.int32(grid.nz) + k
+    return select(there, number, i32x16(np.int32(grid.nx * grid.ny * grid.nz)))
+
+
+@inlined
+def words_of(words, number, light):
+    """The low halves of the words of sixteen voxels, the halves that hold a light's state, and by how many bits in."""
+    shift = np.int32((2 + 2 * light) % 32)
+    if words.size == 4:
+        word = gather_i32x16(words.address, number)
+        return word, word, shift
+    wide = number << np.int32(1)
+    word = gather_i32x16(words.address, wide)
+    return word, word if 2 + 2 * light < 32 else gather_i32x16(words.address + 4, wide), shift
+
+
+@inlined
+def states(field, shift):
+    """Bits of the voxels that are full, and of those that are null."""
+    state = (field >> shift) & np.int32(3)
+    return bits_of(state == np.int32(FULL_SHADOW)), bits_of(state == np.int32(NON_SHADOW))
+
+
+@inlined
+def _row(at):
+    """The row of one primitive, at an address, for all lanes."""
+    return (
+        f32x16(load_f32(at)), f32x16(load_f32(at + 4)), f32x16(load_f32(at + 8)), f32x16(load_f32(at + 12)),
+        f32x16(load_f32(at + 16)), f32x16(load_f32(at + 20)), f32x16(load_f32(at + 24)), f32x16(load_f32(at + 28)),
+        f32x16(load_f32(at + 32)), f32x16(load_f32(at + 36)), f32x16(load_f32(at + 40)), f32x16(load_f32(at + 44)),
+        f32x16(load_f32(at + 48)), f32x16(load_f32(at + 52)), f32x16(load_f32(at + 56)), f32x16(load_f32(at + 60)),
+    )  # fmt: skip
+
+
+@inlined
+def _range(x, there):
+    """The middle and half the width, rounded up, of what lies between the least and the greatest of some lanes."""
+    low, high = smallest(select(there, x, HUGE)), largest(select(there, x, -HUGE))
+    middle = np.float32(0.5) * (low + high)
+    return middle, np.float32(1.000001) * max(high - middle, middle - low)
+
+
+@subkernel
+def ask(rows, names, count, light, end, direction, here, seen, masks, by_ray, counts):
+    """Ask `count` primitives, whose numbers are at the address `names`, with room for fifteen more, of the rays whose
+    bits are `here`: those that are blocked for certain, and those of which nobody can tell.
+
+    rows is the address of their rows in light space.  seen and masks are addresses of SEEN int32 and int64: primitives
+    and the rays that have asked them."""
+    blocked = unsure = np.int64(0)
+    if count <= FEW:
+        left = lanes_below(count, 0)
+        free, unclear = _ask_each(rows, names, left, light, end, direction, here, seen, masks, by_ray, counts)
+        return here & ~(free | unclear), unclear
+    there = mask16(here)
+    (mx, hx), (my, hy), (mz, hz) = _range(end[0], there), _range(end[1], there), _range(end[2], there)
+    longest = abs(mx - light[0]) + abs(my - light[1]) + abs(mz - light[2]) + hx + hy + hz
+    for k in range(0, count, 16):
+        # Sixteen primitives and all of these rays at once.
+        those, left = names + 4 * np.int64(k), lanes_below(count - k, 0)
+        counts[TESTS] += ones(left) if by_ray else 1
+        hit16, missed16 = judge_box(
+            load_columns(rows, those, LIGHT_ROW), light, (mx, my, mz), (hx, hy, hz), np.float32(1.000001) * longest
+        )
+        if bits_of(hit16) & left != 0:
+            return blocked | here, unsure
+        left &= ~bits_of(missed16)
+        free, unclear = _ask_each(rows, those, left, light, end, direction, here, seen, masks, by_ray, counts)
+        blocked |= here & ~(free | unclear)
+        unsure |= unclear
+        here = free
+        if here == 0:
+            break
+    return blocked, unsure
+
+
+@subkernel
+def _ask(voxels, rows, light, end, direction, number, occupied, seen, masks, counts):
+    """Ask what lies in the voxels `number`, at an address, of the rays `occupied`, bits: those that are blocked for
+    certain, and those of which nobody can tell.
+
+    seen and masks are addresses of SEEN int32 and int64: primitives and the rays that have asked them."""
+    blocked = unsure = np.int64(0)
+    which = i32_at(number)
+    while occupied != 0:
+        voxel = which[lowest_bit(occupied)]
+        here = bits_of(load_i32x16(number) == np.int32(voxel)) & occupied
+        occupied &= ~here
+        first, last = voxels.starts[voxel], voxels.starts[voxel + 1]
+        names = address_of(voxels.names) + 4 * np.int64(first)
+        hit, unclear = ask(rows, names, last - first, light, end, direction, here, seen, masks, voxels.by_ray, counts)
+        blocked |= hit
+        unsure |= unclear
+    return blocked, unsure
+
+
+@inlined
+def _ask_each(rows, names, left, light, end, direction, here, seen, masks, by_ray, counts):
+    """Ask those of sixteen primitives, their numbers at an address, whose bits are `left` of the rays `here`: which of
+    these none blocks, and of which one cannot tell; any other is blocked."""
+    known, asked, unclear = i32_at(seen), i64_at(masks), np.int64(0)
+    while left != 0 and here != 0:
+        name = i32_at(names)[lowest_bit(left)]
+        left &= left - 1
+        at = name & (SEEN - 1)
+        if known[at] == name and here & ~asked[at] == 0:
+            continue
+        asked[at] = asked[at] | here if known[at] == name else here
+        known[at] = name
+        counts[TESTS] += ones(here) if by_ray else 1
+        hit, missed = verdicts_on(_row(rows + 4 * LIGHT_ROW * np.int64(name)), light, direction, end)
+        unclear |= here & ~(hit | missed)
+        here &= missed
+    return here, unclear
+
+
+@subkernel
+def walk(voxels, light, number, slot, end, begin, open_, counts):
+    """Let those of sixteen rays whose bits are `open_` walk from their ends towards light `number` at light (3,), which
+    is held in a slot: bits of those that are blocked, and of those that nothing static blocks.
+
+    end are three vectors, begin the numbers of the voxels in which they lie."""
+    grid, rows = voxels.grid, address_of(voxels.light_space[slot])
+    direction = end[0] - light[0], end[1] - light[1], end[2] - light[2]
+    px, py, pz = place_of(grid, end[0], end[1], end[2])
+    lx, ly, lz = place_of(grid, light[0], light[1], light[2])
+    dx, dy, dz = lx - px, ly - py, lz - pz
+    ix, iy, iz = inverse(dx), inverse(dy), inverse(dz)
+    forth = dx >= ZERO, dy >= ZERO, dz >= ZERO
+    there = mask16(open_)
+    px, py, pz = select(there, px, ZERO), select(there, py, ZERO), select(there, pz, ZERO)
+    # The near sides of the voxels, on the way to the light the far ones, and how to go on.
+    i, j, k = floor(px), floor(py), floor(pz)
+    bx, by, bz = i + select(forth[0], ONE, ZERO), j + select(forth[1], ONE, ZERO), k + select(forth[2], ONE, ZERO)
+    sx, sy, sz = select(forth[0], ONE, -ONE), select(forth[1], ONE, -ONE), select(forth[2], ONE, -ONE)
+    tx, ty, tz = (bx - px) * ix, (by - py) * iy, (bz - pz) * iz
+    nx, ny = np.int32(grid.ny * grid.nz), np.int32(grid.nz)
+    x_on, y_on = select(forth[0], i32x16(nx), -nx), select(forth[1], i32x16(ny), -ny)
+    z_on = select(forth[2], i32x16(np.int32(1)), np.int32(-1))
+
+    numbers, seen, masks = local_memory(64), local_memory(KNOWN), local_memory(ASKED)
+    store(seen, i32x16(np.int32(-1)))
+    blocked = lit = np.int64(0)
+    at, (word, field, shift) = begin, words_of(voxels.words, begin, number)
+    for _ in range(grid.nx + grid.ny + grid.nz + 3):
+        counts[STEPS] += ones(open_) if voxels.by_ray else 1
+        occupied = bits_of((word & np.int32(1)) == np.int32(1)) & open_
+        if occupied != 0:
+            store(numbers, at)
+            hit, unsure = _ask(voxels, rows, light, end, direction, numbers, occupied, seen, masks, counts)
+            blocked |= hit
+            open_ &= ~(hit | unsure)
+        # Go on to the next voxel, unless the light comes before it.
+        first = minimum(tx, minimum(ty, tz))
+        arrived = open_ & bits_of(first >= ONE)
+        along_x = tx <= minimum(ty, tz)
+        along_y = ~along_x & (ty <= tz)
+        bx, by, bz = (
+            select(along_x, bx + sx, bx),
+            select(along_y, by + sy, by),
+            select(along_x | along_y, bz, bz + sz),
+        )
+        i, j, k = select(along_x, i + sx, i), select(along_y, j + sy, j), select(along_x | along_y, k, k + sz)
+        tx, ty, tz = (bx - px) * ix, (by - py) * iy, (bz - pz) * iz
+        inside = _inside(grid, i, j, k)
+        lit |= arrived | (open_ & ~bits_of(inside))
+        open_ &= ~lit
+        if open_ == 0:
+            break
+        at = at + select(along_x, x_on, select(along_y, y_on, z_on))
+        at = select(mask16(open_), at, i32x16(np.int32(0)))
+        word, field, shift = words_of(voxels.words, at, number)
+        full, null = states(field, shift)
+        blocked |= open_ & full
+        lit |= open_ & null
+        open_ &= ~(full | null)
+        if open_ == 0:
+            break
+    return blocked, lit

@@ -1,0 +1,147 @@
+"""Voxel occlusion testing: cubes of space that are known to be lit or in shadow as a whole (`tracer.culling.voxels`).
+
+Before shading, the voxels of the scene are classified for each point light, anew where it has moved.  In shadow testing
+`find` leads each point to its voxel, and `choose` answers its rays: by the state of that voxel, or of the first on the
+way to the light that has one, with tests of what lies in those before.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.certified.scheduler import Counts
+from tracer.culling.counters import CANDIDATES_ONLY, CULLED, DYNAMIC_ONLY, STEPS
+from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.shadow_modes import POINT_WORD_ROWS, look_up, point_words_in, start_wave
+from tracer.culling.shadow_modes import words_of as looked_up
+from tracer.culling.stages import call_at, scratch_of, vectors
+from tracer.culling.verdicts import Answered, Because, Verdict
+from tracer.culling.voxels.store import VoxelStore
+from tracer.culling.voxels.view import voxel_view_at
+from tracer.culling.voxels.walk import states, voxels_at, walk
+from tracer.geometry.boxes import segments_miss_box
+from tracer.kernels import Entry, entry
+from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.shading.points import points_in
+from tracer.shading.wave import wave_in
+from tracer.simd import address_of, bits_of, i32x16, i64_at, load_i32x16, load_three, mask16, ones, select, store
+from tracer.statistics import FrameStatistics
+
+NOWHERE = np.empty(0, np.int32)
+
+
+@entry
+def find(data, call, light, count, counts):
+    """In which voxel does the shadow ray of each point end?"""
+    given, voxels = call_at(call), voxel_view_at(data)
+    grid = voxels.grid
+    points, found = points_in(given.points), point_words_in(scratch_of(given))
+    start_wave(found, count)
+    for v in range(vectors(count)):
+        x, y, z = load_three(points.lifted, v)
+        store(address_of(found.unit) + 64 * v, voxels_at(grid, x, y, z))
+    if given.bounce == 0 and len(voxels.cell) > 0:
+        wave = wave_in(given.rays, count)
+        for i in range(wave.size):
+            voxels.cell[given.place[wave.pixel[i]]] = found.unit[i]
+
+
+@entry
+def choose(data, call, light, count, counts):
+    """Answer the rays to a light of which voxels are known."""
+    given, voxels = call_at(call), voxel_view_at(data)
+    if light >= min(MAX_CULLED_LIGHTS, len(voxels.slot)) or voxels.slot[light] < 0:
+        return
+    points, batch, found = points_in(given.points), shadow_batch_in(given.shadows), point_words_in(scratch_of(given))
+    counted, sample, slot = i64_at(counts), given.samples[given.sample], voxels.slot[light]
+    place, outside = (sample[0], sample[1], sample[2]), np.int32(voxels.grid.nx * voxels.grid.ny * voxels.grid.nz)
+    for v in range(vectors(count)):
+        live = np.int64(batch.live[v])
+        if live == 0:
+            continue
+        look_up(voxels.words, v, found)
+        _word, field, shift = looked_up(found, light, v)
+        full, null = states(field, np.int32(shift))
+        full, null = full & live, null & live
+        unit, walked = load_i32x16(address_of(found.unit) + 64 * v), np.int64(0)
+        counted[STEPS] += ones(live) if voxels.by_ray else 1
+        rest, end = live & ~(full | null) & bits_of(unit < outside), load_three(points.lifted, v)
+        if rest != 0:
+            begin = select(mask16(rest), unit, i32x16(np.int32(0)))
+            blocked, lit = walk(voxels, place, light, slot, end, begin, rest, counted)
+            walked = blocked | lit
+            full, null = full | blocked, null | lit
+        for k in range(len(voxels.resting)):
+            box = voxels.resting[k]
+            if null != 0:
+                way = end[0] - place[0], end[1] - place[1], end[2] - place[2]
+                null &= bits_of(segments_miss_box(place, way, (box[0], box[1], box[2]), (box[3], box[4], box[5])))
+        counted[CULLED] += ones(full & ~walked)
+        counted[DYNAMIC_ONLY] += ones(null & ~walked)
+        counted[CANDIDATES_ONLY] += ones((full | null) & walked)
+        batch.live[v] = live & ~(full | null)
+        batch.lit[v] |= null
+
+
+class Voxels(ShadowMethod):
+    """Classifies voxels, and culls by their states."""
+
+    entries: tuple[Entry, ...] = (find, choose)
+
+    def __init__(self, services: Services) -> None:
+        super().__init__(services)
+        self.store: VoxelStore | None = None
+        self._memory = 0.0
+        self._counts, self._cell = Counts(), NOWHERE
+
+    def begin(self, frame: FrameView) -> None:
+        self._counts = Counts()
+        self._cell = np.full(frame.settings.width * frame.settings.height, -1, np.int32)
+
+    def follow(self, frame: FrameView) -> None:
+        settings = frame.settings
+        if self.store is None or self._memory != settings.certificate_memory:
+            memory, by_ray = 1e6 * settings.certificate_memory, settings.accelerator == "kdtree"
+            lights = len(frame.lights)
+            self.store = VoxelStore(self.services.world, lights, frame.workers, memory, by_ray, self.services.clock)
+            self._memory = settings.certificate_memory
+        self.store.follow(frame.shading.lamps, frame.resting)
+
+    def prepare(self, frame: FrameView) -> None:
+        assert self.store is not None, "followed before"
+        settings = frame.settings
+        if settings.certificates > 0:
+            self._counts = self.store.classify(settings.certificate_seconds, frame.workers, frame.cancel)
+
+    def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
+        assert self.store is not None, "followed before"
+        return [
+            Stage(self.store.view(self._cell if learns else NOWHERE), find=find, choose=choose, rows=POINT_WORD_ROWS)
+        ]
+
+    def layers(self, frame: FrameView) -> dict[str, NDArray]:
+        assert self.store is not None, "followed before"
+        cell = self._cell.reshape(frame.buffers.primitive.shape)
+        return {"cells": cell, "certificates": self.store.at_pixels(cell)}
+
+    def report(self, statistics: FrameStatistics) -> None:
+        statistics.certificates = self._counts.certificates
+        statistics.certificate_steps = self._counts.steps
+        statistics.certificate_tests = self._counts.tests
+        if self.store is not None:
+            statistics.decision = statistics.decision or self.store.told
+
+    def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
+        return None if self.store is None else (self.store.state_at(point, light), ())
+
+    def because(self, answered: Answered) -> Because:
+        return Because(Verdict.ANSWERED)
+
+    def forget(self) -> None:
+        self.store = None
+
+    @property
+    def memory_bytes(self) -> int:
+        return 0 if self.store is None else self.store.bytes
