@@ -95,4 +95,8 @@ def setup(app: Sphinx) -> None:
 
 
 # Their pages are on the network, where a build has no business: these names are not looked up.
-nitpick_ignore_regex = [("py:.*", r"numpy\..*"), ("py:class", r"collections\.Counter")]
+nitpick_ignore_regex = [
+    ("py:.*", r"numpy\..*"),
+    ("py:class", r"collections\.Counter"),
+    ("py:class", r"tracer\.kernels\.Entry"),  # machine code: not for callers
+]

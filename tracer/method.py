@@ -322,6 +322,7 @@ register(
         "lightbuffer",
         "Looks up what each light sees in each direction; never wrong.",
         "tracer.methods.lightbuffer:LightBuffer",
+        lights=(0, 31),
         addition=True,
         alone=True,
     )

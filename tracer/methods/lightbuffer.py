@@ -34,6 +34,7 @@ from tracer.culling.lightbuffer.moving import SIDE as MOVING_SIDE
 from tracer.culling.lightbuffer.moving import depths_of
 from tracer.culling.lightbuffer.rays import RAY_ROWS, buffer_rays_in
 from tracer.culling.lightbuffer.tell import Said, tell
+from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
@@ -106,7 +107,7 @@ class LightBuffer(ShadowMethod):
         still = points & same
         self._last, self._lights = lamps.places.copy(), len(points)
         self.buffers = {k: b for k, b in self.buffers.items() if still[k] and (b.place == lamps.places[k]).all()}
-        for k in np.flatnonzero(still):
+        for k in np.flatnonzero(still[:MAX_CULLED_LIGHTS]):  # thousands of cubes would take minutes to make
             self.buffers.setdefault(int(k), _Buffer(lamps.places[k].copy()))
         if not np.array_equal(frame.resting.since, self._since) or self.services.world.extent > self._allowed:
             self._since, self._resting = frame.resting.since, None

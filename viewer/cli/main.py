@@ -51,15 +51,15 @@ def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
     commands: dict[str, Callable[[list[str]], int]] = {
         "render": _render,
         "bench": _bench,
-        "sweep": _sweep,
         "zoom": _zoom,
         "explain": _explain,
-        "cube": _cube,
         "info": _info,
         "film": _film,
         "figure": _figure,
         "check": _check,
         "hunt": _hunt,
+        "sweep": _sweep,
+        "cube": _cube,
     }
     try:
         if arguments and arguments[0] in commands:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+import secrets
 import stat
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from viewer.util.part_files import claimed, part_file
+from viewer.util.part_files import claimed, part_file, part_name
 
 MOST_NUMBERS = 100_000
 _OF_DEVICES = "/dev"
@@ -28,8 +29,9 @@ def check_writable(path: Path) -> None:
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {path.parent if target == path else target.parent}")
     try:
-        with part_file(target):
-            pass
+        probe = part_name(target, secrets.token_hex(8))
+        probe.touch(exist_ok=False)
+        probe.unlink(missing_ok=True)
     except FileNotFoundError:  # of a folder that is there
         raise OSError(f"{path}: no file can be made in the folder {target.parent}") from None
     except OSError as error:
