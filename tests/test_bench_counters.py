@@ -20,9 +20,12 @@ CERTIFY = "tracer/culling/certified/certify.py"
 BEAMS, LAMPS = "tracer/culling/certified/beams.py", "tracer/culling/certified/asking_lamps.py"
 HIDERS, REGIONS = "tracer/culling/certified/hiders.py", "tracer/culling/regions/certify.py"
 ASKED, BUFFERS = "tracer/culling/lightbuffer/candidates.py", "tracer/culling/lightbuffer/lookup.py"
+LAZY, GRID = "tracer/geometry/lazy_tree/traverse.py", "tracer/methods/voxels.py"
+WALK, CLASSIFY = "tracer/culling/voxels/walk.py", "tracer/culling/voxels/classify.py"
+CELLS = "tracer/culling/environments/ask.py"
 SOURCES = (
     *(TRAVERSE, TREE, PACKET, SINGLE, STREAM, ROOTS, CACHE, LOOKUP, CERTIFY, BEAMS, LAMPS, HIDERS, REGIONS),
-    *(ASKED, BUFFERS),
+    *(ASKED, BUFFERS, LAZY, GRID, WALK, CLASSIFY, CELLS),
 )
 
 
@@ -37,6 +40,8 @@ def test_the_lines_that_count_are_taken_out_and_nothing_else(tmp_path: Path) -> 
             changed[name] = [line for line in difflib.ndiff(before, after) if line[:2] in ("- ", "+ ")]
     assert set(changed) == set(SOURCES)
     assert len(changed[TRAVERSE]) == 3 and all("s.counts[" in line for line in changed[TRAVERSE])
+    assert len(changed[LAZY]) == 5 and all("s.counts[" in line for line in changed[LAZY])
+    assert len(changed[GRID]) == 1 and "counted[STEPS]" in changed[GRID][0]
     assert len(changed[TREE]) == 5 and all("steps" in line for line in changed[TREE] if line[0] == "-")
     counted = {
         PACKET: 4,
@@ -52,6 +57,9 @@ def test_the_lines_that_count_are_taken_out_and_nothing_else(tmp_path: Path) -> 
         REGIONS: 3,
         ASKED: 1,
         BUFFERS: 3,
+        WALK: 3,
+        CLASSIFY: 4,
+        CELLS: 1,
     }
     for file, lines in counted.items():
         assert len(changed[file]) == lines and all(line[2:].lstrip().startswith("counts[") for line in changed[file])

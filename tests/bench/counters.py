@@ -64,6 +64,10 @@ EDITS = (
     Edit("tracer/geometry/kdtree/tree.py", "        steps += 1\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "    steps: int\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "leave, steps, pending)", 1, "leave, pending)"),
+    Edit("tracer/geometry/lazy_tree/traverse.py", "            s.counts[TESTS] += 1\n", 1),
+    Edit("tracer/geometry/lazy_tree/traverse.py", "        s.counts[STEPS] += leaf.steps\n", 1),
+    Edit("tracer/geometry/lazy_tree/traverse.py", "        s.counts[STEPS] += met.steps\n", 3),
+    Edit("tracer/methods/voxels.py", "        counted[STEPS] += ones(live) if voxels.by_ray else 1\n", 1),
     *(  # the deepest first: they end like the others
         Edit(f"tracer/geometry/bvh8/{file}.py", f"{indent * ' '}counts[{what}] += {by}\n", times)
         for file, indent, what, by, times in (
@@ -99,6 +103,14 @@ EDITS = (
             ("lightbuffer/lookup", 16, "STEPS", "_lookups(n, single)"),
             ("lightbuffer/lookup", 8, "STEPS", "_lookups(n, single)"),
             ("lightbuffer/lookup", 4, "STEPS", "_lookups(n, single)"),
+            ("voxels/classify", 16, "STEPS", "1"),
+            ("voxels/classify", 12, "STEPS", "1"),
+            ("voxels/classify", 4, "TESTS", "room.state[0]"),
+            ("voxels/classify", 4, "TESTS", "n"),
+            ("voxels/walk", 8, "TESTS", "ones(left) if by_ray else 1"),
+            ("voxels/walk", 8, "TESTS", "ones(here) if by_ray else 1"),
+            ("voxels/walk", 8, "STEPS", "ones(open_) if voxels.by_ray else 1"),
+            ("environments/ask", 8, "STEPS", "ones(live) if by_ray else 1"),
             ("regions/certify", 16, "STEPS", "1"),
             ("regions/certify", 16, "TESTS", "1"),
             ("regions/certify", 8, "TESTS", "1"),

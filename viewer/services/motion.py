@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -24,7 +24,7 @@ IDLE_AFTER = 0.25
 """Seconds after a movement by hand until nothing moves."""
 GLIDE_SECONDS = 0.35
 LONGEST_STEP = 0.25
-"""Seconds, at most, by which time and camera go on between two frames of the window, however long it was asleep."""
+"""Seconds, at most, by which time and a flown camera go on between two frames, however long the window slept."""
 
 Corner = Sequence[float]
 
@@ -37,7 +37,6 @@ class _Glide:
     end: Camera
     began: float
     seconds: float = GLIDE_SECONDS
-    gone: float = 0.0
 
 
 class Motion:
@@ -92,8 +91,7 @@ class Motion:
         step, self._last = min(now - self._last, LONGEST_STEP), now
         self._play(step, shown)
         if self._glide is not None:
-            self._glide = replace(self._glide, gone=self._glide.gone + min(step, now - self._glide.began))
-            t = self._glide.gone / self._glide.seconds
+            t = (now - self._glide.began) / self._glide.seconds
             self._session.move(navigation.blend(self._glide.start, self._glide.end, t))
             if t >= 1.0:
                 self._glide = None

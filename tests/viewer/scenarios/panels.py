@@ -114,14 +114,16 @@ def looks(d: Driver) -> None:
     d.hold(KEY.d, 0.2)
     d.settle()
     camera, path = d.c.session.camera, d.c.session.scene.path
-    p.last = d.c.session.snapshot().to_json()
+    place = d.c.session.snapshot().to_json()
     d.press(KEY.r)
+    d.settle()
     assert p.start_where_left and d.c.session.camera != camera
+    p.last = place  # it follows the camera, so that it is there whenever the program ends
     assert d.c.loader.go_on()
     d.wait(lambda: d.c.session.camera == camera, "the place that was left")
     assert d.c.session.scene.path == path
     d.settle()
-    p.last = p.last | {"scene": str(d.folder / "gone.aff")}
+    p.last = place | {"scene": str(d.folder / "gone.aff")}
     assert not d.c.loader.go_on() and "the scene is gone" in d.c.notices.message.text
     d.settle()
 
