@@ -28,14 +28,17 @@ def main() -> int:
 
 
 def foreign(name: str, mark: str) -> str:
-    """What is wrong with a package, in one line; nothing where it is the one beside this file, with its mark."""
+    """What is wrong with a package, in one line; nothing where it has its mark and is the one beside this file, or
+    where none is beside it: then it is installed from its sources, which stay where they are."""
     here = Path(__file__).resolve().parent / name
     found = find_spec(name)
     origin = Path(found.origin).resolve() if found is not None and found.origin is not None else None
     if origin is None:
         return f"there is no package {name!r} in {here}, as another project's was removed; install shadowcull again"
     try:
-        own = origin.parent == here and mark in origin.read_text(encoding="utf-8", errors="replace")
+        own = (origin.parent == here or not (here / "__init__.py").exists()) and mark in origin.read_text(
+            encoding="utf-8", errors="replace"
+        )
     except OSError as error:
         return f"{origin}: cannot be read: {error.strerror or error}"
     return "" if own else f"{origin} is another project's package {name!r}; {ALONE}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -50,3 +51,13 @@ def test_a_package_that_was_overwritten_or_removed_is_one_line(tmp_path: Path, m
     assert "is another project's package" in shadowcull.foreign("tracer_of_tests", "mark")
     (tmp_path / "tracer_of_tests" / "__init__.py").write_text("mark = 1")
     assert shadowcull.foreign("tracer_of_tests", "mark") == ""
+
+
+def test_the_installed_command_starts_from_anywhere(tmp_path: Path) -> None:
+    """Also where the packages stay with their sources, and only this file and data are copied beside others."""
+    (tmp_path / "shadowcull.py").write_text((ROOT / "shadowcull.py").read_text())
+    (tmp_path / "viewer" / "data").mkdir(parents=True)
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), str(tmp_path)])}
+    command = [sys.executable, str(tmp_path / "shadowcull.py"), "--version"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "") and done.stdout.startswith("shadowcull")

@@ -12,6 +12,7 @@ commands:
   shadowcull zoom SCENE    move towards a primitive, and see whether its shadows stay right
   shadowcull explain SCENE say what became of each ray of one pixel
   shadowcull hunt SCENE    search a path for the worst wrong pixels of a method
+  shadowcull cube SCENE    save what a light sees in each direction, as a picture
   shadowcull figure SCENE  draw a frame by several methods side by side
   shadowcull check FILE    render saved pictures and figures again, and say whether they are still true
   shadowcull info SCENE    say what a scene holds

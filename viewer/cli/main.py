@@ -9,6 +9,7 @@
     shadowcull explain SCENE    what became of the rays of one pixel
     shadowcull cube SCENE       what a light sees, from its light buffer
     shadowcull hunt SCENE       the worst wrong pixels of a method
+    shadowcull cube SCENE       what a light sees in each direction, as a picture
     shadowcull figure SCENE     a frame by several methods, side by side
     shadowcull check FILE       whether saved pictures and figures are still true
     shadowcull info SCENE       what a scene holds

@@ -29,9 +29,10 @@ def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) 
     see, or soon will be.  `more` says that frames follow."""
     method, decision = Method.parse(frame.settings.method), frame.statistics.decision
     if view is View.CERTIFICATE and not can_draw(frame, view):
-        if decision and frame.statistics.certificates and more:
+        if decision and method.adaptive and frame.statistics.certificates and more:
             decision += " More are made and tried while nothing moves."
-        return Missing(decision or f"The method {method.base} makes no certificates; {CERTIFIED} does.", CERTIFIED)
+        why = "" if method.clusters or not method.has_certificates else decision
+        return Missing(why or f"The method {method.base} makes no certificates; {CERTIFIED} does.", CERTIFIED)
     if view is View.CUTS and not can_draw(frame, view):
         why = decision if method.clusters else f"The method {method.base} clusters no lights; {CLUSTERED} does."
         return Missing(why, "" if method.clusters else CLUSTERED)

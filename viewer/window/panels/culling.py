@@ -32,7 +32,8 @@ def show(ui: Ui) -> None:
     c = ui.controller
     s, p = c.session.settings, c.preferences
     _method(ui)
-    if c.frame is not None and c.frame.statistics.decision and c.runs.current is None:
+    shown = c.frame is not None and c.frame.settings.method == c.session.settings.method
+    if shown and c.frame.statistics.decision and c.runs.current is None:
         paragraph(c.frame.statistics.decision, QUIET)
     tip = "test two neighbouring pixels both ways: each one's ray against the other's primitive (Y)"
     checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.settings.change(symmetric=on), tip)
