@@ -26,7 +26,7 @@ from rich.table import Table
 
 from tests.bench.frame_times import machine
 from tests.bench.of_scenes import SCENES
-from tracer.compilation import make_ready
+from tracer.compilation import make_ready, warm_up
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.experiment import REFERENCE
 from tracer.frame import Settings
@@ -73,7 +73,8 @@ def measure(path: Path, size: int, frames: int) -> dict[str, Sums]:
             method: Renderer(scene, replace(settings, method=method), world=world, clock=time.process_time)
             for method in methods
         }
-        for method in methods:  # untimed: loads kernels
+        warm_up(None, len(scene.lights), accelerator)  # untimed, as is what methods have of their own
+        for method in methods:
             make_ready(method, len(scene.lights), accelerator)
         renderers[REFERENCE].render(scene.frame_time(0))
         for number in numbers:

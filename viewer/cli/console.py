@@ -99,12 +99,13 @@ def working() -> Iterator[Work]:
 
 
 def print_table(table: Table) -> None:
-    """A table on standard output; in plain 100 columns where that is no terminal.
+    """A table on standard output; where that is no terminal as wide as it is, and 100 columns at least.
 
     Its title may be wider than itself, such as a path, which must not be broken."""
     console = Console()
-    console = Console(width=console.width if console.is_terminal else 100)
     title, table.title = table.title, None
+    if not console.is_terminal:
+        console = Console(width=max(100, Console(width=1000).measure(table).maximum))
     if title is not None:
         for line in str(title).split("\n"):
             console.print(Text(printable(line), str(table.title_style or "")), soft_wrap=True)

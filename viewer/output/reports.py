@@ -55,7 +55,7 @@ def leaders(rows: Sequence[Row]) -> list[str]:
     return [
         f"fewest steps, of exact methods: {steps.method} ({steps.average_steps:.1%} saved)",
         f"fewest tests, of exact methods: {tests.method} ({tests.average_tests:.1%} saved)",
-        f"least time, of exact methods: {time.method} ({time.path_seconds / none.path_seconds:.2f} times that of {REFERENCE})",
+        f"least time, of exact methods: {time.method} ({time.path_seconds / none.path_seconds:.2f} of {REFERENCE}'s)",
     ]
 
 
