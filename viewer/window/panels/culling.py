@@ -32,9 +32,10 @@ def show(ui: Ui) -> None:
     c = ui.controller
     s, p = c.session.settings, c.preferences
     _method(ui)
-    shown = c.frame is not None and c.frame.settings.method == c.session.settings.method
-    if shown and c.frame.statistics.decision and c.runs.current is None:
-        paragraph(c.frame.statistics.decision, QUIET)
+    frame = c.frame
+    if frame is not None and frame.settings.method == c.session.settings.method and c.runs.current is None:
+        if frame.statistics.decision:
+            paragraph(frame.statistics.decision, QUIET)
     tip = "test two neighbouring pixels both ways: each one's ray against the other's primitive (Y)"
     checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.settings.change(symmetric=on), tip)
     same_line_for("Verify")
