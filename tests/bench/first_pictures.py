@@ -27,8 +27,8 @@ from rich.table import Table
 
 from tests.bench.frame_times import KITCHEN, machine
 from tests.bench.memory import MB, ROOT, resident, write_mesh
+from tests.bench.of_scenes import finish
 from tracer.geometry.accelerators import ACCELERATORS
-from viewer.cli.console import print_table
 from viewer.util.messages import say
 from viewer.util.resources import scene_path
 
@@ -138,11 +138,7 @@ def main(arguments: list[str] | None = None) -> int:
     except RuntimeError as error:
         say(error)
         return 1
-    options.json.parent.mkdir(parents=True, exist_ok=True)
-    options.json.write_text(json.dumps(report, indent=1) + "\n")
-    print_table(table(report["pictures"]))
-    print(f"all figures in {options.json}")
-    return 0
+    return finish(report, table(report["pictures"]), options.json, [])
 
 
 if __name__ == "__main__":

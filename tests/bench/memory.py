@@ -25,7 +25,7 @@ from rich.table import Table
 
 from tests.bench.frame_times import KITCHEN, machine
 from tests.bench.meshes import bumpy_sphere, frequency_for
-from viewer.cli.console import print_table
+from tests.bench.of_scenes import finish
 from viewer.util.messages import say
 from viewer.util.resources import scene_path
 
@@ -137,11 +137,7 @@ def main(arguments: list[str] | None = None) -> int:
     except RuntimeError as error:
         say(error)
         return 1
-    options.json.parent.mkdir(parents=True, exist_ok=True)
-    options.json.write_text(json.dumps(report, indent=1) + "\n")
-    print_table(table(report["scenes"]))
-    print(f"all figures in {options.json}")
-    return 0
+    return finish(report, table(report["scenes"]), options.json, [])
 
 
 if __name__ == "__main__":

@@ -13,18 +13,17 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.scheduler import Counts
 from tracer.culling.environments.ask import answer, find_cells, select_lights
 from tracer.culling.environments.octree import cells_at, environments_at
 from tracer.culling.environments.sample import seen_points, settle_by_samples
 from tracer.culling.environments.store import EnvironmentStore
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of, vectors
-from tracer.culling.verdicts import Answered, Because, Verdict
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import borrowed
 from tracer.kernels import Entry, entry, kernel
-from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.methods.interface import FrameView, Stage
+from tracer.methods.of_space import NOWHERE, CellsOfSpace
 from tracer.parallel import for_each_chunk
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of
@@ -44,12 +43,9 @@ from tracer.simd import (
 )
 from tracer.simd import select as choose_lanes
 from tracer.simd.records import pack
-from tracer.statistics import FrameStatistics
 
 CELL_ROWS = 1
 WORDS = 16  # of 64 vectors: as many as the waves of four tiles have
-
-NOWHERE = np.empty(0, np.int32)
 
 
 @entry
@@ -116,21 +112,12 @@ def want_in_tiles(data, camera, tiles, numbers, buffers):
                 before = cell
 
 
-class Environments(ShadowMethod):
+class Environments(CellsOfSpace):
     """Settles cells by proofs, and culls by what they know."""
 
+    store: EnvironmentStore | None
     entries: tuple[Entry, ...] = (find, select, choose)
     coarse = 0  # how often cells are divided at most, 0 for as often as is worth it
-
-    def __init__(self, services: Services) -> None:
-        super().__init__(services)
-        self.store: EnvironmentStore | None = None
-        self._memory = 0.0
-        self._counts, self._cell = Counts(), NOWHERE
-
-    def begin(self, frame: FrameView) -> None:
-        self._counts = Counts()
-        self._cell = np.full(frame.settings.width * frame.settings.height, -1, np.int32)
 
     def follow(self, frame: FrameView) -> None:
         settings, lamps = frame.settings, frame.shading.lamps
@@ -172,30 +159,8 @@ class Environments(ShadowMethod):
         chooses = choose if self.store.held else None
         return [Stage(view, find=find, select=select, choose=chooses, rows=CELL_ROWS, looks=looks)]
 
-    def layers(self, frame: FrameView) -> dict[str, NDArray]:
-        assert self.store is not None, "followed before"
-        cell = self._cell.reshape(frame.buffers.primitive.shape)
-        return {"cells": cell, "certificates": self.store.at_pixels(cell)}
-
-    def report(self, statistics: FrameStatistics) -> None:
-        statistics.certificates = self._counts.certificates
-        statistics.certificate_steps = self._counts.steps
-        statistics.certificate_tests = self._counts.tests
-        if self.store is not None:
-            statistics.decision = statistics.decision or self.store.told
-
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
         return None if self.store is None else self.store.state_at(point, light)
-
-    def because(self, answered: Answered) -> Because:
-        return Because(Verdict.ANSWERED)
-
-    def forget(self) -> None:
-        self.store = None
-
-    @property
-    def memory_bytes(self) -> int:
-        return 0 if self.store is None else self.store.bytes
 
 
 class SampledEnvironments(Environments):

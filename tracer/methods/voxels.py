@@ -10,26 +10,22 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.scheduler import Counts
 from tracer.culling.counters import CANDIDATES_ONLY, CULLED, DYNAMIC_ONLY, STEPS
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.shadow_modes import POINT_WORD_ROWS, look_up, point_words_in, start_wave
 from tracer.culling.shadow_modes import words_of as looked_up
 from tracer.culling.stages import call_at, scratch_of, vectors
-from tracer.culling.verdicts import Answered, Because, Verdict
 from tracer.culling.voxels.store import VoxelStore
 from tracer.culling.voxels.view import voxel_view_at
 from tracer.culling.voxels.walk import states, voxels_at, walk
 from tracer.geometry.boxes import segments_miss_box
 from tracer.kernels import Entry, entry
-from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.methods.interface import FrameView, Stage
+from tracer.methods.of_space import NOWHERE, CellsOfSpace
 from tracer.shading.points import points_in
 from tracer.shading.wave import wave_in
 from tracer.simd import address_of, bits_of, i32x16, i64_at, load_i32x16, load_three, mask16, ones, select, store
-from tracer.statistics import FrameStatistics
-
-NOWHERE = np.empty(0, np.int32)
 
 
 @entry
@@ -85,20 +81,11 @@ def choose(data, call, light, count, counts):
         batch.lit[v] |= null
 
 
-class Voxels(ShadowMethod):
+class Voxels(CellsOfSpace):
     """Classifies voxels, and culls by their states."""
 
+    store: VoxelStore | None
     entries: tuple[Entry, ...] = (find, choose)
-
-    def __init__(self, services: Services) -> None:
-        super().__init__(services)
-        self.store: VoxelStore | None = None
-        self._memory = 0.0
-        self._counts, self._cell = Counts(), NOWHERE
-
-    def begin(self, frame: FrameView) -> None:
-        self._counts = Counts()
-        self._cell = np.full(frame.settings.width * frame.settings.height, -1, np.int32)
 
     def follow(self, frame: FrameView) -> None:
         settings = frame.settings
@@ -121,27 +108,5 @@ class Voxels(ShadowMethod):
             Stage(self.store.view(self._cell if learns else NOWHERE), find=find, choose=choose, rows=POINT_WORD_ROWS)
         ]
 
-    def layers(self, frame: FrameView) -> dict[str, NDArray]:
-        assert self.store is not None, "followed before"
-        cell = self._cell.reshape(frame.buffers.primitive.shape)
-        return {"cells": cell, "certificates": self.store.at_pixels(cell)}
-
-    def report(self, statistics: FrameStatistics) -> None:
-        statistics.certificates = self._counts.certificates
-        statistics.certificate_steps = self._counts.steps
-        statistics.certificate_tests = self._counts.tests
-        if self.store is not None:
-            statistics.decision = statistics.decision or self.store.told
-
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
         return None if self.store is None else (self.store.state_at(point, light), ())
-
-    def because(self, answered: Answered) -> Because:
-        return Because(Verdict.ANSWERED)
-
-    def forget(self) -> None:
-        self.store = None
-
-    @property
-    def memory_bytes(self) -> int:
-        return 0 if self.store is None else self.store.bytes
