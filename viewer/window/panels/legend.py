@@ -34,7 +34,7 @@ def of_picture(ui: Ui) -> Legend | None:
     s, p = c.session, c.preferences
     span = c.comparing.span(view)
     number = number_of(scene.lights, light)
-    chosen = Chosen(light, name, p.mark_wrong, p.work_shares, span, s.tone, s.clipping, number)
+    chosen = Chosen(light, name, p.mark_wrong, p.work_shares, span, s.tone, s.clipping, number, s.cut)
     kept = "legend" if frame is c.frame else "legend of A"
     found: Legend | None = ui.cached(kept, frame, (view, chosen), lambda: legend_of(frame, view, chosen))
     return found

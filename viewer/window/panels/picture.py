@@ -30,6 +30,7 @@ from viewer.window.panels import (
     missing,
     ray_overlay,
     sides,
+    slicing,
     timeline,
     tour,
     unseen,
@@ -122,6 +123,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
         sides.show_names(ui, area, seen, lower)
     legend.show(ui, area.corner, area.end)
     missing.show(ui, area.corner, area.end)
+    slicing.show(ui, area)
     closeup.menu(ui)
 
 
