@@ -221,6 +221,13 @@ def slice_(text: str) -> Slice:
     return Slice(AXES.index(axis), float(at) if colon else MIDDLE.at)
 
 
+def cube_side(text: str) -> int:
+    """Cells along an edge of a light's cube."""
+    if not re.fullmatch(r"\d{1,9}", text, re.ASCII) or int(text) not in (16, 32, 64, 128, 256, 512, 1024):
+        raise argparse.ArgumentTypeError(f"{text!r} is no power of two from 16 to 1024")
+    return int(text)
+
+
 def lamp_samples(text: str) -> int:
     """The number of points from which a lamp shines."""
     from tracer.scene.lights import MAX_SAMPLES
