@@ -306,7 +306,8 @@ def _cuts(frame: Frame, view: View, chosen: Chosen) -> Legend:
     found = cuts_legend(frame)
     facts = (
         Entry("per pixel", values=(f"{found.per_pixel:.4g} for {count(found.lights)} lights",)),
-        Entry("bound of the error", None, (f"{percent(found.bound, 1.0)} of the light",), _BOUND),
+        Entry("each may be wrong by", None, (f"{percent(frame.settings.lightcuts_error, 1.0)} of the light",), _EACH),
+        Entry("all of them together", None, (f"{percent(found.bound, 1.0)} at most",), _BOUND),
     )
     entries = (Entry(_ARRIVALS[Arrival.UNKNOWN], GREY),) if found.unknown else ()
     scale = Scale("0", count(found.most), count(found.most // 2) if found.most % 2 == 0 else "")
@@ -405,9 +406,11 @@ def _cut_errors(errors: CutErrors) -> tuple[Entry, ...]:
 _ERRORS = (
     "by what part of its light a pixel differs from the picture by all lights; darker ones than 1/64 as if that bright"
 )
+_EACH = "the chosen error: clusters are parted until each alone is wrong by no more than this part of a pixel's light"
 _BOUND = (
-    "by what part of its light a pixel can be wrong if every cluster is as wrong as it can be, and none makes up for "
-    "another: the middle of all pixels. What is wrong in fact is a small part of that."
+    "the sum over the clusters of a pixel, each within its own error: by what part of its light the pixel would be "
+    "wrong if every cluster were as wrong as it can be, all in the same direction; the middle of all pixels. What is "
+    "wrong in fact, as Verify tells, is a small part of that."
 )
 _PER_CELL = (
     "those that are not known to be hidden from all of the cell: they light all of it, or something may block them"

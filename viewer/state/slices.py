@@ -120,7 +120,7 @@ class VoxelSeen(NamedTuple):
     """A voxel: its place along x, y and z, its state for a light, the side of the largest block around it that has this
     state, and whether anything static lies in it."""
 
-    index: tuple[int, int, int]
+    place: tuple[int, int, int]
     state: int
     level: int
     occupied: bool

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from tracer.light_cut import LightCut
+from viewer.services.cut_inspector import MOST_DRAWN
 from viewer.state.picking import pixel_at
 from viewer.state.readings import cell_lights, voxels_of
-from viewer.state.slices import AXES, STATE_NAMES, Slice, middle_of, slice_seen, voxel_seen
+from viewer.state.slices import AXES, STATE_NAMES, middle_of, slice_seen, voxel_seen
 from viewer.state.views import View
+from viewer.window.layers_of_slice import go_to
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
-from viewer.window.widgets import count, em, row
+from viewer.window.widgets import count, em, percent, row
 
 _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.90), ImVec4(0.93, 0.94, 0.96, 1.0)
 
@@ -38,25 +42,6 @@ def rows(ui: Ui) -> None:
         s.cut = go_to(s.cut, layer, many)
 
 
-def go_to(cut: Slice, layer: int, many: int) -> Slice:
-    """The slice in another layer of so many, or in the last one before these end."""
-    return cut._replace(at=(min(max(layer, 0), many - 1) + 0.5) / many)
-
-
-def step(ui: Ui, layers: int) -> None:
-    """Go on by so many layers."""
-    s, frame = ui.controller.session, ui.controller.frame
-    if frame is not None and "voxels" in frame.structures:
-        shape = voxels_of(frame).shape
-        s.cut = go_to(s.cut, s.cut.layer(shape) + layers, shape[s.cut.axis])
-
-
-def turn(ui: Ui) -> None:
-    """Cut across the next axis."""
-    s = ui.controller.session
-    s.cut = s.cut._replace(axis=(s.cut.axis + 1) % len(AXES))
-
-
 def lines_at(ui: Ui, x: int, y: int) -> list[str]:
     """What a pixel of the newest frame shows of space, in a view of that; nothing where it shows none."""
     c = ui.controller
@@ -72,12 +57,27 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
         found = voxel_seen(states, light, number)
         block = f"with the block of {found.level} x {found.level} x {found.level} around it" if found.level > 1 else ""
         inside = "something static lies in it" if found.occupied else "nothing static lies in it"
-        named = "{}, {}, {}".format(*found.index)
+        named = "{}, {}, {}".format(*found.place)
         return [f"voxel {named}: {STATE_NAMES[found.state]}", *([block] if block else []), inside]
+    if view is View.CUTS and c.cuts.cut is not None and (c.cuts.cut.x, c.cuts.cut.y) == (x, y):
+        return cut_lines(c.cuts.cut)
     if view is View.CELL_LIGHTS and frame.primitive[y, x] >= 0:
         asked = int(cell_lights(frame)[y, x])
         return ["not known yet"] if asked < 0 else [f"its cell asks {count(asked)} of {count(frame.lights)} lights"]
     return []
+
+
+def cut_lines(cut: LightCut) -> list[str]:
+    """What shades a pixel, in a few lines."""
+    many, single = len(cut.nodes), int((cut.lights == 1).sum())
+    lines = [f"{count(many)} clusters shade it, {count(single)} of them single lights"]
+    total = float(cut.sent.sum())
+    if total > 0.0:
+        top = np.sort(cut.sent)[::-1]
+        lines.append(f"the brightest sends {percent(float(top[0]), total)} of their light")
+    if many > MOST_DRAWN:
+        lines.append(f"drawn are the {MOST_DRAWN} that send most")
+    return lines
 
 
 def show(ui: Ui, area: Area) -> None:
