@@ -214,7 +214,7 @@ def slice_(text: str) -> Slice:
     axis, colon, at = text.partition(":")
     if (
         axis not in AXES
-        or (colon and not re.fullmatch(r"0|1|[01]?\.\d{1,9}", at, re.ASCII))
+        or (colon and not re.fullmatch(r"0|1|[01]?\.\d{1,30}", at, re.ASCII))
         or (colon and float(at) > 1)
     ):
         raise argparse.ArgumentTypeError(f"{text!r} is no slice; give an axis and 0 to 1 along it, like y:0.3")

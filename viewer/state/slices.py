@@ -37,8 +37,7 @@ class Slice(NamedTuple):
 
     def in_words(self) -> str:
         """As the option `--slice` takes it."""
-        digits = f"{self.at:.9f}".rstrip("0").rstrip(".")
-        return f"{AXES[self.axis]}:{digits}"
+        return f"{AXES[self.axis]}:{np.format_float_positional(self.at, trim='-')}"
 
     @staticmethod
     def from_json(data: Any) -> Slice:
@@ -134,10 +133,10 @@ def voxel_seen(states: VoxelStates, light: int, number: int) -> VoxelSeen:
 
 
 def voxel_words(frame: Frame, states: VoxelStates, light: int, cut: Slice, x: int, y: int) -> tuple[str, ...]:
-    """What a pixel sees in a slice: the voxel, and what is known of it; nothing where it sees none."""
+    """What a pixel sees in a slice: the voxel, and what is known of it; a dash where it sees none."""
     number = int(slice_seen(frame, states.grid, cut).numbers[y, x])
     if number < 0:
-        return ()
+        return ("-",)
     index = index_of(states.grid, number)
     state = int(states.states(light, np.array(number)))
     return "{}, {}, {}".format(*index), STATE_NAMES[state]
