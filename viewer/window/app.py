@@ -231,6 +231,7 @@ class App:
             tone=c.session.tone,
             clipping=c.session.clipping,
             span=c.comparing.span(c.tracing.drawn_view),
+            cut=c.session.cut,
         )
 
     def _capture_picture(self) -> None:

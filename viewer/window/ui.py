@@ -138,6 +138,7 @@ class Ui:
     find_height: float = 0.0
     find_order: object = None
     shots: Shots | None = None
+    cube_shows: int = 0
     screening: Screening | None = None
     compared: Compared | None = None
     magnifier: Magnifier | None = None
