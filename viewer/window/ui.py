@@ -122,6 +122,7 @@ class Ui:
     renderer_name: str = ""
     request_exit: Callable[[], None] = lambda: None
     reset_layout: Callable[[], None] = lambda: None
+    restart_graphics: Callable[[], None] = lambda: None
     show_panel: Callable[[str], Any] = lambda label: None
     panel_labels: tuple[str, ...] = ()
     guard: Guard = field(init=False)
