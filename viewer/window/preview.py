@@ -1,7 +1,7 @@
 """A preview of a scene by the GPU alone, while the tracer's kernels are compiled: no shadows, no reflections.
 
-What is drawn comes to the GPU a piece in each of the window's frames, so that none of them waits; the picture shows
-what is there.  All of it runs before the widgets of a frame, and leaves the window's framebuffer bound as it was.
+What is drawn comes to the GPU piece by piece, as many in each of the window's frames as keep it smooth.  All of it
+runs before the widgets of a frame, and leaves the window's framebuffer bound as it was.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ from viewer.util.resources import shader_source
 if TYPE_CHECKING:
     from viewer.window.ui import Ui
 
-PIECE = 1 << 21  # bytes that come to the GPU in one of the window's frames
+PIECE = 1 << 20  # bytes that come to the GPU at once
+BRINGING = 0.01  # seconds of each of the window's frames, at most, unless one piece takes longer
 SMOOTH = 0.05  # seconds to draw one picture, at most, while the camera moves: else it becomes coarser
 COARSEST = 4
 FACETS = 100_000  # triangles of all spheres and cones
@@ -48,9 +49,13 @@ def draw(ui: Ui) -> None:
         return
     window = display.context.detect_framebuffer()
     try:
-        if ui.preview.bring():
+        until = time.perf_counter() + BRINGING
+        while ui.preview.bring() and time.perf_counter() < until:
+            pass
+        if ui.preview.whole:
+            ui.preview.draw(c.session.camera, (width, height), hurried=c.motion.under_way)
+        else:
             c.wake()
-        ui.preview.draw(c.session.camera, (width, height), hurried=c.motion.under_way)
     finally:
         window.use()
         display.context.disable(moderngl.DEPTH_TEST)
@@ -66,7 +71,7 @@ class PreviewDisplay:
         self._pieces: list[tuple[Any, NDArray[np.void]]] = []  # buffers that are not filled yet
         self._images = list(enumerate(geometry.images))  # that are not there yet
         self._textures: dict[int, Any] = {}
-        self._there: dict[int, int] = {}  # bytes of each buffer that have come
+        self._come = 0  # bytes of the first of these
         self._drawn: object = None
         self._target: Any = None
         self._coarse = 1
@@ -97,19 +102,19 @@ class PreviewDisplay:
             self._textures[number] = self._kept(self._image(pixels))
         elif self._pieces:
             buffer, data = self._pieces[0]
-            start, raw = self._there[id(buffer)], memoryview(data).cast("B")
-            end = min(start + size // data.itemsize // 3 * 3 * data.itemsize, len(raw))
-            buffer.write(raw[start:end], offset=start)
-            self._there[id(buffer)] = end
-            if end == len(raw):
+            raw = data.view(np.uint8)
+            piece = raw[self._come : self._come + size]
+            buffer.write(piece, offset=self._come)
+            self._come += len(piece)
+            if self._come == len(raw):
                 self._pieces.pop(0)
+                self._come = 0
         else:
             return False
-        self._drawn = None
         return True
 
     def draw(self, camera: Camera, size: tuple[int, int], hurried: bool = False) -> None:
-        """Draw what has come, unless that is in the target already; coarser if hurried, and that takes long."""
+        """Draw it, unless that is in the target already; coarser if hurried, and that takes long."""
         wanted = camera, size, self._coarse if hurried else 1
         if wanted == self._drawn:
             return
@@ -166,7 +171,6 @@ class PreviewDisplay:
             return None
         buffer = self._kept(self._context.buffer(reserve=data.nbytes))
         self._pieces.append((buffer, data))
-        self._there[id(buffer)] = 0
         return buffer
 
     def _array(self, program: Any, buffer: Any, layout: tuple[str, ...]) -> Any:
@@ -214,23 +218,20 @@ class PreviewDisplay:
         if self._soup_array is None:
             return
         self._materials.use(0)
-        come = self._there[id(self._vertices)] // VERTEX.itemsize
         for number, first, count in self.geometry.batches:
             texture = self._textures.get(number)
             self._soup["textured"] = texture is not None
             if texture is not None:
                 texture.use(1)
-            if min(count, come - first) > 0:
-                self._soup_array.render(moderngl.TRIANGLES, vertices=min(count, come - first), first=first)
+            self._soup_array.render(moderngl.TRIANGLES, vertices=count, first=first)
 
     def _draw_quadrics(self) -> None:
         if self._round_array is None:
             return
         self._materials.use(0)
         self._round["textured"] = False
-        come = self._there[id(self._quadrics)] // QUADRIC.itemsize
-        if come:
-            self._round_array.render(moderngl.TRIANGLES, vertices=12 * self._rings**2, instances=come)
+        count = len(self.geometry.quadrics)
+        self._round_array.render(moderngl.TRIANGLES, vertices=12 * self._rings**2, instances=count)
 
     def _fitting_target(self, size: tuple[int, int]) -> Any:
         if self._target is None or self._target.size != size:
