@@ -15,7 +15,7 @@ from viewer.services.jobs import Job
 from viewer.services.motion import Motion
 from viewer.services.scene_loader import SceneLoader
 from viewer.state.notices import Notices
-from viewer.state.preview_geometry import PreviewGeometry, preview_geometry
+from viewer.state.preview_geometry import MOST_READ, PreviewGeometry, preview_geometry
 from viewer.state.session import Session
 
 
@@ -54,6 +54,8 @@ class Preview:
 
     def _enter(self, scene: Scene, time: float | None, camera: Camera | None) -> None:
         session = self._session
+        if scene.triangle_count > MOST_READ:
+            return
         self._scene = session.previewed = scene
         self._start = session.free_camera = camera
         start = session.time = scene.time_range[0] if time is None else time

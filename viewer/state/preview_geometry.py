@@ -1,8 +1,8 @@
 """A scene as a rasteriser draws it, at one moment: triangles, spheres, cones and lights in flat arrays, bounded.
 
-No kernel is needed for that, so that it can be seen while the kernels are compiled.  Of too many triangles the largest
-are kept and, of the others, some that are drawn by lot, larger by so much that they cover what all of those do (Cook,
-Halstead, Planck, Ryu: Stochastic Simplification of Aggregate Detail, 2007).
+No kernel is needed for that, so that it can be seen while the kernels are compiled.  Of too many triangles,
+the corners that share a cell of a grid become one, and what shrinks to a line or a point is left out (Rossignac,
+Borrel: Multi-resolution 3D approximations for rendering complex scenes, 1993).
 """
 
 from __future__ import annotations
@@ -22,12 +22,15 @@ from tracer.scene.limits import LARGEST, SMALLEST
 from tracer.scene.model import Progress, Scene, SceneObject
 
 MOST_TRIANGLES = 300_000
-MOST_QUADRICS = 4_000
+MOST_QUADRICS = 12_000
+MOST_READ = 3_000_000
+"""Triangles of a scene that is previewed at all: gathering more takes too much memory."""
 MOST_LIGHTS = 8
 """More are merged into so many."""
 MOST_TEXELS = 1024
 """A side of a texture."""
-_LARGER = 3.0  # at most, by which triangles stand for others
+_CELLS = 1 << 20  # of a grid, on either side of the origin
+_COARSER = 1.4 ** np.arange(24)  # grids that are tried
 
 VERTEX = np.dtype([("position", "f4", 3), ("normal", "f4", 3), ("uv", "f4", 2), ("material", "f4")])
 QUADRIC = np.dtype([("to_world", "f4", (3, 4)), ("radii", "f4", 2), ("kind", "f4"), ("material", "f4")])
@@ -38,9 +41,9 @@ MATERIAL = np.dtype([("ambient", "f4", 4), ("diffuse", "f4", 4), ("specular", "f
 @dataclass(frozen=True)
 class PreviewGeometry:
     """In world space: vertices (3 n,) VERTEX, three for each triangle; batches of them that share a texture, its
-    number or -1, their first and how many; quadrics (m,) QUADRIC; materials (k,) MATERIAL; images of the textures;
-    lights (l, 8) float32: place, radius of what was merged, colour, and 1 where it falls off with distance; box (2, 3)
-    around everything.  `left_out` primitives of the scene, of `of`, are not there."""
+    number or -1, their first and how many; quadrics (m,) QUADRIC, the largest first; materials (k,) MATERIAL; images of
+    the textures; lights (l, 8) float32: place, radius of what was merged, colour, and 1 where it falls off with
+    distance; box (2, 3) around everything.  `left_out` primitives of the scene, of `of`, are not there."""
 
     vertices: NDArray[np.void]
     batches: tuple[tuple[int, int, int], ...]
@@ -58,7 +61,7 @@ class PreviewGeometry:
 def preview_geometry(
     scene: Scene, time: float, progress: Progress, most: int = MOST_TRIANGLES, most_quadrics: int = MOST_QUADRICS
 ) -> PreviewGeometry:
-    """Gather it; of more triangles, or spheres and cones, than that the most visible are kept."""
+    """Gather it; more triangles, or spheres and cones, than that are simplified."""
     chains = Chains(scene.animation, [o.chain for o in scene.objects])
     matrices, visible = chains.matrices(time), chains.visible(time)
     soups, quadrics, textures = [], [], []
@@ -136,26 +139,34 @@ def _fewer(soup: NDArray[np.void], texture: NDArray[np.int32], most: int) -> tup
     """See the module."""
     if len(soup) <= most:
         return soup, texture
-    p = soup["position"]
-    with np.errstate(all="ignore"):
-        area = np.nan_to_num(np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1), posinf=0.0)
-    order = np.argpartition(-area, most // 2)
-    large, small = order[: most // 2], order[most // 2 :]
-    chosen = np.random.default_rng(0).choice(small, most - len(large), replace=False)
-    kept = np.sort(np.concatenate([large, chosen]))
-    stretch = min(float(np.sqrt(area[small].sum() / max(area[chosen].sum(), 1e-30))), _LARGER)
-    made = soup[kept]
-    by = np.where(np.isin(kept, chosen), np.float32(stretch), np.float32(1))[:, None, None]
-    centre = made["position"].mean(axis=1, keepdims=True)
-    made["position"] = centre + by * (made["position"] - centre)
-    return made, texture[kept]
+    points = soup["position"].reshape(-1, 3)
+    low, high = np.percentile(points[:: 1 + len(points) // 10_000], (5, 95), axis=0)
+    finest = float((high - low).max()) / 512 or 1.0  # a floor that reaches far does not count
+    for coarser in _COARSER:
+        with np.errstate(all="ignore"):  # what lies beyond all numbers falls anywhere
+            cell = (
+                np.clip(np.floor(points / np.float32(finest * coarser)), -_CELLS, _CELLS - 1).astype(np.int64) + _CELLS
+            )
+        key = ((cell[:, 0] * 2 * _CELLS + cell[:, 1]) * 2 * _CELLS + cell[:, 2]).reshape(-1, 3)
+        a, b, c = key.T
+        stay = np.flatnonzero((a != b) & (b != c) & (a != c))
+        if len(stay) <= most:
+            break
+    stay = stay[:most]
+    made = soup[stay]
+    _, of = np.unique(key[stay].reshape(-1), return_inverse=True)
+    count = np.bincount(of)
+    for axis in range(3):
+        mean = np.bincount(of, made["position"].reshape(-1, 3)[:, axis]) / count
+        made["position"][:, :, axis] = mean[of].reshape(-1, 3)
+    return made, texture[stay]
 
 
 def _largest(quadrics: NDArray[np.void], most: int) -> NDArray[np.void]:
-    if len(quadrics) <= most:
-        return quadrics
+    """The largest, in the order of their size."""
     size = np.linalg.norm(quadrics["to_world"][:, :, :3], axis=(1, 2))
-    return quadrics[np.sort(np.argpartition(-size, most)[:most])]
+    quadrics = quadrics[np.argsort(-size, kind="stable")]
+    return quadrics[:most]
 
 
 def _materials(scene: Scene) -> NDArray[np.void]:

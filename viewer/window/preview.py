@@ -25,8 +25,10 @@ PIECE = 1 << 20  # bytes that come to the GPU at once
 BRINGING = 0.01  # seconds of each of the window's frames, at most, unless one piece takes longer
 SMOOTH = 0.05  # seconds to draw one picture, at most, while the camera moves: else it becomes coarser
 COARSEST = 4
-FACETS = 100_000  # triangles of all spheres and cones
-ROUNDEST = 40  # rings of a sphere
+BRIGHTEST = 1.5  # of all lights together that do not fall off with distance
+FACETS = 100_000  # triangles of spheres and cones, about
+LARGEST, ROUNDEST = 16, 32  # so many of them are the roundest, of so many rings
+LEAST = 3  # rings of the others
 A_ROW = 1024  # materials in a row of their texture
 _NEAREST = 2e-4  # of the way to the farthest that is drawn
 
@@ -79,11 +81,16 @@ class PreviewDisplay:
         self._soup = self._program("preview.vert", fragment)
         self._round = self._program("preview-quadric.vert", fragment)
         self._vertices = self._buffer(geometry.vertices)
-        self._quadrics = self._buffer(geometry.quadrics)
         self._soup_array = self._array(self._soup, self._vertices, _layout(VERTEX, self._soup))
-        self._round_array = self._array(self._round, self._quadrics, _layout(QUADRIC, self._round, "/i"))
         self._materials = self._kept(self._material_texture())
-        self._rings = min(ROUNDEST, max(4, math.isqrt(FACETS // (4 * max(len(geometry.quadrics), 1)))))
+        large, small = geometry.quadrics[:LARGEST], geometry.quadrics[LARGEST:]
+        rings = min(ROUNDEST, max(LEAST, math.isqrt(FACETS // (4 * max(len(small), 1)))))
+        layout = _layout(QUADRIC, self._round, "/i")
+        self._rounds = [
+            (self._array(self._round, self._buffer(part), layout), len(part), of)
+            for part, of in ((large, ROUNDEST), (small, rings))
+            if len(part)
+        ]
 
     @property
     def texture_id(self) -> int | None:
@@ -200,11 +207,10 @@ class PreviewDisplay:
         half = math.tan(math.radians(camera.angle) / 2.0)
         self._range = _range(camera, g.box)
         lamps = np.zeros((16, 4), np.float32)
-        lamps[: 2 * len(g.lights)] = g.lights.reshape(-1, 4)
+        lamps[: 2 * len(g.lights)] = _dimmed(g.lights).reshape(-1, 4)
         values = {
             "eye": camera.position, "slope": (half * size[0] / size[1], half), "near_far": self._range,
             "sky": g.ambient, "materials_a_row": A_ROW, "lamp_count": len(g.lights), "materials": 0, "image": 1,
-            "rings": self._rings, "sectors": 2 * self._rings,
         }  # fmt: skip
         for name, value in values.items():
             if name in program:
@@ -226,12 +232,11 @@ class PreviewDisplay:
             self._soup_array.render(moderngl.TRIANGLES, vertices=count, first=first)
 
     def _draw_quadrics(self) -> None:
-        if self._round_array is None:
-            return
         self._materials.use(0)
         self._round["textured"] = False
-        count = len(self.geometry.quadrics)
-        self._round_array.render(moderngl.TRIANGLES, vertices=12 * self._rings**2, instances=count)
+        for array, count, rings in self._rounds:
+            self._round["rings"], self._round["sectors"] = rings, 2 * rings
+            array.render(moderngl.TRIANGLES, vertices=12 * rings**2, instances=count)
 
     def _fitting_target(self, size: tuple[int, int]) -> Any:
         if self._target is None or self._target.size != size:
@@ -262,6 +267,13 @@ def _layout(record: np.dtype, program: Any, each: str = "") -> tuple[str, ...]:
             formats.append(f"{columns}f4" if present else f"{4 * columns}x")
             names += [name] * present
     return (" ".join(formats) + each, *names)
+
+
+def _dimmed(lights: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Lights that nothing shades, less bright where all together would wash the picture out."""
+    made, constant = lights.copy(), lights[:, 7] == 0.0
+    made[constant, 4:7] *= min(1.0, BRIGHTEST / max(float(lights[constant, 4:7].sum(axis=0).max(initial=0.0)), 1e-6))
+    return made
 
 
 def _range(camera: Camera, box: NDArray[np.float64]) -> tuple[float, float]:

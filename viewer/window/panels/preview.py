@@ -64,7 +64,8 @@ def words(ui: Ui) -> list[str]:
     compiling = f"Compiling the ray tracer: {100.0 * job.fraction:.0f} %. " if job is not None else ""
     lines = ["Preview: no shadows, no reflections", f"{compiling}Then the picture is traced."]
     if geometry is not None and geometry.left_out:
-        lines.append(f"It leaves out {count(geometry.left_out)} of {count(geometry.of)} triangles, spheres and cones")
+        kept = count(geometry.of - geometry.left_out)
+        lines.append(f"Simplified: {kept} of {count(geometry.of)} triangles, spheres and cones")
     return lines
 
 
