@@ -19,6 +19,7 @@ from tracer.scene.model import SceneError
 ANYHOW = "SHADOWCULL_BEYOND_MEMORY"
 """A variable of the environment: set, no scene is refused for the memory that it needs."""
 
+READING_BINARY = 300.0
 READING = 750.0
 """Bytes for each triangle of a mesh, at most, while it is read; for each byte of a text, READING_TEXT."""
 READING_TEXT = 25.0
@@ -36,9 +37,15 @@ _SIZES = {
 def check_reading(path: Path) -> None:
     """Raise SceneError, in one line, where reading this file needs more memory than there is."""
     with suppress(OSError):  # the reader says what is wrong
-        triangles = triangles_of(path)
-        size = path.stat().st_size
-        _check(path, READING_TEXT * size if triangles is None else READING * triangles, "to be read")
+        _check(path, reading(path), "to be read")
+
+
+def reading(path: Path) -> float:
+    """Bytes that reading this file takes at most, about; raises OSError."""
+    triangles = triangles_of(path)
+    if triangles is None:
+        return READING_TEXT * path.stat().st_size
+    return (READING_BINARY if path.suffix.lower() in (".stl", ".ply") else READING) * triangles
 
 
 def check_showing(path: Path, triangles: int) -> None:
