@@ -1,7 +1,7 @@
 """Whether a scene fits into the memory that this machine has left: asked before reading it takes the machine down.
 
 What reading takes is estimated from what the head of a file says, else from its size, by what was measured; what
-showing takes, from the triangles that were read.  Where a system does not tell what memory it has, nothing is asked.
+showing takes, from the triangles that were read.  Where nobody knows what memory there is, nothing is asked.
 """
 
 from __future__ import annotations
@@ -73,8 +73,18 @@ def available() -> float | None:
 
 
 def _of_system() -> float | None:
-    """What Linux can give away."""
-    return _field(Path("/proc/meminfo"), "MemAvailable:")
+    """What the system can give away."""
+    told = _field(Path("/proc/meminfo"), "MemAvailable:")
+    return _elsewhere() if told is None else told
+
+
+def _elsewhere() -> float | None:
+    """The same on macOS and Windows."""
+    try:
+        import psutil
+    except ImportError:  # on Linux it is not asked for
+        return None
+    return float(psutil.virtual_memory().available)
 
 
 def _of_group() -> float | None:
