@@ -145,8 +145,8 @@ def _framing(points: Float32, away: Float64, frame: Float64, size: float, report
     reach = np.full(5, -np.inf)
     for start in range(0, len(points), _BLOCK):
         report()
-        local = points[start : start + _BLOCK].astype(np.float64) @ frame.T
-        x, y, z = local @ across, local @ top, local @ forward
+        columns = np.ascontiguousarray(points[start : start + _BLOCK].T, np.float64)
+        x, y, z = (sum(a * b for a, b in zip(axis @ frame, columns)) for axis in (across, top, forward))
         sides = (x - slope * z, -x - slope * z, y - slope * z, -y - slope * z, -z)
         reach = np.maximum(reach, [side.max() for side in sides])
     right, left, upper, lower, near = reach.tolist()
