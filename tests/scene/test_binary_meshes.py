@@ -12,7 +12,7 @@ import trimesh
 from tests.bench.large_scenes import write_ply, write_stl
 from tests.bench.meshes import frequency_for
 from tracer.scene import assembly, binary_meshes, crease, files, meshes, pieces
-from tracer.scene.binary_meshes import read_binary
+from tracer.scene.binary_meshes import is_plain, read_binary
 from tracer.scene.load import load_scene
 from tracer.scene.mesh_options import AS_IN_FILE, IN_STUDIO
 from tracer.scene.model import Cancelled, Scene, SceneError
@@ -80,7 +80,7 @@ def test_the_scene_is_the_one_that_trimesh_reads(tmp_path, monkeypatch, options,
         ply(tmp_path / "c.ply", normals=True, vertex=("quality",), face=("flags",)),
     ]
     for path in paths:
-        assert read_binary(path, lambda done: None) is not None
+        assert read_binary(path, lambda done: None) is not None and is_plain(path)
         assert_same(load_scene(path, meshes=options), by_trimesh(path, options, monkeypatch))
 
 
@@ -95,7 +95,7 @@ def test_the_scene_is_the_one_that_trimesh_reads(tmp_path, monkeypatch, options,
 )
 def test_what_else_a_file_has_is_left_to_trimesh(tmp_path, other):
     path = ply(tmp_path / "a.ply", **other)
-    assert read_binary(path, lambda done: None) is None
+    assert read_binary(path, lambda done: None) is None and not is_plain(path)
     assert load_scene(path).triangle_count > 0
 
 
@@ -105,7 +105,7 @@ def test_texts_and_damaged_heads_are_left_to_trimesh(tmp_path):
     (tmp_path / "a.ply").write_text("ply\nformat ascii 1.0\nelement vertex 0\nend_header\n")
     (tmp_path / "b.ply").write_bytes(b"ply\n")
     for name in ("a.stl", "b.stl", "a.ply", "b.ply"):
-        assert read_binary(tmp_path / name, lambda done: None) is None
+        assert read_binary(tmp_path / name, lambda done: None) is None and not is_plain(tmp_path / name)
 
 
 def test_what_is_wrong_is_one_line(tmp_path, monkeypatch):

@@ -35,7 +35,7 @@ def little(monkeypatch: pytest.MonkeyPatch) -> float:
 def test_a_mesh_that_is_too_large_is_one_line_before_it_is_read(little: float, tmp_path: Path, monkeypatch) -> None:
     path = stl(tmp_path / "large.stl", 10_000_000)
     monkeypatch.setattr("tracer.scene.load.load_mesh", lambda *_: pytest.fail("it is read"))
-    needed = 10e6 * room.READING
+    needed = 10e6 * room.READING_PLAIN
     with pytest.raises(tracer.SceneError) as refused:
         tracer.load_scene(path)
     said = str(refused.value)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import struct
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -63,13 +64,32 @@ def read_binary(path: Path, report: Report) -> BinaryMesh | None:
         raise SceneError(f"{path}: {what}; repair or convert the file") from None
 
 
+def is_plain(path: Path) -> bool:
+    """Whether a file is one that is read so, as far as its head and its first face tell; raises OSError."""
+    with open_regular(path) as file, suppress(ValueError):
+        if path.suffix.lower() == ".stl":
+            return bool(_stl_count(file))
+        layout = _ply_layout(file.read(LONGEST_HEAD)) if path.suffix.lower() == ".ply" else None
+        if layout is not None:
+            file.seek(layout.begin + layout.vertices * layout.vertex.itemsize)
+            return layout.all_triangles(_rows(file, layout.face, 1))
+    return False
+
+
+def _stl_count(file: BinaryIO) -> int:
+    """How many triangles a binary STL file has; 0 for a text, and where it is damaged."""
+    head = file.read(84)
+    (count,) = struct.unpack("<I", head[80:]) if len(head) == 84 else (0,)
+    return count if os.fstat(file.fileno()).st_size == 84 + _STL.itemsize * count else 0
+
+
 def _read_stl(path: Path, file: BinaryIO, report: Report) -> BinaryMesh | None:
-    head = file.read(HEAD)
-    size = os.fstat(file.fileno()).st_size
-    (count,) = struct.unpack("<I", head[80:84]) if len(head) >= 84 else (0,)
-    if not count or size != 84 + _STL.itemsize * count:
-        return None  # a text, or damaged
+    count = _stl_count(file)
+    if not count:
+        return None
     _check_number(count, path)
+    file.seek(0)
+    head = file.read(HEAD)
     file.seek(84)
     places, faces = Places(count // 2), np.empty((count, 3), np.int32)
     for start in range(0, count, ROWS):
@@ -79,14 +99,30 @@ def _read_stl(path: Path, file: BinaryIO, report: Report) -> BinaryMesh | None:
     return BinaryMesh(places.points(), faces, None, head, np.arange(len(places), dtype=np.int32))
 
 
-def _read_ply(path: Path, file: BinaryIO, report: Report) -> BinaryMesh | None:
-    head = file.read(LONGEST_HEAD)
+@dataclass(frozen=True)
+class _PlyLayout:
+    """Where everything is in a PLY file: vertices from `begin` on, then faces; and in which precision."""
+
+    begin: int
+    vertices: int
+    faces: int
+    vertex: np.dtype[Any]
+    face: np.dtype[Any]
+    coordinates: type
+    normals: bool
+
+    def all_triangles(self, rows: Any) -> bool:
+        counts = [name for name in self.face.names or () if name.startswith("count")]
+        return all(bool((rows[name] == 3).all()) for name in counts)
+
+
+def _ply_layout(head: bytes) -> _PlyLayout | None:
+    """What the head of a PLY file says; None where it has more than plain triangles.  Raises ValueError."""
     begin = head.find(b"\n", head.find(b"end_header")) + 1
     lines = head[:begin].decode("latin-1").splitlines()
     if len(lines) < 3 or lines[0].strip() != "ply" or "format binary" not in lines[1] or "end_header" not in lines[-1]:
         return None
-    order = ">" if "big" in lines[1] else "<"
-    elements, others = elements_of(lines[:-1], order, most=1 << 62)
+    elements, others = elements_of(lines[:-1], ">" if "big" in lines[1] else "<", most=1 << 62)
     if any("TextureFile" in line for line in others) or [one.name for one in elements[:2]] != ["vertex", "face"]:
         return None
     vertex, face = elements[:2]
@@ -94,30 +130,38 @@ def _read_ply(path: Path, file: BinaryIO, report: Report) -> BinaryMesh | None:
     triangle = _triangle_row(face)
     if row is None or triangle is None or not vertex.number or not face.number:
         return None
-    _check_number(face.number, path)
-    _check_number(vertex.number, path, "vertices")
-    file.seek(begin)
-    everything = vertex.number + face.number
-    vertices = np.empty((vertex.number, 3), coordinates)
-    own = np.empty((vertex.number, 3), np.float32) if normals else None
-    for start in range(0, vertex.number, ROWS):
+    return _PlyLayout(begin, vertex.number, face.number, row, triangle, coordinates, normals)
+
+
+def _read_ply(path: Path, file: BinaryIO, report: Report) -> BinaryMesh | None:
+    head = file.read(LONGEST_HEAD)
+    layout = _ply_layout(head)
+    if layout is None:
+        return None
+    _check_number(layout.faces, path)
+    _check_number(layout.vertices, path, "vertices")
+    file.seek(layout.begin)
+    everything = layout.vertices + layout.faces
+    vertices = np.empty((layout.vertices, 3), layout.coordinates)
+    normals = np.empty((layout.vertices, 3), np.float32) if layout.normals else None
+    for start in range(0, layout.vertices, ROWS):
         report(start / everything)
-        rows = _rows(file, row, min(ROWS, vertex.number - start))
+        rows = _rows(file, layout.vertex, min(ROWS, layout.vertices - start))
         for axis, (name, of_normal) in enumerate(zip("xyz", ("nx", "ny", "nz"))):
             vertices[start : start + len(rows), axis] = rows[name]
-            if own is not None:
-                own[start : start + len(rows), axis] = rows[of_normal]
-    faces = np.empty((face.number, 3), np.int32)
-    for start in range(0, face.number, ROWS):
-        report((vertex.number + start) / everything)
-        rows = _rows(file, triangle, min(ROWS, face.number - start))
-        if any((rows[name] != 3).any() for name in triangle.names or () if name.startswith("count")):
+            if normals is not None:
+                normals[start : start + len(rows), axis] = rows[of_normal]
+    faces = np.empty((layout.faces, 3), np.int32)
+    for start in range(0, layout.faces, ROWS):
+        report((layout.vertices + start) / everything)
+        rows = _rows(file, layout.face, min(ROWS, layout.faces - start))
+        if not layout.all_triangles(rows):
             return None  # polygons
         corners = rows["corners"]
-        if corners.min() < 0 or corners.max() >= vertex.number:
+        if corners.min() < 0 or corners.max() >= layout.vertices:
             raise SceneError(f"{path}: a triangle refers to a vertex that is not there; repair the file")
         faces[start : start + len(rows)] = corners
-    return BinaryMesh(vertices, faces, own, head[:HEAD])
+    return BinaryMesh(vertices, faces, normals, head[:HEAD])
 
 
 def _check_number(count: int, path: Path, of: str = "triangles") -> None:

@@ -13,15 +13,17 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from tracer.scene.binary_meshes import is_plain
 from tracer.scene.limits import MOST_PRIMITIVES
 from tracer.scene.model import SceneError
 
 ANYHOW = "SHADOWCULL_BEYOND_MEMORY"
 """A variable of the environment: set, no scene is refused for the memory that it needs."""
 
-READING_BINARY = 300.0
 READING = 750.0
-"""Bytes for each triangle of a mesh, at most, while it is read; for each byte of a text, READING_TEXT."""
+"""Bytes for each triangle of a mesh, at most, while it is read; READING_PLAIN where it is read a part at a time; for
+each byte of a text, READING_TEXT."""
+READING_PLAIN = 300.0
 READING_TEXT = 25.0
 SHOWING = 600.0
 """Bytes for each triangle that its tree, modes, certificates and first pictures take beside the scene."""
@@ -45,7 +47,7 @@ def reading(path: Path) -> float:
     triangles = triangles_of(path)
     if triangles is None:
         return READING_TEXT * path.stat().st_size
-    return (READING_BINARY if path.suffix.lower() in (".stl", ".ply") else READING) * triangles
+    return (READING_PLAIN if is_plain(path) else READING) * triangles
 
 
 def check_showing(path: Path, triangles: int) -> None:
