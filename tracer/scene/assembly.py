@@ -139,6 +139,8 @@ def _mirrors(matrix: Float64) -> bool:
 
 def under_matrix(corners: Float64, normals: Float64 | None, matrix: Float64) -> tuple[Float64, Float64]:
     """Corners and normals (..., 3, 3) under a matrix, still counter-clockwise from outside; no normals become zero."""
+    if np.array_equal(matrix, np.eye(4)):
+        return corners, np.zeros_like(corners) if normals is None else normals
     corners = corners @ matrix[:3, :3].T + matrix[:3, 3]
     normals = np.zeros_like(corners) if normals is None else normals @ _normal_matrix(matrix).T
     if _mirrors(matrix):

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tracer.scene.arrays import Float32, Float64
+from tracer.scene.framing import extent
 from tracer.scene.lights import Light
 from tracer.scene.model import Camera, Material, Scene, SceneObject, Triangles
 
@@ -67,7 +68,7 @@ def build_studio(corners: Float32, up: str, material: int, report: Callable[[], 
     and again on the way, and may raise Cancelled."""
     points = np.unique(corners.reshape(-1, 3), axis=0) if len(corners) < 4096 else corners.reshape(-1, 3)
     frame = np.array(_UPRIGHT[up], np.float64)
-    ends = np.stack([points.min(axis=0), points.max(axis=0)]).astype(np.float64) @ frame.T
+    ends = np.stack(extent(points)).astype(np.float64) @ frame.T
     low, high = ends.min(axis=0), ends.max(axis=0)  # a turned box is a box, as the axes are but exchanged
     middle = (low + high) / 2
     radius = float(np.linalg.norm(high - low)) / 2 or 1.0

@@ -26,7 +26,7 @@ UNSTEADY = 8.0
 """Degrees: what falls before that does not stand at all."""
 MUCH_BETTER = 3.0
 _DIRECTIONS = 64
-MOST_ASKED = 1_000_000
+MOST_ASKED = 250_000
 """Triangles that are looked at: of a model of more, as many from all over the file."""
 
 
