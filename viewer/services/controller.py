@@ -20,6 +20,7 @@ from viewer.services.before_edits import BeforeEdits
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
+from viewer.services.cut_inspector import CutInspector
 from viewer.services.editing import Editing
 from viewer.services.film_controller import FilmController
 from viewer.services.hunt_controller import HuntController
@@ -49,6 +50,7 @@ from viewer.state.history import History
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session, Snapshot
+from viewer.state.views import View
 
 
 class Controller:
@@ -91,6 +93,7 @@ class Controller:
         self.pads = PadFlight(session, preferences, self.motion, notices)
         self.inspector = ShadowInspector(self.selection, renderer)
         self.rays = RayInspector(session, self.selection, renderer)
+        self.cuts = CutInspector(self.selection, renderer)
         self.teachers = Teachers(session, self.selection, self.record, renderer)
         self.travel = TimeTravel(
             session, preferences, self.record, self.tracing, self.runs, self.undo, self.selection, notices,
@@ -166,6 +169,9 @@ class Controller:
             if self.traced is not None and self.traced.whole:
                 self.bookmarks.follow(self.traced.frame, self.traced.request.divisor == 1)
         self.inspector.follow(self.frame if run is None else None, not motion.lively)
+        whole = run is None and self.traced is not None and self.traced.whole
+        wanted = whole and self.tracing.drawn_view is View.CUTS
+        self.cuts.follow(self.frame if wanted else None, not motion.lively)
         self.travel.follow(self.traced)
         if not motion.lively:
             self._keep_preferences()

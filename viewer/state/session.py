@@ -21,6 +21,7 @@ from viewer.state import edits as scene_edits
 from viewer.state.annotations import Annotation
 from viewer.state.comparison import Comparison
 from viewer.state.methods import DEFAULT
+from viewer.state.slices import MIDDLE, Slice
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
 from viewer.state.zooming import FIT, Zoom
@@ -51,11 +52,13 @@ class Snapshot:
     span: tuple[float, float] | None = None
     meshes: MeshOptions = AS_IN_FILE
     edits: Edits = NO_EDITS
+    cut: Slice = MIDDLE
 
     def to_json(self) -> dict[str, Any]:
         data = {name: value for name, value in asdict(self).items() if name != "edits"}
         if self.edits:
             data["edits"] = scene_edits.to_json(self.edits)
+        data |= {"slice": list(data.pop("cut"))}
         return data | {"camera": self.camera.to_json(), "view": self.view.value, "tone": self.tone.to_json()}
 
     @staticmethod
@@ -78,6 +81,7 @@ class Snapshot:
                 span=_span(data.get("span")),
                 meshes=_meshes_from_json(data.get("meshes", {})),
                 edits=scene_edits.from_json(data.get("edits", {})),
+                cut=Slice.from_json(data.get("slice", list(MIDDLE))),
             )
         except KeyError as error:
             raise ValueError(f"its saved state lacks {error}") from None
@@ -153,6 +157,7 @@ class Session:
     tone: Tone = NEUTRAL
     clipping: bool = False
     spans: dict[View, tuple[float, float]] = field(default_factory=dict)
+    cut: Slice = MIDDLE  # that is shown of space
     zoom: Zoom = FIT
     comparison: Comparison = field(default_factory=Comparison)
     selected: tuple[float, float] | None = None
@@ -287,6 +292,7 @@ class Session:
             span=self.spans.get(self.view),
             meshes=self.meshes,
             edits=self.edits,
+            cut=self.cut,
         )
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -300,7 +306,7 @@ class Session:
         self.settings = replace(self.settings, **{k: v for k, v in snapshot.settings.items() if k not in _NOT_RESTORED})
         self.view = snapshot.view
         self.light = min(snapshot.light, max(len(self.scene.lights) - 1, 0))
-        self.wipe, self.tone = snapshot.wipe, snapshot.tone
+        self.wipe, self.tone, self.cut = snapshot.wipe, snapshot.tone, snapshot.cut
         self.spans.pop(snapshot.view, None)
         if snapshot.span is not None:
             self.spans[snapshot.view] = snapshot.span
