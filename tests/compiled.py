@@ -21,7 +21,7 @@ from tracer.compile_beside import _die_with_parent
 # Lights (modes in 32 and in 64 bits) and structure.
 VARIANTS = ((1, "bvh8"), (1, "kdtree"), (16, "bvh8"), (16, "kdtree"), (1, "kdtree-lazy"))
 # What several tests render by, and each of their processes would compile at the same time.
-METHODS = ("lightcuts", "lightbuffer", "voxels", "lie")
+METHODS = ("lightcuts", "lightcuts-certified", "lightbuffer", "voxels", "lie")
 
 
 class Part(NamedTuple):

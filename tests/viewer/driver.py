@@ -20,7 +20,7 @@ from viewer.window.app import App
 PATIENCE = 240.0  # a first run compiles the kernels
 SIZES = ((1280, 800), (1600, 1000))  # of windows that people have
 FASTEST = 120.0  # frames a second
-SELDOM = 0.02  # seconds from frame to frame while it waits: others need the processor more
+SELDOM, BUSY = 0.02, 0.05  # seconds from frame to frame while it waits, and while it traces: that needs the processor
 RASTERIZER_DISCARD = 0x8C89  # what OpenGL calls: to draw up to where pixels would be filled
 
 
@@ -76,7 +76,7 @@ class Driver:
             said = self.c.notices.message
             assert self.c.frame is not None or said is None or not said.error, said.text
             assert time.monotonic() < end, f"waited in vain: {what}; the status says {said}"
-            time.sleep(SELDOM)
+            time.sleep(BUSY if self.c.active else SELDOM)
             self.context.yield_()
         self.context.yield_()
 
