@@ -21,7 +21,7 @@ from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import borrowed
-from tracer.kernels import Entry, entry, kernel
+from tracer.kernels import entry, kernel
 from tracer.methods.interface import FrameView, Stage
 from tracer.methods.of_space import NOWHERE, CellsOfSpace
 from tracer.parallel import for_each_chunk
@@ -116,7 +116,6 @@ class Environments(CellsOfSpace):
     """Settles cells by proofs, and culls by what they know."""
 
     store: EnvironmentStore | None
-    entries: tuple[Entry, ...] = (find, select, choose)
     coarse = 0  # how often cells are divided at most, 0 for as often as is worth it
 
     def follow(self, frame: FrameView) -> None:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.certified.scheduler import Counts
 from tracer.culling.lightbuffer.cubes import LEAST_SIDE, Cube, CubeMaker, Items, items_of
 from tracer.culling.lightbuffer.lookup import (
     CELLS,
@@ -79,8 +80,6 @@ class _Buffer:
 class LightBuffer(ShadowMethod):
     """Keeps a buffer for each light."""
 
-    entries = (choose,)
-
     def __init__(self, services: Services) -> None:
         super().__init__(services)
         self.forget()
@@ -92,7 +91,7 @@ class LightBuffer(ShadowMethod):
         self._since = nothing_rests(len(self.services.world.primitives.triangle_starts) - 1).since
         self._allowed = np.inf
         self._last: NDArray[np.float32] | None = None
-        self._made = self._steps = self._tests = 0
+        self._counts = Counts()
         self._asked = 0, 0.0
         self._lights = 0
 
@@ -116,7 +115,7 @@ class LightBuffer(ShadowMethod):
 
     def prepare(self, frame: FrameView) -> None:
         """Make the buffers that are wanting.  Raises Cancelled, with those that are done kept."""
-        self._made = self._steps = self._tests = 0
+        self._counts = Counts()
         world = self.services.world
         resting = np.flatnonzero(self._since > 0).tolist()
         if self._static is None:
@@ -151,9 +150,8 @@ class LightBuffer(ShadowMethod):
         for buffer, cube in zip(wanting, maker.make(lights, side, most, frame.workers, frame.cancel), strict=True):
             setattr(buffer, which, cube)
             buffer.refused = cube is None
-            self._made += cube is not None
-        self._steps += maker.steps
-        self._tests += maker.tests
+        made, before = sum(getattr(buffer, which) is not None for buffer in wanting), self._counts
+        self._counts = Counts(before.steps + maker.steps, before.tests + maker.tests, before.certificates + made)
 
     def _reach(self, light: NDArray[np.float32]) -> float:
         """No less than the length of any ray from a light to what never moves, or rests now."""
@@ -198,9 +196,7 @@ class LightBuffer(ShadowMethod):
         return None if buffer is None else buffer.static
 
     def report(self, statistics: FrameStatistics) -> None:
-        statistics.certificates += self._made
-        statistics.certificate_steps += self._steps
-        statistics.certificate_tests += self._tests
+        statistics.add_made(self._counts)
         there = {k: b.static.side for k, b in self.buffers.items() if b.static is not None and self._answers(b)}
         statistics.light_buffers = [there.get(k, 0) for k in range(self._lights)]
 

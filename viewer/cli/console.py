@@ -112,8 +112,11 @@ def print_table(table: Table) -> None:
     console.print(table)
 
 
-def statistics_table(statistics: FrameStatistics, title: str, verified: bool = False, remark: str = "") -> Table:
-    """The counters of a frame, primary, secondary and shadow rays apart; wrong answers where it was verified."""
+def statistics_table(
+    statistics: FrameStatistics, title: str, method: str, verified: bool = False, remark: str = ""
+) -> Table:
+    """The counters of a frame by a method, primary, secondary and shadow rays apart; wrong answers where it was
+    verified."""
     caption = "\n".join(filter(None, (statistics.decision, remark))) or None
     table = Table(title=title, title_justify="left", title_style="bold", caption=caption)
     table.caption_justify = "left"
@@ -140,8 +143,8 @@ def statistics_table(statistics: FrameStatistics, title: str, verified: bool = F
         table.add_row(f"  {terms.WRONG}", f"{shadow.wrong / due:.3%}", "", f"{shadow.wrong:,}")
     if shadow.passed_over:
         table.add_row(f"samples {terms.PASSED_OVER}", "", "", f"{shadow.passed_over:,}")
-    if statistics.certificates:
-        table.add_row("certificates made", "", "", f"{statistics.certificates:,}")
+    if statistics.certificates and terms.made(method)[0]:
+        table.add_row(terms.made(method)[0], "", "", f"{statistics.certificates:,}")
         table.add_row("  traversal steps", "", "", f"{statistics.certificate_steps:,}")
         table.add_row("  intersection tests", "", "", f"{statistics.certificate_tests:,}")
     table.add_row("occlusion tests", f"{statistics.occlusion_tests:,}", "", "", end_section=True)
