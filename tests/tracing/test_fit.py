@@ -52,8 +52,9 @@ def test_where_all_fits_nothing_is_said():
 
 
 def test_what_a_base_and_an_addition_make_is_counted_together():
+    settings = replace(SETTINGS, width=96, height=72)
     parts = [
-        tracer.Renderer(shadow_scene(), replace(SETTINGS, method=method)).render().statistics
+        tracer.Renderer(shadow_scene(), replace(settings, method=method)).render().statistics
         for method in ("certified", "voxels", "certified+voxels", "voxels+lightbuffer")
     ]
     certified, voxels, both, buffered = parts

@@ -105,11 +105,22 @@ def print_table(table: Table) -> None:
     console = Console()
     title, table.title = table.title, None
     if not console.is_terminal:
-        console = Console(width=max(100, Console(width=1000).measure(table).maximum))
+        console = Console(width=max(100, width_of(table)))
     if title is not None:
         for line in str(title).split("\n"):
             console.print(Text(printable(line), str(table.title_style or "")), soft_wrap=True)
     console.print(table)
+
+
+def width_of(table: Table) -> int:
+    """How many columns a table takes, with its cells in one line each."""
+    return Console(width=1000).measure(table).maximum
+
+
+def terminal_width() -> int | None:
+    """The columns of the terminal; None where standard output is none."""
+    console = Console()
+    return console.width if console.is_terminal else None
 
 
 def statistics_table(

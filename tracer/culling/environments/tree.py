@@ -17,7 +17,7 @@ class CellTree:
     those that are `wanted`; `cells` (n, 4) are where they begin, in the smallest cells, and their level; `todo` has the
     bits of lights that are to be settled.  Of each array the first `count` are in use."""
 
-    def __init__(self, bounds: NDArray[np.float32]) -> None:
+    def __init__(self, bounds: NDArray[np.float64]) -> None:
         self.frame: Frame = make_frame(bounds)
         self.begin()
 
