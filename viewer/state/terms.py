@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from tracer.frame import Frame
 from tracer.method import Method
+from tracer.statistics import FrameStatistics
 
 DUE = "due"
 CULLED = "culled"
@@ -15,6 +16,7 @@ CANDIDATES_ONLY = "candidates"
 CACHE_HITS = "cache hits"
 TRACED = "traced"
 WRONG = "wrong answers"
+BEYOND = "pixels beyond the error"
 PASSED_OVER = "passed over"
 BUILT = "built"
 
@@ -38,6 +40,7 @@ MEANINGS = {
     PASSED_OVER: "samples of lights, at all points, that are proven not to reach them: not even looked at, and not due",
     BUILT: "of the tree, which is built where rays arrive: primitives in nodes that are built",
     WRONG: "shadow rays for which culling and tracing disagree",
+    BEYOND: "pixels that differ from the picture by all lights by more than clusters of lights may be wrong by",
 }
 
 MADE = {
@@ -70,6 +73,11 @@ def made(method: str) -> tuple[str, str]:
 def things(made: str) -> str:
     """What it is that was made: certificates, of "certificates made"."""
     return " and ".join(one.rsplit(" ", 1)[0] for one in made.split(" and "))
+
+
+def wrong_of(statistics: FrameStatistics) -> str:
+    """What is counted as wrong in a verified frame: answers, or pixels where it was shaded by clusters of lights."""
+    return BEYOND if statistics.cuts is not None else WRONG
 
 
 def asks_by_beams(frame: Frame, lamps: bool) -> bool:

@@ -27,7 +27,7 @@ MOVED = 8  # the part, one in so many, of lights that may have moved before all 
 
 class FurtherLights:
     """Lists of those of the lights with `numbers` (k,) that may shine into each cell of a tree: `lights` from `first`
-    (cells,), -1 where nothing is known, to `last`."""
+    (cells,), -1 where nothing is known, to `last`; the first `used` numbers of `lights` are in use."""
 
     def __init__(self, numbers: NDArray[np.int64], triangles: NDArray[np.float32], longest_sure: float) -> None:
         self.numbers, self._longest_sure = numbers, longest_sure
@@ -40,7 +40,7 @@ class FurtherLights:
         """Nothing is known of any cell; there is room for so many."""
         self.first, self.last = np.full(cells, -1, np.int32), np.full(cells, -1, np.int32)
         self._leaves: dict[int, NDArray[np.int32]] = {}
-        self.lights, self._used = np.zeros(1024, np.int32), 0
+        self.lights, self.used = np.zeros(1024, np.int32), 0
 
     def grow(self, cells: int) -> None:
         """Let there be room for so many cells."""
@@ -50,7 +50,7 @@ class FurtherLights:
     @property
     def bytes(self) -> int:
         """Memory that the lists take, in bytes."""
-        return 4 * self._used + sum(leaves.nbytes for leaves in {id(a): a for a in self._leaves.values()}.values())
+        return 4 * self.used + sum(leaves.nbytes for leaves in {id(a): a for a in self._leaves.values()}.values())
 
     def follow(self, lamps: Lamps, known: NDArray[np.bool_]) -> bool:
         """Lights are where these lamps have them now: say of which (lights,) anything is `known`.  One that has moved
@@ -116,7 +116,7 @@ class FurtherLights:
             return
         spans = [self._tree.order[first:last] for first, last in self._tree.lights[found].tolist()]
         numbers = self.numbers[np.sort(np.concatenate([np.empty(0, np.int32), *spans]))].astype(np.int32)
-        self.lights = room_for(self.lights, self._used + len(numbers))
-        self.lights[self._used : self._used + len(numbers)] = numbers
-        self.first[cell], self._used = self._used, self._used + len(numbers)
-        self.last[cell], self._leaves[cell] = self._used, found
+        self.lights = room_for(self.lights, self.used + len(numbers))
+        self.lights[self.used : self.used + len(numbers)] = numbers
+        self.first[cell], self.used = self.used, self.used + len(numbers)
+        self.last[cell], self._leaves[cell] = self.used, found
