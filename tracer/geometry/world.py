@@ -75,6 +75,8 @@ class World:
         if accelerator not in ACCELERATORS:
             raise ValueError(f"there is no accelerator {accelerator!r}; there is {', '.join(ACCELERATORS)}")
         self.accelerator = accelerator
+        if progress is not None:
+            progress("laying out primitives", 0.0)
         self.primitives = Primitives(scene)
         self.attributes, self.normals = self.primitives.attributes, self.primitives.normals
         self.object_of = self.primitives.object_of

@@ -142,7 +142,7 @@ def _read_ply(path: Path, file: BinaryIO, report: Report) -> BinaryMesh | None:
     _check_number(layout.vertices, path, "vertices")
     file.seek(layout.begin)
     everything = layout.vertices + layout.faces
-    vertices = np.empty((layout.vertices, 3), layout.coordinates)
+    vertices: Float32 | Float64 = np.empty((layout.vertices, 3), layout.coordinates)
     normals = np.empty((layout.vertices, 3), np.float32) if layout.normals else None
     for start in range(0, layout.vertices, ROWS):
         report(start / everything)

@@ -20,7 +20,7 @@ def bounds(objects: Sequence[SceneObject], animation: Animation, time: float) ->
     """(2, 3) float64, least and greatest corner of everything at a time, or None where there is nothing.
 
     Objects that a track moves beyond all numbers are nowhere."""
-    boxes: list[tuple[Float64, Float64]] = []
+    boxes: list[tuple[Float32 | Float64, Float32 | Float64]] = []
     for o in objects:
         matrix = animation.matrix(o.chain, time)
         if not (np.abs(matrix) <= 1 / SMALLEST).all():
@@ -28,7 +28,7 @@ def bounds(objects: Sequence[SceneObject], animation: Animation, time: float) ->
         corners = o.triangles.corners if o.deformation is None else deformed(o.deformation, time)[0]
         at_rest = np.array_equal(matrix, np.eye(4))
         for start in range(0, len(corners), _BLOCK):
-            points = corners[start : start + _BLOCK].reshape(-1, 3)
+            points: Float32 | Float64 = corners[start : start + _BLOCK].reshape(-1, 3)
             if not at_rest:
                 points = points @ matrix[:3, :3].T + matrix[:3, 3]
             boxes.append(extent(points))

@@ -77,7 +77,7 @@ def load_mesh(
     binary = _read_binary(path, lambda done: report(f"Reading {path.name}", 0.5 * done))
     if binary is not None:
         model, own_camera, alone, head = None, None, options.studio, binary.head
-        notes = []
+        notes: list[str] = []
         smoothing = partial(_tell, report, f"Smoothing {path.name}", 0.5, 0.85)
         geometry.meshes.append(_piece_of_binary(binary, path, table, _crease(options, alone, path), smoothing))
         del binary
