@@ -29,6 +29,7 @@ from viewer.services.motion import Motion
 from viewer.services.pad_flight import PadFlight
 from viewer.services.picture_controller import PictureController
 from viewer.services.presets import Presets
+from viewer.services.preview import Preview
 from viewer.services.questions import Questions
 from viewer.services.ray_inspector import RayInspector
 from viewer.services.recipes import Recipes
@@ -105,6 +106,7 @@ class Controller:
         self.before_edits = BeforeEdits(session, self.editing)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
+        self.preview = Preview(session, self.loader, self.motion, notices, awaken)
         self.recipes = Recipes(session, preferences, self.tracing, self.loader, notices)
         films = FilmController(session, preferences, self.runs, self.recipes, self.bookmarks, notices, awaken)
         self.films = films
@@ -147,6 +149,7 @@ class Controller:
         self.pictures.follow()
         self.questions.follow()
         frame = self._take_frame()
+        self.preview.follow(traced=self.frame is not None)
         self.comparing.follow()
         traced, motion, run = self.traced, self.motion, self.runs.current
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
@@ -188,7 +191,7 @@ class Controller:
         self.before_edits.follow(frame, not (tracing.awaits or tracing.adds_samples or self.renderer.busy))
 
     def _take_scene(self) -> None:
-        arrival = self.loader.follow()
+        arrival, flown = self.loader.follow(), self.preview.flown
         if arrival is None:
             return
         if arrival.again:
@@ -198,6 +201,8 @@ class Controller:
         if arrival.place is not None:
             self.undo.call_next("the place of a saved picture")
             self.restore(arrival.place)
+        if flown is not None:  # while the scene was waiting for its kernels
+            self.session.move(flown)
         self.notices.say(arrival.text)
 
     def _show_again(self, arrival: Arrival) -> None:

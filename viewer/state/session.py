@@ -138,9 +138,11 @@ class Session:
     `spans` are the ranges that were chosen for views of numbers; `clipping` marks what the screen cuts off; `zoom` is
     how closely the picture itself is looked at, `comparison` what is compared with it.  `edits` are what is to be
     otherwise than in the scene as it was read, `edited` is what is of that: `scene` is the scene with it, of whose
-    lights `light` is one, and `light_to_come` of those that are to be."""
+    lights `light` is one, and `light_to_come` of those that are to be.  `previewed` is what the GPU draws before there
+    is a `scene`."""
 
     scene: Scene | None = None
+    previewed: Scene | None = None
     edits: Edits = NO_EDITS
     edited: Edited | None = None
     light_to_come: int | None = None
@@ -164,6 +166,11 @@ class Session:
     _on_path: tuple[Scene, float, Camera] | None = field(default=None, init=False, repr=False, compare=False)
 
     @property
+    def seen(self) -> Scene | None:
+        """The scene that the camera moves in."""
+        return self.scene or self.previewed
+
+    @property
     def follow(self) -> bool:
         """Whether the camera goes along the scene's own path."""
         return self.free_camera is None
@@ -172,11 +179,12 @@ class Session:
     def camera(self) -> Camera:
         if self.free_camera is not None:
             return self.free_camera
-        if self.scene is None:
+        scene = self.seen
+        if scene is None:
             return Camera((0, 0, 5), (0, 0, -1))
         kept = self._on_path
-        if kept is None or kept[0] is not self.scene or kept[1] != self.time:  # it is asked for many times a frame
-            kept = self._on_path = self.scene, self.time, self.scene.camera_at(self.time)
+        if kept is None or kept[0] is not scene or kept[1] != self.time:  # it is asked for many times a frame
+            kept = self._on_path = scene, self.time, scene.camera_at(self.time)
         return kept[2]
 
     def move(self, camera: Camera) -> None:

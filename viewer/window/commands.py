@@ -292,6 +292,13 @@ def _help(ui: Ui) -> list[Command]:
         Command("Tour", "Help", tour, checked=lambda: ui.tour.step is not None),
         Command("Keyboard and mouse", "Help", shortcuts, "F1", checked=lambda: ui.shortcuts_open),
         Command("About Shadowcull", "Help", about, checked=lambda: ui.about_open),
+        Command(
+            "Restart graphics",
+            "Help",
+            lambda: ui.restart_graphics(),
+            separated=True,
+            tip="for broken pictures or letters, as after sleep: the window is made anew, nothing is lost",
+        ),
     ]
 
 

@@ -29,6 +29,7 @@ from viewer.window.panels import (
     layers,
     legend,
     missing,
+    preview,
     ray_overlay,
     sides,
     slicing,
@@ -80,6 +81,8 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     texture = filling.texture_id if filling is not None else None
     if texture is not None and frame is None and c.reloaded:
         _last_picture(ui, room, texture)
+        return
+    if frame is None and preview.show(ui, room, _drag):
         return
     if frame is None or texture is None or c.session.scene is None:
         _placeholder(ui, room)
@@ -252,7 +255,7 @@ def _wheel(ui: Ui, notches: float) -> None:
 def fly(ui: Ui) -> None:
     """Move by the keys that are held down; called once per frame, for every window but those being typed in."""
     c, io = ui.controller, imgui.get_io()
-    if ui.key_wanted or io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or c.session.scene is None:
+    if ui.key_wanted or io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or c.session.seen is None:
         return
     if imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup_id | imgui.PopupFlags_.any_popup_level)):
         return
