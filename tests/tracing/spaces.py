@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.culling.environments.sample import cells_of
 from tracer.culling.environments.store import EnvironmentStore
 from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_testing import LIGHT_MARGIN
@@ -49,7 +48,7 @@ def environment_store(world: World, lamps: Lamps, points: np.ndarray, memory: fl
     store.follow(lamps, nothing_rests(len(world.scene.objects)))
 
     def want() -> None:
-        store.wanted[cells_of(store, points)] = True
+        store.tree.wanted[store.tree.leaves_at(points)] = True
 
     store.work(want, np.inf)
     return store
