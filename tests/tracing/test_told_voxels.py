@@ -82,7 +82,7 @@ def test_cells_ask_all_lights_but_those_that_they_know_to_be_hidden():
         store = environment_store(world, lamps, points)
         store._known[rng.integers(0, len(lamps.places), 2)] = False  # as if they had moved
         cells = np.array([store.tree.leaf_at(point) for point in points], np.int32)
-        asked, further = store.asked_in(cells), store.further
+        asked = store.asked_in(cells)
         for cell, number in zip(cells.tolist(), asked.tolist(), strict=True):
             listed = set(
                 store.further.lights[max(store.further.first[cell], 0) : max(store.further.last[cell], 0)].tolist()
