@@ -10,7 +10,18 @@ import numpy as np
 import pytest
 
 import tracer.renderer
-from tests.golden.pictures import FOLDER, GOLDEN, SETTINGS, Difference, Golden, fault, golden_picture
+from tests.golden.pictures import (
+    FOLDER,
+    GOLDEN,
+    OF_METHODS,
+    SETTINGS,
+    Difference,
+    Golden,
+    OfMethod,
+    fault,
+    golden_picture,
+    light_cube,
+)
 from tracer.frame import Frame
 from tracer.geometry.world import World
 from tracer.scene.load import load_scene
@@ -25,6 +36,11 @@ STUDY, FIGURE3, BEFORE, FIGURE4 = GOLDEN
 def world_of(name: str) -> World:
     """An embedded scene with its trees, which what is changed here leaves as they are."""
     return World(load_scene(embedded_scenes()[name]))
+
+
+@cache
+def frame_of(of: OfMethod) -> Frame:
+    return of.frame(world_of(of.scene))
 
 
 def off(golden: Golden, frame: Frame) -> dict[str, Difference]:
@@ -50,13 +66,29 @@ def test_the_embedded_scenes_look_as_they_did(golden: Golden) -> None:
     assert not any(faults), "\n" + "\n".join(filter(None, faults))
 
 
+@pytest.mark.parametrize("of", OF_METHODS, ids=lambda of: f"{of.name}-{of.method}")
+def test_what_methods_show_looks_as_it_did(of: OfMethod) -> None:
+    found = fault(of.name, of.picture(frame_of(of)), of.stray, FAULTY)
+    assert found is None, f"\n{found}"
+
+
+def test_what_a_light_sees_looks_as_it_did() -> None:
+    found = fault("light-cube", light_cube(), 60, FAULTY)
+    assert found is None, f"\n{found}"
+
+
+def test_a_slice_in_another_layer_is_found_out() -> None:
+    of = OF_METHODS[0]
+    expected, other = golden_picture(of.name), replace(of, cut=of.cut._replace(at=0.3)).picture(frame_of(of))
+    assert expected is not None and not Difference.between(expected, other).tolerated(of.stray)
+
+
 def test_every_golden_picture_is_looked_at() -> None:
     expected = {
         f"{g.name}-{view}.png" for g in GOLDEN for view in ("color", "occlusion", *(f"shadow-{x}" for x in g.lights))
     }
-    assert {path.name for path in FOLDER.glob("*.png")} == expected | {
-        "light-cube.png"
-    }  # tests/viewer/output/test_light_cube.py's
+    expected |= {f"{of.name}.png" for of in OF_METHODS} | {"light-cube.png"}
+    assert {path.name for path in FOLDER.glob("*.png")} == expected
 
 
 def with_last_bits_changed(scene: Scene) -> Scene:

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +27,10 @@ from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Scene
+from viewer.output.light_cube import picture_of
 from viewer.output.pictures import picture
+from viewer.state.readings import LIGHT_CUBES
+from viewer.state.slices import MIDDLE, Slice
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 
@@ -69,6 +72,45 @@ GOLDEN = (
     Golden("figure4-before-zooming", "figure4", 0, 20, (0,), stray=2),  # its shadow is not known of
     Golden("figure4", "figure4", 0, 40, (0,), stray=2),
 )
+
+
+@dataclass(frozen=True)
+class OfMethod:
+    """A view of what a method keeps of a scene, or its plain picture, in the first frame; `stray` pixels may differ."""
+
+    name: str
+    scene: str
+    method: str
+    view: View
+    stray: int
+    cut: Slice = MIDDLE
+
+    def frame(self, world: World | None = None) -> Frame:
+        """The frame; `world` as in `Renderer`."""
+        scene = load_scene(embedded_scenes()[self.scene]) if world is None else world.scene
+        renderer = Renderer(scene, replace(SETTINGS, method=self.method), world=world)
+        return renderer.render(scene.frame_time(0))
+
+    def picture(self, frame: Frame) -> NDArray[np.uint8]:
+        """(height, width, 3)."""
+        return picture(frame, self.view, cut=self.cut)
+
+
+EXACT = "figure3-exact"
+OF_METHODS = (
+    OfMethod("default-voxels", "default", "voxels", View.VOXELS, stray=60, cut=Slice(1, 0.2)),
+    OfMethod("default-cell-lights", "default", "lie-exact", View.CELL_LIGHTS, stray=60),
+    *(OfMethod(EXACT, "figure3", method, View.COLOR, stray=4) for method in ("voxels", "lie-exact", "lightbuffer")),
+)
+
+
+def light_cube() -> NDArray[np.uint8]:
+    """What the first light of the third figure sees."""
+    scene = load_scene(embedded_scenes()["figure3"])
+    renderer = Renderer(scene, Settings(width=8, height=8, method="lightbuffer", light_buffer_side=64, threads=2))
+    cube = renderer.render().structures[LIGHT_CUBES][0].cube
+    assert cube is not None
+    return picture_of(cube)
 
 
 @dataclass(frozen=True)
@@ -146,6 +188,11 @@ def main() -> int:
         for name, made in golden.views(golden.frame(load_scene(scenes[golden.scene]))):
             print(f"{name}.png: {_renew(name, made, golden.stray)}")
             written.add(f"{name}.png")
+    for of in OF_METHODS:
+        print(f"{of.name}.png, by {of.method}: {_renew(of.name, of.picture(of.frame()), of.stray)}")
+        written.add(f"{of.name}.png")
+    print(f"light-cube.png: {_renew('light-cube', light_cube(), 60)}")
+    written.add("light-cube.png")
     for path in sorted(FOLDER.glob("*.png")):
         if path.name not in written:
             path.unlink()

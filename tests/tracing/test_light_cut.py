@@ -9,8 +9,9 @@ import pytest
 
 import tracer
 from tests.tracing.halls import hall
-from tests.tracing.test_lightcuts import SETTINGS
 from tracer.light_cut import light_cut
+
+SETTINGS = tracer.Settings(width=64, height=48, depth=2, method="lightcuts", threads=2)
 
 
 @pytest.mark.parametrize("method", ["lightcuts", "lightcuts-stochastic", "lightcuts-certified"])

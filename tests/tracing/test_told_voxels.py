@@ -9,9 +9,7 @@ import numpy as np
 import tracer
 from tests.sweeps import cases
 from tests.tracing.nasty_worlds import nasty_walk, static_part, with_lamps
-from tests.tracing.test_environments import _lamps
-from tests.tracing.test_environments import _store as environments
-from tests.tracing.test_voxels import _crossed, _store
+from tests.tracing.spaces import crossed_by, environment_store, point_lamps, voxel_store
 from tracer.culling.environments.octree import HIDDEN, OUTSIDE
 from tracer.culling.modes import FULL_SHADOW, NON_SHADOW
 from tracer.culling.rest import nothing_rests
@@ -32,11 +30,11 @@ def test_the_walk_that_is_told_ends_as_the_ray_does():
         if len(world.primitives.quadrics):
             continue
         places = world.scene.light_positions(0.0)
-        store, rows = _store(world, places, 4e5), world.triangles_of(0).rows
+        store, rows = voxel_store(world, places, 4e5), world.triangles_of(0).rows
         low, high = (f(rows[:, :3].astype(np.float64), axis=0) for f in (np.min, np.max))
         for light, place in enumerate(places.astype(np.float32)):
             points = (low + rng.random((12, 3)) * (high - low)).astype(np.float32)
-            hidden = _crossed(rows, place.astype(np.float64), points.astype(np.float64))
+            hidden = crossed_by(rows, place.astype(np.float64), points.astype(np.float64))
             for point, blocked in zip(points, hidden.tolist(), strict=True):
                 number, walk = voxel_at(store.grid, point), store.walked(point, light)
                 assert (walk is None) == (number < 0)
@@ -48,7 +46,7 @@ def test_the_walk_that_is_told_ends_as_the_ray_does():
                 assert blocked == expected, (seed, light, walk)
                 if walk.blocker >= 0:
                     one = rows[walk.blocker : walk.blocker + 1]
-                    assert _crossed(one, place.astype(np.float64), point[None].astype(np.float64)).all()
+                    assert crossed_by(one, place.astype(np.float64), point[None].astype(np.float64)).all()
                 assert (walk.stop is Stop.HERE) == (store.state_at(point, light) != "none")
     assert min(stops[stop] for stop in (Stop.HERE, Stop.KNOWN, Stop.BLOCKED)) > 5, stops
 
@@ -56,7 +54,7 @@ def test_the_walk_that_is_told_ends_as_the_ray_does():
 def test_pictures_hold_the_states_that_they_found():
     world = World(static_part(nasty_walk(2).scene))
     places = world.scene.light_positions(0.0)
-    store = _store(world, places)
+    store = voxel_store(world, places)
     shown = store.shown()
     assert shown is store.shown() and np.array_equal(shown.words, store.words) and shown.known.all()
     kept = shown.words.copy()
@@ -73,11 +71,15 @@ def test_cells_ask_all_lights_but_those_that_they_know_to_be_hidden():
         walk = nasty_walk(seed, count)
         made = with_lamps(walk).scene if seed == 4 else walk.scene
         world = World(static_part(made))
-        lamps = _lamps(made.light_positions(0.0)) if seed != 4 else LampTable(made.lights).at(made.light_positions(0.0))
+        lamps = (
+            point_lamps(made.light_positions(0.0))
+            if seed != 4
+            else LampTable(made.lights).at(made.light_positions(0.0))
+        )
         rows = world.triangles_of(0).rows
         low, high = (f(rows[:, :3].astype(np.float64), axis=0) for f in (np.min, np.max))
         points = (low + rng.random((40, 3)) * (high - low)).astype(np.float32)
-        store = environments(world, lamps, points)
+        store = environment_store(world, lamps, points)
         store._known[rng.integers(0, len(lamps.places), 2)] = False  # as if they had moved
         cells = np.array([store.tree.leaf_at(point) for point in points], np.int32)
         asked = store.asked_in(cells)

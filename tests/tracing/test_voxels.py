@@ -12,27 +12,17 @@ import pytest
 import tracer
 from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.nasty_worlds import flattened_walk, nasty_walk, static_part, with_lamps
+from tests.tracing.spaces import crossed_by, voxel_store
 from tests.tracing.worlds import scene, wall
 from tracer.culling.modes import FULL_SHADOW, MAX_CULLED_LIGHTS, NON_SHADOW, shadow_mode
 from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.voxels.grid import BLOCK, box_of, make_grid, voxel_at, voxels_for
-from tracer.culling.voxels.store import VoxelStore
 from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
 from tracer.scene.lamps import LampTable
 from tracer.scene.lights import Light
-
-
-def _store(world: World, lights: np.ndarray, memory: float = 3e6, by_ray: bool = True) -> VoxelStore:
-    """Voxels that are classified for point lights (n, 3)."""
-    store = VoxelStore(world, len(lights), 1, memory, by_ray)
-    table = LampTable(tuple(Light(f"light {i}", (0.0, 0.0, 0.0)) for i in range(len(lights))))
-    store.follow(table.at(np.asarray(lights, np.float64)), nothing_rests(len(world.scene.objects)))
-    store.classify(np.inf, 1)
-    return store
-
 
 # --- the grid -------------------------------------------------------------------------------------
 
@@ -54,7 +44,7 @@ def test_less_memory_means_larger_voxels():
     assert voxels_for(10**6, 8, 1e5) < voxels_for(10**6, 8, 1e6) <= 1e6 / 8
     world = World(scene(wall(3, 2)))
     light = np.array([[1.0, 1.0, 3.0]])
-    sizes = [_store(world, light, memory) for memory in (4e4, 4e5, 4e7)]
+    sizes = [voxel_store(world, light, memory) for memory in (4e4, 4e5, 4e7)]
     assert sizes[0].grid.side > sizes[1].grid.side > sizes[2].grid.side
     assert sizes[0].bytes < 1e5 and sizes[1].bytes < 5e5
 
@@ -64,7 +54,7 @@ def test_every_part_of_a_triangle_lies_in_voxels_that_name_it():
     for seed in range(12):
         walk = nasty_walk(seed)
         world = World(static_part(walk.scene))
-        store = _store(world, world.scene.light_positions(0.0))
+        store = voxel_store(world, world.scene.light_positions(0.0))
         rows = world.triangles_of(0).rows.astype(np.float64)
         named = [set(store.contents(number).tolist()) for number in range(store.grid.voxels)]
         across = np.linalg.norm(np.cross(rows[:, 3:6], rows[:, 6:]), axis=1)
@@ -78,21 +68,6 @@ def test_every_part_of_a_triangle_lies_in_voxels_that_name_it():
 # --- the proof ------------------------------------------------------------------------------------
 
 
-def _crossed(rows: np.ndarray, light: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """(n,) bool: whether segments from a light to ends (n, 3) cross any of triangles (t, 9), in float64."""
-    crossed = np.zeros(len(ends), np.bool_)
-    way = ends - light
-    for row in rows.astype(np.float64):
-        a, e1, e2 = row[:3], row[3:6], row[6:]
-        normal, s = np.cross(e1, e2), light - a
-        d, t = -way @ normal, s @ normal
-        sign = np.where(d < 0, -1.0, 1.0)
-        u, v = sign * (way @ np.cross(e2, s)), sign * (way @ np.cross(s, e1))
-        d, t = np.abs(d), sign * t
-        crossed |= (d > 0) & (u >= 0) & (v >= 0) & (u + v <= d) & (t > LIGHT_MARGIN * d) & (t < d)
-    return crossed
-
-
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
 def test_whatever_is_proved_of_a_voxel_holds_for_the_rays_into_it(accelerator: str):
     """Rays to points all over each voxel, many to its corners: none passes into a full one, all into a null one."""
@@ -101,7 +76,7 @@ def test_whatever_is_proved_of_a_voxel_holds_for_the_rays_into_it(accelerator: s
         walk = nasty_walk(seed)
         world = World(static_part(walk.scene), 0.0, accelerator)
         lights = walk.scene.light_positions(0.0)
-        store = _store(world, lights, 4e5)
+        store = voxel_store(world, lights, 4e5)
         rows = world.triangles_of(0).rows
         for light, place in enumerate(lights.astype(np.float32)):
             modes = shadow_mode(store.words[:-1], light)
@@ -121,7 +96,7 @@ def test_whatever_is_proved_of_a_voxel_holds_for_the_rays_into_it(accelerator: s
                 blocked = world.any_hits(rays, threads=1)
                 assert (blocked == (mode == FULL_SHADOW)).all(), (seed, light, mode, int(blocked.sum()))
                 if not len(world.primitives.quadrics):
-                    crossed = _crossed(rows, place.astype(np.float64), ends.astype(np.float64))
+                    crossed = crossed_by(rows, place.astype(np.float64), ends.astype(np.float64))
                     assert (crossed == (mode == FULL_SHADOW)).all(), (seed, light, mode)
                 proved[mode] += len(some)
     assert min(proved.values()) > 20 * cases(14, 400), proved
@@ -132,10 +107,10 @@ def test_a_wall_hides_the_voxels_behind_it_and_no_others():
     small = (np.array(wall(1, 1)) * 0.4 + (1.2, 0.9, 0.0)).tolist()
     corners = small + (np.array(wall(1, 1)) - (0, 0, 2)).tolist()
     world, light = World(scene(corners)), np.array([[2.0, 1.5, 4.0]])
-    store, rows = _store(world, light, 2e7), triangle_rows(np.array(corners, np.float32))
+    store, rows = voxel_store(world, light, 2e7), triangle_rows(np.array(corners, np.float32))
     rng, seen = np.random.default_rng(1), Counter[tuple[bool, str]]()
     points = (rng.random((4000, 3)) * (4.0, 3.0, 1.6) - (0, 0, 1.8)).astype(np.float32)
-    crossed = _crossed(rows, light[0], points.astype(np.float64))
+    crossed = crossed_by(rows, light[0], points.astype(np.float64))
     for point, hidden in zip(points, crossed, strict=True):
         seen[bool(hidden), store.state_at(point, 0)] += 1
     assert seen[True, "lit"] == seen[False, "full"] == 0
@@ -193,7 +168,7 @@ def test_a_light_that_moves_is_classified_anew_and_others_are_not():
     world = World(scene(wall(3, 2, (1, 0))))
     places = np.array([[1.0, 1.0, 3.0], [2.0, 1.0, -3.0]])
     moved = np.array([[1.0, 1.0, 3.0], [2.25, 1.0, -3.0]])
-    store, fresh = _store(world, places), _store(world, moved)
+    store, fresh = voxel_store(world, places), voxel_store(world, moved)
     table = LampTable(tuple(Light(f"light {i}", (0.0, 0.0, 0.0)) for i in range(2)))
     store.follow(table.at(moved), nothing_rests(1))
     assert store.state_at(np.array([1, 1, 0], np.float32), 1) == "none"

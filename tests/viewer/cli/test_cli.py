@@ -239,6 +239,29 @@ def test_cuts_of_lights_take_an_error_and_tell_it(
     assert code != 0 and "clusters" in errors
 
 
+def test_slices_and_cells_are_drawn_by_methods_that_have_them(
+    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path
+) -> None:
+    path = tmp_path / "slice.png"
+    code, out, errors = render(capfd, room, "-o", path, "--view", "voxels:1", "--slice", "x:0.7", "--legend")
+    assert code == 0 and "method voxels" in out, errors
+    with Image.open(path) as image:
+        state = json.loads(image.text[capture.CHUNK])["state"]
+    assert (state["view"], state["light"], state["slice"]) == ("voxels", 1, [0, 0.7])
+    code, out, _ = run(capfd, "render", path, "--print-command")
+    assert code == 0 and "--view voxels:1" in out and "--slice x:0.7" in out
+    code, out, errors = render(capfd, room, "-o", path, "--view", "cell-lights", "--range", "0:2")
+    assert code == 0 and "method lie-exact" in out, errors
+    for wrong, said in (
+        (("--view", "voxels", "--method", "none"), "not with the method none; give --method voxels"),
+        (("--view", "cell-lights", "--method", "paper"), "give --method lie-exact"),
+        (("--slice", "x:0.1"), "--slice is for the view voxels, not color"),
+        (("--view", "voxels", "--slice", "q:0.1"), "is no slice"),
+    ):
+        code, _, errors = render(capfd, room, "-o", path, *wrong)
+        assert code != 0 and said in errors, errors
+
+
 def test_views_of_what_is_wrong_verify_by_themselves(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     drawn = {}
     output = tmp_path / "view.png"

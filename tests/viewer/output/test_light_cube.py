@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,11 +11,24 @@ from PIL import Image
 
 import tracer
 from tests.commands import complaint, run
+from tests.tracing.worlds import scene, wall
+from tracer.culling.lightbuffer.tell import listed
 from tracer.methods.lightbuffer import LightBuffer
-from viewer.output.light_cube import counts_of, picture_of, unfolded
+from tracer.scene.lights import Light, as_lamps
+from viewer.output.light_cube import (
+    COVERED,
+    NOTHING_THERE,
+    cell_at,
+    counts_of,
+    depths_legend,
+    described,
+    lists_legend,
+    picture_of,
+    seen,
+    unfolded,
+)
+from viewer.state.views import BACKGROUND, GREY, color_map
 from viewer.util import resources
-
-GOLDEN = Path(__file__).resolve().parents[2] / "golden" / "light-cube.png"
 
 
 def test_neighbours_on_the_cube_are_neighbours_on_the_cross():
@@ -38,10 +52,10 @@ def test_neighbours_on_the_cube_are_neighbours_on_the_cross():
     assert np.allclose(cross[int(0.5 * side), int(1.5 * side)], (0, 1, 0), atol=0.1), "up is above"
 
 
-def test_the_cube_of_a_light_is_the_golden_picture():
-    scene = tracer.load_scene(resources.scene_path("figure3"))
+def test_the_cube_of_a_light_is_drawn_and_told_cell_by_cell():
+    made = tracer.load_scene(resources.scene_path("figure3"))
     settings = tracer.Settings(width=8, height=8, method="lightbuffer", light_buffer_side=64, threads=2)
-    renderer = tracer.Renderer(scene, settings)
+    renderer = tracer.Renderer(made, settings)
     renderer.render()
     method = renderer.state.method("lightbuffer")
     assert isinstance(method, LightBuffer) and method.cube_of(99) is None
@@ -49,16 +63,57 @@ def test_the_cube_of_a_light_is_the_golden_picture():
     assert cube is not None
     counts = counts_of(cube)
     assert counts.cells == 6 * 64 * 64 and min(counts.covered, counts.few) > 0
-    made = picture_of(cube)
-    expected = np.asarray(Image.open(GOLDEN).convert("RGB"))
-    assert made.shape == expected.shape
-    assert (np.abs(made.astype(int) - expected).max(2) > 4).mean() < 0.002
+    drawn = seen(cube)
+    assert drawn.longest == max(2, drawn.lengths.max()) and int(drawn.covered.sum()) == counts.covered
+    side, colors = cube.side, np.round(color_map() * 255).astype(int)
+    left = picture_of(cube)[:, : 4 * side].astype(int)
+    met = set()
+    for y in range(0, 3 * side, 3):
+        for x in range(0, 4 * side, 3):
+            cell = cell_at(side, x, y)
+            if cell is None:
+                assert (left[y, x] == np.round(np.array(BACKGROUND) * 255)).all()
+                continue
+            length, names = int(drawn.lengths[cell]), listed(cube, *cell)
+            if length > 0:
+                expected = colors[(length - 1) * 255 // (drawn.longest - 1)]
+                assert len(names) == length
+            else:
+                shades = {True: NOTHING_THERE, False: COVERED if drawn.covered[cell] else GREY}
+                expected = np.round(np.array(shades[length == 0]) * 255)
+                assert len(names) == (1 if drawn.covered[cell] else 0)
+            assert np.abs(left[y, x] - expected).max() <= 1, (x, y)
+            met.add(min(length, 1))
+    assert met == {-1, 0, 1} or met == {-1, 1}
+    lists, depths = lists_legend(drawn, "light 0"), depths_legend(drawn, "light 0")
+    assert lists.scale is not None and lists.scale.high == str(drawn.longest)
+    assert depths.scale is not None and depths.scale.low == f"{drawn.depths.min():.3g}"
+    told = described(cube, "light 0")
+    enlarged = told.shape[0] // (3 * side)
+    assert enlarged == 4 and told.shape[1] > 2 * 4 * side * enlarged
+    plain = picture_of(cube).repeat(enlarged, 0)[:, : 4 * side].repeat(enlarged, 1)
+    changed = (told[:, : 4 * side * enlarged] != plain).any(-1)
+    assert changed.any() and not changed[: 2 * side * enlarged].any() and not changed[:, : 2 * side * enlarged].any()
+
+
+def test_why_a_light_has_no_cube_is_said():
+    made = replace(scene(wall(3, 2)), lights=tuple(Light(f"light {k}", (1.0, 1.0, 3.0 + k)) for k in range(33)))
+    made = replace(made, lights=(*made.lights[:1], *as_lamps(made.lights[1:2], 0.1, 16), *made.lights[2:]))
+    renderer = tracer.Renderer(made, tracer.Settings(width=8, height=8, method="lightbuffer", light_buffer_side=16))
+    cubes = renderer.render().structures["light cubes"]
+    method = renderer.state.method("lightbuffer")
+    assert isinstance(method, LightBuffer) and len(cubes) == 31
+    assert cubes[0].cube is not None and not cubes[0].why and (cubes[0].place == (1.0, 1.0, 3.0)).all()
+    assert cubes[1].cube is None and "lamp of 16 samples" in cubes[1].why
+    assert "first 31" in method.why_not(32) and not method.why_not(0)
+    renderer.settings = replace(renderer.settings, light_buffer_memory=0.0)
+    assert "no memory" in renderer.render().structures["light cubes"][0].why
 
 
 def test_the_command_saves_the_cube_and_says_what_is_wrong(capfd: pytest.CaptureFixture[str], tmp_path: Path):
     path = tmp_path / "new" / "cube.png"
-    code, out, _ = run(capfd, "cube", "figure3", "--side", 16, "--threads", 1, "-o", path)
-    assert code == 0 and "covered" in out
+    code, out, _ = run(capfd, "cube", "figure3", "--side", 16, "--threads", 1, "-o", path, "--no-legend")
+    assert code == 0 and "covered" in out and str(path) in out.replace("\n", "")
     with Image.open(path) as picture:
         assert picture.size == (2 * 64 + 1, 48)
     assert "lights are" in complaint(run(capfd, "cube", "figure3", "--light", 99, "-o", path))

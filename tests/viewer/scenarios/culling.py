@@ -14,8 +14,10 @@ from tracer.renderer import Renderer
 from viewer.output.legend_counts import occlusion_legend
 from viewer.output.pictures import picture
 from viewer.services.shadow_inspector import Part
+from viewer.state.slices import slice_seen
 from viewer.state.views import View
 from viewer.window.command import chord
+from viewer.window.panels import slicing
 
 KEY = imgui.Key
 
@@ -96,6 +98,7 @@ def certifying(d: Driver) -> None:
         d.settle()
         assert d.c.tracing.drawn_view is d.c.session.view and not d.c.tracing.outdated
     _clusters(d)
+    _space(d)
 
 
 def _clusters(d: Driver) -> None:
@@ -114,6 +117,54 @@ def _clusters(d: Driver) -> None:
     d.settle()
     assert (d.c.frame.settings.lightcuts_error, d.c.frame.settings.lightcuts_nodes) == (0.2, 3)
     assert d.c.frame.statistics.cuts.most == 3
+
+
+def _space(d: Driver) -> None:
+    """What methods keep of space: a slice through voxels, which keys and a slider move; cells by the lights that they
+    ask; and a light's cube in a panel, whose cells say what they list."""
+    d.c.settings.change(lamp_radius=None, lamp_samples=None)
+    for view, name in ((View.VOXELS, "voxels"), (View.CELL_LIGHTS, "lie-exact")):
+        d.press(chord(view.key))
+        d.settle()
+        assert d.c.tracing.drawn_view is View.COLOR, "the method has nothing to show"
+        d.context.item_click(f"//Picture/**/Use {name}##instead")
+        d.settle()
+        assert d.c.frame.settings.method.startswith(name) and d.c.tracing.drawn_view is view
+        expected = picture(d.c.frame, view, beneath=d.c.preferences.beneath, cut=d.c.session.cut)
+        assert np.abs(d.shown().astype(int) - expected).max() <= 2
+        if view is View.VOXELS:
+            _slice(d)
+    d.ui.show_panel("Light buffer")
+    d.frames(3)
+    d.context.item_click("//Light buffer/Use lightbuffer##instead")
+    d.settle()
+    assert "light cubes" in d.c.frame.structures
+    d.frames(3)
+    panel, cube = imgui.internal.find_window_by_name("Light buffer"), d.c.frame.structures["light cubes"][0].cube
+    assert cube is not None and panel.draw_list.vtx_buffer.size() > 0
+    d.context.item_click("//Light buffer/**/full shadow##cube")
+    assert d.ui.cube_shows == 1
+
+
+def _slice(d: Driver) -> None:
+    """Keys and the panel go from layer to layer, and say what the pointer is on."""
+    states, before = d.c.frame.structures["voxels"], d.shown()
+    layer, traced = d.c.session.cut.layer(states.shape), d.c.history.frames
+    d.press(chord("Shift+RightBracket"))
+    assert d.c.session.cut.layer(states.shape) == layer + 1
+    d.press(chord("Shift+LeftBracket"))
+    assert d.c.session.cut.layer(states.shape) == layer
+    d.context.item_click("//View/**/z##slice")
+    d.context.item_input_value("//View/**/##layer", states.shape[2] // 2)
+    d.frames(3)
+    cut = d.c.session.cut
+    assert (cut.axis, cut.layer(states.shape)) == (2, states.shape[2] // 2)
+    assert (d.shown() != before).any() and d.c.history.frames == traced, "another slice has traced"
+    seen = np.argwhere(slice_seen(d.c.frame, states.grid, cut).numbers >= 0)
+    if len(seen):
+        y, x = seen[len(seen) // 2].tolist()
+        said = slicing.lines_at(d.ui, x, y)
+        assert said[0].startswith("voxel ") and f", {cut.layer(states.shape)}:" in said[0], said
 
 
 def explaining(d: Driver) -> None:
