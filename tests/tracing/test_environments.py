@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import tracer
-from tests.sweeps import cases
+from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.nasty_worlds import NastyWalk, flattened_walk, nasty_walk, static_part, with_lamps
 from tests.tracing.worlds import scene, wall
 from tracer.culling.environments.octree import HIDDEN, LIT, OUTSIDE, UNKNOWN, boxes_of, make_frame
@@ -18,7 +18,7 @@ from tracer.culling.modes import FULL_SHADOW, MAX_CULLED_LIGHTS, NON_SHADOW
 from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.rays import ray_batch
-from tracer.geometry.world import ACCELERATORS, World
+from tracer.geometry.world import World
 from tracer.scene.lamps import Lamps, LampTable
 from tracer.scene.lights import Light
 from tracer.scene.load import load_scene
