@@ -31,7 +31,7 @@ PICTURES = {
     "cells": [f"{STUDY} --method cells --view shadow:1", f"{STUDY} --method cells --view difference --verify"],
     "auto": [f"{STUDY} --method auto --view color", f"{STUDY} --method certified --view saved:share"],
     "voxels": [f"{STUDY} --method voxels --view certificate:0", f"{STUDY} --method voxels --view cost:share"],
-    "lie": [f"{STUDY} --method lie-exact --view certificate:0", f"{STUDY} --method lie --view difference --verify"],
+    "lie": [f"{STUDY} --method lie-exact --view certificate:1", f"{STUDY} --method lie --view difference --verify"],
     "lightcuts": [f"{LAMPS} --method {method} --view cuts" for method in ("lightcuts", "lightcuts-certified")],
     "lightcuts-noise": [
         f"default --frame 56 {CLOSE} --lightcuts-error 0.5 --method {method} --view color"
