@@ -35,7 +35,9 @@ class KdTree(InObjectSpace):
 
     closest, any_hit = traverse.closest, traverse.any_hit
 
-    def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
+    def __init__(
+        self, primitives: Primitives, objects: int, progress: Progress | None = None, lazy: bool = False
+    ) -> None:
         super().__init__(primitives)
         self._objects = objects
         self._trees = [self._build(index, progress) for index in range(objects)]

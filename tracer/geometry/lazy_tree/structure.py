@@ -82,7 +82,9 @@ class LazyKdTree(InObjectSpace):
 
     closest, any_hit = traverse.closest, traverse.any_hit
 
-    def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
+    def __init__(
+        self, primitives: Primitives, objects: int, progress: Progress | None = None, lazy: bool = True
+    ) -> None:
         super().__init__(primitives)
         everything = slice(0, len(primitives.quadrics))
         self._quadric_boxes = primitives.quadric_boxes(everything, primitives.to_object)
