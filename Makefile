@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table motion memory growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods
+.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table motion memory growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -80,6 +80,10 @@ quickest:  ## hold frames by `auto` against those by `none`, fifty at a time (AR
 methods:  ## hold all methods side by side, scene by scene (ARGS="--write" into their page, "--frames 4 SCENE ...")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.methods $(ARGS)
+
+results:  ## measure all tables of the pages of results and performance anew (ARGS="--write", "--only table-1", "--quick")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.results $(ARGS)
 
 lamps:  ## hold frames by the light of lamps against those by `none` (ARGS="--radius 0.1 --frames 20 SCENE ...")
 	@tools/environment.sh dev
