@@ -31,7 +31,8 @@ class Built(NamedTuple):
 
 
 class Structure(Protocol):
-    """Made from the primitives of a scene, the number of its objects, and who is told of the build's progress.
+    """Made from the primitives of a scene, the number of its objects, who is told of the build's progress, and whether
+    what it can do without may wait until rays arrive (which is no matter where nothing, or everything, may).
 
     `closest` and `any_hit` are its queries (`tracer.geometry.queries`).  Two numbers say where hits are reported at
     all, which certificates need to know: a hit on a triangle counts only where t lies inside a box around it, which

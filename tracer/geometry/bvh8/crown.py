@@ -1,4 +1,4 @@
-"""The crown of a large tree: what lies above its pieces, of some ten thousand triangles each.
+"""The crown of a large tree: what lies above its pieces, of some thousand triangles each.
 
 Triangles are sorted into cells of a grid, and a tree is built over the cells by the surface area heuristic, down to
 pieces.  So the crown costs three passes over the triangles, and takes no look at any of them again.

@@ -30,7 +30,7 @@ from tracer.scene.arrays import Float32
 from tracer.scene.model import Cancelled
 
 LARGE = 500_000  # triangles and quadrics: a tree over more is made of pieces
-PIECE_SIZE = 1 << 15  # triangles of a piece at most
+PIECE_SIZE = 1 << 13  # triangles of a piece at most
 _CALLED = ctypes.CFUNCTYPE(None, *[ctypes.c_int64] * 5)
 
 
