@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 import tracer
 from tests.tracing.random_worlds import END, quickly, scenes
+from tests.tracing.rays_and_movers import movers, random_rays
 from tests.tracing.same import assert_same
-from tests.tracing.test_lazy_tree import movers, random_rays
 from tests.tracing.worlds import random_corners, scene
 from tracer.geometry.bvh8 import pieces
 from tracer.geometry.bvh8.pieces import PiecewiseTree
