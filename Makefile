@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table motion memory growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results
+.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table motion memory large growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -108,6 +108,10 @@ motion:  ## how good pictures in motion are, and how soon they are whole (ARGS="
 memory:  ## measure the memory of Kitchen and of a million triangles, and build times (ARGS="--triangles 200000 SCENE")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.memory $(ARGS)
+
+large:  ## measure how meshes of millions of triangles are opened (ARGS="--triangles 20000000 --kinds ply")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.large_scenes $(ARGS)
 
 growth:  ## measure how the cost of a ray grows from 10,000 to 2,000,000 triangles (ARGS="--most 200000")
 	@tools/environment.sh dev

@@ -4,8 +4,9 @@
 
 Reads lines of JSON, `{"name", "size", "scene", "folder", "settings"}`, and answers each by a line with the scenario's
 exit code.  ImGui's test engine drives the keyboard and the pointer; a scenario is a function of a `Driver` in
-`tests.viewer.scenarios`.  One process opens many windows, as most of the time that a window takes goes into starting
-Python, loading kernels and compiling shaders.  What is said meanwhile goes to standard error.
+`tests.viewer.scenarios`, and returns what is to be done next where another window takes the place of its own.  One
+process opens many windows, as most of the time that a window takes goes into starting Python, loading kernels and
+compiling shaders.  What is said meanwhile goes to standard error.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import json
 import os
 import sys
 import traceback
+from contextlib import nullcontext
 from pathlib import Path
 
 from imgui_bundle import hello_imgui, imgui, immapp
@@ -23,6 +25,7 @@ from PIL import Image
 
 from tests.viewer.driver import PATIENCE, Driver
 from tests.viewer.scenarios import SCENARIOS
+from tests.viewer.scenarios.previewing import first_start
 from viewer.window import app as viewer_app
 from viewer.window.app import App
 
@@ -39,13 +42,16 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
     app.controller.preferences.dynamic_resolution = True
     app.controller.settings.change(samples=1)  # else idle pictures go on changing
     failed: list[BaseException] = []
+    parts = [SCENARIOS[name]]
 
     def test(context) -> None:
         engine = imgui.test_engine.get_io(hello_imgui.get_imgui_test_engine())
         engine.config_watchdog_warning = engine.config_watchdog_kill_test = 2.0 * PATIENCE
         driver = Driver(app, context, Path(folder), dozes=name in DOZING)
         try:
-            SCENARIOS[name](driver)
+            following = parts.pop()(driver)
+            if following is not None:
+                parts.append(following)
         except BaseException as error:
             failed.append(error)
             traceback.print_exc()
@@ -57,7 +63,11 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
         # The scenario says itself what went wrong; the engine only notices that a window closed meanwhile.
         testing.run(test_function=test, runner_params=params, add_ons_params=add_ons, raise_on_error=False)
 
-    code = app.run(runner)
+    with first_start() if name == "previewing" else nullcontext():
+        code = app.run(runner)
+    if parts and not failed:
+        failed.append(AssertionError("no other window came"))
+        print("no other window came", file=sys.stderr)
     stuck = app.controller.renderer._thread.is_alive()
     if stuck:
         print("the render thread outlived the window", file=sys.stderr)

@@ -29,14 +29,16 @@ from viewer.state.parts import parts_of
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, comparing, glfw_pads, menus, palette, style
+from viewer.window import commands, comparing, glfw_pads, menus, palette, places, preview, style
 from viewer.window.compared import Compared
 from viewer.window.display import Display, Look
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout
 from viewer.window.layout_file import LayoutFile
+from viewer.window.losses import Losses
 from viewer.window.magnifier import Magnifier
+from viewer.window.opening import PATIENCE, open_window
 from viewer.window.panels import dialogs, faults, legend, loading, picture, status, strip, tour
 from viewer.window.shots import Shots
 from viewer.window.signals import closing_by_signals
@@ -45,6 +47,7 @@ from viewer.window.widgets import tell_keys
 
 TITLE = "Shadowcull"
 OnFrame = Callable[[Frame], bool | None]
+Runner = Callable[[hello_imgui.RunnerParams, immapp.AddOnsParams], None]
 WINDOW_SIZE = (1440, 900)
 FASTEST = 60.0  # frames a second of the window's own
 # Where a processor draws the window, each frame takes time from tracing: one is drawn for each picture and each of the
@@ -52,9 +55,7 @@ FASTEST = 60.0  # frames a second of the window's own
 FASTEST_BY_PROCESSOR, SLOWEST_BY_PROCESSOR = 30.0, 12.0
 IDLE = 8.0  # frames a second while nothing happens
 ACTIVE = 0.25  # seconds after an event until nothing happens
-NO_OPENGL = (
-    "no window can be opened, as this display gives no OpenGL 3.3; without one, use: shadowcull render SCENE -o out.png"
-)
+TOO_MANY_LOSSES = "the window is closed, as {cause}, again and again; settings are saved"
 DRAWN_BY_PROCESSOR = ("llvmpipe", "softpipe", "swrast", "software")
 
 
@@ -87,32 +88,56 @@ class App:
         self.params = self._params()
         self.layout = Layout(self.ui, self.params)
         self.ui.request_exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
+        self.ui.restart_graphics = lambda: self.losses.give_up("graphics were restarted")
         if preferences.tour:
             preferences.tour = False  # on the first start only; the menu Help has it again
             self.ui.tour.start()
         self._frame_began = time.perf_counter()
         self._capture_this_frame = False
-        self.drawn_by_processor = self.iconified = self.was_open = False
+        self.drawn_by_processor = self.iconified = self.was_open = self._opened = self._ended = False
+        self.losses = Losses()
+        self._room = (0, 0)
+        self._place: places.Rect | None = None
         self.read_pads = glfw_pads.Pads().read
         if problem:
             self.controller.notices.say(problem, error=True)
 
-    def run(self, runner: Callable[[hello_imgui.RunnerParams, immapp.AddOnsParams], None] = immapp.run) -> int:
+    def run(self, runner: Runner = immapp.run) -> int:
         """Open the window and stay until it is closed; returns the exit code.  Raises OSError, in one line, where the
         display has no OpenGL for it."""
         hook, threading.excepthook = threading.excepthook, self._thread_failed
         try:
             with closing_by_signals(self._exit):
-                runner(self.params, immapp.AddOnsParams(with_implot=True))
-        except RuntimeError as error:
-            if self.was_open:
-                raise
-            raise OSError(NO_OPENGL) from error
+                self._open(runner)
+                while self.losses.cause and not self._ended:
+                    self._open_again(runner)
         finally:
             threading.excepthook = hook
             self.controller.close()
             self.layout_file.keep()
         return 0
+
+    def _open(self, runner: Runner, patience: float = 0.0) -> None:
+        """One window, until it is closed or what it is drawn with is lost."""
+        self.was_open, self.losses.cause = False, ""
+        add_ons = immapp.AddOnsParams(with_implot=True)
+        try:
+            open_window(lambda: runner(self.params, add_ons), lambda: self.was_open, patience)
+        finally:
+            self.layout_file.put_window(self._place)
+
+    def _open_again(self, runner: Runner) -> None:
+        """Another window in the place of the one whose graphics are lost, with all that the user did."""
+        cause = self.losses.cause
+        if self.losses.too_many:
+            raise OSError(TOO_MANY_LOSSES.format(cause=cause))
+        style.forget()
+        self.params = self._params()
+        before, self.layout = self.layout, Layout(self.ui, self.params)
+        self.layout.go_on_from(before)
+        self.read_pads = glfw_pads.Pads().read
+        self.controller.notices.say(f"{cause}: the window was made anew, and nothing is lost")
+        self._open(runner, PATIENCE)
 
     def _thread_failed(self, of: threading.ExceptHookArgs) -> None:
         """A thread ended by an exception that nobody caught."""
@@ -125,6 +150,9 @@ class App:
     def before_widgets(self) -> None:
         """Everything but the widgets: input of the last frame, threads, GL."""
         self._frame_began = time.perf_counter()
+        if self.losses.look():
+            self.params.app_shall_exit = True  # another window is opened then
+            return
         self._follow_style()
         style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
         step = self.ui.guard.step
@@ -132,7 +160,8 @@ class App:
         step("Opening dropped files", self._open_dropped)
         step("Following the scene", lambda: self.controller.tick(self._room_for_picture()))
         step("The script's function", self._tell)
-        step("Drawing the picture", self._draw)
+        step("Drawing the picture", self._draw_unless_lost)
+        step("Drawing the preview", lambda: preview.draw(self.ui))
         step("Drawing recorded pictures", self._bring_shots)
         step("Saving the picture", self._capture_picture)
         self._stay_awake()
@@ -182,7 +211,16 @@ class App:
         size = imgui.get_io().display_size
         if self.iconified or min(size.x, size.y) < 1:
             return 0, 0
-        return self.ui.picture_area
+        if imgui.get_frame_count() >= places.SETTLED:
+            self._room = self.ui.picture_area
+        return self._room
+
+    def _draw_unless_lost(self) -> None:
+        try:
+            self._draw()
+        except Exception:
+            if not self.losses.look():
+                raise
 
     def _draw(self) -> None:
         """Bring a new frame to the GPU, and draw the view if anything about it has changed."""
@@ -231,6 +269,7 @@ class App:
             tone=c.session.tone,
             clipping=c.session.clipping,
             span=c.comparing.span(c.tracing.drawn_view),
+            cut=c.session.cut,
         )
 
     def _capture_picture(self) -> None:
@@ -310,7 +349,8 @@ class App:
 
     def _ready(self) -> None:
         """The window and its GL context exist."""
-        self.was_open = True
+        self.was_open, self.iconified = True, False
+        self.losses.watch()
         self.ui.display = Display()
         self.ui.shots = Shots(self.ui.display.context)
         self.ui.compared = Compared(self.ui.display.passes)
@@ -324,6 +364,13 @@ class App:
         glfw.set_window_close_callback(window, self._close_wanted)
         glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
+        self.ui.full_screen.begin(window)
+        if not self._opened:
+            self._opened = True
+            self._open_first()
+
+    def _open_first(self) -> None:
+        """Begin with what is to be seen first."""
         opener = self.controller.loader
         opener.start(self.scene_path, self.given_settings, self.folders, self.meshes)
         if self.scene is not None:
@@ -344,7 +391,7 @@ class App:
         hello_imgui.request_refresh()
 
     def _release(self) -> None:
-        self.ui.full_screen.end()
+        self._place = self.ui.full_screen.end()
         self.controller.wake = lambda: None  # threads may still be at work when the window is gone
         if self.ui.compared is not None:
             self.ui.compared.release()
@@ -352,6 +399,9 @@ class App:
         if self.ui.magnifier is not None:
             self.ui.magnifier.release()
             self.ui.magnifier = None
+        if self.ui.preview is not None:
+            self.ui.preview.release()
+            self.ui.preview = None
         if self.ui.display is not None:
             self.ui.display.release()
             self.ui.display = None
@@ -360,6 +410,7 @@ class App:
             self.ui.shots = None
 
     def _exit(self) -> None:
+        self._ended = True
         self.params.app_shall_exit = True
 
 

@@ -46,6 +46,10 @@ class Layout:
         ui.show_panel, ui.reset_layout = self.show, self.reset
         ui.panel_labels = tuple(label for label in PANELS if label != PICTURE)
 
+    def go_on_from(self, other: Layout) -> None:
+        """Begin with the shares of the window that panels had there, as the file of the layout has whole pixels."""
+        self._shares, self._size = dict(other._shares), (1.0, 1.0)
+
     # --- what the commands ask for ---------------------------------------------------------------
 
     def show(self, label: str) -> None:

@@ -12,7 +12,7 @@ from viewer.util.part_files import part_file, part_name
 
 LAYOUT_FILE = "layout.ini"
 END = ";;;<<<SplitIds>>>;;;"
-"""What Hello ImGui writes last, with JSON in the line after it."""
+"""What Hello ImGui writes last of the layout, with JSON in the line after it; words of ours may follow."""
 
 
 class LayoutFile:
@@ -29,6 +29,17 @@ class LayoutFile:
             if is_whole(text):
                 file.write(text.encode())
                 file.flush()
+
+    def put_window(self, place: tuple[int, int, int, int] | None) -> None:
+        """Let the window begin next time at this left, top, width and height, where Hello ImGui has written the place
+        of one that was full or maximised."""
+        with suppress(OSError):
+            text = self.working_copy.read_text(encoding="utf-8", errors="replace")
+            if place is not None and is_whole(text):
+                x, y, width, height = place
+                for name, value in (("Position", f"{x},{y}"), ("Size", f"{width},{height}")):
+                    text = re.sub(rf"^Window{name}=.*$", f"Window{name}={value}", text, count=1, flags=re.MULTILINE)
+                self.working_copy.write_text(text, encoding="utf-8")
 
     def keep(self) -> None:
         """Let what ImGui has written take the place of what was there."""

@@ -7,6 +7,7 @@ import math
 from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui, implot
 
 from viewer.window import palette
+from viewer.window.density import Density
 
 FONT = "fonts/Roboto/Roboto-Regular.ttf"
 ICONS = "fonts/Font_Awesome_6_Free-Solid-900.otf"
@@ -20,14 +21,27 @@ def load_fonts() -> None:
     hello_imgui.load_font(ICONS, FONT_SIZE * 0.85, merged)
 
 
+# What ImGui has for letters of FONT_SIZE, and scales once, when a window is made.
+_LENGTHS = {
+    "child_rounding": 3.0, "columns_min_spacing": 6.0, "docking_separator_size": 2.0, "log_slider_deadzone": 4.0,
+    "drag_drop_target_border_size": 2.0, "drag_drop_target_padding": 3.0, "indent_spacing": 21.0,
+    "input_text_cursor_size": 1.0, "scrollbar_padding": 2.0, "separator_size": 1.0, "tab_bar_overline_size": 1.0,
+    "tab_min_width_shrink": 80.0, "tree_lines_size": 1.0, "window_border_hover_padding": 4.0,
+    "color_marker_size": 3.0,
+}  # fmt: skip
+
 _applied: tuple[float, str] = (0.0, "")
+_density = Density()
 
 
 def follow(theme: str, scale: float) -> bool:
     """Set all styles for this theme, the screen's density and the user's scale; whether anything has changed."""
     global _applied
-    imgui.get_style().font_scale_main = scale  # the fonts are drawn anew at the size that comes of it
-    wanted = (hello_imgui.em_size(), theme)
+    _density.follow()
+    style = imgui.get_style()
+    style.font_scale_main = scale  # the fonts are drawn anew at the size that comes of it
+    # Hello ImGui knows the size of letters only while a frame is under way.
+    wanted = (style.font_size_base * style.font_scale_main * style.font_scale_dpi, theme)
     if wanted[0] <= 0.0 or wanted == _applied:
         return False
     _applied = wanted
@@ -39,8 +53,8 @@ def follow(theme: str, scale: float) -> bool:
 
 def forget() -> None:
     """A new window has no style yet."""
-    global _applied
-    _applied = (0.0, "")
+    global _applied, _density
+    _applied, _density = (0.0, ""), Density()
 
 
 def fill_windows(filled: bool) -> None:
@@ -61,7 +75,9 @@ def _style_widgets(em: float) -> None:
     style.frame_rounding = style.grab_rounding = 0.22 * em
     style.popup_rounding = style.window_rounding = style.tab_rounding = 0.25 * em
     style.scrollbar_rounding = 0.4 * em
-    style.window_border_size = style.popup_border_size = 1.0
+    for name, length in _LENGTHS.items():
+        setattr(style, name, max(1.0, math.floor(length * em / FONT_SIZE)))
+    style.window_border_size = style.popup_border_size = style.child_border_size = 1.0
     style.frame_border_size = style.tab_bar_border_size = 0.0
     style.separator_text_border_size = 1.0
     style.separator_text_padding = ImVec2(0.6 * em, 0.15 * em)

@@ -18,7 +18,9 @@ from tests.viewer.scenarios.legends import legends
 from tests.viewer.scenarios.moving import flying, orbiting, playing, resizing
 from tests.viewer.scenarios.navigating import navigating
 from tests.viewer.scenarios.panels import closing_panels, folding, hiding, looks, panels
+from tests.viewer.scenarios.previewing import previewing
 from tests.viewer.scenarios.rays import rays
+from tests.viewer.scenarios.reviving import reviving
 from tests.viewer.scenarios.runs import asking, experimenting, zooming
 from tests.viewer.scenarios.taking import taking
 from tests.viewer.scenarios.touring import touring
@@ -31,7 +33,8 @@ SCENARIOS = {
         views, difference, wiping, comparing, closeup, legends, lamps, trees, culling, certifying, explaining, rays,
         flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting,
         zooming, asking, finding, filmstrip, filming, hunting, taking, failing,
-        panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if,
+        reviving, panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if,
+        previewing,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip
