@@ -103,6 +103,14 @@ def test_who_asks_for_all_triangles_has_all_of_them() -> None:
     assert np.array_equal(lazy.bounds(), whole.bounds())
 
 
+def test_what_is_measured_finds_all_built() -> None:
+    world = tracer.World(large(), 0.0, lazy=True)
+    assert built(world).primitives < built(world).of
+    settings = tracer.Settings(width=16, height=12, depth=0)
+    assert all(tracer.experiment.run(world.scene, settings, ["none"], [0.0], world=world))
+    assert built(world).primitives == built(world).of
+
+
 def test_ways_through_pieces_are_told_and_built() -> None:
     made, rays = large(), random_rays(np.random.default_rng(1), 20)
     lazy, whole = tracer.World(made, 0.0, lazy=True), tracer.World(made, 0.0)

@@ -59,6 +59,9 @@ class Structure(Protocol):
     def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
         """The nodes that a ray enters on its way to its nearest hit, or to any on `which` geometry."""
 
+    def build(self) -> None:
+        """Build now what waits for rays, where it need not; for who measures frames."""
+
     def built(self) -> Built | None:
         """How much of it rays have had built so far; None for a structure that is built before they come."""
 

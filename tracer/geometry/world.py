@@ -309,6 +309,10 @@ class World:
         for_each_chunk(work, -(-n // CHUNK), len(counts))
         self.built()  # raises what went wrong where rays had something built
 
+    def build(self) -> None:
+        """Build now what `lazy` left, so that no frame has to: for measurements."""
+        self.structure.build()
+
     def built(self) -> Built | None:
         """How much of the trees rays have had built so far; None where all are built before rays come."""
         return self.structure.built()

@@ -66,7 +66,7 @@ class PiecewiseTree:
 
         self._called = _CALLED(called)
         self.table = np.full(1 + pieces, -1, np.int64)
-        self.table[0] = ctypes.cast(self._called, ctypes.c_void_p).value
+        self.table[0] = ctypes.cast(self._called, ctypes.c_void_p).value or 0
 
     def ask_for(self, piece: int) -> None:
         """Build a piece for a ray that waits; what goes wrong is raised by `check`, as nothing can be raised here."""

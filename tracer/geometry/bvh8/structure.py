@@ -171,6 +171,10 @@ class Bvh8:
         boxes[where] = blocks[block, BOX : BOX + 6]
         return WorldTriangles(rows, np.zeros(count, np.float32), boxes)
 
+    def build(self) -> None:
+        """Build the pieces that wait for rays, in all threads."""
+        self._all_static()
+
     def _all_static(self) -> Tree:
         """The tree of what never moves, of which all is built now."""
         if self._pieces is None:

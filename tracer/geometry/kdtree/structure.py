@@ -132,6 +132,9 @@ class KdTree(InObjectSpace):
         """The nodes that a ray enters, as `traverse` counts them."""
         return Walk(self.parts, poses.to_world, nearest).go(ray, which)
 
+    def build(self) -> None:
+        """Nothing waits for rays."""
+
     def built(self) -> None:
         """All of it is built before rays come."""
 

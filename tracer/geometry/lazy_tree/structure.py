@@ -138,6 +138,9 @@ class LazyKdTree(InObjectSpace):
         """The nodes that a ray enters, as `traverse` counts them; those that are not built are built."""
         return Walk(self.told, poses.to_world, nearest).go(ray, which)
 
+    def build(self) -> None:
+        """Nodes wait for rays by nature."""
+
     def built(self) -> Built:
         """What rays have had built of the trees that there are now."""
         nodes, size = (sum(tree.counted(what) for tree in self._trees) for what in (NODES, BYTES))
