@@ -104,6 +104,7 @@ def _queries(accelerator: str) -> Iterator[str]:
 def _trees(lights: int, accelerator: str) -> Iterator[str]:
     yield from _smoothing()
     _renderer(lights, accelerator)
+    _builders(accelerator)
 
 
 def _smoothing() -> Iterator[str]:
@@ -114,7 +115,9 @@ def _smoothing() -> Iterator[str]:
 
 def _frame(lights: int, accelerator: str) -> Iterator[str]:
     yield "the builder"
-    frame = _renderer(lights, accelerator).begin(0.0, progressive=True)
+    renderer = _renderer(lights, accelerator)
+    _builders(accelerator)
+    frame = renderer.begin(0.0, progressive=True)
     frame.place_objects_and_lights()
     for name, phase in (
         ("primary rays", frame.trace_primary_rays),
@@ -126,6 +129,13 @@ def _frame(lights: int, accelerator: str) -> Iterator[str]:
     ):
         yield name
         phase()
+
+
+def _builders(accelerator: str) -> None:
+    """What only large scenes need, if the structure has any."""
+    with_more = getattr(STRUCTURES[accelerator], "make_ready", None)
+    if with_more is not None:
+        with_more()
 
 
 def _see_and_find(frame: FrameInProgress) -> None:
@@ -250,7 +260,9 @@ class _Nowhere:
 
     closest, any_hit = _no_hit, _nothing
 
-    def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
+    def __init__(
+        self, primitives: Primitives, objects: int, progress: Progress | None = None, lazy: bool = False
+    ) -> None:
         self._primitives = primitives
 
     def certain(self, poses: Poses) -> NDArray[np.bool_]:

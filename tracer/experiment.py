@@ -251,6 +251,7 @@ def run(
     numbers = range(len(times)) if numbers is None else numbers
     names = with_reference(methods)
     world = world or World(scene, times[0] if times else 0.0, settings.accelerator, progress)
+    world.build()  # no frame that is measured has to
     renderers = {name: Renderer(scene, replace(settings, method=name), world=world) for name in names}
     results = Results(
         str(scene.path),

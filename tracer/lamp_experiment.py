@@ -82,6 +82,7 @@ def run_lamps(
     `kinds` are radii and numbers of samples (`kinds_of_lamps`); everything else is as for `tracer.experiment.run`."""
     results = LampResults()
     world = world or World(scene, times[0] if times else 0.0, settings.accelerator)
+    world.build()  # no frame that is measured has to
     for radius, samples in kinds:
         if cancel is not None and cancel():
             return

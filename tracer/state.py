@@ -125,4 +125,4 @@ class State:
 
 def open_world(scene: Scene, settings: Settings, progress: Progress | None = None) -> World:
     """A world for a scene at its start, with the accelerator that the settings name."""
-    return World(scene, scene.time_range[0], settings.accelerator, progress)
+    return World(scene, scene.time_range[0], settings.accelerator, progress, lazy=True)

@@ -116,7 +116,8 @@ def sample_counts(asked: NDArray[np.uint16], reached: NDArray[np.uint16]) -> Sam
 
 @dataclass
 class BuiltPart:
-    """How much rays have had built so far of a tree that is built where they arrive ("kdtree-lazy").
+    """How much rays have had built so far of a tree that is built where they arrive: "kdtree-lazy", or "bvh8" of a
+    large scene.
 
     Attributes
     ----------

@@ -261,6 +261,7 @@ def run(
     tests = settings_of_tests(settings, factors, steps, ratio)
     check_primitive(scene, start.primitive)
     world = world or World(scene, start.time, settings.accelerator)
+    world.build()  # no frame that is measured has to
     size = (settings.width, settings.height)
     results = Results(str(scene.path), size, start.primitive, start.time, start.target, ratio)
     results.lamp_radius, results.lamp_samples = settings.lamp_radius, settings.lamp_samples

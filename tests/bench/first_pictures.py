@@ -3,6 +3,7 @@ against what is built where they arrive.
 
     make first                                  Kitchen where it is there, else the default scene; two million triangles
     make first ARGS="--triangles 200000"        a smaller mesh
+    make first ARGS="--triangles 1000000,5000000 --structures bvh8,bvh8:lazy"
 
 Each picture is the first of a process of its own.  Its time counts from the scene in memory to the picture, on one
 thread, in seconds of the processor, as other programs may run beside; `none` traces it.  The close-up shows about a
@@ -28,11 +29,13 @@ from rich.table import Table
 from tests.bench.frame_times import KITCHEN, machine
 from tests.bench.memory import MB, ROOT, resident, write_mesh
 from tests.bench.of_scenes import finish
-from tracer.geometry.accelerators import ACCELERATORS
+from tracer.geometry.accelerators import ACCELERATORS, BVH8
 from viewer.util.messages import say
 from viewer.util.resources import scene_path
 
 PICTURES = ("whole", "close-up")
+LAZY_BVH8 = f"{BVH8}:lazy"  # of a large scene, what no ray has reached waits
+STRUCTURES = (*ACCELERATORS, LAZY_BVH8)
 NEAR = 0.01  # of the way to the surface is left
 
 
@@ -50,18 +53,19 @@ def closer(scene: Any, size: int) -> Any:
     return replace(camera, position=tuple((np.array(camera.position) + (1.0 - NEAR) * float(depth) * way).tolist()))
 
 
-def inspect(path: Path, size: int, accelerator: str, picture: str) -> dict[str, Any]:
+def inspect(path: Path, size: int, structure: str, picture: str) -> dict[str, Any]:
     """Make one picture in this process, which should have done nothing before."""
     import tracer
     from tracer.compilation import warm_up
 
+    accelerator, lazy = structure.removesuffix(":lazy"), structure == LAZY_BVH8
     scene = tracer.load_scene(path)
     camera = closer(scene, 64) if picture == "close-up" else None
     warm_up(lights=len(scene.lights), accelerator=accelerator, certificates=False)
     gc.collect()
     Path("/proc/self/clear_refs").write_text("5")  # forget the most there was
     before, started, watch = resident("VmRSS"), time.process_time(), time.perf_counter()
-    world = tracer.World(scene, scene.time_range[0], accelerator)
+    world = tracer.World(scene, scene.time_range[0], accelerator, lazy=lazy)
     built = time.process_time() - started
     settings = tracer.Settings(width=size, height=size, method="none", threads=1, accelerator=accelerator)
     renderer = tracer.Renderer(scene, settings, world=world)
@@ -73,7 +77,7 @@ def inspect(path: Path, size: int, accelerator: str, picture: str) -> dict[str, 
     return {
         "scene": path.name,
         "triangles": scene.triangle_count,
-        "accelerator": accelerator,
+        "accelerator": structure,
         "picture": picture,
         "before_rays": built,
         "first": took,
@@ -85,10 +89,10 @@ def inspect(path: Path, size: int, accelerator: str, picture: str) -> dict[str, 
     }
 
 
-def measured(path: Path, size: int, accelerator: str, picture: str) -> dict[str, Any]:
+def measured(path: Path, size: int, structure: str, picture: str) -> dict[str, Any]:
     """`inspect` in a process of its own; raises RuntimeError, in one line, where that fails."""
     command = [sys.executable, "-m", "tests.bench.first_pictures", str(path.absolute()), "--size", str(size)]
-    command += ["--inspect", accelerator, picture]
+    command += ["--inspect", structure, picture]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     if done.returncode:
         raise RuntimeError(f"{path.name}: {(done.stderr.strip().splitlines() or ['it was ended'])[-1]}")
@@ -113,7 +117,10 @@ def table(results: list[dict[str, Any]]) -> Table:
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="make first", description=__doc__.splitlines()[0])
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help="default: Kitchen if there, else the default scene")
-    parser.add_argument("--triangles", type=int, default=2_000_000, help="of the mesh (default: two million); 0: none")
+    parser.add_argument(
+        "--triangles", default="2000000", help="of the mesh, or of several (default: two million); 0: none"
+    )
+    parser.add_argument("--structures", default=",".join(STRUCTURES), help="(default: %(default)s)")
     parser.add_argument("--size", type=int, default=512, help="width and height in pixels (default: 512)")
     parser.add_argument("--json", type=Path, default=Path("out/first.json"), help="(default: out/first.json)")
     parser.add_argument("--inspect", nargs=2, help=argparse.SUPPRESS)
@@ -125,15 +132,15 @@ def main(arguments: list[str] | None = None) -> int:
     report: dict[str, Any] = {"machine": machine(), "pictures": []}
     try:
         with tempfile.TemporaryDirectory() as folder:
-            if options.triangles:
-                mesh = Path(folder) / "mesh.stl"
-                write_mesh(mesh, options.triangles)
-                scenes.append(mesh)
+            for triangles in (int(number) for number in options.triangles.split(",")):
+                if triangles:
+                    scenes.append(Path(folder) / f"mesh-{triangles}.stl")
+                    write_mesh(scenes[-1], triangles)
             report["pictures"] = [
-                measured(scene, options.size, accelerator, picture)
+                measured(scene, options.size, structure, picture)
                 for scene in scenes
                 for picture in PICTURES
-                for accelerator in ACCELERATORS
+                for structure in options.structures.split(",")
             ]
     except RuntimeError as error:
         say(error)

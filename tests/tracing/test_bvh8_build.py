@@ -77,7 +77,7 @@ def test_no_way_to_collapse_a_binary_tree_is_cheaper(n):
     items, stack = make_items(n), np.zeros((50, 5), np.int64)
     stack[0, 1] = n
     put_triangles(items, rows, 0, n)
-    assert grow(items, stack, 1, 1000, 48, np.zeros(2, np.int64)) == 0
+    assert grow(items, stack, 1, 1000, 48, 2, np.zeros(2, np.int64)) == 0
     sides = -(items.nodes[:, :3] + items.nodes[:, 3:6]).astype(np.float64)
     areas, words = (sides * np.roll(sides, 1, axis=1)).sum(1), items.nodes.view(np.int32)
 

@@ -17,8 +17,9 @@ from tests.tracing.naive_lazy_tree import LazyTraversal
 from tests.tracing.naive_tree import Line
 from tests.tracing.nasty_worlds import flattened_walk, nasty_walk
 from tests.tracing.random_worlds import END, quickly, scenes
+from tests.tracing.rays_and_movers import movers, random_rays
 from tests.tracing.same import assert_same
-from tests.tracing.worlds import moved, quad, random_corners, scene
+from tests.tracing.worlds import quad, random_corners, scene
 from tracer.geometry.accelerators import KD_TREE, LAZY
 from tracer.geometry.boxes import transform_boxes
 from tracer.geometry.lazy_tree.hierarchy import LEAST, Hierarchy, hierarchy_over
@@ -28,26 +29,6 @@ from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.queries import DYNAMIC_OBJECTS, EVERYTHING, STATIC_GEOMETRY, batch_of
 from tracer.geometry.rays import Hits, Rays
 from tracer.scene.model import Camera
-
-
-def random_rays(rng: np.random.Generator, n: int) -> Rays:
-    """Rays through the unit cube, some parallel to its sides, some from within, some that end."""
-    origins, targets = rng.normal(size=(n, 3)) + 0.5, rng.random((n, 3))
-    directions = targets - origins
-    directions[: n // 8, rng.integers(3)] = 0.0
-    origins[n // 8 : n // 4] = rng.random((n // 4 - n // 8, 3))
-    return tracer.RayBatch(origins, directions, 1e-5, np.where(rng.random(n) < 0.5, np.inf, rng.uniform(0.2, 1.5, n)))
-
-
-def movers(rng: np.random.Generator, count: int, triangles: int = 12) -> tuple[tracer.SceneObject, ...]:
-    """Objects in the unit cube, turned and scaled."""
-    made = []
-    for i in range(count):
-        matrix = np.eye(4)
-        matrix[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0] * rng.uniform(0.2, 0.5)
-        matrix[:3, 3] = rng.random(3) * 0.8
-        made.append(moved(f"part {i}", random_corners(rng, triangles, 0.1), matrix))
-    return tuple(made)
 
 
 def assert_same_way(world: tracer.World, rays: Rays, there: np.ndarray) -> np.ndarray:

@@ -31,7 +31,8 @@ class Built(NamedTuple):
 
 
 class Structure(Protocol):
-    """Made from the primitives of a scene, the number of its objects, and who is told of the build's progress.
+    """Made from the primitives of a scene, the number of its objects, who is told of the build's progress, and whether
+    what it can do without may wait until rays arrive (which is no matter where nothing, or everything, may).
 
     `closest` and `any_hit` are its queries (`tracer.geometry.queries`).  Two numbers say where hits are reported at
     all, which certificates need to know: a hit on a triangle counts only where t lies inside a box around it, which
@@ -57,6 +58,9 @@ class Structure(Protocol):
 
     def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
         """The nodes that a ray enters on its way to its nearest hit, or to any on `which` geometry."""
+
+    def build(self) -> None:
+        """Build now what waits for rays, where it need not; for who measures frames."""
 
     def built(self) -> Built | None:
         """How much of it rays have had built so far; None for a structure that is built before they come."""

@@ -49,6 +49,8 @@ class World:
         "bvh8", the fast structure; "kdtree", the paper's; or "kdtree-lazy", a kd-tree that is built where rays arrive.
     progress : callable, optional
         Called while trees are built; it may raise Cancelled.
+    lazy : bool, optional
+        Whether "bvh8" leaves most of a large scene until rays arrive; the answers and counters are the same.
 
     Attributes
     ----------
@@ -70,7 +72,12 @@ class World:
     """
 
     def __init__(
-        self, scene: Scene, time: float = 0.0, accelerator: str = BVH8, progress: Progress | None = None
+        self,
+        scene: Scene,
+        time: float = 0.0,
+        accelerator: str = BVH8,
+        progress: Progress | None = None,
+        lazy: bool = False,
     ) -> None:
         if accelerator not in ACCELERATORS:
             raise ValueError(f"there is no accelerator {accelerator!r}; there is {', '.join(ACCELERATORS)}")
@@ -81,7 +88,7 @@ class World:
         self.attributes, self.normals = self.primitives.attributes, self.primitives.normals
         self.object_of = self.primitives.object_of
         self.scene = scene
-        self.structure: Structure = STRUCTURES[accelerator](self.primitives, len(scene.objects), progress)
+        self.structure: Structure = STRUCTURES[accelerator](self.primitives, len(scene.objects), progress, lazy)
         self.place(time)
 
     @property
@@ -302,6 +309,11 @@ class World:
             query.call(data, described, chunk * CHUNK, min(n, (chunk + 1) * CHUNK), counted[worker])
 
         for_each_chunk(work, -(-n // CHUNK), len(counts))
+        self.built()  # raises what went wrong where rays had something built
+
+    def build(self) -> None:
+        """Build now what `lazy` left, so that no frame has to: for measurements."""
+        self.structure.build()
 
     def built(self) -> Built | None:
         """How much of the trees rays have had built so far; None where all are built before rays come."""

@@ -16,7 +16,7 @@ from tracer.geometry.bvh8.layout import QUADRIC
 from tracer.geometry.bvh8.packet import SCRATCH, lanes_inside
 from tracer.geometry.bvh8.packet_group import frusta_of, looking, put_reaches, reaches_of
 from tracer.geometry.bvh8.packet_leaf import any_in_block, closest_in_block, quadric_in_child
-from tracer.geometry.bvh8.placed import BLOCK, CHILDREN, NODE, child_planes
+from tracer.geometry.bvh8.placed import BLOCK, CHILDREN, NODE, child_planes, opened
 from tracer.geometry.queries import STEPS, TESTS
 from tracer.geometry.wide_tree.topology import MAX_DEPTH, WIDTH
 from tracer.kernels import inlined, subkernel
@@ -50,7 +50,7 @@ def code_of(node, c):
 
 @inlined
 def prefetch_child(trees, code):
-    """Fetch a child's memory into the cache before it is needed."""
+    """Fetch a child's memory into the cache before it is needed; for a piece, nothing is at that address."""
     if code < 0:
         a = trees.blocks + BLOCK * ~code
         prefetch(a + 320)
@@ -137,7 +137,7 @@ def _walk(origin, memory, group, trees, stack, occluder, nearest, counts):
             continue
         # Open a node: test its quadrics right away.
         counts[STEPS] += 1
-        node = trees.nodes + NODE * code
+        node = trees.nodes + NODE * opened(trees.pieces, code)
         enter, children = _open(memory, node, group)
         quadrics = children & quadrics_in(node)
         children ^= quadrics

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 from tracer.geometry.bvh8 import layout
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY
 from tracer.geometry.triangle_test import Triangle
-from tracer.kernels import inlined
-from tracer.simd import f32_at, load_f32, load_f32x8, load_i64
+from tracer.kernels import inlined, subkernel
+from tracer.simd import call_entry, f32_at, load_f32, load_f32x8, load_i64
 
 NODE, BLOCK = 4 * layout.NODE_SIZE, 4 * layout.BLOCK_SIZE  # bytes
 CHILDREN = 4 * layout.CHILDREN  # offset of the children's codes in a node
@@ -16,22 +16,25 @@ NUMBERS, BOX, COUNT = 4 * layout.PRIMITIVES, 4 * layout.BOX, 4 * layout.COUNT  #
 
 # A placed world, as offsets in bytes: for each of its trees the addresses of nodes and blocks and the number of the
 # root; then the address of the quadrics as seen from the world, the number of triangles, the trees that are worth
-# asking, as bits: the static one, and those of the others that hold anything; and how many rays may go together.
+# asking, as bits: the static one, and those of the others that hold anything; how many rays may go together; and the
+# address of the static tree's table of pieces, or 0.
 NODES, BLOCKS, ROOT, TREE = 0, 8, 16, 24
-QUADRICS, TRIANGLE_COUNT, TREES, TOGETHER = range(3 * TREE, 3 * TREE + 32, 8)
+QUADRICS, TRIANGLE_COUNT, TREES, TOGETHER, PIECES = range(3 * TREE, 3 * TREE + 40, 8)
 STATIC_TREE, RESTING_TREE, MOVING_TREE = range(3)
 STATIC_TREES, DYNAMIC_TREES = 1 << STATIC_TREE | 1 << RESTING_TREE, 1 << MOVING_TREE  # as bits, by what is asked for
 
 
 class PlacedTree(NamedTuple):
     """One of the three trees: the addresses of its nodes and blocks, its root's number, a pointer to the quadrics as
-    seen from the world, and the number of triangles, which is also the number of the first quadric."""
+    seen from the world, the number of triangles, which is also the number of the first quadric, and the address of the
+    table of pieces."""
 
     nodes: Any
     blocks: Any
     root: Any
     quadrics: Any
     triangles: Any
+    pieces: Any
 
 
 @inlined
@@ -44,6 +47,7 @@ def tree_of(data, which):
         load_i64(a + ROOT),
         f32_at(load_i64(data + QUADRICS)),
         load_i64(data + TRIANGLE_COUNT),
+        load_i64(data + PIECES),
     )
 
 
@@ -51,6 +55,22 @@ def tree_of(data, which):
 def root_of(tree):
     """Address of a tree's root."""
     return tree.nodes + NODE * tree.root
+
+
+@subkernel
+def root_of_piece(pieces, piece):
+    """The number of the root of a piece, which is built now if it was not; `pieces` is the address of a table, int64:
+    the address of what builds a piece, and then of each piece the number of its root, or -1."""
+    place = pieces + 8 * (1 + piece)
+    if load_i64(place) < 0:
+        call_entry(load_i64(pieces), piece, 0, 0, 0, 0)
+    return load_i64(place)
+
+
+@inlined
+def opened(pieces, code):
+    """The number of the node that the code of a child that is no leaf stands for (see `layout.PIECE`)."""
+    return root_of_piece(pieces, code - layout.PIECE) if code >= layout.PIECE else code
 
 
 @inlined

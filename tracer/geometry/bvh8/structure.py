@@ -13,16 +13,18 @@ from numpy.typing import NDArray
 from tracer.geometry.accelerators import MOST_TOGETHER
 from tracer.geometry.boxes import NO_BOX, PADDING, union_of
 from tracer.geometry.building import watched
-from tracer.geometry.bvh8 import traverse
+from tracer.geometry.bvh8 import pieces, traverse
 from tracer.geometry.bvh8.build import build_tree
 from tracer.geometry.bvh8.layout import BOX, CHILDREN, PRIMITIVES, Tree
 from tracer.geometry.bvh8.object_trees import blocks_of, build_object_trees, build_top_level, load_corners, move_objects
+from tracer.geometry.bvh8.pieces import PiecewiseTree
 from tracer.geometry.bvh8.placed import DYNAMIC_TREES, MOVING_TREE, RESTING_TREE, STATIC_TREE, STATIC_TREES
 from tracer.geometry.bvh8.walk import TreeAt, Walk
 from tracer.geometry.poses import Poses, products
 from tracer.geometry.primitives import Primitives, WorldTriangles, triangle_rows
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, Placed
 from tracer.geometry.rays import Ray
+from tracer.geometry.structure import Built
 from tracer.geometry.visits import Visit
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import WIDTH, Topology
@@ -41,24 +43,38 @@ class Bvh8:
     hit_padding = PADDING
     together = MOST_TOGETHER
 
-    def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
+    def __init__(
+        self, primitives: Primitives, objects: int, progress: Progress | None = None, lazy: bool = False
+    ) -> None:
         self._primitives, self._objects = primitives, objects
         triangles, quadrics = primitives.triangles_of(0), primitives.quadrics_of(0)
         boxes = primitives.quadric_boxes(quadrics, primitives.to_object[quadrics])
         count = triangles.stop + quadrics.stop
-        self.static = watched(
-            lambda control: build_tree(primitives.triangles[triangles], boxes, control, thread_count()),
-            "building the tree",
-            count,
-            1.2 * count,
-            progress,
-        )
+        rows = primitives.triangles[triangles]
+        self._pieces: PiecewiseTree | None = None
+        self._lazy = lazy and count > pieces.LARGE
+
+        def build(control: NDArray[np.int64]) -> Tree:
+            if count <= pieces.LARGE:
+                return build_tree(rows, boxes, control, thread_count())
+            self._pieces = large = PiecewiseTree(rows, boxes, control, thread_count())
+            if not lazy:
+                large.build_all(control, thread_count())
+            return large.tree
+
+        self.static = watched(build, "building the tree", count, 1.2 * count, progress)
         self._keys = {index: _keys(d.times) for index, d in primitives.deformations.items()}
         self._at = dict.fromkeys(self._keys, 0)
         self._topologies: dict[tuple[int, int], Topology] = {}
         self._build_object_trees(progress)
         self.world_quadrics = primitives.quadrics.copy()
         self._quadric_boxes = np.zeros((len(primitives.quadrics), 6), np.float32)
+
+    @staticmethod
+    def make_ready() -> None:
+        """Compile, or load, what only large trees need."""
+        triangle, box = np.eye(1, 9, 3, np.float32), np.ones((1, 6), np.float32)
+        PiecewiseTree(triangle, box, np.zeros(2, np.int64), 1).build_all()
 
     def _topology(self, index: int, progress: Progress | None = None) -> Topology:
         """The topology of a dynamic object's tree; of one that deforms, that for the time it is nearest to."""
@@ -114,7 +130,8 @@ class Bvh8:
         there = 1 << STATIC_TREE | bool(resting.any()) << RESTING_TREE | bool(moving.any()) << MOVING_TREE
         self._there = there
         triangles, quadrics = len(primitives.triangles), self.world_quadrics.ctypes.data
-        self._data = np.array([*trees, quadrics, triangles, there, self.together], np.int64)
+        table = 0 if self._pieces is None else self._pieces.table.ctypes.data
+        self._data = np.array([*trees, quadrics, triangles, there, self.together, table], np.int64)
         return Placed(
             primitives.triangles,
             primitives.quadrics,
@@ -145,7 +162,7 @@ class Bvh8:
     def triangles_of(self, index: int, to_world: Float64) -> WorldTriangles:
         """The triangles of an object in the world, just as they are intersected, with the boxes of their blocks."""
         triangles = self._primitives.triangles_of(index)
-        blocks = self.static.blocks if index == 0 else blocks_of(self._object_trees, index)
+        blocks = self._all_static().blocks if index == 0 else blocks_of(self._object_trees, index)
         numbers = blocks.view(np.int32)[:, PRIMITIVES : PRIMITIVES + WIDTH]
         block, lane = np.nonzero((numbers >= triangles.start) & (numbers < triangles.stop))
         where, count = numbers[block, lane] - triangles.start, triangles.stop - triangles.start
@@ -153,6 +170,17 @@ class Bvh8:
         rows[where] = blocks[:, : 9 * WIDTH].reshape(-1, 9, WIDTH)[block, :, lane]
         boxes[where] = blocks[block, BOX : BOX + 6]
         return WorldTriangles(rows, np.zeros(count, np.float32), boxes)
+
+    def build(self) -> None:
+        """Build the pieces that wait for rays, in all threads."""
+        self._all_static()
+
+    def _all_static(self) -> Tree:
+        """The tree of what never moves, of which all is built now."""
+        if self._pieces is None:
+            return self.static
+        self._pieces.build_all(threads=thread_count())
+        return self._pieces.used
 
     def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
         """The nodes that a ray itself enters, whatever its packet does."""
@@ -163,10 +191,18 @@ class Bvh8:
             TreeAt("moving objects", self.dynamic, 0),
         )
         trees = [tree for number, tree in enumerate(every) if self._there & asked & 1 << number]
-        return Walk(self.world_quadrics, len(self._primitives.triangles), nearest).go(ray, trees)
+        opened = None if self._pieces is None else self._pieces.opened
+        return Walk(self.world_quadrics, len(self._primitives.triangles), nearest, opened).go(ray, trees)
 
-    def built(self) -> None:
-        """All of it is built before rays come."""
+    def built(self) -> Built | None:
+        """What rays have had built of a large tree of what never moves, with the trees of all that moves."""
+        if self._pieces is None or not self._lazy:
+            return None
+        large, moving, total = self._pieces, self._object_trees.tree, len(self._primitives.object_of)
+        large.check()
+        starts = self._primitives.triangle_starts[1] + self._primitives.quadric_starts[1]
+        size = large.memory_bytes + moving.nodes.nbytes + moving.blocks.nbytes
+        return Built(len(large.used.nodes) + len(moving.nodes), large.built + total - int(starts), total, size)
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""

@@ -6,6 +6,7 @@ itself enters, in the order in which it would go alone (`single_ray`), with the 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -43,9 +44,12 @@ class _Pending(NamedTuple):
 
 class Walk:
     """One ray's way: for its `nearest` hit, or for any.  quadrics (q, 16) are as seen from the world; the first of them
-    is primitive `triangles`."""
+    is primitive `triangles`; `opened` tells the nodes that the codes of pieces stand for."""
 
-    def __init__(self, quadrics: Float32, triangles: int, nearest: bool) -> None:
+    def __init__(
+        self, quadrics: Float32, triangles: int, nearest: bool, opened: Callable[[int], int] | None = None
+    ) -> None:
+        self._opened = opened or (lambda code: code)
         self._quadrics, self._first, self._nearest = quadrics.reshape(-1), triangles, nearest
         self.visits: list[Visit] = []
         self.primitive = MISS
@@ -82,6 +86,8 @@ class Walk:
             at = pending.pop()
             if self._nearest and at.enter > self.t:
                 continue
+            if at.code >= 0:
+                at = at._replace(code=self._opened(at.code))
             visit = Visit(placed.name, at.code, False, at.level, corners_of(at.box), at.enter, at.leave)
             if at.code < 0:
                 self._test(visit, placed.tree.blocks[~at.code] if ~at.code < QUADRIC else None, ~at.code)

@@ -35,7 +35,9 @@ class KdTree(InObjectSpace):
 
     closest, any_hit = traverse.closest, traverse.any_hit
 
-    def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
+    def __init__(
+        self, primitives: Primitives, objects: int, progress: Progress | None = None, lazy: bool = False
+    ) -> None:
         super().__init__(primitives)
         self._objects = objects
         self._trees = [self._build(index, progress) for index in range(objects)]
@@ -129,6 +131,9 @@ class KdTree(InObjectSpace):
     def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
         """The nodes that a ray enters, as `traverse` counts them."""
         return Walk(self.parts, poses.to_world, nearest).go(ray, which)
+
+    def build(self) -> None:
+        """Nothing waits for rays."""
 
     def built(self) -> None:
         """All of it is built before rays come."""

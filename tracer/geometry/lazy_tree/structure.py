@@ -82,7 +82,9 @@ class LazyKdTree(InObjectSpace):
 
     closest, any_hit = traverse.closest, traverse.any_hit
 
-    def __init__(self, primitives: Primitives, objects: int, progress: Progress | None) -> None:
+    def __init__(
+        self, primitives: Primitives, objects: int, progress: Progress | None = None, lazy: bool = True
+    ) -> None:
         super().__init__(primitives)
         everything = slice(0, len(primitives.quadrics))
         self._quadric_boxes = primitives.quadric_boxes(everything, primitives.to_object)
@@ -135,6 +137,9 @@ class LazyKdTree(InObjectSpace):
     def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
         """The nodes that a ray enters, as `traverse` counts them; those that are not built are built."""
         return Walk(self.told, poses.to_world, nearest).go(ray, which)
+
+    def build(self) -> None:
+        """Nodes wait for rays by nature."""
 
     def built(self) -> Built:
         """What rays have had built of the trees that there are now."""

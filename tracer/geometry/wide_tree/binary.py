@@ -37,7 +37,7 @@ from tracer.simd import (
 )
 
 BINS, FEW = 16, 8  # so many items or fewer are put in as many bins
-LEAF_WEIGHT = 2  # no more than that is not split
+LEAF_WEIGHT = 2  # no more than that is not split, where nobody says otherwise
 HUGE = np.float32(3e38)
 TINY_EXTENT = np.float32(1e-30)  # centres closer together than this cannot be told apart
 COSTS_SIZE, BINS_SIZE, WEIGHTS_SIZE = 4 * BINS, 96 * BINS, 24 * BINS  # bytes
@@ -245,10 +245,10 @@ def _put_task(todo, i, first, last, node, depth, side):
 
 
 @kernel
-def grow(items, todo, pending, splits, max_depth, control):
+def grow(items, todo, pending, splits, max_depth, leaf_weight, control):
     """Build subtrees from the top of the stack `todo` (max_depth + 2, 5) int64; how many are left on it.
 
-    Stops after so many splits, or when control[CANCELLED] is set.
+    What weighs no more than `leaf_weight` is not split.  Stops after so many splits, or when control[CANCELLED] is set.
     """
     nodes, order = address_of(items.nodes), address_of(items.order)
     sides = (address_of(items.items), address_of(items.items) + ITEM * items.items.shape[1])
@@ -262,7 +262,7 @@ def grow(items, todo, pending, splits, max_depth, control):
         # Find the box of the node's items and the bounds of their centres.
         weight = _measure(start, end, node, low, high)
         # Make a leaf of few items.
-        if weight <= LEAF_WEIGHT or last - first == 1:
+        if weight <= leaf_weight or last - first == 1:
             for i in range(first, last):
                 store(order + 4 * i, load_i32(source + ITEM * i + NUMBER))
             store(node + NUMBER, np.int32(first))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.building import CANCELLED, DONE, in_chunks
-from tracer.geometry.wide_tree.binary import FIRST, LAST, Items, grow, make_items, put_boxes, put_triangles
+from tracer.geometry.wide_tree.binary import FIRST, LAST, LEAF_WEIGHT, Items, grow, make_items, put_boxes, put_triangles
 from tracer.geometry.wide_tree.collapse import collapse, plan
 from tracer.geometry.wide_tree.topology import MAX_DEPTH, TOP_LEVEL_DEPTH, VACANT, WIDTH, Topology
 from tracer.parallel import for_each_chunk
@@ -31,7 +31,7 @@ def _grow(items: Items, count: int, depth: int, control: NDArray[np.int64], thre
         def one(chunk: int, worker: int) -> None:
             stack = np.zeros((depth + 2, 5), np.int64)
             stack[0] = tasks[chunk]
-            pending = grow(items, stack, 1, splits, depth, control)
+            pending = grow(items, stack, 1, splits, depth, LEAF_WEIGHT, control)
             left[chunk] = list(stack[:pending])
             if not pending:
                 control[DONE] += tasks[chunk][LAST] - tasks[chunk][FIRST]
