@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table motion memory growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods
+.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table motion memory large growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -81,6 +81,10 @@ methods:  ## hold all methods side by side, scene by scene (ARGS="--write" into 
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.methods $(ARGS)
 
+results:  ## measure all tables of the pages of results and performance anew (ARGS="--write", "--only table-1", "--quick")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.results $(ARGS)
+
 lamps:  ## hold frames by the light of lamps against those by `none` (ARGS="--radius 0.1 --frames 20 SCENE ...")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.lamps $(ARGS)
@@ -104,6 +108,10 @@ motion:  ## how good pictures in motion are, and how soon they are whole (ARGS="
 memory:  ## measure the memory of Kitchen and of a million triangles, and build times (ARGS="--triangles 200000 SCENE")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.memory $(ARGS)
+
+large:  ## measure how meshes of millions of triangles are opened (ARGS="--triangles 20000000 --kinds ply")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.large_scenes $(ARGS)
 
 growth:  ## measure how the cost of a ray grows from 10,000 to 2,000,000 triangles (ARGS="--most 200000")
 	@tools/environment.sh dev

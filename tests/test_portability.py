@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from tracer import parallel
+from viewer.services.cluster import Cluster
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -56,3 +59,20 @@ def test_threads_start_where_they_have_no_priorities(monkeypatch: pytest.MonkeyP
     done = [False] * 4
     parallel.for_each_chunk(lambda chunk, worker: done.__setitem__(chunk, True), len(done), threads=2)
     assert all(done)
+
+
+def test_processes_are_ended_where_there_is_no_sigkill(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on Windows."""
+    with subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE) as process:
+        monkeypatch.delattr(signal, "SIGKILL", raising=False)
+        nanny = SimpleNamespace(pid=process.pid)
+        Cluster(None, SimpleNamespace(workers={0: nanny})).kill()
+        assert process.wait(30) != 0
+
+
+def test_as_many_threads_as_cores_where_none_tells_which_it_may_use(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    monkeypatch.setattr(os, "cpu_count", lambda: 5)
+    assert parallel.thread_count() == 5
+    monkeypatch.setattr(os, "cpu_count", lambda: None)
+    assert parallel.thread_count() == 1

@@ -34,6 +34,8 @@ from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import StageTable
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation
+from tracer.scene.crease import creased_normals
+from tracer.scene.mesh_options import CREASE
 from tracer.scene.model import (
     Camera,
     Light,
@@ -87,6 +89,7 @@ FOR_A_PICTURE = ("frame", "trees", "queries")
 def picture_steps(lights: int, accelerator: str) -> Iterator[str]:
     """All that a picture needs, by any method but those that make certificates."""
     yield from _queries(accelerator)
+    yield from _smoothing()
     yield from _frame(lights, accelerator)
 
 
@@ -99,8 +102,14 @@ def _queries(accelerator: str) -> Iterator[str]:
 
 
 def _trees(lights: int, accelerator: str) -> Iterator[str]:
-    yield "the builder"
+    yield from _smoothing()
     _renderer(lights, accelerator)
+
+
+def _smoothing() -> Iterator[str]:
+    """What meshes need before there is a tree over them."""
+    yield "the builder"
+    creased_normals(np.eye(3), np.arange(3)[None], CREASE)
 
 
 def _frame(lights: int, accelerator: str) -> Iterator[str]:

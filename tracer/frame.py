@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,6 +68,9 @@ class Frame:
         Shadow rays of a pixel that were due; with `record_work`.
     layers : dict of str to array
         Whatever else the method shows at each pixel, by name.
+    structures : dict of str to object
+        What else the method shows, by name, as this frame found it: "voxels" (`tracer.culling.voxels.tell.VoxelStates`)
+        and "light cubes", of each of the first lights (`tracer.culling.lightbuffer.tell.LightCube`).
     statistics : FrameStatistics
         What the frame cost.
     """
@@ -94,6 +98,7 @@ class Frame:
     cost: NDArray[np.int32] | None = None
     due_rays: NDArray[np.int32] | None = None
     layers: dict[str, NDArray] = field(default_factory=dict)
+    structures: dict[str, Any] = field(default_factory=dict)
     statistics: FrameStatistics = field(default_factory=FrameStatistics)
 
     @property

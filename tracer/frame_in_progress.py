@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -380,10 +381,11 @@ class FrameInProgress:
         built = self._state.world.built()
         statistics.built = None if built is None else BuiltPart(*built)
         statistics.phases, statistics.seconds = dict(self.phases), self.seconds
-        layers: dict[str, NDArray] = {}
+        layers: dict[str, Any] = {}
         for method in self.methods:
             method.report(statistics)
             layers |= method.layers(self)
+        structures = {name: layers.pop(name) for name in list(layers) if not isinstance(layers[name], np.ndarray)}
 
         def per_pixel(rows: NDArray, recorded: bool) -> NDArray | None:
             return rows.reshape(*shape, *rows.shape[1:]) if recorded else None
@@ -410,6 +412,7 @@ class FrameInProgress:
             cost=per_pixel(buffers.cost, settings.record_work),
             due_rays=per_pixel(buffers.due_rays, settings.record_work),
             layers=layers,
+            structures=structures,
             statistics=statistics,
         )
 

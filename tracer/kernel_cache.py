@@ -31,7 +31,10 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache, NullCache,
 
 _ROOT = Path(__file__).parents[1]  # of the packages
 # What kernels are made of: nothing else in the package ends up in machine code.
-_KERNEL_SOURCES = ("simd/", "geometry/", "culling/", "shading/", "methods/", "scene/model.py", "scene/lamps.py")
+_KERNEL_SOURCES = (
+    "simd/", "geometry/", "culling/", "shading/", "methods/",
+    "scene/model.py", "scene/lamps.py", "scene/mesh_kernels.py",
+)  # fmt: skip
 _COMPILERS = ("kernels.py", "subkernels.py")
 _STEPS = Path(__file__).with_name("compile_steps.py")  # imports all that a program starts with
 _ROOM = 1 << 25  # bytes; all kernels take a tenth of it

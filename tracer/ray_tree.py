@@ -234,18 +234,20 @@ def _shadow_rays(
     found = []
     for row in range(len(noted)):
         whys = reasons_of(stages, primitive_of(seen, row), ends[row], lights, noted[row], seen.kept[row])
-        named, known = {}, {}
+        named, known, told = {}, {}, {}
         for place, why in whys.items():
             verdicts[row, place] = NUMBER_OF[why.verdict]
             if why.named:
                 named[place] = why.named
+            if why.told:
+                told[place] = why.told
         for place in np.flatnonzero(traced[row]).tolist():
             if word := known_of(work, stages, seen, row, int(lights[place]), bool(lamps.radii[lights[place]] == 0)):
                 known[place] = word
         found.append(
             ShadowRays(
                 lights, verdicts[row], lit[row], due[row] & (lit[row] == (blocker[row] != MISS)), blocker[row],
-                blocked_at[row], met[row], moving[row], steps[row], tests[row], named, known,
+                blocked_at[row], met[row], moving[row], steps[row], tests[row], named, known, told,
             )
         )  # fmt: skip
         _go_on(cancelled)

@@ -62,6 +62,8 @@ class ShadowRays:
         For rays that were traced: what was known all the same, but did not do. That is a mode by its name: the
         primitive's occlusion mode unless it was fully rendered, else its shadow mode; or "candidates"; or the state of
         a certificate that was not looked up, as "proven full, unused".
+    told : dict of int to str
+        For rays that were culled: what more there is to say, in whole sentences, where there is any.
     """
 
     light: NDArray[np.int32]
@@ -76,6 +78,7 @@ class ShadowRays:
     tests: NDArray[np.int32]
     named: dict[int, tuple[int, ...]]
     known: dict[int, str]
+    told: dict[int, str]
 
     def of_light(self, light: int) -> slice:
         """The places of a light's samples."""

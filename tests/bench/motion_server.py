@@ -15,7 +15,6 @@ import sys
 import time
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +23,7 @@ from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
 from tracer.frame import Frame
 from tracer.renderer import Renderer
+from tracer.statistics import FrameStatistics
 from viewer.output.pictures import picture
 from viewer.services.governor import AT_ONCE, LARGEST_DIVISOR, SPARE, Governor, Plan, divided
 from viewer.state import navigation
@@ -47,20 +47,28 @@ class CoarserInMotion(Governor):
 
     def forget(self) -> None:
         super().forget()
-        self._each, self._divisor = 0.0, 2
+        self._each, self._divided_by = 0.0, 2
 
-    def observe(self, statistics: Any, pixels: int) -> None:
+    def observe(self, statistics: FrameStatistics, pixels: int, lamp_samples: int = 1) -> None:
         cost = statistics.seconds / max(pixels, 1)
         self._each = self._each + 0.4 * (cost - self._each) if self._each else cost
 
-    def plan(self, width: int, height: int, seconds: float, coarse: bool = True, playing: bool = True) -> Plan:
+    def plan(
+        self,
+        width: int,
+        height: int,
+        seconds: float,
+        coarse: bool = True,
+        playing: bool = True,
+        lamp_samples: int = 1,
+    ) -> Plan:
         if not coarse:
             return AT_ONCE
         for divisor in range(1, LARGEST_DIVISOR + 1):
             w, h = divided(width, height, divisor)
-            if self._each * w * h <= (SPARE * seconds if divisor < self._divisor else seconds):
+            if self._each * w * h <= (SPARE * seconds if divisor < self._divided_by else seconds):
                 break
-        self._divisor = divisor
+        self._divided_by = divisor
         return Plan(divisor, AT_ONCE.parts)
 
 

@@ -5,8 +5,8 @@
 Once the picture is there at full resolution, the same picture is traced again and again for so many
 seconds, then the camera turns for as long, then nothing happens, and the window is closed.  Prints one
 line of JSON: what was seen how long after SPAWNED, a `time.time()`, and of each frame what went on, how
-many seconds it took until it was on the screen, and for how many its own thread was at work; and of all
-that went on how many cores other processes had meanwhile.
+many seconds it took until it was on the screen, and for how many its own thread was at work; of all
+that went on how many cores other processes had meanwhile; and the seconds of processors that the start took.
 """
 
 from __future__ import annotations
@@ -41,6 +41,7 @@ class Watch:
         self.seconds, self.spawned = seconds, spawned
         self.state, self.since = "starting", time.perf_counter()
         self.seen: dict[str, float] = {}
+        self.worked: dict[str, float] = {}
         self.frames: dict[str, list[tuple[float, float]]] = {state: [] for state in STATES}
         self.traced: dict[str, int] = dict.fromkeys(STATES, 0)
         self.others: dict[str, float] = {}
@@ -60,6 +61,8 @@ class Watch:
     def after(self) -> None:
         self.frames[self.state].append((time.perf_counter() - self._began, time.thread_time() - self._worked))
         self._saw("window")
+        if self.app.ui.preview is not None and self.app.ui.preview.texture_id is not None:
+            self._saw("preview")
         if self.c.traced is not None and self.app.ui.display is not None and self.app.ui.display.texture_id is not None:
             self._saw("first picture")
             if self.c.traced.request.divisor == 1 and self.c.traced.whole:
@@ -69,7 +72,9 @@ class Watch:
         return time.perf_counter(), busy(), time.process_time()
 
     def _saw(self, what: str) -> None:
-        self.seen.setdefault(what, time.time() - self.spawned)
+        if what not in self.seen:
+            self.seen[what] = time.time() - self.spawned
+            self.worked[what] = sum(os.times()[:4])
 
     def _advance(self, now: float) -> None:
         c, state = self.c, self.state
@@ -99,6 +104,8 @@ class Watch:
         return {
             "renderer": self.app.ui.renderer_name,
             "seen": self.seen,
+            "worked": self.worked,
+            "load": os.getloadavg()[0],
             "frames": self.frames,
             "traced": self.traced,
             "others": self.others,

@@ -12,7 +12,7 @@ import mmap
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import numpy as np
+from numpy._core import _multiarray_umath  # type: ignore[attr-defined,import-not-found,unused-ignore]
 
 PAGE = mmap.PAGESIZE
 LEAST = 64  # bytes: smaller arrays stay with malloc, as no kernel gets any
@@ -118,5 +118,5 @@ def _exchange(handler: object) -> object:
     """Have numpy use another handler; returns the one before."""
     pointer = ctypes.pythonapi.PyCapsule_GetPointer
     pointer.restype, pointer.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]
-    table = ctypes.cast(pointer(np._core._multiarray_umath._ARRAY_API, None), ctypes.POINTER(ctypes.c_void_p))
+    table = ctypes.cast(pointer(_multiarray_umath._ARRAY_API, None), ctypes.POINTER(ctypes.c_void_p))
     return ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.py_object)(table[_SET_HANDLER])(handler)

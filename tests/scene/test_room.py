@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -34,7 +35,7 @@ def little(monkeypatch: pytest.MonkeyPatch) -> float:
 def test_a_mesh_that_is_too_large_is_one_line_before_it_is_read(little: float, tmp_path: Path, monkeypatch) -> None:
     path = stl(tmp_path / "large.stl", 10_000_000)
     monkeypatch.setattr("tracer.scene.load.load_mesh", lambda *_: pytest.fail("it is read"))
-    needed = 10e6 * room.READING
+    needed = 10e6 * room.READING_PLAIN
     with pytest.raises(tracer.SceneError) as refused:
         tracer.load_scene(path)
     said = str(refused.value)
@@ -98,6 +99,18 @@ def test_memory_is_what_is_left_of_the_least_of_all_limits(monkeypatch: pytest.M
     assert room.available() == 5.0
     monkeypatch.setattr(room, "_of_limit", lambda: -7.0)
     assert room.available() == 0.0
+
+
+@linux_only
+def test_elsewhere_a_library_tells_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("psutil")
+    there, told = room._of_system(), room._elsewhere()
+    assert there is not None and told is not None and abs(told - there) < 0.3 * there + 1e9
+    monkeypatch.setattr(room, "_field", lambda *_: None)
+    told = room._of_system()
+    assert told is not None and abs(told - there) < 0.3 * there + 1e9
+    monkeypatch.setitem(sys.modules, "psutil", None)
+    assert room._of_system() is None
 
 
 def test_a_summary_builds_no_trees(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:

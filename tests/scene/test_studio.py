@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tracer.renderer import Renderer, Settings
+from tracer.scene.framing import extent
 from tracer.scene.load import load_scene, scene_info
 from tracer.scene.mesh_options import IN_STUDIO, UPS, MeshOptions
 from tracer.scene.model import Camera
@@ -137,3 +138,10 @@ def test_the_picture_shows_a_bright_model_on_a_floor_that_fades(tmp_path):
         assert (edge > 8).all() and (low.primitive[edge - 1, np.arange(8)] == -1).all()
         ends = np.asarray(low.color, np.float64)[edge, np.arange(8)]
         assert np.abs(ends - scene.background).max() < 0.06
+
+
+@pytest.mark.parametrize("n", [1, 63, 64, 65, 1000])
+def test_extents_are_those_of_all_points(n):
+    points = np.random.default_rng(n).normal(size=(n, 3)).astype(np.float32)
+    low, high = extent(points)
+    assert np.array_equal(low, points.min(axis=0)) and np.array_equal(high, points.max(axis=0))

@@ -9,10 +9,12 @@ import numpy as np
 
 import tracer
 
+NOT_COMPARED = "settings", "statistics", "layers", "structures"
+
 
 def contents(frame: tracer.Frame) -> dict[str, Any]:
     """Everything a frame holds but how long it took and on how many threads."""
-    held = {f.name: getattr(frame, f.name) for f in fields(frame) if f.name not in ("settings", "statistics", "layers")}
+    held = {f.name: getattr(frame, f.name) for f in fields(frame) if f.name not in NOT_COMPARED}
     held |= {f"layer {name}": layer for name, layer in frame.layers.items()}
     counted = frame.statistics.to_dict()
     del counted["seconds"], counted["phases"], counted["built"]  # of trees, by rays of earlier frames as well

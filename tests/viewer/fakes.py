@@ -9,6 +9,8 @@ from threading import Event
 
 import numpy as np
 
+from tracer.culling.voxels.grid import VoxelGrid
+from tracer.culling.voxels.tell import VoxelStates
 from tracer.frame import Frame, Settings
 from tracer.scene.animation import Animation
 from tracer.scene.model import (
@@ -154,6 +156,23 @@ def with_cuts(frame: Frame) -> Frame:
     statistics = replace(frame.statistics, cuts=CutCounts(100, 7, 70, 0, 40))
     layers = frame.layers | {"cut nodes": nodes, "cut bound": lots.random(shape, np.float32)}
     return replace(frame, layers=layers, statistics=statistics)
+
+
+def with_voxels(frame: Frame) -> Frame:
+    """The frame with 16 x 8 x 8 voxels in the camera's view, before and behind what is seen, in states drawn by lot;
+    the third light has none."""
+    grid = VoxelGrid(-2.0, -0.25, -1.0, 4.0, 16, 8, 8)
+    words = np.random.default_rng(4).integers(0, 2, grid.voxels + 1).astype(np.uint32)
+    for light in range(frame.lights):
+        words |= np.random.default_rng(light).integers(0, 3, len(words)).astype(np.uint32) << np.uint32(2 + 2 * light)
+    states = VoxelStates(grid, words, np.arange(frame.lights) != 2)
+    return replace(frame, structures=frame.structures | {"voxels": states})
+
+
+def with_cell_lights(frame: Frame) -> Frame:
+    """The frame as if its cells knew which lights they must look at, drawn by lot; of some it is not known."""
+    asked = np.random.default_rng(5).integers(-1, frame.lights + 1, frame.primitive.shape).astype(np.int32)
+    return replace(frame, layers=frame.layers | {"cell lights": np.where(frame.primitive >= 0, asked, np.int32(-1))})
 
 
 def in_part(frame: Frame) -> Frame:

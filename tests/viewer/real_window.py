@@ -16,6 +16,7 @@ import json
 import os
 import sys
 import traceback
+from contextlib import nullcontext
 from pathlib import Path
 
 from imgui_bundle import hello_imgui, imgui, immapp
@@ -24,6 +25,7 @@ from PIL import Image
 
 from tests.viewer.driver import PATIENCE, Driver
 from tests.viewer.scenarios import SCENARIOS
+from tests.viewer.scenarios.previewing import first_start
 from viewer.window import app as viewer_app
 from viewer.window.app import App
 
@@ -61,7 +63,8 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
         # The scenario says itself what went wrong; the engine only notices that a window closed meanwhile.
         testing.run(test_function=test, runner_params=params, add_ons_params=add_ons, raise_on_error=False)
 
-    code = app.run(runner)
+    with first_start() if name == "previewing" else nullcontext():
+        code = app.run(runner)
     if parts and not failed:
         failed.append(AssertionError("no other window came"))
         print("no other window came", file=sys.stderr)

@@ -21,6 +21,12 @@ class Verdict(Enum):
     BUFFER_LIT = "light buffer lit"
     BUFFER_FULL = "light buffer full"
     BUFFER_TESTED = "light buffer candidates"
+    VOXEL_LIT = "voxel null"
+    VOXEL_FULL = "voxel full"
+    VOXEL_WALK = "voxel walk"
+    CELL_LIT = "cell lit"
+    CELL_FULL = "cell full"
+    CELL_TESTED = "cell candidates"
     ANSWERED = "answered"
     TRACED = "traced"
 
@@ -47,7 +53,8 @@ class Answered(NamedTuple):
 
 
 class Because(NamedTuple):
-    """Why it could be answered, and the primitives that this rests on."""
+    """Why it could be answered, the primitives that this rests on, and what more there is to say, in sentences."""
 
     verdict: Verdict
     named: tuple[int, ...] = ()
+    told: str = ""

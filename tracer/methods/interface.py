@@ -164,8 +164,9 @@ class ShadowMethod:
     def discard(self, frame: FrameView, begun: bool) -> None:
         """Drop what a cancelled frame has gathered; `begun` if any of it was shaded."""
 
-    def layers(self, frame: FrameView) -> dict[str, NDArray]:
-        """Buffers (height, width, ...) for views, by name; "cells" and "certificates" become those of `Frame`."""
+    def layers(self, frame: FrameView) -> dict[str, Any]:
+        """Buffers (height, width, ...) for views, by name; "cells" and "certificates" become those of `Frame`.  What is
+        no array is something else than pixels that views show, and becomes one of its structures."""
         return {}
 
     def report(self, statistics: FrameStatistics) -> None:

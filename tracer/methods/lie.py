@@ -9,6 +9,7 @@ vector, and `choose` answers the others' rays by what their cells know, asking t
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from tracer.culling.environments.sample import seen_points, settle_by_samples
 from tracer.culling.environments.store import EnvironmentStore
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of, vectors
+from tracer.culling.verdicts import Answered, Because, Verdict
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import borrowed
 from tracer.kernels import Entry, entry, kernel
@@ -158,6 +160,25 @@ class Environments(CellsOfSpace):
         view = self.store.view(looks, self._cell if learns else NOWHERE)
         chooses = choose if self.store.held else None
         return [Stage(view, find=find, select=select, choose=chooses, rows=CELL_ROWS, looks=looks)]
+
+    def layers(self, frame: FrameView) -> dict[str, Any]:
+        assert self.store is not None, "followed before"
+        found = super().layers(frame)
+        return found | {"cell lights": self.store.asked_in(found["cells"])}
+
+    def because(self, answered: Answered) -> Because:
+        store, point = self.store, np.array(answered.point, np.float32)
+        if store is None:
+            return Because(Verdict.ANSWERED)
+        state, named = store.state_at(point, answered.light)
+        cell = store.cell_at(point)
+        asked, side = int(store.asked_in(np.array(cell, np.int32))), 2.0 ** store.cells[cell, 3] * store.frame.side
+        told = (
+            f"The cell is {side:.3g} wide, on level {store.frame.levels - int(store.cells[cell, 3])} of the octree; "
+            f"it asks {asked:,} of {len(store.places):,} lights."
+        )
+        verdict = Verdict.CELL_LIT if answered.lit else Verdict.CELL_FULL
+        return Because(Verdict.CELL_TESTED if state == "candidates" else verdict, named, told)
 
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
         return None if self.store is None else self.store.state_at(point, light)

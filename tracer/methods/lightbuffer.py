@@ -9,6 +9,7 @@ one of what moves, made for each frame.  Lamps with several samples, and lights 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +34,7 @@ from tracer.culling.lightbuffer.lookup import (
 from tracer.culling.lightbuffer.moving import SIDE as MOVING_SIDE
 from tracer.culling.lightbuffer.moving import depths_of
 from tracer.culling.lightbuffer.rays import RAY_ROWS, buffer_rays_in
-from tracer.culling.lightbuffer.tell import Said, tell
+from tracer.culling.lightbuffer.tell import LightCube, Said, tell
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_batch import shadow_batch_in
@@ -50,6 +51,7 @@ from tracer.statistics import FrameStatistics
 
 LONGEST = 8  # candidates of a record, at most
 COARSER = 2  # times that the cells of what rests are wider
+MOVED = "it moves: a light has one only where it stands still"
 GROWTH = 4  # times that what moves may grow before boxes of what rests no longer hold (`certified.static_geometry`)
 
 buffers_at = reading(LightBuffers)
@@ -95,6 +97,7 @@ class LightBuffer(ShadowMethod):
         self._made = self._steps = self._tests = 0
         self._asked = 0, 0.0
         self._lights = 0
+        self._why_not: dict[int, str] = {}
 
     def follows_rest(self) -> bool:
         return True
@@ -106,6 +109,10 @@ class LightBuffer(ShadowMethod):
         same = before is None or len(before) != len(points) or (before == lamps.places).all(1)
         still = points & same
         self._last, self._lights = lamps.places.copy(), len(points)
+        self._why_not = {
+            int(k): MOVED if points[k] else f"it is a lamp of {lamps.first[k + 1] - lamps.first[k]} samples"
+            for k in np.flatnonzero(~still[:MAX_CULLED_LIGHTS])
+        }
         self.buffers = {k: b for k, b in self.buffers.items() if still[k] and (b.place == lamps.places[k]).all()}
         for k in np.flatnonzero(still[:MAX_CULLED_LIGHTS]):  # thousands of cubes would take minutes to make
             self.buffers.setdefault(int(k), _Buffer(lamps.places[k].copy()))
@@ -196,6 +203,22 @@ class LightBuffer(ShadowMethod):
         """What a light sees of all that never moves, None where it has no buffer."""
         buffer = self.buffers.get(light)
         return None if buffer is None else buffer.static
+
+    def why_not(self, light: int) -> str:
+        """Why a light has no buffer, in words; nothing for one that has."""
+        if light >= MAX_CULLED_LIGHTS:
+            return f"only the first {MAX_CULLED_LIGHTS} lights have one"
+        buffer = self.buffers.get(light)
+        if buffer is not None:
+            return "there is no memory for it (Settings.light_buffer_memory)" if buffer.refused else ""
+        return self._why_not.get(light, "")
+
+    def layers(self, frame: FrameView) -> dict[str, Any]:
+        places = frame.shading.lamps.places
+        shown = [
+            LightCube(places[k], self.cube_of(k), self.why_not(k)) for k in range(min(self._lights, MAX_CULLED_LIGHTS))
+        ]
+        return {"light cubes": tuple(shown)} if shown else {}
 
     def report(self, statistics: FrameStatistics) -> None:
         statistics.certificates += self._made

@@ -6,7 +6,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracer.culling.certified.scheduler import Counts
 from tracer.methods.interface import FrameView, Services, ShadowMethod
@@ -28,7 +27,7 @@ class CellsOfSpace(ShadowMethod):
         self._counts = Counts()
         self._cell = np.full(frame.settings.width * frame.settings.height, -1, np.int32)
 
-    def layers(self, frame: FrameView) -> dict[str, NDArray]:
+    def layers(self, frame: FrameView) -> dict[str, Any]:
         assert self.store is not None, "followed before"
         cell = self._cell.reshape(frame.buffers.primitive.shape)
         return {"cells": cell, "certificates": self.store.at_pixels(cell)}

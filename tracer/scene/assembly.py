@@ -139,6 +139,8 @@ def _mirrors(matrix: Float64) -> bool:
 
 def under_matrix(corners: Float64, normals: Float64 | None, matrix: Float64) -> tuple[Float64, Float64]:
     """Corners and normals (..., 3, 3) under a matrix, still counter-clockwise from outside; no normals become zero."""
+    if np.array_equal(matrix, np.eye(4)):
+        return corners, np.zeros_like(corners) if normals is None else normals
     corners = corners @ matrix[:3, :3].T + matrix[:3, 3]
     normals = np.zeros_like(corners) if normals is None else normals @ _normal_matrix(matrix).T
     if _mirrors(matrix):
@@ -223,7 +225,7 @@ def _triangles(pieces: Meshes, remarks: Remarks, report: Callable[[], None]) -> 
     lengths = [len(piece.shape) for piece, _ in pieces]
     n = sum(lengths)
     single, units = np.empty((n, 3, 3), np.float32), np.empty((n, 3, 3), np.float32)
-    uvs = np.empty((n, 3, 2), np.float32)
+    uvs = np.zeros((n, 3, 2), np.float32)
     good, finite, flat = np.empty(n, np.bool_), np.empty(n, np.bool_), np.empty(n, np.bool_)
     start = 0
     for run, matrix in _blocks(pieces, report):
@@ -235,13 +237,14 @@ def _triangles(pieces: Meshes, remarks: Remarks, report: Callable[[], None]) -> 
         finite[part], good[part] = _finite(corners)
         single[part] = rounded = corners.astype(np.float32)
         flat[part] = good[part] & ~np.cross(rounded[:, 1] - rounded[:, 0], rounded[:, 2] - rounded[:, 0]).any(axis=1)
-        uvs[part] = np.concatenate([_uvs(mesh, matrix) for mesh in run])
+        if any(mesh.uvs is not None for mesh in run):  # else what is 0 everywhere takes no memory
+            uvs[part] = np.concatenate([_uvs(mesh, matrix) for mesh in run])
         units[part] = unit_normals(normals, corners)
     material = np.repeat(np.array([piece.material for piece, _ in pieces], np.int32), lengths)
     texture = np.repeat(np.array([piece.texture for piece, _ in pieces], np.int32), lengths)
     origin = _Origin([piece.shape.place for piece, _ in pieces], lengths)
     origin.remark_lost(finite, good, remarks)
-    kept = np.diff(np.concatenate([[0], np.cumsum(good)])[np.cumsum([0, *lengths])])
+    kept = lengths if good.all() else np.diff(np.concatenate([[0], np.cumsum(good)])[np.cumsum([0, *lengths])])
     counted: list[Counted] = [(piece, int(count)) for (piece, _), count in zip(pieces, kept)]
     if flat.any():
         origin.remark(flat, "a triangle without area is kept, but no ray can meet it", remarks)

@@ -12,6 +12,7 @@ import threading
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 from tracer.scene.limits import MOST_BYTES
 
@@ -49,8 +50,9 @@ def stamp(path: Path) -> Stamp:
     return found.st_mtime_ns, found.st_size
 
 
-def read_regular(path: Path, most: int = MOST_BYTES) -> bytes:
-    """All of a regular file; raises OSError or ValueError (a name that no file can have)."""
+@contextmanager
+def open_regular(path: Path) -> Iterator[BinaryIO]:
+    """A regular file, to be read; raises OSError or ValueError (a name that no file can have)."""
     if path.is_dir():
         raise IsADirectoryError(0, "it is a folder, not a file")
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)  # opening a pipe would wait
@@ -64,6 +66,12 @@ def read_regular(path: Path, most: int = MOST_BYTES) -> bytes:
         note(path, found)
         if not stat.S_ISREG(found.st_mode):
             raise OSError(0, "it is not a regular file")
+        yield file
+
+
+def read_regular(path: Path, most: int = MOST_BYTES) -> bytes:
+    """All of a regular file; raises OSError or ValueError (a name that no file can have)."""
+    with open_regular(path) as file:
         data = file.read(most + 1)
     if len(data) > most:
         raise OSError(0, f"it is too large; {most >> 20} MiB are read at most")

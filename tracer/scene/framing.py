@@ -7,10 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from tracer.scene.animation import Animation
-from tracer.scene.arrays import Float64
+from tracer.scene.arrays import Float32, Float64
 from tracer.scene.deformation import deformed
 from tracer.scene.limits import SMALLEST
 from tracer.scene.model import CONE, Camera, Light, SceneObject
+
+_BLOCK = 1 << 18  # triangles that are moved at once
+_ROW = 64  # points
 
 
 def bounds(objects: Sequence[SceneObject], animation: Animation, time: float) -> Float64 | None:
@@ -23,14 +26,27 @@ def bounds(objects: Sequence[SceneObject], animation: Animation, time: float) ->
         if not (np.abs(matrix) <= 1 / SMALLEST).all():
             continue
         corners = o.triangles.corners if o.deformation is None else deformed(o.deformation, time)[0]
-        if len(corners):
-            points = corners.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
-            boxes.append((points.min(axis=0), points.max(axis=0)))
+        at_rest = np.array_equal(matrix, np.eye(4))
+        for start in range(0, len(corners), _BLOCK):
+            points = corners[start : start + _BLOCK].reshape(-1, 3)
+            if not at_rest:
+                points = points @ matrix[:3, :3].T + matrix[:3, 3]
+            boxes.append(extent(points))
         for kind, placed, radii in zip(o.quadrics.kind, o.quadrics.to_object, o.quadrics.radii, strict=True):
             boxes.append(quadric_box(int(kind), matrix @ np.vstack([placed, (0, 0, 0, 1)]), radii))
     if not boxes:
         return None
-    return np.stack([np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)])
+    return np.stack([np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)]).astype(np.float64)
+
+
+def extent(points: Float32 | Float64) -> tuple[Float32 | Float64, Float32 | Float64]:
+    """Least and greatest corner, (3,) each, of points (n, 3), n > 0: many of a row at once, which is ten times as fast
+    as three numbers at a time."""
+    whole = len(points) // _ROW * _ROW
+    rows = np.ascontiguousarray(points[:whole]).reshape(-1, 3 * _ROW)
+    parts = [points[whole:], *(least(rows, axis=0).reshape(-1, 3) for least in (np.min, np.max) if whole)]
+    few = np.concatenate(parts)
+    return few.min(axis=0), few.max(axis=0)
 
 
 def quadric_box(kind: int, placed: Float64, radii: Float64) -> tuple[Float64, Float64]:

@@ -47,7 +47,11 @@ class MaterialTable:
         elif visual.kind in ("face", "vertex"):
             yield from self._coloured(np.asarray(visual.face_colors)[:, :3])
         else:
-            yield slice(None), self._number(Material("plain", (0.12, 0.12, 0.12), (0.75, 0.75, 0.75))), -1
+            yield slice(None), self.plain(), -1
+
+    def plain(self) -> int:
+        """The number of the material of surfaces of which a file says nothing."""
+        return self._number(Material("plain", (0.12, 0.12, 0.12), (0.75, 0.75, 0.75)))
 
     def _coloured(self, colours: NDArray[np.uint8]) -> Iterator[Part]:
         if len(np.unique(colours, axis=0)) > MOST_COLOURS:

@@ -1,4 +1,4 @@
-"""Scenes from mesh files (OBJ, PLY, STL, glTF, GLB), read by trimesh.
+"""Scenes from mesh files (OBJ, PLY, STL, glTF, GLB), read by trimesh; large ones of plain triangles in parts.
 
 Such files say little of how a surface shines in a Whitted world, and most have neither camera
 nor lights.  Colours and textures are kept as they would be displayed; roughness and metalness
@@ -18,8 +18,9 @@ from typing import Any
 import numpy as np
 
 from tracer.scene.animation import Animation
-from tracer.scene.arrays import Float64
+from tracer.scene.arrays import Float32, Float64
 from tracer.scene.assembly import Geometry
+from tracer.scene.binary_meshes import BinaryMesh, read_binary
 from tracer.scene.crease import creased_normals
 from tracer.scene.files import SceneFiles, read_regular
 from tracer.scene.framing import bounds, framing_camera, framing_lights
@@ -28,7 +29,7 @@ from tracer.scene.mesh_materials import MaterialTable
 from tracer.scene.mesh_options import AS_IN_FILE, CREASE, MeshOptions
 from tracer.scene.mesh_reading import only_known_images, quiet
 from tracer.scene.model import Camera, Progress, Scene, SceneError
-from tracer.scene.pieces import IndexedMesh, Piece
+from tracer.scene.pieces import IndexedMesh, Mesh, Piece
 from tracer.scene.ply_lists import with_even_lists
 from tracer.scene.punctual_lights import has_lights, punctual_lights
 from tracer.scene.studio import build_studio, with_floor
@@ -37,6 +38,8 @@ from tracer.scene.tristrips import with_strips
 from tracer.scene.upright import guess
 
 MESH_EXTENSIONS = (".obj", ".ply", ".stl", ".gltf", ".glb")
+ONLY_MESH = "geometry_0"
+"""What trimesh calls the mesh of a file that has one without a name."""
 
 
 @dataclass(frozen=True)
@@ -70,32 +73,27 @@ def load_mesh(
     path = Path(path)
     report = progress or (lambda what, fraction: None)
     report(f"Reading {path.name}", 0.0)
-    model, troubles, head = _read(path, SceneFiles(path, folders))
-    own_camera = _own_camera(model)
-    alone = options.studio and own_camera is None and not has_lights(model)
-    crease = _crease(options, alone, path)
-    table = MaterialTable(path)
-    geometry = Geometry()
-    nodes = list(model.graph.nodes_geometry)
-    skipped = []
-    for i, node in enumerate(nodes):
-        fraction = 0.5 + 0.4 * i / len(nodes)
-        report(f"Reading {path.name}", fraction)
-        matrix, name = model.graph[node]
-        mesh = model.geometry[name]
-        if not hasattr(mesh, "faces") or not len(mesh.faces):
-            skipped.append(f"{path}: {name!a} has no triangles; it is left out")
-            continue
-        for shape, material, texture in _shapes(
-            mesh, _MeshPlace(path, name), table, crease, partial(report, f"Smoothing {path.name}", fraction)
-        ):
-            geometry.meshes.append(Piece(shape, (np.asarray(matrix, np.float64),), material, texture))
+    table, geometry = MaterialTable(path), Geometry()
+    binary = _read_binary(path, lambda done: report(f"Reading {path.name}", 0.5 * done))
+    if binary is not None:
+        model, own_camera, alone, head = None, None, options.studio, binary.head
+        notes = []
+        smoothing = partial(_tell, report, f"Smoothing {path.name}", 0.5, 0.85)
+        geometry.meshes.append(_piece_of_binary(binary, path, table, _crease(options, alone, path), smoothing))
+        del binary
+    else:
+        model, notes, head = _read(path, SceneFiles(path, folders))
+        own_camera = _own_camera(model)
+        alone = options.studio and own_camera is None and not has_lights(model)
+        notes += _add_pieces(model, path, table, geometry, _crease(options, alone, path), report)
     objects, remarks = geometry.objects((), lambda: report(f"Putting {path.name} together", 0.9))
     if not len(objects[0].triangles):
         remarks.append(f"{path}: no triangle; only the background is seen")
     box = bounds(objects, Animation.empty(), 0.0)
     camera = own_camera or framing_camera(box)
-    lights, dark = punctual_lights(model, path, objects, box)
+    lights, dark = punctual_lights(model, path, objects, box) if model is not None else ((), [])
+    del model, geometry  # a studio needs room of its own
+    report(f"Putting {path.name} together", 0.95)
     scene = Scene(
         path=path,
         objects=objects,
@@ -105,19 +103,68 @@ def load_mesh(
         camera=camera,
         animation=Animation.empty(),
         background=(0.6, 0.7, 0.8),
-        warnings=(*troubles, *table.warnings, *skipped, *remarks, *dark),
+        warnings=(*notes, *table.warnings, *remarks, *dark),
     )
-    return _in_studio(scene, options.up, head) if alone and box is not None else scene
+    del objects
+    if not alone or box is None:
+        return scene
+    return _in_studio(scene, options.up, head, lambda: report(f"Setting {path.name} in a studio", 0.95))
 
 
-def _in_studio(scene: Scene, up: str | None, head: bytes) -> Scene:
+def _tell(report: Progress, what: str, begin: float, end: float, done: float) -> None:
+    report(what, begin + (end - begin) * done)
+
+
+def _add_pieces(
+    model: Any, path: Path, table: MaterialTable, geometry: Geometry, crease: float, report: Progress
+) -> list[str]:
+    """Add what is in a trimesh scene to a geometry; returns warnings."""
+    nodes = list(model.graph.nodes_geometry)
+    skipped = []
+    for i, node in enumerate(nodes):
+        begin, end = 0.5 + 0.35 * i / len(nodes), 0.5 + 0.35 * (i + 1) / len(nodes)
+        report(f"Reading {path.name}", begin)
+        matrix, name = model.graph[node]
+        mesh = model.geometry[name]
+        if not hasattr(mesh, "faces") or not len(mesh.faces):
+            skipped.append(f"{path}: {name!a} has no triangles; it is left out")
+            continue
+        smoothing = partial(_tell, report, f"Smoothing {path.name}", begin, end)
+        for shape, material, texture in _shapes(mesh, _MeshPlace(path, name), table, crease, smoothing):
+            geometry.meshes.append(Piece(shape, (np.asarray(matrix, np.float64),), material, texture))
+    return skipped
+
+
+def _read_binary(path: Path, report: Callable[[float], None]) -> BinaryMesh | None:
+    try:
+        return read_binary(path, report)
+    except OSError as error:
+        raise _unreadable(path, error) from None
+
+
+def _unreadable(path: Path, error: OSError) -> SceneError:
+    return SceneError(f"{path}: cannot be read: {error.strerror or error}; check it")
+
+
+def _piece_of_binary(
+    mesh: BinaryMesh, path: Path, table: MaterialTable, crease: float, report: Callable[[float], None]
+) -> Piece[Mesh | IndexedMesh]:
+    normals = mesh.normals
+    if normals is None and crease > 0:
+        normals = creased_normals(mesh.vertices, mesh.faces, crease, report, mesh.place)
+    shape = IndexedMesh(mesh.vertices, mesh.faces, _MeshPlace(path, ONLY_MESH), normals)
+    return Piece(shape, (), table.plain())
+
+
+def _in_studio(scene: Scene, up: str | None, head: bytes, report: Callable[[], None]) -> Scene:
     """The scene with floor, camera and lamps around its triangles; `head` is how its file begins."""
     static = scene.objects[0]
     corners = static.triangles.corners
-    studio = build_studio(corners, up or guess(scene.path, head, corners), len(scene.materials))
+    report()
+    studio = build_studio(corners, up or guess(scene.path, head, corners), len(scene.materials), report)
     return replace(
         scene,
-        objects=(with_floor(static, studio.floor), *scene.objects[1:]),
+        objects=(with_floor(static, studio.floor, report), *scene.objects[1:]),
         materials=(*scene.materials, studio.material),
         lights=studio.lights,
         camera=studio.camera,
@@ -175,7 +222,7 @@ def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str], bytes]:
     try:
         data = read_regular(path)
     except OSError as error:
-        raise SceneError(f"{path}: cannot be read: {error.strerror or error}; check it") from None
+        raise _unreadable(path, error) from None
     try:
         with quiet(), only_known_images():
             readable = with_even_lists(data) if kind.lower() == "ply" else data
@@ -223,12 +270,12 @@ def _check(mesh: Any, path: Path) -> None:
 
 
 def _shapes(
-    mesh: Any, place: _MeshPlace, table: MaterialTable, crease: float, report: Callable[[], None]
+    mesh: Any, place: _MeshPlace, table: MaterialTable, crease: float, report: Callable[[float], None]
 ) -> Iterator[tuple[IndexedMesh, int, int]]:
     """Parts of one material each, with its number and that of the texture; `crease` is the angle in degrees up to which
     edges are rounded where there are no normals."""
     vertices, faces = np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64)
-    normals = _of_vertices(_vertex_normals(mesh), (len(vertices), 3))
+    normals: Float32 | Float64 | None = _of_vertices(_vertex_normals(mesh), (len(vertices), 3))
     if normals is None and crease > 0:
         normals = creased_normals(vertices, faces, crease, report)
     uvs = _of_vertices(getattr(mesh.visual, "uv", None), (len(vertices), 2))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.scene.animation import Chain
-from tracer.scene.arrays import Float64
+from tracer.scene.arrays import Float32, Float64
 
 T = TypeVar("T")
 BLOCK = 1 << 18
@@ -72,10 +72,10 @@ class IndexedMesh:
     """The same as a file has it, in a third of the memory: vertices (k, 3) and faces (n, 3); normals are those
     of corners (n, 3, 3) or of vertices (k, 3), uvs (k, 2) those of vertices."""
 
-    vertices: Float64
-    faces: NDArray[np.int64]
+    vertices: Float32 | Float64
+    faces: NDArray[np.integer]
     place: Place
-    normals: Float64 | None = None
+    normals: Float32 | Float64 | None = None
     uvs: Float64 | None = None
     texture: TextureName | None = None
 
@@ -89,7 +89,9 @@ class IndexedMesh:
             normals = self.normals
             if normals is not None:
                 normals = normals[start : start + BLOCK] if normals.ndim == 3 else normals[faces]
-            yield Mesh(self.vertices[faces], self.place, normals, None if self.uvs is None else self.uvs[faces])
+            wide = None if normals is None else normals.astype(np.float64)
+            corners = self.vertices[faces].astype(np.float64)
+            yield Mesh(corners, self.place, wide, None if self.uvs is None else self.uvs[faces])
 
 
 @dataclass(frozen=True)

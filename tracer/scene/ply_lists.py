@@ -15,19 +15,19 @@ from numpy.typing import NDArray
 from tracer.scene.limits import MOST_PRIMITIVES
 from tracer.scene.tristrips import joined
 
-_LONGEST_HEAD = 1 << 16  # bytes
-_KINDS = {
+LONGEST_HEAD = 1 << 16  # bytes
+KINDS = {
     "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
     "uint16": "u2", "int": "i4", "int32": "i4", "uint": "u4", "uint32": "u4", "float": "f4", "float32": "f4",
     "double": "f8", "float64": "f8",
 }  # fmt: skip
-_CORNERS = ("vertex_indices", "vertex_index")
+CORNERS = ("vertex_indices", "vertex_index")
 
 Places = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
-class _Property:
+class Property:
     """A number, or a list of them after how many there are."""
 
     name: str
@@ -37,12 +37,12 @@ class _Property:
 
 
 @dataclass
-class _Element:
+class Element:
     """What the head says of an element."""
 
     name: str
     number: int
-    properties: list[_Property] = field(default_factory=list)
+    properties: list[Property] = field(default_factory=list)
     lines: list[str] = field(default_factory=list)
 
     @property
@@ -55,12 +55,12 @@ def with_even_lists(data: bytes) -> bytes:
 
     Any other file comes back as it is, also one whose lists are even already.  Raises ValueError where the file ends
     too soon, or its head is damaged."""
-    begin = data.find(b"\n", data.find(b"end_header", 0, _LONGEST_HEAD)) + 1
+    begin = data.find(b"\n", data.find(b"end_header", 0, LONGEST_HEAD)) + 1
     lines = data[:begin].decode("latin-1").splitlines()
     if not lines or lines[0].strip() != "ply" or "format binary" not in lines[1] or "end_header" not in lines[-1]:
         return data
     order = ">" if "big" in lines[1] else "<"
-    elements, others = _elements(lines[:-1], order)
+    elements, others = elements_of(lines[:-1], order)
     vertices = next((one.number for one in elements if one.name == "vertex"), 0)
     if not any(one.has_lists for one in elements) or any(one.has_lists for one in elements if one.name == "vertex"):
         return data
@@ -87,17 +87,18 @@ def with_even_lists(data: bytes) -> bytes:
     return b"".join(["".join(f"{line}\n" for line in [*head, "end_header"]).encode("latin-1"), *body, data[at:]])
 
 
-def _elements(lines: list[str], order: str) -> tuple[list[_Element], list[str]]:
-    """All elements in their order, and the lines of the head that are of none."""
-    elements: list[_Element] = []
+def elements_of(lines: list[str], order: str, most: int = MOST_PRIMITIVES) -> tuple[list[Element], list[str]]:
+    """All elements in their order, and the lines of the head that are of none; raises ValueError where it is damaged,
+    or names more than `most` of an element."""
+    elements: list[Element] = []
     others = []
     for line in lines:
         words = line.split()
         if words[:1] == ["element"]:
             _, name, number = words
-            if not 0 <= int(number) <= MOST_PRIMITIVES:
+            if not 0 <= int(number) <= most:
                 raise ValueError(line)
-            elements.append(_Element(name, int(number), lines=[line]))
+            elements.append(Element(name, int(number), lines=[line]))
         elif words[:1] == ["property"]:
             elements[-1].properties.append(_property(words, order))
             elements[-1].lines.append(line)
@@ -106,20 +107,20 @@ def _elements(lines: list[str], order: str) -> tuple[list[_Element], list[str]]:
     return elements, others
 
 
-def _property(words: list[str], order: str) -> _Property:
+def _property(words: list[str], order: str) -> Property:
     if words[1] == "list":
         _, _, count, said, name = words
-        if _KINDS[count][0] == "f":
+        if KINDS[count][0] == "f":
             raise ValueError(count)
-        return _Property(name, said, np.dtype(order + _KINDS[said]), np.dtype(order + _KINDS[count]))
+        return Property(name, said, np.dtype(order + KINDS[said]), np.dtype(order + KINDS[count]))
     _, said, name = words
-    return _Property(name, said, np.dtype(order + _KINDS[said]))
+    return Property(name, said, np.dtype(order + KINDS[said]))
 
 
 # --- where everything is ------------------------------------------------------------------------------
 
 
-def _end_of_even(data: bytes, at: int, element: _Element) -> int | None:
+def _end_of_even(data: bytes, at: int, element: Element) -> int | None:
     """The byte after an element whose lists are all as long as those of its first row; None where they are not."""
     fields: list[tuple[str, Any]] = []
     lengths = {}
@@ -143,7 +144,7 @@ def _end_of_even(data: bytes, at: int, element: _Element) -> int | None:
     return end if even else None
 
 
-def _places(data: bytes, at: int, element: _Element, order: str) -> tuple[Places, Places, int]:
+def _places(data: bytes, at: int, element: Element, order: str) -> tuple[Places, Places, int]:
     """(rows, properties) where the numbers of each begin and how many they are, and the byte after the element."""
     byteorder: Any = "big" if order == ">" else "little"
     sizes = [
@@ -178,9 +179,9 @@ def _numbers(data: bytes, places: Places, kind: np.dtype[Any]) -> NDArray[Any]:
 # --- what becomes of them -------------------------------------------------------------------------------
 
 
-def _triangles(data: bytes, element: _Element, starts: Places, lengths: Places) -> tuple[list[str], bytes]:
+def _triangles(data: bytes, element: Element, starts: Places, lengths: Places) -> tuple[list[str], bytes]:
     """Faces as triangles around their first corner, each with all else that its face has: head and bytes."""
-    corners = next(n for n, one in enumerate(element.properties) if one.count is not None and one.name in _CORNERS)
+    corners = next(n for n, one in enumerate(element.properties) if one.count is not None and one.name in CORNERS)
     sides = lengths[:, corners]
     number = np.maximum(sides - 2, 0)
     face = np.repeat(np.arange(len(sides)), number)
@@ -207,7 +208,7 @@ def _triangles(data: bytes, element: _Element, starts: Places, lengths: Places) 
 
 
 def _one_strip(
-    data: bytes, element: _Element, starts: Places, lengths: Places, vertices: int, order: str
+    data: bytes, element: Element, starts: Places, lengths: Places, vertices: int, order: str
 ) -> tuple[list[str], bytes]:
     """All strips as a single list: head and bytes."""
     (strips,), size = element.properties, element.properties[0].kind.itemsize

@@ -1,7 +1,7 @@
 """Whether a scene fits into the memory that this machine has left: asked before reading it takes the machine down.
 
 What reading takes is estimated from what the head of a file says, else from its size, by what was measured; what
-showing takes, from the triangles that were read.  Where a system does not tell what memory it has, nothing is asked.
+showing takes, from the triangles that were read.  Where nobody knows what memory there is, nothing is asked.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from tracer.scene.binary_meshes import is_plain
 from tracer.scene.limits import MOST_PRIMITIVES
 from tracer.scene.model import SceneError
 
@@ -20,7 +21,9 @@ ANYHOW = "SHADOWCULL_BEYOND_MEMORY"
 """A variable of the environment: set, no scene is refused for the memory that it needs."""
 
 READING = 750.0
-"""Bytes for each triangle of a mesh, at most, while it is read; for each byte of a text, READING_TEXT."""
+"""Bytes for each triangle of a mesh, at most, while it is read; READING_PLAIN where it is read a part at a time; for
+each byte of a text, READING_TEXT."""
+READING_PLAIN = 300.0
 READING_TEXT = 25.0
 SHOWING = 600.0
 """Bytes for each triangle that its tree, modes, certificates and first pictures take beside the scene."""
@@ -36,9 +39,15 @@ _SIZES = {
 def check_reading(path: Path) -> None:
     """Raise SceneError, in one line, where reading this file needs more memory than there is."""
     with suppress(OSError):  # the reader says what is wrong
-        triangles = triangles_of(path)
-        size = path.stat().st_size
-        _check(path, READING_TEXT * size if triangles is None else READING * triangles, "to be read")
+        _check(path, reading(path), "to be read")
+
+
+def reading(path: Path) -> float:
+    """Bytes that reading this file takes at most, about; raises OSError."""
+    triangles = triangles_of(path)
+    if triangles is None:
+        return READING_TEXT * path.stat().st_size
+    return (READING_PLAIN if is_plain(path) else READING) * triangles
 
 
 def check_showing(path: Path, triangles: int) -> None:
@@ -66,8 +75,18 @@ def available() -> float | None:
 
 
 def _of_system() -> float | None:
-    """What Linux can give away."""
-    return _field(Path("/proc/meminfo"), "MemAvailable:")
+    """What the system can give away."""
+    told = _field(Path("/proc/meminfo"), "MemAvailable:")
+    return _elsewhere() if told is None else told
+
+
+def _elsewhere() -> float | None:
+    """The same on macOS and Windows."""
+    try:
+        import psutil
+    except ImportError:  # on Linux it is not asked for
+        return None
+    return float(psutil.virtual_memory().available)
 
 
 def _of_group() -> float | None:

@@ -8,12 +8,13 @@ far edge, so that there is hardly a horizon.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tracer.scene.arrays import Float32, Float64
+from tracer.scene.framing import extent
 from tracer.scene.lights import Light
 from tracer.scene.model import Camera, Material, Scene, SceneObject, Triangles
 
@@ -35,6 +36,8 @@ _LAMPS = {
 }
 _FLOOR_COLOR = np.array([0.44, 0.45, 0.465])
 _FLOOR_AMBIENT = np.array([0.25, 0.26, 0.275])
+
+_BLOCK = 1 << 20  # points that are looked at together
 
 _UPRIGHT = {
     "y": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
@@ -60,19 +63,21 @@ class Studio:
     background: tuple[float, float, float]
 
 
-def build_studio(corners: Float32, up: str, material: int) -> Studio:
-    """The studio for triangles (n, 3, 3), n > 0, with the floor's material under this number."""
+def build_studio(corners: Float32, up: str, material: int, report: Callable[[], None] = lambda: None) -> Studio:
+    """The studio for triangles (n, 3, 3), n > 0, with the floor's material under this number; `report` is called again
+    and again on the way, and may raise Cancelled."""
     points = np.unique(corners.reshape(-1, 3), axis=0) if len(corners) < 4096 else corners.reshape(-1, 3)
-    points = points.astype(np.float64)
     frame = np.array(_UPRIGHT[up], np.float64)
-    local = points @ frame.T  # right, up, front
-    low, high = local.min(axis=0), local.max(axis=0)
+    ends = np.stack(extent(points)).astype(np.float64) @ frame.T
+    low, high = ends.min(axis=0), ends.max(axis=0)  # a turned box is a box, as the axes are but exchanged
     middle = (low + high) / 2
     radius = float(np.linalg.norm(high - low)) / 2 or 1.0
     away = _towards_camera(high - low)
-    camera = _framing(local, away, frame)
+    report()
+    camera = _framing(points, away, frame, float(np.linalg.norm(high - low)), report)
     # Lower by a hair, so that it never fights with a face at the model's foot over who is seen.
-    ground = low[1] - max(5e-4 * radius, 4.0 * float(np.abs(points).max()) * float(np.finfo(np.float32).eps))
+    largest = float(np.abs(ends).max())
+    ground = low[1] - max(5e-4 * radius, 4.0 * largest * float(np.finfo(np.float32).eps))
     beside = np.array([away[2], 0.0, -away[0]]) / np.hypot(away[0], away[2])
     behind = np.array([away[0], 0.0, away[2]]) / np.hypot(away[0], away[2])
     axes = np.stack([beside, (0.0, 1.0, 0.0), behind])
@@ -90,10 +95,14 @@ def build_studio(corners: Float32, up: str, material: int) -> Studio:
     return Studio(floor, camera, tuple(lights), _floor_material(), _seen(far, frame[1], lights))
 
 
-def with_floor(static: SceneObject, floor: Triangles) -> SceneObject:
-    """Static geometry, and the floor as its last part."""
+def with_floor(static: SceneObject, floor: Triangles, report: Callable[[], None] = lambda: None) -> SceneObject:
+    """Static geometry, and the floor as its last part; `report` as for `build_studio`."""
     t = static.triangles
-    joined = Triangles(*(np.concatenate([getattr(t, f), getattr(floor, f)]) for f in t.__dataclass_fields__))
+    fields = []
+    for name in t.__dataclass_fields__:
+        report()
+        fields.append(np.concatenate([getattr(t, name), getattr(floor, name)]))
+    joined = Triangles(*fields)
     assert static.part_of is not None
     n = len(t)
     part_of = np.insert(static.part_of, n, [len(static.parts)] * len(floor)).astype(np.int32)
@@ -127,17 +136,23 @@ def _towards_camera(size: Float64) -> Float64:
     return np.array([np.sin(turn) * np.cos(rise), np.sin(rise), np.cos(turn) * np.cos(rise)])
 
 
-def _framing(points: Float64, away: Float64, frame: Float64) -> Camera:
-    """The nearest camera in this direction from which all points (n, 3) lie within the inner part of a square frame.
+def _framing(points: Float32, away: Float64, frame: Float64, size: float, report: Callable[[], None]) -> Camera:
+    """The nearest camera in this direction from which all points (n, 3) lie within the inner part of a square frame;
+    `size` is their diagonal.
 
     Each side of the frame bounds a point's place by a plane, so the points that touch are found without a search."""
     across, top, forward = Camera((0.0, 0.0, 0.0), tuple((-away).tolist())).basis()
-    x, y, z = points @ across, points @ top, points @ forward
     slope = FILLED * float(np.tan(np.radians(ANGLE) / 2))
-    right, left = float((x - slope * z).max()), float((-x - slope * z).max())
-    upper, lower = float((y - slope * z).max()), float((-y - slope * z).max())
-    size = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0))) or 1.0
-    back = min(-(right + left) / (2 * slope), -(upper + lower) / (2 * slope), float(z.min()) - 0.05 * size)
+    reach = np.full(5, -np.inf)
+    for start in range(0, len(points), _BLOCK):
+        report()
+        columns = np.ascontiguousarray(points[start : start + _BLOCK].T, np.float64)
+        x, y, z = (sum(a * b for a, b in zip(axis @ frame, columns)) for axis in (across, top, forward))
+        sides = (x - slope * z, -x - slope * z, y - slope * z, -y - slope * z, -z)
+        reach = np.maximum(reach, [side.max() for side in sides])
+    right, left, upper, lower, near = reach.tolist()
+    size = size or 1.0
+    back = min(-(right + left) / (2 * slope), -(upper + lower) / (2 * slope), -near - 0.05 * size)
     position = (right - left) / 2 * across + (upper - lower) / 2 * top + back * forward
     return Camera(tuple((position @ frame).tolist()), tuple((-away @ frame).tolist()), tuple(frame[1].tolist()), ANGLE)
 

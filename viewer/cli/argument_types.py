@@ -16,6 +16,7 @@ from viewer.state.plans import parse_factors
 if TYPE_CHECKING:
     from viewer.state.annotations import Annotation
     from viewer.state.earlier import Earlier
+    from viewer.state.slices import Slice
     from viewer.state.tone import Curve
     from viewer.state.views import View
 
@@ -204,6 +205,27 @@ def view(text: str) -> ChosenView:
     if wipe > 1.0:
         raise argparse.ArgumentTypeError(f"{text!r}: the line of a wipe lies at 0 to 1 of the width")
     return ChosenView(view, int(detail) if view.of_light and detail else 0, wipe, view.needs_work and bool(detail))
+
+
+def slice_(text: str) -> Slice:
+    """An axis and a place along it: x:0.5."""
+    from viewer.state.slices import AXES, MIDDLE, Slice
+
+    axis, colon, at = text.partition(":")
+    if (
+        axis not in AXES
+        or (colon and not re.fullmatch(r"0|1|[01]?\.\d{1,30}", at, re.ASCII))
+        or (colon and float(at) > 1)
+    ):
+        raise argparse.ArgumentTypeError(f"{text!r} is no slice; give an axis and 0 to 1 along it, like y:0.3")
+    return Slice(AXES.index(axis), float(at) if colon else MIDDLE.at)
+
+
+def cube_side(text: str) -> int:
+    """Cells along an edge of a light's cube."""
+    if not re.fullmatch(r"\d{1,9}", text, re.ASCII) or int(text) not in (16, 32, 64, 128, 256, 512, 1024):
+        raise argparse.ArgumentTypeError(f"{text!r} is no power of two from 16 to 1024")
+    return int(text)
 
 
 def lamp_samples(text: str) -> int:

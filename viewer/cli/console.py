@@ -137,7 +137,8 @@ def statistics_table(statistics: FrameStatistics, title: str, verified: bool = F
         table.add_row(f"  {terms.CACHE_HITS}", f"{shadow.cache_hits / due:.1%}", "", f"{shadow.cache_hits:,}")
     table.add_row(f"  {terms.TRACED}", f"{fully_traced(shadow) / due:.1%}", "", f"{fully_traced(shadow):,}")
     if verified:
-        table.add_row(f"  {terms.WRONG}", f"{shadow.wrong / due:.3%}", "", f"{shadow.wrong:,}")
+        of = f"{shadow.wrong / due:.3%}" if statistics.cuts is None else ""  # it counts pixels, not rays
+        table.add_row(f"  {terms.wrong_of(statistics)}", of, "", f"{shadow.wrong:,}")
     if shadow.passed_over:
         table.add_row(f"samples {terms.PASSED_OVER}", "", "", f"{shadow.passed_over:,}")
     if statistics.certificates:

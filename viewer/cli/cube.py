@@ -16,8 +16,9 @@ from viewer.cli.console import print_table, working
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
 from viewer.output.legend import named_light
-from viewer.output.light_cube import counts_of, picture_of
+from viewer.output.light_cube import counts_of, described, picture_of
 from viewer.output.pictures import lights_in_words
+from viewer.util.messages import printable
 
 
 def cube(path: Path, options: Namespace) -> None:
@@ -37,11 +38,13 @@ def cube(path: Path, options: Namespace) -> None:
         assert isinstance(method, LightBuffer)
         found = method.cube_of(options.light)
     if found is None:
-        raise ValueError(f"--light {options.light}: it has no light buffer, and its shadow rays are traced")
+        why = method.why_not(options.light) or "there is nothing static"
+        raise ValueError(f"--light {options.light} has no light buffer, and its shadow rays are traced: {why}")
     options.output.parent.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(picture_of(found)).save(options.output)
+    name = named_light(scene.lights, options.light)
+    Image.fromarray(picture_of(found) if options.no_legend else described(found, name)).save(options.output)
     counts = counts_of(found)
-    table = Table(title=f"{path.name}, {named_light(scene.lights, options.light)}, {time:.3f} s", title_justify="left")
+    table = Table(title=f"{path.name}, {name}, {time:.3f} s", title_justify="left")
     table.add_column("cells of its cube")
     table.add_column("", justify="right")
     for name, number in zip(("nothing there", "covered", "few candidates", "others"), counts, strict=True):
@@ -49,3 +52,4 @@ def cube(path: Path, options: Namespace) -> None:
     table.add_row("memory", f"{found.bytes / 1e6:.1f} MB")
     table.add_row("building, all lights", f"{1e3 * frame.statistics.phases['certification']:.0f} ms")
     print_table(table)
+    print(printable(options.output))

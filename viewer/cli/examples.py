@@ -152,8 +152,9 @@ examples:
   shadowcull cube default --light 1 -o cube.png
   shadowcull cube kitchen.aff --side 512 --accelerator kdtree
 
-Cells with nothing in them are yellow, those that one triangle covers blue; those with candidates go from violet, for
-one, to yellow green, for eight, and those with more are grey.
+Left, cells with nothing in them are white, and those that one triangle covers blue; those with a list of candidates go
+from violet, for one, to yellow, for the longest list there is, and those with more than eight are grey. Right is the
+distance at which full shadow begins. The legends have the numbers.
 """
 
 EXPLAIN = """\

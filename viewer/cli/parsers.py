@@ -15,6 +15,7 @@ from viewer.cli.argument_types import (
     BeyondMemory,
     before,
     count,
+    cube_side,
     factors,
     lamp_samples,
     method,
@@ -171,12 +172,13 @@ def cube() -> Parser:
     add("--light", type=count(0, 2**31 - 1), default=0, metavar="N", help="which light (default: 0)")
     add(
         "--side",
-        type=count(16, 1024),
+        type=cube_side,
         default=256,
         metavar="N",
-        help="cells along an edge, a power of two (default: 256)",
+        help="cells along an edge, a power of two from 16 to 1024 (default: 256)",
     )
     add("-o", "--output", type=Path, default=Path("cube.png"), metavar="FILE", help="the picture (default: cube.png)")
+    add("--no-legend", action="store_true", help="a pixel for each cell, without legends")
     add_moment(parser)
     add_tracing_options(parser, "bvh8")
     parser.set_defaults(verify=False, samples=1, size=(16, 16), zoom_factor=4.0)

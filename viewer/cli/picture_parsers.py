@@ -15,6 +15,7 @@ from viewer.cli.argument_types import (
     place,
     several,
     size,
+    slice_,
     span,
     tev_address,
     values,
@@ -69,8 +70,8 @@ def _add_picture(parser: Parser) -> None:
         default="color",
         metavar="V",
         help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference, "
-        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, lights, saved or cost, as counts of rays or as shares like "
-        "saved:share (default: color)",
+        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, lights, cuts, voxels:LIGHT, cell-lights, saved or cost, as "
+        "counts of rays or as shares like saved:share (default: color)",
     )
     add("--legend", action="store_true", help="draw the view's legend into the picture")
     _add_display(parser)
@@ -169,6 +170,7 @@ def _add_display(parser: Parser) -> None:
 
 def _add_style(parser: Parser) -> None:
     """How `render` draws, beside the view."""
+    from viewer.state.slices import MIDDLE
     from viewer.state.views import BENEATH
 
     add = parser.add_argument
@@ -178,7 +180,9 @@ def _add_style(parser: Parser) -> None:
     add("--outlines", action="store_true", help="draw the borders between primitives")
     help_ = "how much of the light shows under flat colours, 0 to 1 (default: 0.35)"
     add("--shading", type=number(0.0, 1.0), default=0.35, metavar="S", help=help_)
-    help_ = f"brightness of the picture beneath the difference, 0 to 1 (default: {BENEATH:g})"
+    help_ = "the slice of the view voxels: across which axis, and where along it, 0 to 1 (default: y:0.25)"
+    add("--slice", type=slice_, default=MIDDLE, metavar="AXIS:PART", help=help_)
+    help_ = f"brightness of the picture beneath the difference, and behind a slice, 0 to 1 (default: {BENEATH:g})"
     add("--beneath", type=number(0.0, 1.0), default=BENEATH, metavar="B", help=help_)
     help_ = "draw rings for a picture that is shown N times as large (default: 1)"
     add("--magnified", type=count(1, 100), default=1, metavar="N", help=help_)

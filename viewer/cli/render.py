@@ -32,6 +32,7 @@ from viewer.services.lamps import LampSamples
 from viewer.state import terms
 from viewer.state.methods import CERTIFIED, default_for
 from viewer.state.readings import MOST_RECORDED
+from viewer.state.slices import MIDDLE
 from viewer.state.tone import Tone
 from viewer.state.views import View
 from viewer.util.files import check_writable, write_whole
@@ -63,6 +64,7 @@ def render(path: Path, options: Namespace) -> None:
     if not options.print_command:
         _check_outputs(options.output, options.buffers, options.to_tev is not None)
     check_certificates(settings, view)
+    check_view(settings, view)
     check_display(options)
     with working() as work:
         read = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
@@ -128,6 +130,7 @@ def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) 
         tone=_tone(options),
         clipping=options.mark_clipped,
         span=options.range,
+        cut=options.slice,
     )
     time = moment(scene, options.frame, options.time)
     history = ""
@@ -198,9 +201,19 @@ def check_display(options: Namespace) -> None:
         raise ValueError(f"--exposure, --white and --tone are for pictures: --view {view.value} shows none")
     if options.mark_clipped and not view.shows_clipped:
         raise ValueError(f"--mark-clipped is for the views color and wipe, not {view.value}")
+    if options.slice != MIDDLE and not view.has_slice:
+        raise ValueError(f"--slice is for the view voxels, not {view.value}")
     if options.range is not None and (not view.has_range or shares):
         names = ", ".join(one.value for one in View if one.has_range)
         raise ValueError(f"--range is for views of numbers: {names}{' as counts' if shares else ''}")
+
+
+def check_view(settings: Settings, view: View) -> None:
+    """Raise ValueError, in one line, where the method has nothing for a view of what single methods have."""
+    method = Method.parse(settings.method)
+    shows = {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}.get(view)
+    if shows is not None and not any(name == method.base or method.has(name) for name in shows):
+        raise ValueError(f"--view {view.value}: not with the method {settings.method}; give --method {shows[0]}")
 
 
 def write_picture(path: Path, scene: Scene, frame: Frame, wanted: Recipe) -> None:

@@ -38,7 +38,7 @@ def defaults(path: Path) -> tuple[Path, dict[str, Any]]:
     kept |= {"no_marks": not saved.style.marked}
     kept |= {"legend": saved.style.legend is not None, "legend_at": saved.style.legend}
     kept |= {"exposure": saved.style.tone.exposure, "white": saved.style.tone.white, "tone": saved.style.tone.curve}
-    kept |= {"mark_clipped": saved.style.clipping, "range": saved.style.span}
+    kept |= {"mark_clipped": saved.style.clipping, "range": saved.style.span, "slice": saved.style.cut}
     kept["caption"] = saved.style.caption.replace("{", "{{").replace("}", "}}")
     if size is not None:
         kept["size"] = size

@@ -86,7 +86,7 @@ class Shown:
         return {
             method: picture(
                 frame, view, self.recipe.light, style.shading, style.marked, self.recipe.wipe, style.shares,
-                style.beneath, style.outlines, 1, style.tone, style.clipping, self.span,
+                style.beneath, style.outlines, 1, style.tone, style.clipping, self.span, style.cut,
             )
             for method, frame in self.frames.items()
         }  # fmt: skip

@@ -18,6 +18,7 @@ from tracer.scene.lights import Light, number_of
 from tracer.statistics import CutErrors
 from viewer.output.legend_counts import (
     LegendRow,
+    cell_lights_legend,
     certificate_legend,
     cuts_legend,
     difference_legend,
@@ -25,10 +26,12 @@ from viewer.output.legend_counts import (
     occlusion_legend,
     penumbra_legend,
     shadow_legend,
+    voxels_legend,
     work_legend,
 )
 from viewer.state import terms
-from viewer.state.readings import can_draw, has_modes_of_cells, span_of
+from viewer.state.readings import can_draw, has_modes_of_cells, span_of, voxels_of
+from viewer.state.slices import AXES, MIDDLE, STATE_NAMES, Slice, middle_of
 from viewer.state.tone import NEUTRAL, clipped
 from viewer.state.tone import Tone as DisplayTone
 from viewer.state.views import (
@@ -37,6 +40,8 @@ from viewer.state.views import (
     BLACK,
     GREY,
     TOO_BRIGHT,
+    VOXEL_COLORS,
+    VOXEL_MEANING,
     WRONG,
     Arrival,
     Color,
@@ -101,7 +106,8 @@ class Legend:
 @dataclass(frozen=True)
 class Chosen:
     """What else is chosen of a view: its light, with its name and number, whether wrong pixels are marked,
-    shares of rays, the range of its numbers, the tone of its picture, and whether what this clips is marked."""
+    shares of rays, the range of its numbers, the tone of its picture, whether what this clips is marked, and the slice
+    through space."""
 
     light: int = 0
     light_name: str = ""
@@ -111,6 +117,7 @@ class Chosen:
     tone: DisplayTone = NEUTRAL
     clipping: bool = False
     light_number: int | None = None
+    cut: Slice = MIDDLE
 
     @property
     def number(self) -> int:
@@ -136,6 +143,8 @@ def legend_of(frame: Frame, view: View, chosen: Chosen = Chosen()) -> Legend | N
         View.PENUMBRA: _penumbra,
         View.LIGHTS: _lights,
         View.CUTS: _cuts,
+        View.VOXELS: _voxels,
+        View.CELL_LIGHTS: _cell_lights,
     }
     return makers[view](frame, view, chosen) if view in makers and can_draw(frame, view, chosen.light) else None
 
@@ -297,13 +306,52 @@ def _cuts(frame: Frame, view: View, chosen: Chosen) -> Legend:
     found = cuts_legend(frame)
     facts = (
         Entry("per pixel", values=(f"{found.per_pixel:.4g} for {count(found.lights)} lights",)),
-        Entry("bound of the error", None, (f"{percent(found.bound, 1.0)} of the light",), _BOUND),
+        Entry("each may be wrong by", None, (f"{percent(frame.settings.lightcuts_error, 1.0)} of the light",), _EACH),
+        Entry("all of them together", None, (f"{percent(found.bound, 1.0)} at most",), _BOUND),
     )
     entries = (Entry(_ARRIVALS[Arrival.UNKNOWN], GREY),) if found.unknown else ()
     scale = Scale("0", count(found.most), count(found.most // 2) if found.most % 2 == 0 else "")
     if chosen.span is not None:
         scale = Scale(f"{chosen.span[0]:.4g}", f"{chosen.span[1]:.4g}")
     return Legend("Clusters of lights that each pixel is shaded by", (), entries, scale, facts)
+
+
+def _voxels(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    states, found = voxels_of(frame), voxels_legend(frame, chosen.light, chosen.cut)
+    axis, grid = AXES[chosen.cut.axis], states.grid
+    title = f"{view.label}, {light_in_words(chosen.number, chosen.light_name)}"
+    if not states.known[chosen.light]:
+        why = "Nothing is known of this light: it is a lamp, or past those that there is room for; its rays are traced."
+        return Legend(title, notes=(Note(why, Tone.WARNING),))
+    entries = tuple(
+        Entry(
+            STATE_NAMES[state],
+            VOXEL_COLORS[state],
+            (percent(found.in_slice[state], sum(found.in_slice)), percent(found.in_all[state], grid.voxels)),
+            f"{VOXEL_MEANING[state]}. {count(found.in_all[state])} voxels in all",
+        )
+        for state in (1, 2, 0)
+    )
+    layer = chosen.cut.layer(states.shape)
+    facts = (
+        Entry(f"slice at {axis}", None, (f"{middle_of(grid, chosen.cut):.4g}",), "the middles of a layer of voxels"),
+        Entry("layer", None, (f"{count(layer)} of {count(states.shape[chosen.cut.axis])}",), "counted from 0"),
+        Entry("grid", None, (" x ".join(str(n) for n in states.shape),), f"of voxels that are {grid.side:.3g} wide"),
+    )
+    return Legend(title, ("slice", "all"), entries, facts=facts)
+
+
+def _cell_lights(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    found = cell_lights_legend(frame)
+    facts = (
+        Entry("per pixel", values=(f"{found.per_pixel:.4g} of {count(frame.lights)} lights",), meaning=_PER_CELL),
+        Entry("cells in view", values=(count(found.cells),)),
+    )
+    entries = (Entry(_ARRIVALS[Arrival.UNKNOWN], GREY),) if found.unknown else ()
+    scale = Scale("0", count(found.most), count(found.most // 2) if found.most % 2 == 0 else "")
+    if chosen.span is not None:
+        scale = Scale(f"{chosen.span[0]:.4g}", f"{chosen.span[1]:.4g}")
+    return Legend("Lights that the cell must look at", (), entries, scale, facts)
 
 
 def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
@@ -358,9 +406,14 @@ def _cut_errors(errors: CutErrors) -> tuple[Entry, ...]:
 _ERRORS = (
     "by what part of its light a pixel differs from the picture by all lights; darker ones than 1/64 as if that bright"
 )
+_EACH = "the chosen error: clusters are parted until each alone is wrong by no more than this part of a pixel's light"
 _BOUND = (
-    "by what part of its light a pixel can be wrong if every cluster is as wrong as it can be, and none makes up for "
-    "another: the middle of all pixels. What is wrong in fact is a small part of that."
+    "the sum over the clusters of a pixel, each within its own error: by what part of its light the pixel would be "
+    "wrong if every cluster were as wrong as it can be, all in the same direction; the middle of all pixels. What is "
+    "wrong in fact, as Verify tells, is a small part of that."
+)
+_PER_CELL = (
+    "those that are not known to be hidden from all of the cell: they light all of it, or something may block them"
 )
 _SHARE = "of the samples that pixels in the penumbra face, those that reach them"
 _BY_MODES = "of this frame, at all bounces, by the modes after the frame before: what the paper's method saves"

@@ -13,16 +13,19 @@ from tracer.frame import Frame
 from viewer.state.readings import (
     CUT_BOUND,
     arrivals,
+    cell_lights,
     cut_nodes,
     lights_due,
     lights_top,
     samples_of,
     units_of,
     verified,
+    voxels_of,
     whole_of,
     work_of,
     work_top,
 )
+from viewer.state.slices import Slice
 from viewer.state.views import (
     CERTIFICATE_COLORS,
     CERTIFICATE_MEANING,
@@ -200,6 +203,44 @@ def cuts_legend(frame: Frame) -> CutsLegend:
     lights = 0 if frame.statistics.cuts is None else frame.statistics.cuts.lights
     per_pixel = float(nodes[seen].mean()) if seen.any() else 0.0
     return CutsLegend(lights, per_pixel, lights_top(nodes), bound, bool((hit & ~seen).any()))
+
+
+@dataclass(frozen=True)
+class VoxelsLegend:
+    """How many voxels of a slice, and in all, are unknown, full and null, in this order."""
+
+    in_slice: tuple[int, int, int]
+    in_all: tuple[int, int, int]
+
+
+def voxels_legend(frame: Frame, light: int, cut: Slice) -> VoxelsLegend:
+    """Of a frame by a method that has voxels; raises ValueError for another."""
+    states = voxels_of(frame)
+    numbers = np.arange(states.grid.voxels).reshape(states.shape)
+    layer = np.take(numbers, cut.layer(states.shape), axis=cut.axis)
+    found = np.bincount(states.states(light, layer).reshape(-1), minlength=3)
+    return VoxelsLegend((int(found[0]), int(found[1]), int(found[2])), states.counts(light))
+
+
+@dataclass(frozen=True)
+class CellLightsLegend:
+    """How many lights the cells of primary pixels must look at, on average and at most; how many cells are in view; and
+    whether of some pixels this is not known yet."""
+
+    per_pixel: float
+    most: int
+    cells: int
+    unknown: bool
+
+
+def cell_lights_legend(frame: Frame) -> CellLightsLegend:
+    """Of a frame whose cells know which lights they must look at; raises ValueError for another."""
+    asked, hit = cell_lights(frame), frame.primitive >= 0
+    seen = hit & (asked >= 0)
+    cells = len(np.unique(frame.cell[seen])) if seen.any() else 0
+    return CellLightsLegend(
+        float(asked[seen].mean()) if seen.any() else 0.0, lights_top(asked), cells, bool((hit & ~seen).any())
+    )
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,8 @@ left, along +x, +z, -x and -z; above and below +z, up and down.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -14,10 +16,16 @@ from numpy.typing import NDArray
 
 from tracer.culling.lightbuffer.cubes import Cube
 from tracer.culling.lightbuffer.tell import full_depths, list_lengths
-from viewer.state.views import BACKGROUND, GREY, SHADOW_COLORS, ShadowMode, color_map
+from viewer.output.legend import Entry, Legend, Scale
+from viewer.output.legend_picture import with_legend
+from viewer.state.views import BACKGROUND, GREY, SHADOW_COLORS, Color, ShadowMode, color_map
+from viewer.util.numbers import count, percent
 
 _CROSS = {(1, 0): "+x", (1, 1): "+z", (1, 2): "-x", (1, 3): "-z", (0, 1): "+y", (2, 1): "-y"}  # row and column
 _GAP = 0.06  # of a face's side, between the crosses
+READABLE = 256  # pixels of a face beside which there is room for a legend
+NOTHING_THERE: Color = (0.93, 0.94, 0.96)
+COVERED: Color = SHADOW_COLORS[ShadowMode.FULL_SHADOW]
 
 
 class CellCounts(NamedTuple):
@@ -75,27 +83,138 @@ def counts_of(cube: Cube) -> CellCounts:
     )
 
 
-def picture_of(cube: Cube) -> NDArray[np.uint8]:
-    """(h, w, 3) uint8, row 0 at the top: what is known of each cell, and beside it where shadow begins.
+@dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
+class CubeSeen:
+    """A cube as it is drawn: `lengths` (6, side, side) int32 of the lists of its cells, -1 where these are too long, or
+    where only one triangle is there, which covers the cell (`covered`); and the distances at which full shadow begins,
+    `depths` (6, side, side) float32, inf for nowhere."""
 
-    Cells with nothing in them have the colour of NON_SHADOW, those that one triangle covers that of FULL_SHADOW, those
-    with few candidates colours from one on, and others are grey.  Depths go from the nearest to the farthest, in their
-    logarithms; where nothing covers a cell there is only the background."""
-    lengths, depths = list_lengths(cube), full_depths(cube)
-    colors, background = color_map(), np.array(BACKGROUND, np.float32)
-    longest = max(2, int(lengths.max()))
-    steps = np.clip((lengths - 1) * 255 // (longest - 1), 0, 255)
-    known = colors[steps]
-    known[lengths == 0] = SHADOW_COLORS[ShadowMode.NON_SHADOW]
-    known[lengths < 0] = GREY
-    known[(lengths < 0) & np.isfinite(depths)] = SHADOW_COLORS[ShadowMode.FULL_SHADOW]
-    far = np.broadcast_to(background, known.shape).copy()
-    there = np.isfinite(depths)
-    if there.any():
-        logarithms = np.log(depths[there])
-        least, most = float(logarithms.min()), float(logarithms.max())
-        far[there] = colors[np.round((logarithms - least) * (255.0 / max(most - least, 1e-6))).astype(int)]
-    crosses = [unfolded(cells, background) for cells in (known, far)]
-    gap = np.broadcast_to(background, (crosses[0].shape[0], max(1, round(_GAP * cube.side)), 3))
-    whole = np.concatenate([crosses[0], gap, crosses[1]], axis=1)
-    return np.round(np.clip(whole, 0.0, 1.0) * 255.0).astype(np.uint8)
+    lengths: NDArray[np.int32]
+    depths: NDArray[np.float32]
+
+    @cached_property
+    def covered(self) -> NDArray[np.bool_]:
+        """(6, side, side): cells of one triangle that covers them, before which there is nothing."""
+        return (self.lengths < 0) & np.isfinite(self.depths)
+
+    @property
+    def longest(self) -> int:
+        """What has the last colour of the map of lengths: the longest list, 2 at least."""
+        return max(2, int(self.lengths.max(initial=0)))
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """The least and the largest distance at which full shadow begins; 1 and 1 where it begins nowhere."""
+        there = self.depths[np.isfinite(self.depths)]
+        return (float(there.min()), float(there.max())) if len(there) else (1.0, 1.0)
+
+    @cached_property
+    def list_colors(self) -> NDArray[np.float32]:
+        """(6, side, side, 3): what is known of each cell."""
+        steps = np.clip((self.lengths - 1) * 255 // (self.longest - 1), 0, 255)
+        found = color_map()[steps]
+        found[self.lengths == 0] = NOTHING_THERE
+        found[self.lengths < 0] = GREY
+        found[self.covered] = COVERED
+        return found
+
+    @cached_property
+    def depth_colors(self) -> NDArray[np.float32]:
+        """(6, side, side, 3): where full shadow begins, by the logarithms of distances; background for nowhere."""
+        there, (least, most) = np.isfinite(self.depths), np.log(self.range)
+        found = np.broadcast_to(np.array(BACKGROUND, np.float32), (*self.depths.shape, 3)).copy()
+        logarithms = np.log(self.depths[there])
+        places = np.round((logarithms - least) * (255.0 / max(most - least, 1e-6))).astype(int)
+        found[there] = color_map()[np.clip(places, 0, 255)]
+        return found
+
+
+def seen(cube: Cube) -> CubeSeen:
+    """What is drawn of a cube."""
+    return CubeSeen(list_lengths(cube), full_depths(cube))
+
+
+def cell_at(side: int, x: int, y: int) -> tuple[int, int, int] | None:
+    """(face, row, column) of the cell in a column and a row of the cross; None beside it."""
+    face = _CROSS.get((y // side, x // side))
+    if face is None:
+        return None
+    ways = _ways(face, side)[y % side, x % side]
+    axis = "xyz".index(face[1])
+    across, along = (int((ways[k] + 1.0) * (0.5 * side)) for k in range(3) if k != axis)
+    return 2 * axis + (face[0] == "-"), along, across
+
+
+def cross_of(colors: NDArray[np.float32], enlarged: int = 1) -> NDArray[np.uint8]:
+    """(3 side, 4 side, 3) uint8, or so many times as large: colours of cells, unfolded."""
+    cross = np.round(np.clip(unfolded(colors, np.array(BACKGROUND, np.float32)), 0.0, 1.0) * 255.0).astype(np.uint8)
+    return cross.repeat(enlarged, 0).repeat(enlarged, 1)
+
+
+def picture_of(cube: Cube) -> NDArray[np.uint8]:
+    """(h, w, 3) uint8, row 0 at the top: what is known of each cell, and beside it where shadow begins; a pixel for
+    each cell.
+
+    Cells with nothing in them are white, those that one triangle covers have the colour of FULL_SHADOW, those with few
+    candidates colours from one to the most that any has, and others are grey.  Depths go from the nearest to the
+    farthest, in their logarithms; where nothing covers a cell there is only the background."""
+    drawn = seen(cube)
+    return _beside(cross_of(drawn.list_colors), cross_of(drawn.depth_colors))
+
+
+def described(cube: Cube, light: str) -> NDArray[np.uint8]:
+    """The same, large enough for the legends of both, which say what light it is."""
+    drawn = seen(cube)
+    enlarged = max(1, -(-READABLE // cube.side))
+    crosses = []
+    for colors, legend in (
+        (drawn.list_colors, lists_legend(drawn, light)),
+        (drawn.depth_colors, depths_legend(drawn, light)),
+    ):
+        cross = cross_of(colors, enlarged)
+        side = cross.shape[0] // 3
+        corner = cross[2 * side :, 2 * side :]  # there is no face there
+        told = with_legend(np.ascontiguousarray(corner), legend, (1.0, 1.0))
+        if told is not None:
+            cross = cross.copy()
+            cross[2 * side :, 2 * side :] = told
+        crosses.append(cross)
+    return _beside(*crosses)
+
+
+def _beside(left: NDArray[np.uint8], right: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    background = np.round(np.array(BACKGROUND) * 255.0).astype(np.uint8)
+    gap = np.broadcast_to(background, (left.shape[0], max(1, round(_GAP * left.shape[0] / 3)), 3))
+    return np.concatenate([left, gap, right], axis=1)
+
+
+def lists_legend(drawn: CubeSeen, light: str) -> Legend:
+    """Of what is known of each cell."""
+    cells = drawn.lengths.size
+    rows = (
+        ("nothing there", NOTHING_THERE, drawn.lengths == 0, "nothing is in the way of any ray in this direction"),
+        ("covered by one triangle", COVERED, drawn.covered, "before it there is nothing, behind it all is in shadow"),
+        (
+            "longer lists",
+            GREY,
+            (drawn.lengths < 0) & ~drawn.covered,
+            "more than are tested: rays are traced",
+        ),
+    )
+    entries = tuple(
+        Entry(name, color, (percent(int(where.sum()), cells),), f"{meaning}: {count(int(where.sum()))} cells")
+        for name, color, where, meaning in rows
+    )
+    listed = int((drawn.lengths > 0).sum())
+    facts = (Entry("with a list", None, (percent(listed, cells),), "of candidates, that rays are tested against"),)
+    scale = Scale("1", f"{drawn.longest}", "in the list")
+    return Legend(f"What {light} sees: lists", ("cells",), entries, scale, facts)
+
+
+def depths_legend(drawn: CubeSeen, light: str) -> Legend:
+    """Of where full shadow begins."""
+    near, far = drawn.range
+    there = np.isfinite(drawn.depths)
+    entries = (Entry("nowhere", BACKGROUND, (percent(int((~there).sum()), there.size),), "nothing covers these cells"),)
+    scale = Scale(f"{near:.3g}", f"{far:.3g}", f"{float(np.sqrt(near * far)):.3g}")
+    return Legend("Full shadow begins at a distance of", ("cells",), entries, scale)

@@ -17,14 +17,17 @@ from viewer.output.legend_counts import certificates_of
 from viewer.state.marks import Mark, wipe_column, wrong_marks
 from viewer.state.readings import (
     arrivals,
+    cell_lights,
     cut_nodes,
     lights_due,
     samples_of,
     span_of,
     units_of,
+    voxels_of,
     whole_of,
     work_of,
 )
+from viewer.state.slices import LINE, MIDDLE, NOTHING, STATE, Slice, slice_codes
 from viewer.state.tone import NEUTRAL, Tone, clipped, toned
 from viewer.state.views import (
     ARRIVAL_COLORS,
@@ -34,11 +37,13 @@ from viewer.state.views import (
     CELL_LINE,
     CERTIFICATE_COLORS,
     CLIP_STRIPE,
+    FAINT_LINE,
     GREY,
     OCCLUSION_COLORS,
     RING_DIMMING,
     SHADOW_COLORS,
     TOO_BRIGHT,
+    VOXEL_COLORS,
     WIPE_LINE,
     WRONG,
     Arrival,
@@ -69,14 +74,16 @@ def picture(
     tone: Tone = NEUTRAL,
     clipping: bool = False,
     span: tuple[float, float] | None = None,
+    cut: Slice = MIDDLE,
 ) -> NDArray[np.uint8]:
     """(height, width, 3) uint8, row 0 at the top: a frame in one of its views.
 
     `light` is the light that views of one light speak of, `marked` draws rings around wrong pixels, and `wipe` is the
     place of the wipe's line, 0 to 1 from the left.  Maps of work show counts of rays, or `shares`; `beneath` is the
-    brightness of the picture beneath the difference.  `outlines` draws the borders between primitives, and rings are
-    for a picture that is shown `magnified` times.  Pictures have a `tone`, and stripes where the screen cuts them off
-    if `clipping`; maps of numbers go over `span`, by default over what the frame has.
+    brightness of the picture beneath the difference, and behind the slice `cut` through space.  `outlines` draws the
+    borders between primitives, and rings are for a picture that is shown `magnified` times.  Pictures have a `tone`,
+    and stripes where the screen cuts them off if `clipping`; maps of numbers go over `span`, by default over what the
+    frame has.
 
     Raises ValueError where there is no such light, or where the view is one of verified frames, or of what was
     recorded, and the frame is not.
@@ -99,6 +106,10 @@ def picture(
         colors = _on_background(frame, _counted(lights_due(frame), span or span_of(frame, view)))
     elif view is View.CUTS:
         colors = _on_background(frame, _counted(cut_nodes(frame), span or span_of(frame, view)))
+    elif view is View.CELL_LIGHTS:
+        colors = _on_background(frame, _cell_lights(frame, span or span_of(frame, view)))
+    elif view is View.VOXELS:
+        colors = _voxels(frame, light, beneath, outlines, tone, cut)
     elif view is View.DEPTH:
         colors = _on_background(frame, _depth(frame, span))
     elif view is View.NORMAL:
@@ -108,7 +119,7 @@ def picture(
         entries = _shadow(frame, light) if view is View.SHADOW else table[view](frame)
         numbers = frame.primitive if view is View.PRIMITIVE else units_of(frame)
         colors = _on_background(frame, _shaded(frame, _per_pixel(numbers, entries), shading))
-    if outlines and not view.needs_verify:  # those draw over the borders
+    if outlines and not (view.needs_verify or view.has_slice):  # those draw over the borders
         colors = _outlined(frame, colors)
     return np.round(np.clip(colors, 0.0, 1.0) * 255.0).astype(np.uint8)
 
@@ -195,6 +206,30 @@ def _displayed(color: NDArray[np.float32], tone: Tone, clipping: bool) -> NDArra
 def _counted(numbers: NDArray[np.int32], span: tuple[float, float]) -> NDArray:
     """By numbers (h, w) of lights, or of clusters of them, by their range; grey where that is not known yet."""
     return np.where((numbers >= 0)[..., None], _mapped(_in_range(numbers, span)), np.asarray(GREY, np.float32))
+
+
+def _cell_lights(frame: Frame, span: tuple[float, float]) -> NDArray:
+    """By the lights that cells must look at, and darker lines between cells."""
+    colors = _counted(cell_lights(frame), span)
+    colors[_on_line(frame.cell)] *= FAINT_LINE
+    return colors
+
+
+def _voxels(frame: Frame, light: int, beneath: float, outlines: bool, tone: Tone, cut: Slice) -> NDArray:
+    """A slice through voxels, by their states, over the dimmed picture."""
+    codes, colors = (
+        slice_codes(frame, voxels_of(frame), light, cut),
+        beneath * np.clip(toned(frame.color, tone), 0.0, 1.0),
+    )
+    colors = _on_background(frame, colors)
+    if outlines:
+        colors = _outlined(frame, colors)
+    palette = np.asarray(list(VOXEL_COLORS.values()), np.float32)
+    there = codes != NOTHING
+    sliced = palette[codes[there] & STATE]
+    sliced[codes[there] & LINE != 0] *= np.float32(CELL_LINE)
+    colors[there] = sliced
+    return colors
 
 
 def _outlined(frame: Frame, colors: NDArray) -> NDArray:

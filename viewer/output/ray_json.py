@@ -70,6 +70,7 @@ def _shadow_ray(tree: RayTree, s: ShadowRays, place: int, scene: Scene) -> dict[
         "intersection_tests": int(s.tests[place]),
         "names": list(s.named.get(place, ())),
         "known": s.known.get(place),
+        "told": s.told.get(place),
     }
 
 

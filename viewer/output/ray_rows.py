@@ -195,6 +195,8 @@ class RayRows:
     def _tip(self, s: ShadowRays, place: int) -> str:
         verdict = VERDICTS[s.verdict[place]]
         parts = [WHY_TRACED.get(s.known.get(place, ""), MEANING[verdict])]
+        if place in s.told:
+            parts.append(s.told[place])
         if place in s.named:
             names = [self.name(number) for number in s.named[place][:MOST_NAMED]]
             more = len(s.named[place]) - len(names)

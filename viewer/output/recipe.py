@@ -30,6 +30,7 @@ from viewer.state.earlier import from_json as earlier_from_json
 from viewer.state.earlier import to_json as earlier_to_json
 from viewer.state.marks import wipe_column
 from viewer.state.session import Snapshot, settings_to_json
+from viewer.state.slices import MIDDLE, Slice
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import BENEATH, View
 from viewer.util import resources
@@ -43,7 +44,8 @@ class Style:
     """How a frame is drawn, without tracing it: shares instead of counts in maps of work, rings around wrong pixels for
     a picture that is shown `magnified` times, how much of the light shows under flat colours, how bright the picture
     beneath the difference is, borders between primitives, where the legend is if there is one, the caption, what was
-    drawn on it, the tone of its colours, whether what this clips is marked, and the range of a map of numbers."""
+    drawn on it, the tone of its colours, whether what this clips is marked, the range of a map of numbers, and the
+    slice `cut` through space."""
 
     shares: bool = False
     marked: bool = True
@@ -57,6 +59,7 @@ class Style:
     tone: Tone = NEUTRAL
     clipping: bool = False
     span: tuple[float, float] | None = None
+    cut: Slice = MIDDLE
 
 
 @dataclass(frozen=True)
@@ -106,13 +109,13 @@ class Recipe:
         follow, style = self.camera is None, self.style
         return Snapshot(
             path, self.time, camera, follow, settings, self.view, self.light, self.wipe,
-            tone=style.tone, span=style.span, meshes=self.meshes, edits=self.edits,
+            tone=style.tone, span=style.span, meshes=self.meshes, edits=self.edits, cut=style.cut,
         )  # fmt: skip
 
     def to_json(self) -> dict[str, Any]:
         """What a capture carries beside its state."""
         style = asdict(self.style) | {"annotations": [a.to_json() for a in self.style.annotations]}
-        del style["tone"], style["span"]  # these are of its state
+        del style["tone"], style["span"], style["cut"]  # these are of its state
         return {
             "accelerator": self.settings.accelerator,
             "threads": self.settings.threads if self.by_one_thread else 0,
@@ -159,7 +162,7 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Re
             view=snapshot.view,
             light=snapshot.light,
             wipe=snapshot.wipe,
-            style=replace(_style(data.get("style", {})), tone=snapshot.tone, span=snapshot.span),
+            style=replace(_style(data.get("style", {})), tone=snapshot.tone, span=snapshot.span, cut=snapshot.cut),
             warmup=_count(data, "warmup"),
             repeats=_count(data, "repeats"),
             history=str(data.get("history", "")),
@@ -249,6 +252,8 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         words += ["--legend-at", f"{style.legend[0]!r},{style.legend[1]!r}"]
     if style.span is not None:
         words += [f"--range={style.span[0]!r}:{style.span[1]!r}"]
+    if view.has_slice and style.cut != usual.cut:
+        words += ["--slice", style.cut.in_words()]
     if style.caption:
         words += [f"--caption={style.caption.replace('{', '{{').replace('}', '}}')}"]
     if recipe.before:

@@ -64,7 +64,7 @@ class Cluster:
             number = nanny.pid
             if number is not None:
                 with suppress(ProcessLookupError):
-                    os.kill(number, signal.SIGKILL)
+                    os.kill(number, getattr(signal, "SIGKILL", signal.SIGTERM))  # Windows ends it by either
 
 
 @contextmanager

@@ -20,6 +20,7 @@ from viewer.services.before_edits import BeforeEdits
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
+from viewer.services.cut_inspector import CutInspector
 from viewer.services.editing import Editing
 from viewer.services.film_controller import FilmController
 from viewer.services.hunt_controller import HuntController
@@ -28,6 +29,7 @@ from viewer.services.motion import Motion
 from viewer.services.pad_flight import PadFlight
 from viewer.services.picture_controller import PictureController
 from viewer.services.presets import Presets
+from viewer.services.preview import Preview
 from viewer.services.questions import Questions
 from viewer.services.ray_inspector import RayInspector
 from viewer.services.recipes import Recipes
@@ -48,6 +50,7 @@ from viewer.state.history import History
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session, Snapshot
+from viewer.state.views import View
 
 
 class Controller:
@@ -90,6 +93,7 @@ class Controller:
         self.pads = PadFlight(session, preferences, self.motion, notices)
         self.inspector = ShadowInspector(self.selection, renderer)
         self.rays = RayInspector(session, self.selection, renderer)
+        self.cuts = CutInspector(self.selection, renderer)
         self.teachers = Teachers(session, self.selection, self.record, renderer)
         self.travel = TimeTravel(
             session, preferences, self.record, self.tracing, self.runs, self.undo, self.selection, notices,
@@ -102,6 +106,7 @@ class Controller:
         self.before_edits = BeforeEdits(session, self.editing)
         self.questions = Questions(self.runs, self.captures, awaken)
         self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
+        self.preview = Preview(session, self.loader, self.motion, notices, awaken)
         self.recipes = Recipes(session, preferences, self.tracing, self.loader, notices)
         films = FilmController(session, preferences, self.runs, self.recipes, self.bookmarks, notices, awaken)
         self.films = films
@@ -144,6 +149,7 @@ class Controller:
         self.pictures.follow()
         self.questions.follow()
         frame = self._take_frame()
+        self.preview.follow(traced=self.frame is not None)
         self.comparing.follow()
         traced, motion, run = self.traced, self.motion, self.runs.current
         motion.follow(traced.request.time if traced is not None and traced.whole else None)
@@ -163,6 +169,9 @@ class Controller:
             if self.traced is not None and self.traced.whole:
                 self.bookmarks.follow(self.traced.frame, self.traced.request.divisor == 1)
         self.inspector.follow(self.frame if run is None else None, not motion.lively)
+        whole = run is None and self.traced is not None and self.traced.whole
+        wanted = whole and self.tracing.drawn_view is View.CUTS
+        self.cuts.follow(self.frame if wanted else None, not motion.lively)
         self.travel.follow(self.traced)
         if not motion.lively:
             self._keep_preferences()
@@ -182,7 +191,7 @@ class Controller:
         self.before_edits.follow(frame, not (tracing.awaits or tracing.adds_samples or self.renderer.busy))
 
     def _take_scene(self) -> None:
-        arrival = self.loader.follow()
+        arrival, flown = self.loader.follow(), self.preview.flown
         if arrival is None:
             return
         if arrival.again:
@@ -192,6 +201,8 @@ class Controller:
         if arrival.place is not None:
             self.undo.call_next("the place of a saved picture")
             self.restore(arrival.place)
+        if flown is not None:  # while the scene was waiting for its kernels
+            self.session.move(flown)
         self.notices.say(arrival.text)
 
     def _show_again(self, arrival: Arrival) -> None:

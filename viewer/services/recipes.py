@@ -15,6 +15,7 @@ from viewer.services.tracing import Tracing
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.slices import MIDDLE
 from viewer.state.tone import NEUTRAL
 from viewer.state.views import View
 
@@ -72,6 +73,7 @@ class Recipes:
             tone=session.tone if view.shows_picture else NEUTRAL,
             clipping=session.clipping and view.shows_clipped,
             span=session.spans.get(view) if ranged else None,
+            cut=session.cut if view.has_slice else MIDDLE,
         )
 
     def _with_history(self, found: Recipe, frame: Frame) -> Recipe:

@@ -86,5 +86,5 @@ def _without_picture(frame: Frame) -> Frame:
     nothing = np.empty((0, 0, 3), np.float32)
     return replace(
         frame, color=nothing, normal=nothing, depth=nothing[..., 0], reference=None, wrong=None, asked=None,
-        reached=None, saved=None, cost=None, due_rays=None, layers={},
+        reached=None, saved=None, cost=None, due_rays=None, layers={}, structures={},
     )  # fmt: skip

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tracer.compilation import can_draw, warm_up
+from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.renderer import Renderer, Settings
 from tracer.scene.files import Stamp, noting
 from tracer.scene.load import load_visible_scene, scene_info
@@ -61,23 +61,34 @@ def open_scene(
     folders: Sequence[Path] = (),
     files: dict[Path, Stamp] | None = None,
     meshes: MeshOptions = AS_IN_FILE,
+    seen: Callable[[Scene], None] = lambda scene: None,
 ) -> Opened:
     """Read a scene and build its trees; waits for the tracer to be `ready` in between.  What was read gets into
-    `files`, also where it cannot be shown.
+    `files`, also where it cannot be shown.  A scene whose kernels are yet to be compiled is `seen` before that.
 
     Raises SceneError or Cancelled; runs on a thread of its own."""
     started = time.perf_counter()
     with noting({} if files is None else files), _no_collecting():
         scene = load_visible_scene(path, progress, folders, meshes)
-    return _opened(scene, settings, ready, progress, started)
+    return _opened(scene, settings, ready, progress, started, seen)
 
 
-def _opened(scene: Scene, settings: Settings, ready: Callable[[], bool], progress: Progress, started: float) -> Opened:
+def _opened(
+    scene: Scene,
+    settings: Settings,
+    ready: Callable[[], bool],
+    progress: Progress,
+    started: float,
+    seen: Callable[[Scene], None],
+) -> Opened:
+    lights, accelerator = len(scene.lights), settings.accelerator
+    if not can_draw(lights, accelerator) and not compiled_before(lights, accelerator, certificates=False):
+        seen(scene)
     while not ready():
         progress(f"{scene.path.name} is read; waiting for the tracer", 1.0)
         time.sleep(0.02)
-    if not can_draw(len(scene.lights), settings.accelerator):  # many lights need wider words, and kernels for them
-        warm_up(progress, len(scene.lights), settings.accelerator)
+    if not can_draw(lights, accelerator):  # many lights need wider words, and kernels for them
+        warm_up(progress, lights, accelerator)
     renderer = Renderer(scene, settings, progress)
     info = scene_info(scene)
     model = model_bounds(scene)
@@ -86,10 +97,16 @@ def _opened(scene: Scene, settings: Settings, ready: Callable[[], bool], progres
     return Opened(scene, renderer, info, time.perf_counter() - started)
 
 
-def open_loaded(scene: Scene, settings: Settings, ready: Callable[[], bool], progress: Progress) -> Opened:
+def open_loaded(
+    scene: Scene,
+    settings: Settings,
+    ready: Callable[[], bool],
+    progress: Progress,
+    seen: Callable[[Scene], None] = lambda scene: None,
+) -> Opened:
     """The same with a scene that is there already, as scripts have one."""
     started = time.perf_counter()
-    return _opened(scene, settings, ready, progress, started)
+    return _opened(scene, settings, ready, progress, started, seen)
 
 
 @contextmanager

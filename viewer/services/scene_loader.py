@@ -16,7 +16,7 @@ from typing import Any
 from tracer.compilation import can_draw, compiled_before, make_ready, ready_for, warm_up
 from tracer.scene.files import Stamp
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
-from tracer.scene.model import Scene
+from tracer.scene.model import Camera, Scene
 from tracer.scene.studio import up_in_studio
 from viewer.output import capture
 from viewer.services import scene_files
@@ -59,6 +59,7 @@ class SceneLoader:
         self.method_job: Job[None] | None = None
         self.compiles = False  # whether this is a first start, whose kernels are to be compiled
         self.load_job: Job[scene_files.Opened] | None = None
+        self._seen: list[Scene] = []  # by the load that is under way: what waits for kernels
         self._cancelled_at = 0.0
         self._folders: tuple[Path, ...] = ()
         self.meshes = IN_STUDIO  # how the next mesh is read
@@ -82,6 +83,17 @@ class SceneLoader:
     def busy(self) -> bool:
         loading = self.load_job is not None or self._restored is not None
         return loading or self.warm_up_job is not None
+
+    @property
+    def waiting(self) -> tuple[Scene, float | None, Camera | None] | None:
+        """The scene that has been read and waits for kernels to be compiled, with the time and the camera that it is to
+        be seen at, where these are not its own."""
+        if not self._seen or self.load_job is None:
+            return None
+        place = self._place
+        if place is None:
+            return self._seen[0], None, None
+        return self._seen[0], place.time, None if place.follow else place.camera
 
     @property
     def ready(self) -> bool:
@@ -139,9 +151,10 @@ class SceneLoader:
         self._given = {}
         up = up_in_studio(scene)
         self._reading_meshes = MeshOptions(up is not None, up)  # as far as it shows
+        seen = self._seen = []
         self.load_job = Job(
             f"Opening {scene.path.name}",
-            lambda progress: scene_files.open_loaded(scene, settings, self._kernels_ready, progress),
+            lambda progress: scene_files.open_loaded(scene, settings, self._kernels_ready, progress, seen.append),
             self._wake,
         )
 
@@ -269,6 +282,7 @@ class SceneLoader:
         self._given = {}
         self._place, self._again, self._changed = then, again, ""
         files = self._reading = {}
+        seen = self._seen = []
         if meshes is None and then is not None:
             meshes = then.meshes
         elif meshes is None and again:
@@ -280,7 +294,7 @@ class SceneLoader:
         self.load_job = Job(
             f"Loading {path.name}",
             lambda progress: scene_files.open_scene(
-                path, settings, self._kernels_ready, progress, self._folders, files, meshes
+                path, settings, self._kernels_ready, progress, self._folders, files, meshes, seen.append
             ),
             self._wake,
         )

@@ -99,7 +99,7 @@ def draw(frame: Frame, scene: Scene, recipe: Recipe) -> tuple[NDArray[np.uint8],
     style, view, light = recipe.style, recipe.view, recipe.light
     pixels = picture(
         frame, view, light, style.shading, style.marked, recipe.wipe, style.shares, style.beneath,
-        style.outlines, style.magnified, style.tone, style.clipping, style.span,
+        style.outlines, style.magnified, style.tone, style.clipping, style.span, style.cut,
     )  # fmt: skip
     return dressed(pixels, frame, scene, recipe)
 
@@ -110,7 +110,7 @@ def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recip
     if style.legend is not None:
         name = scene.lights[light].name if view.of_light else ""
         looks = style.marked, style.shares, style.span, style.tone, style.clipping
-        chosen = Chosen(light, name, *looks, number_of(scene.lights, light))
+        chosen = Chosen(light, name, *looks, number_of(scene.lights, light), style.cut)
         legend = legend_of(frame, view, chosen)
         described = with_legend(pixels, legend, style.legend) if legend is not None else None
         if described is None:

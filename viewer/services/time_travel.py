@@ -122,7 +122,7 @@ class TimeTravel:
         return replace(
             self._session.snapshot(), time=moment.time, camera=moment.camera, follow=moment.follow,
             settings=dict(moment.chosen), view=moment.view, light=moment.light, wipe=moment.wipe,
-            span=self._session.spans.get(moment.view), edits=moment.edits,
+            span=self._session.spans.get(moment.view), edits=moment.edits, cut=self._session.cut,
         )  # fmt: skip
 
     def _may_differ(self, moment: Moment) -> str:

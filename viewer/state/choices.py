@@ -13,6 +13,7 @@ from typing import Any
 from viewer.state.comparison import Chosen
 from viewer.state.preferences import Preferences, checked
 from viewer.state.session import Session, settings_from_json, settings_to_json
+from viewer.state.slices import Slice
 from viewer.state.tone import Tone
 from viewer.state.views import View
 from viewer.state.zooming import Zoom
@@ -62,6 +63,7 @@ class Choices:
     spans: dict[View, tuple[float, float]] | None = None
     zoom: Zoom | None = None
     comparison: Chosen | None = None
+    cut: Slice | None = None
     light_number: int | None = field(default=None, compare=False)
 
     @staticmethod
@@ -71,7 +73,7 @@ class Choices:
         s = session
         return Choices(
             settings_to_json(s.settings), s.view, s.light, s.wipe, looks,
-            s.tone, s.clipping, dict(s.spans), s.zoom, s.comparison.chosen, s.light_number,
+            s.tone, s.clipping, dict(s.spans), s.zoom, s.comparison.chosen, s.cut, s.light_number,
         )  # fmt: skip
 
     def put_into(self, session: Session, preferences: Preferences) -> None:
@@ -85,6 +87,7 @@ class Choices:
         session.clipping = session.clipping if self.clipping is None else self.clipping
         session.spans = session.spans if self.spans is None else dict(self.spans)
         session.zoom = session.zoom if self.zoom is None else self.zoom
+        session.cut = session.cut if self.cut is None else self.cut
         if self.comparison is not None:
             session.comparison.choose(self.comparison)
         preferences.keep(settings)
@@ -142,6 +145,8 @@ def differences(before: Choices, after: Choices) -> dict[str, str]:
         changed["clipping"] = _in_words("marks of clipped pixels", after.clipping)
     if before.spans != after.spans:
         changed["spans"] = "range of colours"
+    if before.cut != after.cut and after.cut is not None:
+        changed["cut"] = f"slice {after.cut.in_words()}"
     if before.zoom != after.zoom and after.zoom is not None:
         changed["zoom"] = "zoom to the whole picture" if after.zoom.fits else f"zoom to {after.zoom.scale:.3g} x"
     if before.comparison is not None and after.comparison is not None:

@@ -13,11 +13,15 @@ NO_CULLING, BY_MODES, CERTIFIED = "none", "paper", "certified"
 """What is chosen to see every ray traced, the paper's modes at work, and certificates."""
 
 
+SHOWN_BY = {View.CUTS: "lightcuts", View.VOXELS: "voxels", View.CELL_LIGHTS: "lie-exact"}
+"""Views of what single methods have, and one that has it."""
+
+
 def default_for(view: View) -> str:
     """The method for one picture in a view: the default one, or one that has something to show there."""
     if view is View.CERTIFICATE or view.needs_work:
         return CERTIFIED
-    return BY_MODES if view.needs_verify else DEFAULT
+    return BY_MODES if view.needs_verify else SHOWN_BY.get(view, DEFAULT)
 
 
 def with_additions(method: str, more: Iterable[str]) -> str:

@@ -6,13 +6,18 @@ from dataclasses import dataclass
 
 from tracer.frame import Frame
 from tracer.method import Method
-from viewer.state.methods import BY_MODES, CERTIFIED
+from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY
 from viewer.state.readings import MOST_RECORDED, can_draw, can_record_lights
 from viewer.state.views import View
 from viewer.util.numbers import count
 
-CLUSTERED = "lightcuts"
+CLUSTERED = SHOWN_BY[View.CUTS]
 """The method that shades by clusters of lights."""
+
+_LACKS = {
+    View.VOXELS: "has no voxels",
+    View.CELL_LIGHTS: "has no cells that know their lights",
+}
 
 
 @dataclass(frozen=True)
@@ -36,6 +41,8 @@ def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) 
     if view is View.CUTS and not can_draw(frame, view):
         why = decision if method.clusters else f"The method {method.base} clusters no lights; {CLUSTERED} does."
         return Missing(why, "" if method.clusters else CLUSTERED)
+    if view in _LACKS and not can_draw(frame, view):
+        return Missing(f"The method {method} {_LACKS[view]}; {SHOWN_BY[view]} does.", SHOWN_BY[view])
     if view is View.SAVED or (view is View.COST and shares):
         return _nothing_saved(view, frame)
     if view.needs_verify and method.exact and not method.uses_modes:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.voxels.tell import VoxelStates
 from tracer.frame import Frame
 from viewer.state.views import Arrival, View
 
@@ -16,8 +17,12 @@ MOST_TOGETHER = 32
 soon and asks for no other frame."""
 
 CUT_NODES, CUT_BOUND = "cut nodes", "cut bound"  # layers of methods that shade by cuts of lights
+CELL_LIGHTS = "cell lights"  # that of methods whose cells know which lights they must look at
+VOXELS, LIGHT_CUBES = "voxels", "light cubes"  # structures of methods
 
 _NO_CUTS = "the method of the frame shades by all lights, not by clusters of them"
+_NO_CELLS = "the method of the frame has no cells that know which lights they must look at"
+_NO_VOXELS = "the method of the frame has no voxels"
 _NO_WORK = "the frame did not record the work at its pixels"
 _NO_LIGHTS = "the frame did not record which samples of its lights reach its pixels"
 
@@ -34,6 +39,10 @@ def can_draw(frame: Frame, view: View, light: int = 0) -> bool:
         return frame.certificates is not None
     if view is View.CUTS:
         return CUT_NODES in frame.layers
+    if view is View.CELL_LIGHTS:
+        return CELL_LIGHTS in frame.layers
+    if view is View.VOXELS:
+        return VOXELS in frame.structures
     return frame.settings.keeps_modes or not view.of_modes
 
 
@@ -118,7 +127,7 @@ def lights_due(frame: Frame) -> NDArray[np.int32]:
 
 
 def lights_top(due: NDArray[np.int32]) -> int:
-    """What has the last colour of the map of `lights_due`, or of `cut_nodes`: the most, 1 at least."""
+    """What has the last colour of the map of `lights_due`, of `cut_nodes` or of `cell_lights`: the most, 1 at least."""
     return max(1, int(due.max(initial=0)))
 
 
@@ -129,6 +138,23 @@ def cut_nodes(frame: Frame) -> NDArray[np.int32]:
     if CUT_NODES not in frame.layers:
         raise ValueError(_NO_CUTS)
     return frame.layers[CUT_NODES]
+
+
+def cell_lights(frame: Frame) -> NDArray[np.int32]:
+    """(h, w) how many lights the cell of each pixel must look at; -1 where it lies in none, or is not known yet.
+
+    Raises ValueError for a frame by a method that has no such cells."""
+    if CELL_LIGHTS not in frame.layers:
+        raise ValueError(_NO_CELLS)
+    return frame.layers[CELL_LIGHTS]
+
+
+def voxels_of(frame: Frame) -> VoxelStates:
+    """The voxels as the frame found them; raises ValueError for a frame by a method that has none."""
+    if VOXELS not in frame.structures:
+        raise ValueError(_NO_VOXELS)
+    found: VoxelStates = frame.structures[VOXELS]
+    return found
 
 
 def work_top(frame: Frame, view: View) -> float:
@@ -153,6 +179,8 @@ def span_of(frame: Frame, view: View) -> tuple[float, float]:
         return 0.0, float(lights_top(lights_due(frame)))
     if view is View.CUTS:
         return 0.0, float(lights_top(cut_nodes(frame)))
+    if view is View.CELL_LIGHTS:
+        return 0.0, float(lights_top(cell_lights(frame)))
     if not view.has_range:
         raise ValueError(f"the view {view.value} has no range")
     return 0.0, work_top(frame, view)

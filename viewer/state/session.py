@@ -21,6 +21,7 @@ from viewer.state import edits as scene_edits
 from viewer.state.annotations import Annotation
 from viewer.state.comparison import Comparison
 from viewer.state.methods import DEFAULT
+from viewer.state.slices import MIDDLE, Slice
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
 from viewer.state.zooming import FIT, Zoom
@@ -51,11 +52,13 @@ class Snapshot:
     span: tuple[float, float] | None = None
     meshes: MeshOptions = AS_IN_FILE
     edits: Edits = NO_EDITS
+    cut: Slice = MIDDLE
 
     def to_json(self) -> dict[str, Any]:
         data = {name: value for name, value in asdict(self).items() if name != "edits"}
         if self.edits:
             data["edits"] = scene_edits.to_json(self.edits)
+        data |= {"slice": list(data.pop("cut"))}
         return data | {"camera": self.camera.to_json(), "view": self.view.value, "tone": self.tone.to_json()}
 
     @staticmethod
@@ -78,6 +81,7 @@ class Snapshot:
                 span=_span(data.get("span")),
                 meshes=_meshes_from_json(data.get("meshes", {})),
                 edits=scene_edits.from_json(data.get("edits", {})),
+                cut=Slice.from_json(data.get("slice", list(MIDDLE))),
             )
         except KeyError as error:
             raise ValueError(f"its saved state lacks {error}") from None
@@ -134,9 +138,11 @@ class Session:
     `spans` are the ranges that were chosen for views of numbers; `clipping` marks what the screen cuts off; `zoom` is
     how closely the picture itself is looked at, `comparison` what is compared with it.  `edits` are what is to be
     otherwise than in the scene as it was read, `edited` is what is of that: `scene` is the scene with it, of whose
-    lights `light` is one, and `light_to_come` of those that are to be."""
+    lights `light` is one, and `light_to_come` of those that are to be.  `previewed` is what the GPU draws before there
+    is a `scene`."""
 
     scene: Scene | None = None
+    previewed: Scene | None = None
     edits: Edits = NO_EDITS
     edited: Edited | None = None
     light_to_come: int | None = None
@@ -151,12 +157,18 @@ class Session:
     tone: Tone = NEUTRAL
     clipping: bool = False
     spans: dict[View, tuple[float, float]] = field(default_factory=dict)
+    cut: Slice = MIDDLE  # that is shown of space
     zoom: Zoom = FIT
     comparison: Comparison = field(default_factory=Comparison)
     selected: tuple[float, float] | None = None
     meshes: MeshOptions = AS_IN_FILE  # how the scene was read
     annotations: list[Annotation] = field(default_factory=list)
     _on_path: tuple[Scene, float, Camera] | None = field(default=None, init=False, repr=False, compare=False)
+
+    @property
+    def seen(self) -> Scene | None:
+        """The scene that the camera moves in."""
+        return self.scene or self.previewed
 
     @property
     def follow(self) -> bool:
@@ -167,11 +179,12 @@ class Session:
     def camera(self) -> Camera:
         if self.free_camera is not None:
             return self.free_camera
-        if self.scene is None:
+        scene = self.seen
+        if scene is None:
             return Camera((0, 0, 5), (0, 0, -1))
         kept = self._on_path
-        if kept is None or kept[0] is not self.scene or kept[1] != self.time:  # it is asked for many times a frame
-            kept = self._on_path = self.scene, self.time, self.scene.camera_at(self.time)
+        if kept is None or kept[0] is not scene or kept[1] != self.time:  # it is asked for many times a frame
+            kept = self._on_path = scene, self.time, scene.camera_at(self.time)
         return kept[2]
 
     def move(self, camera: Camera) -> None:
@@ -279,6 +292,7 @@ class Session:
             span=self.spans.get(self.view),
             meshes=self.meshes,
             edits=self.edits,
+            cut=self.cut,
         )
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -292,7 +306,7 @@ class Session:
         self.settings = replace(self.settings, **{k: v for k, v in snapshot.settings.items() if k not in _NOT_RESTORED})
         self.view = snapshot.view
         self.light = min(snapshot.light, max(len(self.scene.lights) - 1, 0))
-        self.wipe, self.tone = snapshot.wipe, snapshot.tone
+        self.wipe, self.tone, self.cut = snapshot.wipe, snapshot.tone, snapshot.cut
         self.spans.pop(snapshot.view, None)
         if snapshot.span is not None:
             self.spans[snapshot.view] = snapshot.span

@@ -6,6 +6,7 @@ JSON and CSV have names of their own, which do not change.
 from __future__ import annotations
 
 from tracer.frame import Frame
+from tracer.statistics import FrameStatistics
 
 DUE = "due"
 CULLED = "culled"
@@ -14,6 +15,7 @@ CANDIDATES_ONLY = "candidates"
 CACHE_HITS = "cache hits"
 TRACED = "traced"
 WRONG = "wrong answers"
+BEYOND = "pixels beyond the error"
 PASSED_OVER = "passed over"
 BUILT = "built"
 
@@ -37,6 +39,7 @@ MEANINGS = {
     PASSED_OVER: "samples of lights, at all points, that are proven not to reach them: not even looked at, and not due",
     BUILT: "of the tree, which is built where rays arrive: primitives in nodes that are built",
     WRONG: "shadow rays for which culling and tracing disagree",
+    BEYOND: "pixels that differ from the picture by all lights by more than clusters of lights may be wrong by",
 }
 
 PHASES = {
@@ -50,6 +53,11 @@ PHASES = {
     "mode setting": ("modes", "setting the modes of primitives by what this frame has found"),
 }
 """The phases of a frame, in their order: the name of each, and what happens in it."""
+
+
+def wrong_of(statistics: FrameStatistics) -> str:
+    """What is counted as wrong in a verified frame: answers, or pixels where it was shaded by clusters of lights."""
+    return BEYOND if statistics.cuts is not None else WRONG
 
 
 def asks_by_beams(frame: Frame, lamps: bool) -> bool:

@@ -11,7 +11,19 @@ from numpy.typing import NDArray
 from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode, ShadowMode, has_shadow_mode
 from tracer.frame import Frame
-from viewer.state.readings import CUT_BOUND, can_draw, cut_nodes, lights_due, samples_of, units_of, whole_of, work_of
+from viewer.state.readings import (
+    CUT_BOUND,
+    can_draw,
+    cell_lights,
+    cut_nodes,
+    lights_due,
+    samples_of,
+    units_of,
+    voxels_of,
+    whole_of,
+    work_of,
+)
+from viewer.state.slices import MIDDLE, Slice, slice_seen, voxel_words
 from viewer.state.views import Certificate, View
 
 CHANNELS = ("red", "green", "blue")
@@ -32,8 +44,9 @@ class Values:
     classes: bool = False
 
 
-def values_of(frame: Frame, view: View, light: int = 0) -> Values:
-    """The values of a frame that the view can be drawn of; raises ValueError for another."""
+def values_of(frame: Frame, view: View, light: int = 0, cut: Slice = MIDDLE) -> Values:
+    """The values of a frame that the view can be drawn of, in the slice `cut` where it shows one; raises ValueError for
+    another."""
     if not can_draw(frame, view, light):
         raise ValueError(f"the frame has nothing for the view {view.label}")
     everywhere, hit = np.ones(frame.primitive.shape, np.bool_), frame.primitive >= 0
@@ -61,6 +74,14 @@ def values_of(frame: Frame, view: View, light: int = 0) -> Values:
     if view is View.CUTS:
         nodes = cut_nodes(frame)
         return _single(nodes, "clusters of lights", hit & (nodes >= 0))
+    if view is View.CELL_LIGHTS:
+        asks = cell_lights(frame)
+        return _single(asks, "lights that the cell asks", hit & (asks >= 0))
+    if view is View.VOXELS:
+        voxels = voxels_of(frame)
+        numbers = slice_seen(frame, voxels.grid, cut).numbers
+        states = voxels.states(light, np.maximum(numbers, 0).astype(np.int64))
+        return _single(states, "state of the voxel", numbers >= 0, classes=True)
     if view is View.PENUMBRA:
         asked, reached = samples_of(frame, light)
         known = hit if frame.shaded is None else hit & frame.shaded
@@ -69,7 +90,9 @@ def values_of(frame: Frame, view: View, light: int = 0) -> Values:
     return _single(_there(work_of(frame, view)), name, everywhere)
 
 
-def words_at(frame: Frame, view: View, light: int, x: int, y: int, shares: bool = False) -> tuple[str, ...]:
+def words_at(
+    frame: Frame, view: View, light: int, x: int, y: int, shares: bool = False, cut: Slice = MIDDLE
+) -> tuple[str, ...]:
     """What a view shows of one pixel, in a few short lines; nothing where it cannot be drawn of this frame."""
     if not can_draw(frame, view, light):
         return ()
@@ -81,6 +104,8 @@ def words_at(frame: Frame, view: View, light: int, x: int, y: int, shares: bool 
         work = int(_there(work_of(frame, view))[y, x])
         whole = int(whole_of(frame, view)[y, x]) if shares else 0
         return (f"{100.0 * work / whole:.0f} %",) if whole else (f"{work}",)
+    if view is View.VOXELS:
+        return voxel_words(frame, voxels_of(frame), light, cut, x, y)
     if frame.primitive[y, x] < 0:
         return ("miss",)
     return _WORDS[view](frame, light, x, y)
@@ -141,6 +166,11 @@ def _cuts(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
     return ("?",) if nodes < 0 else (f"{nodes}", f"± {100.0 * bound:.3g} %")
 
 
+def _cell_lights(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
+    asked = int(cell_lights(frame)[y, x])
+    return ("?",) if asked < 0 else (f"{asked} of {frame.lights}",)
+
+
 _WORDS: dict[View, Callable[[Frame, int, int, int], tuple[str, ...]]] = {
     View.NORMAL: _normal,
     View.DEPTH: _depth,
@@ -152,6 +182,7 @@ _WORDS: dict[View, Callable[[Frame, int, int, int], tuple[str, ...]]] = {
     View.PENUMBRA: _penumbra,
     View.LIGHTS: _lights,
     View.CUTS: _cuts,
+    View.CELL_LIGHTS: _cell_lights,
 }
 
 

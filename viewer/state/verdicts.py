@@ -26,6 +26,12 @@ SAID: dict[Verdict, str] = {
     Verdict.BUFFER_LIT: "light buffer: nothing in front",
     Verdict.BUFFER_FULL: "light buffer: behind what covers the cell",
     Verdict.BUFFER_TESTED: "light buffer: candidates only",
+    Verdict.VOXEL_LIT: "null voxel",
+    Verdict.VOXEL_FULL: "full voxel",
+    Verdict.VOXEL_WALK: "walk through voxels",
+    Verdict.CELL_LIT: "lit cell",
+    Verdict.CELL_FULL: "light hidden from the cell",
+    Verdict.CELL_TESTED: "blockers of the cell only",
     Verdict.ANSWERED: "culled",
     Verdict.TRACED: "traced",
 }
@@ -44,6 +50,15 @@ MEANING: dict[Verdict, str] = {
     Verdict.BUFFER_LIT: "Nothing that the light sees in this direction is nearer to it than the point.",
     Verdict.BUFFER_FULL: "The point is behind a triangle that hides all of a cell of the light's cube.",
     Verdict.BUFFER_TESTED: "Only a few primitives are in the point's cell of the light's cube: these are tested.",
+    Verdict.VOXEL_LIT: "Nothing static is between the light and any point of the voxel: only objects that move "
+    "are tested.",
+    Verdict.VOXEL_FULL: "One triangle hides the light from all of the voxel.",
+    Verdict.VOXEL_WALK: "Of the point's voxel nothing is known: the ray walked on towards the light, from voxel to "
+    "voxel.",
+    Verdict.CELL_LIT: "The point's cell knows of nothing that blocks the light: only objects that move are tested.",
+    Verdict.CELL_FULL: "The point's cell knows the light to be hidden from all of it.",
+    Verdict.CELL_TESTED: "The point's cell knows what may block the light: these primitives are tested, and objects "
+    "that move.",
     Verdict.ANSWERED: "The method knew the answer.",
     Verdict.TRACED: "Nothing was known: the ray was traced through the scene.",
 }

@@ -36,6 +36,8 @@ class View(StrEnum):
     PENUMBRA = "penumbra"
     LIGHTS = "lights"
     CUTS = "cuts"
+    VOXELS = "voxels"
+    CELL_LIGHTS = "cell-lights"
 
     @property
     def label(self) -> str:
@@ -68,17 +70,22 @@ class View(StrEnum):
     @property
     def of_light(self) -> bool:
         """Whether it speaks of one light."""
-        return self in (View.SHADOW, View.CERTIFICATE, View.PENUMBRA)
+        return self in (View.SHADOW, View.CERTIFICATE, View.PENUMBRA, View.VOXELS)
 
     @property
     def has_range(self) -> bool:
         """Whether it shows a number on the colour map, whose range can be chosen."""
-        return self in (View.DEPTH, View.SAVED, View.COST, View.LIGHTS, View.CUTS)
+        return self in (View.DEPTH, View.SAVED, View.COST, View.LIGHTS, View.CUTS, View.CELL_LIGHTS)
 
     @property
     def shows_picture(self) -> bool:
         """Whether it shows traced colours, by the tone that is chosen."""
-        return self in (View.COLOR, View.DIFFERENCE, View.WIPE)
+        return self in (View.COLOR, View.DIFFERENCE, View.WIPE, View.VOXELS)
+
+    @property
+    def has_slice(self) -> bool:
+        """Whether it shows a slice through space, which can be chosen."""
+        return self is View.VOXELS
 
     @property
     def shows_clipped(self) -> bool:
@@ -116,6 +123,8 @@ _TITLES = {
     View.PENUMBRA: "Penumbra",
     View.LIGHTS: "Lights due",
     View.CUTS: "Clusters of lights",
+    View.VOXELS: "Voxels",
+    View.CELL_LIGHTS: "Lights per cell",
 }
 
 _KEYS = {
@@ -126,6 +135,8 @@ _KEYS = {
     View.PENUMBRA: "J",
     View.LIGHTS: "Shift+J",
     View.CUTS: "Shift+N",
+    View.VOXELS: "Shift+V",
+    View.CELL_LIGHTS: "Shift+K",
 }
 
 _EXPLANATIONS = {
@@ -150,6 +161,10 @@ _EXPLANATIONS = {
     View.LIGHTS: "How many lights each pixel has to look at: those that its surface faces, and to which rays are due.",
     View.CUTS: "How many clusters of lights each pixel is shaded by, with the methods that cluster them (lightcuts); a "
     "block of 128 points shares them.",
+    View.VOXELS: "A slice through the voxels of the method voxels: which are in shadow of the chosen light as a whole, "
+    "which see all of it, and of which neither is known. Behind it the picture is dimmed.",
+    View.CELL_LIGHTS: "How many lights the cell of each pixel must look at, with the methods lie and lie-exact: all "
+    "but those that it knows to be hidden. Lines are the borders of cells.",
 }
 
 
@@ -194,6 +209,8 @@ CERTIFICATE_COLORS: dict[Certificate, Color] = {
 
 CELL_LINE = 0.55
 """Brightness of the lines between cells, against that of the cells."""
+FAINT_LINE = 0.72
+"""The same where cells have many colours, and may be small."""
 
 OCCLUSION_MEANING = {
     OcclusionMode.INIT: "not seen yet, or to be examined again",
@@ -214,6 +231,22 @@ CERTIFICATE_MEANING = {
     Certificate.FULL: "all of it is in the shadow of static geometry: its shadow rays are culled",
     Certificate.LIT: "nothing static is between it and the light: tested against dynamic objects only",
     Certificate.CANDIDATES: "only a few primitives can block the light: tested against these and dynamic objects",
+}
+
+
+VOXEL_COLORS: dict[int, Color] = {
+    0: GREY,
+    int(ShadowMode.FULL_SHADOW): SHADOW_COLORS[ShadowMode.FULL_SHADOW],
+    int(ShadowMode.NON_SHADOW): SHADOW_COLORS[ShadowMode.NON_SHADOW],
+}
+"""By the state of a voxel, which has the place of a shadow mode."""
+
+VOXEL_MEANING = {
+    0: "neither is known: rays that end in it walk on towards the light, from voxel to voxel",
+    int(ShadowMode.FULL_SHADOW): "one triangle hides the light from all of it: rays that end in it, or come to it, are "
+    "blocked",
+    int(ShadowMode.NON_SHADOW): "nothing static is between it and the light: rays that end in it, or come to it, are "
+    "tested against dynamic objects only",
 }
 
 

@@ -29,7 +29,7 @@ from viewer.state.parts import parts_of
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, comparing, glfw_pads, menus, palette, places, style
+from viewer.window import commands, comparing, glfw_pads, menus, palette, places, preview, style
 from viewer.window.compared import Compared
 from viewer.window.display import Display, Look
 from viewer.window.guard import Guard
@@ -162,6 +162,7 @@ class App:
         step("Following the scene", lambda: self.controller.tick(self._room_for_picture()))
         step("The script's function", self._tell)
         step("Drawing the picture", self._draw_unless_lost)
+        step("Drawing the preview", lambda: preview.draw(self.ui))
         step("Drawing recorded pictures", self._bring_shots)
         step("Saving the picture", self._capture_picture)
         self._stay_awake()
@@ -271,6 +272,7 @@ class App:
             tone=c.session.tone,
             clipping=c.session.clipping,
             span=c.comparing.span(c.tracing.drawn_view),
+            cut=c.session.cut,
         )
 
     def _capture_picture(self) -> None:
@@ -402,6 +404,9 @@ class App:
         if self.ui.magnifier is not None:
             self.ui.magnifier.release()
             self.ui.magnifier = None
+        if self.ui.preview is not None:
+            self.ui.preview.release()
+            self.ui.preview = None
         if self.ui.display is not None:
             self.ui.display.release()
             self.ui.display = None

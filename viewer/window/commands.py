@@ -10,7 +10,7 @@ from viewer.state.methods import toggled, with_base
 from viewer.state.picking import extent_at, point_at
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
-from viewer.window import camera_commands, edit_commands, mesh_commands, what_if_commands
+from viewer.window import camera_commands, edit_commands, mesh_commands, space_commands, what_if_commands
 from viewer.window.closer_commands import comparing, looking
 from viewer.window.command import Command, Condition
 from viewer.window.finding import finding, fly_to_selected
@@ -99,6 +99,7 @@ def _view(ui: Ui) -> list[Command]:
             "Next light", "View", lambda: c.settings.set_light(c.session.light + 1), "L", enabled=lit, separated=True
         ),
         Command("Previous light", "View", lambda: c.settings.set_light(c.session.light - 1), "Shift+L", enabled=lit),
+        *space_commands.build(ui),
         Command("Legend", "View", toggle("legend"), "N", checked=lambda: p.legend, separated=True),
         Command("Outlines", "View", toggle("outlines"), "B", checked=lambda: p.outlines),
         Command("Mark wrong pixels", "View", toggle("mark_wrong"), "M", checked=lambda: p.mark_wrong),

@@ -150,7 +150,7 @@ def words(ui: Ui, side: Side | None = None) -> Words | None:
 
     def of(one: Side, x: int, y: int) -> tuple[str, ...]:
         at = pixel_at(one.frame, (x + 0.5) / own.frame.width, (y + 0.5) / own.frame.height)
-        return words_at(one.frame, one.view, one.light, *at, shares)
+        return words_at(one.frame, one.view, one.light, *at, shares, c.session.cut)
 
     if seen is not None and own.frame is seen[1].frame and seen[2] is Way.DIFFERENCE:
         found = c.comparing.difference(seen[0], seen[1])

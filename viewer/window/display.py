@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from tracer.culling.modes import OcclusionMode, has_shadow_mode
 from tracer.shading.screen import to_screen
 from viewer.state.marks import wipe_column
+from viewer.state.slices import MIDDLE, Slice
 from viewer.state.tone import NEUTRAL, Curve, Tone
 from viewer.state.views import (
     ARRIVAL_COLORS,
@@ -27,11 +28,13 @@ from viewer.state.views import (
     BLACK,
     CELL_LINE,
     CERTIFICATE_COLORS,
+    FAINT_LINE,
     GREY,
     OCCLUSION_COLORS,
     RING_DIMMING,
     SHADOW_COLORS,
     TOO_BRIGHT,
+    VOXEL_COLORS,
     WIPE_LINE,
     WRONG,
     View,
@@ -52,7 +55,8 @@ class Look:
     `selected` is the primitive that has a bright border, or, with `selected_part`, that whole part of the scene has it;
     `shares` makes shares of the counts in maps of work; `beneath` is the brightness of the picture
     beneath the difference.  Pictures have a `tone`, and stripes where they are cut off if that is to be seen
-    (`clipping`); maps of numbers go over `span`, or, where that is None, over what the frame has."""
+    (`clipping`); maps of numbers go over `span`, or, where that is None, over what the frame has; `cut` is the slice
+    that is shown of space."""
 
     view: View = View.COLOR
     light: int = 0
@@ -70,6 +74,7 @@ class Look:
     tone: Tone = NEUTRAL
     clipping: bool = False
     span: tuple[float, float] | None = None
+    cut: Slice = MIDDLE
 
     @property
     def plain(self) -> bool:
@@ -164,7 +169,7 @@ class Display:
     def _render_into(self, target: Any, look: Look) -> None:
         program, triangle = self.passes.made(look.view.value, units=NAMES)
         self._set_uniforms(program, look)
-        self._buffers.use(program, look.light, look.magnified)
+        self._buffers.use(program, look.light, look.magnified, look.cut)
         self.passes.draw(triangle, target)
 
     def drawn(self, look: Look) -> bool:
@@ -204,6 +209,7 @@ class Display:
             View.SHADOW: [*SHADOW_COLORS.values(), dynamic],
             View.CERTIFICATE: [*CERTIFICATE_COLORS.values(), dynamic],
             View.PENUMBRA: list(ARRIVAL_COLORS.values()),
+            View.VOXELS: list(VOXEL_COLORS.values()),
         }
         values: dict[str, Any] = {
             "table_width": TABLE_WIDTH,
@@ -221,7 +227,7 @@ class Display:
             "clip_colors": [TOO_BRIGHT, BLACK],
             "shares": look.shares,
             "beneath": look.beneath,
-            "cell_line": CELL_LINE,
+            "cell_line": FAINT_LINE if view is View.CELL_LIGHTS else CELL_LINE,
             "zoom_factor": frame.settings.zoom_factor,
             "unknown": GREY,
             "wrong_color": WRONG,

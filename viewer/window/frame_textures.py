@@ -15,7 +15,18 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from viewer.state.marks import wrong_marks
-from viewer.state.readings import cut_nodes, depth_range, lights_due, lights_top, samples_of, span_of, units_of
+from viewer.state.readings import (
+    cell_lights,
+    cut_nodes,
+    depth_range,
+    lights_due,
+    lights_top,
+    samples_of,
+    span_of,
+    units_of,
+    voxels_of,
+)
+from viewer.state.slices import MIDDLE, Slice, slice_codes
 from viewer.state.views import View, color_map
 
 TABLE_WIDTH = 2048
@@ -23,6 +34,7 @@ NAMES = (
     "color_buffer", "primitive_buffer", "unit_buffer", "mode_table", "count_table", "depth_buffer", "normal_buffer",
     "color_map", "reference_buffer", "mark_buffer", "certificate_buffer", "cell_buffer", "saved_buffer", "cost_buffer",
     "due_rays_buffer", "penumbra_buffer", "lights_buffer", "cuts_buffer", "part_table",
+    "slice_buffer", "cell_lights_buffer",
 )  # fmt: skip
 """Of all textures, in the order of their units."""
 # What lies on the GPU as a frame holds it: components, their kind, and the frame's attribute.
@@ -76,7 +88,9 @@ class FrameTextures:
         self.frame: Frame | None = None
         self.serial = 0
         self._ranges: Ranges | None = None
-        self._brought: dict[str, tuple[int, int]] = {}  # which frame's buffers, and of which light or size, are there
+        self._brought: dict[
+            str, tuple[int, object]
+        ] = {}  # which frame's buffers, and of which light or size, are there
         self._textures: dict[str, Any] = {}
         self.part_of: NDArray[np.int32] | None = None  # of each primitive, while a part is selected
         colors = np.round(color_map() * 255.0).astype(np.uint8)
@@ -102,13 +116,14 @@ class FrameTextures:
             self._ranges = Ranges(self.frame)
         return self._ranges
 
-    def use(self, program: Any, light: int, magnified: int) -> None:
-        """Bind what a program reads, of this light where it is of one, and for pixels that are shown `magnified` times.
+    def use(self, program: Any, light: int, magnified: int, cut: Slice = MIDDLE) -> None:
+        """Bind what a program reads, of this light where it is of one, in the slice `cut` where it shows one, and for
+        pixels that are shown `magnified` times.
 
         Raises ValueError where the frame has not recorded that, and DisplayError for what is too large."""
         for unit, name in enumerate(NAMES):
             if name in program:
-                self._bring(name, light, magnified)
+                self._bring(name, light, magnified, cut)
                 self._textures[name].use(unit)
 
     def check_size(self, size: tuple[int, int]) -> None:
@@ -124,11 +139,12 @@ class FrameTextures:
         self._textures.clear()
         self.frame = self._ranges = None
 
-    def _bring(self, name: str, light: int, magnified: int) -> None:
+    def _bring(self, name: str, light: int, magnified: int, cut: Slice) -> None:
         """A buffer of the frame to the GPU, unless it is there."""
         frame = self.frame
         assert frame is not None
-        wanted = self.serial, {"penumbra_buffer": light, "mark_buffer": magnified}.get(name, 0)
+        of: dict[str, object] = {"penumbra_buffer": light, "mark_buffer": magnified, "slice_buffer": (light, cut)}
+        wanted = self.serial, of.get(name, 0)
         if name == "part_table":  # it is the scene's, whatever the frame
             wanted = id(self.part_of), 0
         if name == "color_map" or self._brought.get(name) == wanted:
@@ -147,6 +163,10 @@ class FrameTextures:
             self._write(name, self.size, 1, "i4", self.ranges.lights)
         elif name == "cuts_buffer":
             self._write(name, self.size, 1, "i4", cut_nodes(frame))
+        elif name == "slice_buffer":
+            self._write(name, self.size, 1, "u1", slice_codes(frame, voxels_of(frame), light, cut))
+        elif name == "cell_lights_buffer":
+            self._write(name, self.size, 1, "i4", cell_lights(frame))
         elif name == "unit_buffer":
             self._write(name, self.size, 1, "i4", units_of(frame))
         elif name == "part_table":

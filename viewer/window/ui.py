@@ -29,6 +29,7 @@ from viewer.window.full_screen import FullScreen
 from viewer.window.guard import Guard
 from viewer.window.keyboard import Keyboard
 from viewer.window.magnifier import Magnifier
+from viewer.window.preview import PreviewDisplay
 from viewer.window.screening import Screening
 from viewer.window.shots import Shots
 
@@ -139,6 +140,8 @@ class Ui:
     find_height: float = 0.0
     find_order: object = None
     shots: Shots | None = None
+    cube_shows: int = 0
+    preview: PreviewDisplay | None = None
     screening: Screening | None = None
     compared: Compared | None = None
     magnifier: Magnifier | None = None

@@ -8,12 +8,23 @@ import numpy as np
 import pytest
 
 from tests.viewer.colors import luminance
-from tests.viewer.fakes import in_cells, in_part, make_frame, with_certificates, with_cuts, with_lamps
+from tests.viewer.fakes import (
+    in_cells,
+    in_part,
+    make_frame,
+    with_cell_lights,
+    with_certificates,
+    with_cuts,
+    with_lamps,
+    with_voxels,
+)
 from tracer.frame import Frame, Settings
 from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.legend import Chosen, Legend, Tone, legend_of, light_in_words
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, QUIET, TEXT, TONES, fitting, lay_out, wrapped
 from viewer.output.legend_picture import with_legend
+from viewer.state.readings import voxels_of
+from viewer.state.slices import Slice
 from viewer.state.views import OCCLUSION_COLORS, WRONG, View, color_map
 from viewer.util.numbers import percent
 
@@ -27,7 +38,7 @@ def measure(text: str) -> float:
 
 @pytest.fixture
 def frame() -> Frame:
-    return with_cuts(with_lamps(with_certificates(make_frame(SETTINGS))))
+    return with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(make_frame(SETTINGS))))))
 
 
 def of(frame: Frame, view: View, **chosen) -> Legend:
@@ -43,6 +54,31 @@ def test_every_view_but_the_picture_has_a_legend(frame: Frame):
             legend = of(frame, view)
             assert legend.title and (legend.entries or legend.scale or legend.facts or legend.notes), view
     assert legend_of(make_frame(), View.DIFFERENCE) is legend_of(make_frame(), View.SAVED) is None
+
+
+def test_voxels_are_counted_in_the_slice_and_in_all(frame: Frame):
+    states, cut = voxels_of(frame), Slice(0, 0.3)
+    modes = (states.words[:-1] >> np.uint32(4) & 3).reshape(states.shape)
+    legend = of(frame, View.VOXELS, light=1, light_name="lamp", cut=cut)
+    assert legend.title == "Voxels, light 1 (lamp)" and legend.columns == ("slice", "all")
+    for entry, state in zip(legend.entries, (1, 2, 0), strict=True):
+        shares = percent(int((modes[4] == state).sum()), 64), percent(int((modes == state).sum()), 1024)
+        assert entry.values == shares, entry
+    assert [fact.values for fact in legend.facts] == [("-0.875",), ("4 of 16",), ("16 x 8 x 8",)]
+    lamp = of(frame, View.VOXELS, light=2)
+    assert not lamp.entries and "Nothing is known of this light" in lamp.notes[0].text
+    assert legend_of(make_frame(), View.VOXELS) is None
+
+
+def test_the_lights_that_cells_ask_are_counted(frame: Frame):
+    asked = frame.layers["cell lights"]
+    seen, legend = asked >= 0, of(frame, View.CELL_LIGHTS)
+    cells = len(np.unique(frame.cell[seen]))
+    assert [fact.values for fact in legend.facts] == [(f"{asked[seen].mean():.4g} of 3 lights",), (str(cells),)]
+    assert (legend.scale.low, legend.scale.high) == ("0", "3")
+    assert [entry.name for entry in legend.entries] == ["not known yet"]
+    assert of(frame, View.CELL_LIGHTS, span=(1.0, 2.5)).scale.high == "2.5"
+    assert legend_of(make_frame(), View.CELL_LIGHTS) is None
 
 
 def test_modes_come_with_shares_and_counts(frame: Frame):
@@ -96,7 +132,8 @@ def test_clusters_of_lights_per_pixel_with_the_bound_of_their_error(frame: Frame
     seen, legend = (frame.primitive >= 0) & (nodes >= 0), of(frame, View.CUTS)
     assert [fact.values for fact in legend.facts] == [
         (f"{nodes[seen].mean():.4g} for 100 lights",),
-        (f"{percent(float(np.median(bound[seen])), 1.0)} of the light",),
+        ("2.0 % of the light",),
+        (f"{percent(float(np.median(bound[seen])), 1.0)} at most",),
     ]
     assert legend.scale is not None and (legend.scale.low, legend.scale.middle, legend.scale.high) == ("0", "20", "40")
     assert [entry.name for entry in legend.entries] == ["not known yet"]

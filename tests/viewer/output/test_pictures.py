@@ -7,14 +7,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import in_cells, in_part, with_certificates, with_cuts, with_lamps
+from tests.viewer.fakes import (
+    in_cells,
+    in_part,
+    with_cell_lights,
+    with_certificates,
+    with_cuts,
+    with_lamps,
+    with_voxels,
+)
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from viewer.output.legend_counts import difference_legend
 from viewer.output.pictures import SHADING, picture
-from viewer.state.readings import work_top
+from viewer.state.readings import voxels_of, work_top
+from viewer.state.slices import MIDDLE, Slice, slice_seen
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import (
     ARRIVAL_COLORS,
@@ -22,10 +31,12 @@ from viewer.state.views import (
     BENEATH,
     CELL_LINE,
     CERTIFICATE_COLORS,
+    FAINT_LINE,
     GREY,
     OCCLUSION_COLORS,
     RING_DIMMING,
     SHADOW_COLORS,
+    VOXEL_COLORS,
     WIPE_LINE,
     WRONG,
     Arrival,
@@ -74,7 +85,7 @@ def wrong_frame(frame: Frame) -> Frame:
 @pytest.fixture(scope="module")
 def certified_frame(wrong_frame: Frame) -> Frame:
     """The same with cells and their certificates, the work at each pixel, and lamps that reach it in part."""
-    return with_cuts(with_lamps(with_certificates(wrong_frame)))
+    return with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(wrong_frame)))))
 
 
 @pytest.fixture(scope="module")
@@ -103,6 +114,8 @@ def test_colours_are_clamped_and_otherwise_untouched(frame: Frame) -> None:
 @pytest.mark.parametrize("view", [v for v in View if v is not View.COLOR and not v.needs_verify])
 def test_what_is_missed_has_the_background(certified_frame: Frame, view: View) -> None:
     missed = certified_frame.primitive < 0
+    if view.has_slice:  # it is seen before the background, too
+        missed &= slice_seen(certified_frame, voxels_of(certified_frame).grid, MIDDLE).numbers < 0
     assert missed.any()
     assert (picture(certified_frame, view)[missed] == to_bytes(BACKGROUND)).all()
 
@@ -251,6 +264,38 @@ def test_lights_are_counted_at_each_pixel(certified_frame: Frame) -> None:
     for number, entry in ((0, 0), (2, -1)):
         there = hit & (due == number)
         assert there.any() and np.abs(drawn[there].astype(int) - colors[entry]).max() <= 1
+
+
+@pytest.mark.parametrize("cut", [Slice(0, 0.6), Slice(1, 0.5), Slice(2, 0.7)])
+@pytest.mark.parametrize("light", [0, 1])
+def test_a_slice_has_the_colours_of_its_voxels_over_the_dimmed_picture(
+    certified_frame: Frame, cut: Slice, light: int
+) -> None:
+    f, states = certified_frame, voxels_of(certified_frame)
+    drawn, numbers = picture(f, View.VOXELS, light, cut=cut), slice_seen(f, states.grid, cut).numbers
+    assert 0.005 < (numbers >= 0).mean() < 0.98
+    seen = set()
+    for y, x in np.argwhere(numbers >= 0):
+        state = int(states.words[numbers[y, x]] >> np.uint32(2 + 2 * light)) & 3
+        color = np.asarray(VOXEL_COLORS[state], np.float32)
+        assert (drawn[y, x] == to_bytes(color)).all() or (drawn[y, x] == to_bytes(np.float32(CELL_LINE) * color)).all()
+        seen.add(state)
+    assert seen == {0, 1, 2}
+    behind = (numbers < 0) & (f.primitive >= 0)
+    assert np.abs(drawn[behind] - BENEATH * picture(f)[behind].astype(float)).max() <= 1
+
+
+def test_cells_have_the_colour_of_how_many_lights_they_ask(certified_frame: Frame) -> None:
+    f = certified_frame
+    asked, drawn = f.layers["cell lights"], picture(f, View.CELL_LIGHTS)
+    line = np.zeros(asked.shape, np.bool_)
+    line[:, :-1] |= f.cells[:, 1:] != f.cells[:, :-1]
+    line[:-1] |= f.cells[1:] != f.cells[:-1]
+    colors = np.round(color_map() * 255).astype(int)
+    for number, color in ((-1, to_bytes(GREY)), (0, colors[0]), (2, colors[-1])):
+        there = (f.primitive >= 0) & (asked == number)
+        assert (there & ~line).any() and np.abs(drawn[there & ~line].astype(int) - color).max() <= 1
+        assert (there & line).any() and np.abs(drawn[there & line] - FAINT_LINE * color).max() <= 2
 
 
 def test_a_light_that_is_not_there(frame: Frame) -> None:

@@ -18,6 +18,7 @@ from tests.viewer.scenarios.legends import legends
 from tests.viewer.scenarios.moving import flying, orbiting, playing, resizing
 from tests.viewer.scenarios.navigating import navigating
 from tests.viewer.scenarios.panels import closing_panels, folding, hiding, looks, panels
+from tests.viewer.scenarios.previewing import previewing
 from tests.viewer.scenarios.rays import rays
 from tests.viewer.scenarios.reviving import reviving
 from tests.viewer.scenarios.runs import asking, experimenting, zooming
@@ -33,6 +34,7 @@ SCENARIOS = {
         flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting,
         zooming, asking, finding, filmstrip, filming, hunting, taking, failing,
         reviving, panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if,
+        previewing,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip

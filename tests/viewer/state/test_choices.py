@@ -35,7 +35,7 @@ def test_choices_are_put_back_as_they_were_and_through_json(session: Session):
     again = Choices.from_json(json.loads(json.dumps(after.to_json())))
     session.tone, session.zoom, session.clipping = Tone(2.0), Zoom(8.0), True
     again.put_into(session, p)
-    assert again == replace(after, spans=None, zoom=None, comparison=None), "these belong to what is shown"
+    assert again == replace(after, spans=None, zoom=None, comparison=None, cut=None), "these belong to what is shown"
     assert Choices.of(session, p) == replace(after, zoom=Zoom(8.0)) and p.method == "paper+rest" and p.view == "depth"
 
 

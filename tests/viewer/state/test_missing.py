@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import make_frame, with_certificates, with_cuts, with_lamps
+from tests.viewer.fakes import make_frame, with_cell_lights, with_certificates, with_cuts, with_lamps, with_voxels
 from tracer.frame import Settings
 from tracer.method import bases
 from viewer.state.missing import missing
@@ -23,10 +23,15 @@ def test_a_view_that_a_method_has_nothing_for_names_a_method_that_has(view: View
         frame = with_certificates(frame)
     if method.startswith("lightcuts"):
         frame = with_cuts(frame)
+    if method.startswith("voxels"):
+        frame = with_voxels(frame)
+    if method.startswith("lie"):
+        frame = with_cell_lights(frame)
     found = missing(view, frame)
     cuts = "lightcuts", "lightcuts-stochastic", "lightcuts-certified"
     wrong = "paper", "cells", "lie", *cuts
     shows = {View.CERTIFICATE: ("certified",), View.DIFFERENCE: wrong, View.WIPE: wrong, View.CUTS: cuts}
+    shows |= {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}
     if view not in shows or method.split("+")[0] in shows[view]:
         assert found is None
     else:

@@ -7,7 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import in_part, make_frame, with_certificates, with_cuts, with_lamps
+from tests.viewer.fakes import (
+    in_part,
+    make_frame,
+    with_cell_lights,
+    with_certificates,
+    with_cuts,
+    with_lamps,
+    with_voxels,
+)
 from tracer.frame import Settings
 from viewer.state.pixels import ALL, MOST_WATCHED, Pixels, Region, histogram, region_between
 from viewer.state.readings import can_draw
@@ -17,6 +25,7 @@ from viewer.state.views import View
 FRAME = with_cuts(
     with_lamps(with_certificates(make_frame(Settings(width=16, height=8, verify=True, record_work=True))))
 )
+FRAME = with_cell_lights(with_voxels(FRAME))
 
 
 def test_pixels_are_put_into_words():

@@ -396,6 +396,25 @@ class EnvironmentStore:
         words[OUTSIDE] = 0
         return words[np.maximum(cell, OUTSIDE)]
 
+    def asked_in(self, cells: NDArray[np.int32]) -> NDArray[np.int32]:
+        """How many lights points in cells, of any shape, must look at: those that are not known to be hidden from all
+        of the cell; -1 for points in none."""
+        one, which = np.unique(np.maximum(cells, OUTSIDE), return_inverse=True)
+        known, held = self._known, self.held
+        asked = ((self.codes[one] != HIDDEN) | ~known[:held]).sum(1)
+        if len(known) > held:
+            first, last = (np.maximum(ends[one], 0).astype(np.int64) for ends in (self.first, self.last))
+            left = last - first
+            if len(self.further) < len(known) - held or not known.all() or self.further[0] < held:
+                # Lights that are held are counted, and so are all that have moved.
+                lists = self.lights[: self._lit]
+                before = np.concatenate([[0], np.cumsum((lists >= held) & known[lists])])
+                left = before[last] - before[first] + int((~known[held:]).sum())
+            asked += np.where(self.first[one] < 0, len(known) - held, left)
+        asked[one == OUTSIDE] = len(known)
+        found = asked.astype(np.int32)[which].reshape(cells.shape)
+        return np.where(cells < 0, np.int32(-1), found)
+
     def _hides(self, cell: int, light: int) -> bool:
         """Whether a light that is not held is known to be hidden from a cell."""
         if cell <= OUTSIDE or self.first[cell] < 0 or not self._known[light]:

@@ -29,6 +29,15 @@ class Told(NamedTuple):
     named: tuple[int, ...] = ()
 
 
+class LightCube(NamedTuple):
+    """What a light sees, as a picture found it: the `cube` of all that never moves, around `place` (3,); or `why` it
+    has none, in words."""
+
+    place: NDArray[np.float32]
+    cube: Cube | None
+    why: str = ""
+
+
 def cell_of(way: NDArray[np.float32], side: int) -> tuple[int, int, int]:
     """(face, row, column) of a way (3,) from the light (`cube.cells_of`)."""
     axis = 0 if abs(way[0]) >= max(abs(way[1]), abs(way[2])) else (2 if abs(way[2]) > abs(way[1]) else 1)
@@ -54,6 +63,16 @@ def tell(cube: Cube, light: NDArray[np.float32], point: NDArray[np.float32]) -> 
     if float(record[LIT : LIT + 3] @ way) < 1.0:
         return Told(Said.BEFORE)
     return Told(Said.CANDIDATES if count else Said.UNKNOWN, names)
+
+
+def listed(cube: Cube, face: int, row: int, column: int) -> tuple[int, ...]:
+    """The primitives in the list of a cell, by number; or only the one that covers all of it."""
+    number = int(cube.cells[face, row, column]) >> WIDTH_BITS
+    if number == NOTHING:
+        return ()
+    first, count = (int(x) for x in cube.records.view(np.int32)[number, [FIRST, COUNT]])
+    names = tuple(int(cube.numbers[row]) for row in cube.lists[first : first + count])
+    return names or ((int(cube.every[first]),) if first >= 0 else ())
 
 
 def list_lengths(cube: Cube) -> NDArray[np.int32]:

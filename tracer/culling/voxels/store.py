@@ -23,6 +23,7 @@ from tracer.culling.shadow_modes import words_at
 from tracer.culling.voxels.classify import CERTIFICATES, COUNTERS, STEPS, TESTS, Light, classify_blocks
 from tracer.culling.voxels.contents import list_contents
 from tracer.culling.voxels.grid import BLOCK, DIGITS, ROOM, VoxelGrid, make_grid, voxel_at, voxels_for
+from tracer.culling.voxels.tell import VoxelStates, Walked, walked
 from tracer.culling.voxels.view import VoxelView
 from tracer.geometry.boxes import NO_BOX
 from tracer.geometry.memory import aligned_rows
@@ -95,11 +96,13 @@ class VoxelStore:
         self.places = np.full((lights, 3), np.nan, np.float32)
         self._wanted = self.places.copy()
         self._resting = np.empty((0, 6), np.float32)
+        self._shown: VoxelStates | None = None  # what pictures hold, until anything changes
 
     @property
     def bytes(self) -> int:
         """Memory that all of this takes, in bytes."""
-        kept = (self.words, self._light_space, self._starts, self._names, self._geometry.rows)
+        shown = self._shown.words if self._shown is not None else np.empty(0)
+        kept = (self.words, self._light_space, self._starts, self._names, self._geometry.rows, shown)
         o = self._geometry.occluders
         return sum(a.nbytes for a in (*kept, o.boxes, o.blocks, o.error_radii, o.leaf_radii, o.light_space))
 
@@ -126,6 +129,8 @@ class VoxelStore:
         wanted = np.where((single & ~far)[:, None], lamps.places, np.float32(np.nan))
         wanted[self._held :] = np.nan
         moved = np.flatnonzero((wanted != self.places).any(1) & ~np.isnan(self.places[:, 0]))
+        if len(moved):
+            self._shown = None
         forget_lights(self.words, moved.tolist())
         self.places[moved] = np.nan
         self._wanted = wanted
@@ -147,6 +152,7 @@ class VoxelStore:
 
     def _classify(self, light: int, threads: int, counts: NDArray[np.int64], cancel: Callable[[], bool] | None) -> None:
         geometry, grid, place = self._geometry, self.grid, self._wanted[light].copy()
+        self._shown = None
         forget_lights(self.words, [light])
         low = np.array([grid.x, grid.y, grid.z])
         high = low + np.array([grid.nx, grid.ny, grid.nz]) * grid.side
@@ -181,7 +187,7 @@ class VoxelStore:
 
     def _list_contents(self) -> None:
         """List what lies in each voxel."""
-        rows, self._listed = self._geometry.rows, True
+        rows, self._listed, self._shown = self._geometry.rows, True, None
         reach = np.where(self._reach > self.grid.side, np.float32(np.inf), self._reach)
         # Count what is in each, then put it there: starts[v + 1] goes from where v begins to where it ends.
         counts = np.zeros(self.grid.voxels + 1, np.int32)
@@ -216,6 +222,19 @@ class VoxelStore:
         if number < 0 or not 0 <= light < len(self.places) or np.isnan(self.places[light, 0]):
             return STATES[0]
         return STATES[int(shadow_mode(self.words[number], light))]
+
+    def shown(self) -> VoxelStates:
+        """The voxels and their states as they are now, for pictures to hold; the same until anything changes."""
+        if self._shown is None:
+            self._shown = VoxelStates(self.grid, self.words.copy(), ~np.isnan(self.places[:, 0]))
+        return self._shown
+
+    def walked(self, point: NDArray[np.float32], light: int) -> Walked | None:
+        """How a shadow ray that ends at a point (3,) goes from voxel to voxel to a light; None where it does not."""
+        if not 0 <= light < len(self.places) or np.isnan(self.places[light, 0]):
+            return None
+        rows, lists = self._geometry.rows, (self._starts, self._names)
+        return walked(self.shown(), light, self.places[light], point, rows[: self._geometry.first_quadric], lists)
 
     def at_pixels(self, cell: NDArray[np.int32]) -> NDArray[np.unsignedinteger]:
         """The words of voxels, of any shape, like those of `tracer.culling.certified.cells`."""

@@ -8,6 +8,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tracer.method import Method, additions, bases
 from tracer.settings import MAX_NODES
 from viewer.services.controller import Controller
+from viewer.state import terms
 from viewer.state.methods import toggled, with_base
 from viewer.state.preferences import MOST_CERTIFYING
 from viewer.window.ui import Ui
@@ -130,6 +131,9 @@ def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
     if c.frame.settings.method != c.tracing.settings.method:
         return None
     shadow = c.frame.statistics.shadow
+    if c.frame.statistics.cuts is not None:
+        said = f"{count(shadow.wrong)} {terms.BEYOND}" if shadow.wrong else "no pixel beyond the error"
+        return said, ERROR if shadow.wrong else GOOD
     if shadow.wrong:
         answers = f"{count(shadow.wrong)} wrong {'answer' if shadow.wrong == 1 else 'answers'}"
         return f"{answers} ({percent(shadow.wrong, shadow.due)})", ERROR

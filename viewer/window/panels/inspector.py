@@ -8,8 +8,10 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import OcclusionMode, ShadowMode
-from viewer.state.picking import Pick
-from viewer.state.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
+from tracer.frame import Frame
+from viewer.state.picking import Pick, pixel_of
+from viewer.state.readings import can_draw, cell_lights
+from viewer.state.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING, View
 from viewer.window.panels import explanation, teaching
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, fact, heading, highest_count, paragraph, properties, swatch, tooltip
@@ -56,6 +58,9 @@ def _details(ui: Ui, pick: Pick) -> None:
                 fact("Cell", f"{pick.unit}", "the part of it that carries modes and counts")
             if pick.material is not None:
                 fact("Material", pick.material.name, _describe(pick))
+            asks = _cell_asks(frame, pick)
+            if asks:
+                fact("Its cell", asks, "of the octree of this method: all but those that it knows to be hidden")
             tip = "that it covers now; the highest count is the most it covered while fully rendered"
             fact("Pixels", f"{count(pick.pixels)} now{f', {highest_count(pick.highest)}' if by_modes else ''}", tip)
             if pick.wrong is not None:
@@ -67,6 +72,15 @@ def _details(ui: Ui, pick: Pick) -> None:
                 fact("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
             if pick.normal is not None:
                 fact("Normal", "{:.2f}, {:.2f}, {:.2f}".format(*pick.normal))
+
+
+def _cell_asks(frame: Frame | None, pick: Pick) -> str:
+    """How many lights the cell must look at that the pixel is in, in words; nothing where that is not known."""
+    at = pixel_of(pick, frame) if frame is not None and can_draw(frame, View.CELL_LIGHTS) else None
+    if frame is None or at is None:
+        return ""
+    asked = int(cell_lights(frame)[at[1], at[0]])
+    return f"asks {count(asked)} of {count(frame.lights)} lights" if asked >= 0 else ""
 
 
 def _modes(ui: Ui, pick: Pick) -> None:

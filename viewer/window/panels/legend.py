@@ -34,7 +34,7 @@ def of_picture(ui: Ui) -> Legend | None:
     s, p = c.session, c.preferences
     span = c.comparing.span(view)
     number = number_of(scene.lights, light)
-    chosen = Chosen(light, name, p.mark_wrong, p.work_shares, span, s.tone, s.clipping, number)
+    chosen = Chosen(light, name, p.mark_wrong, p.work_shares, span, s.tone, s.clipping, number, s.cut)
     kept = "legend" if frame is c.frame else "legend of A"
     found: Legend | None = ui.cached(kept, frame, (view, chosen), lambda: legend_of(frame, view, chosen))
     return found
@@ -48,7 +48,7 @@ def in_panel(ui: Ui) -> None:
     layout = fitting(legend, _width_of, imgui.get_text_line_height(), imgui.get_content_region_avail().x, 1e6)
     layout = layout or lay_out(legend, _width_of, imgui.get_text_line_height())
     at = imgui.get_cursor_screen_pos()
-    _draw(imgui.get_window_draw_list(), layout, at)
+    draw_layout(imgui.get_window_draw_list(), layout, at)
     imgui.dummy(ImVec2(layout.width, layout.height))
     if imgui.is_item_hovered():
         _tell(layout, at)
@@ -75,7 +75,7 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     _drag(ui, at, least, room)
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(corner, end, True)
-    _draw(draw, layout, at)
+    draw_layout(draw, layout, at)
     if imgui.is_item_hovered() and not imgui.is_item_active():
         draw.add_rect(at, ImVec2(at.x + layout.width, at.y + layout.height), _packed((1.0, 1.0, 1.0), 0.35), em(0.3))
         _tell(layout, at)
@@ -105,7 +105,8 @@ def _caught(part: float, room: float) -> float:
     return 1.0 if (1.0 - part) * room <= em(_CATCH) else part
 
 
-def _draw(draw: imgui.ImDrawList, layout: Layout, at: ImVec2) -> None:
+def draw_layout(draw: imgui.ImDrawList, layout: Layout, at: ImVec2) -> None:
+    """Draw a legend as it is laid out."""
     end = ImVec2(at.x + layout.width, at.y + layout.height)
     draw.add_rect_filled(at, end, _packed(BACKDROP, BACKDROP_OPACITY), em(0.3))
     for swatch in layout.swatches:

@@ -8,6 +8,7 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.jobs import Job
+from viewer.window.panels import preview
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, centred, clipped, em, paragraph
 
@@ -19,7 +20,10 @@ def show(ui: Ui) -> None:
     jobs = [job for job in (preparing, opener.load_job) if job is not None]
     if not jobs:
         return
-    centred(em(26.0), 1.0 if ui.tour.step is not None else 0.5)
+    if ui.preview is not None:
+        preview.make_room(ui, em(26.0))
+    else:
+        centred(em(26.0), 1.0 if ui.tour.step is not None else 0.5)
     flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_docking
     flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_focus_on_appearing
     imgui.begin("##progress", None, int(flags))

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from viewer.state import navigation, pads
+from viewer.state import navigation, pads, terms
 from viewer.state.comparison import Way
 from viewer.state.picking import point_at
 from viewer.window import comparing
@@ -22,14 +22,17 @@ from viewer.window.palette import ON_PICTURE_ERROR
 from viewer.window.panels import (
     annotating,
     closeup,
+    cut_overlay,
     edited_picture,
     explanation,
     film,
     layers,
     legend,
     missing,
+    preview,
     ray_overlay,
     sides,
+    slicing,
     timeline,
     tour,
     unseen,
@@ -79,6 +82,8 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     if texture is not None and frame is None and c.reloaded:
         _last_picture(ui, room, texture)
         return
+    if frame is None and preview.show(ui, room, _drag):
+        return
     if frame is None or texture is None or c.session.scene is None:
         _placeholder(ui, room)
         return
@@ -109,6 +114,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
         else:
             explanation.show(ui, area.whole, area.whole_end)
         unseen.show(ui, area.whole, area.whole_end)
+        cut_overlay.show(ui, area.whole, area.whole_end)
     _pointer(ui, area)
     closeup.show(ui, area)
     if seen is not None:
@@ -122,6 +128,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
         sides.show_names(ui, area, seen, lower)
     legend.show(ui, area.corner, area.end)
     missing.show(ui, area.corner, area.end)
+    slicing.show(ui, area)
     closeup.menu(ui)
 
 
@@ -248,7 +255,7 @@ def _wheel(ui: Ui, notches: float) -> None:
 def fly(ui: Ui) -> None:
     """Move by the keys that are held down; called once per frame, for every window but those being typed in."""
     c, io = ui.controller, imgui.get_io()
-    if ui.key_wanted or io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or c.session.scene is None:
+    if ui.key_wanted or io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or c.session.seen is None:
         return
     if imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup_id | imgui.PopupFlags_.any_popup_level)):
         return
@@ -290,6 +297,8 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
     shadow, counter = frame.statistics.shadow, ""
     if c.tracing.drawn_view.needs_verify and not ui.legend_shown:
         counter = f"   {count(shadow.wrong)} wrong of {count(shadow.due)} answers"
+        if frame.statistics.cuts is not None:
+            counter = f"   {count(shadow.wrong)} {terms.BEYOND}"
     size = imgui.calc_text_size(text + counter)
     if end.x - corner.x < size.x + em(2.0):
         return corner.y

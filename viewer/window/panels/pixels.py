@@ -105,7 +105,8 @@ def _pixel(ui: Ui, frame: Frame, number: int, point: tuple[float, float], a: Sid
 
 
 def _value(ui: Ui, frame: Frame, view: View, light: int, x: int, y: int) -> str:
-    return " ".join(words_at(frame, view, light, x, y, ui.controller.preferences.work_shares)) or "-"
+    c = ui.controller
+    return " ".join(words_at(frame, view, light, x, y, c.preferences.work_shares, c.session.cut)) or "-"
 
 
 def _histogram(ui: Ui) -> None:

@@ -103,7 +103,10 @@ def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
             fate(terms.CACHE_HITS, shadow.cache_hits)
         fate(terms.TRACED, fully_traced(shadow))
         if frame.settings.verify:
-            fate(terms.WRONG, shadow.wrong)
+            if s.cuts is None:
+                fate(terms.WRONG, shadow.wrong)
+            else:
+                amount(terms.BEYOND.capitalize(), count(shadow.wrong), terms.MEANINGS[terms.BEYOND])
         if shadow.passed_over:
             tip = f"{terms.MEANINGS[terms.PASSED_OVER]} ({count(shadow.passed_over)})"
             amount(terms.PASSED_OVER.capitalize(), number(shadow.passed_over), tip)

@@ -105,7 +105,8 @@ def _summary(ui: Ui) -> str:
     parts = []
     if frame is not None:
         if frame.settings.verify:
-            parts.append(f"{count(frame.statistics.shadow.wrong)} wrong")
+            what = "beyond the error" if frame.statistics.cuts is not None else "wrong"
+            parts.append(f"{count(frame.statistics.shadow.wrong)} {what}")
         parts += [f"{frame.width} x {frame.height}", f"{1e3 * frame.statistics.seconds:.0f} ms"]
     if c.active:
         parts.append(f"{hello_imgui.frame_rate():.0f} frames/s")

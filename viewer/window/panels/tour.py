@@ -23,7 +23,7 @@ def show(ui: Ui) -> None:
     if tour.step is None:
         ui.tour_height = 0.0
         return
-    if ui.controller.frame is None:
+    if ui.controller.frame is None and ui.preview is None:
         _all_steps(ui)
     elif ui.tour_place is not None:
         _strip(ui, *ui.tour_place)

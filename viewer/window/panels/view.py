@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from viewer.state.views import View
-from viewer.window.panels import legend, lights, tone
+from viewer.window.panels import legend, lights, slicing, tone
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, right, row
 
@@ -27,8 +27,10 @@ def show(ui: Ui) -> None:
                 row("Line", "where it is; or drag it in the picture")
                 changed, at = imgui.slider_float("##wipe", 100.0 * c.session.wipe, 0.0, 100.0, "%.0f %%")
                 c.session.wipe = min(max(at / 100.0, 0.0), 1.0) if changed else c.session.wipe
-            if c.session.view is View.DIFFERENCE:
-                row("Beneath", "how bright the picture is beneath the wrong pixels")
+            if c.session.view.has_slice:
+                slicing.rows(ui)
+            if c.session.view is View.DIFFERENCE or c.session.view.has_slice:
+                row("Beneath", "how bright the picture is beneath the wrong pixels, or behind the slice")
                 changed, percents = imgui.slider_float("##beneath", 100.0 * p.beneath, 0.0, 60.0, "%.0f %%")
                 p.beneath = min(max(percents / 100.0, 0.0), 0.6) if changed else p.beneath
             if c.session.view in _FLAT:

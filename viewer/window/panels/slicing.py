@@ -1,0 +1,104 @@
+"""The slice through space: its axis and its place in the panel View; and, over the picture, what the pointer is on."""
+
+from __future__ import annotations
+
+import numpy as np
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from tracer.light_cut import LightCut
+from viewer.services.cut_inspector import MOST_DRAWN
+from viewer.state.picking import pixel_at
+from viewer.state.readings import cell_lights, voxels_of
+from viewer.state.slices import AXES, STATE_NAMES, middle_of, slice_seen, voxel_seen
+from viewer.state.views import View
+from viewer.window.layers_of_slice import go_to
+from viewer.window.panels.area import Area
+from viewer.window.ui import Ui
+from viewer.window.widgets import count, em, percent, row
+
+_BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.90), ImVec4(0.93, 0.94, 0.96, 1.0)
+
+
+def rows(ui: Ui) -> None:
+    """Rows of the panel's table."""
+    s, frame = ui.controller.session, ui.controller.frame
+    row("Slice", "across which axis space is cut")
+    for axis, name in enumerate(AXES):
+        if axis:
+            imgui.same_line(0.0, em(0.6))
+        if imgui.radio_button(f"{name}##slice", s.cut.axis == axis):
+            s.cut = s.cut._replace(axis=axis)
+    states = voxels_of(frame) if frame is not None and "voxels" in frame.structures else None
+    if states is None:
+        return
+    row("Layer", "of voxels, along the axis; Ctrl+click to type one")
+    many, layer = states.shape[s.cut.axis], s.cut.layer(states.shape)
+    flags, words = (
+        int(imgui.SliderFlags_.always_clamp),
+        f"%d  ({AXES[s.cut.axis]} = {middle_of(states.grid, s.cut):.4g})",
+    )
+    changed, layer = imgui.slider_int("##layer", layer, 0, many - 1, words, flags)
+    if changed:
+        s.cut = go_to(s.cut, layer, many)
+
+
+def lines_at(ui: Ui, x: int, y: int) -> list[str]:
+    """What a pixel of the newest frame shows of space, in a view of that; nothing where it shows none."""
+    c = ui.controller
+    frame, view, light = c.frame, c.tracing.drawn_view, c.session.light
+    if frame is None:
+        return []
+    if view is View.VOXELS:
+        states, cut = voxels_of(frame), c.session.cut
+        seen = ui.cached("slice", frame, cut, lambda: slice_seen(frame, states.grid, cut))
+        number = int(seen.numbers[y, x])
+        if number < 0:
+            return []
+        found = voxel_seen(states, light, number)
+        block = f"with the block of {found.level} x {found.level} x {found.level} around it" if found.level > 1 else ""
+        inside = "something static lies in it" if found.occupied else "nothing static lies in it"
+        named = "{}, {}, {}".format(*found.place)
+        return [f"voxel {named}: {STATE_NAMES[found.state]}", *([block] if block else []), inside]
+    if view is View.CUTS and c.cuts.cut is not None and (c.cuts.cut.x, c.cuts.cut.y) == (x, y):
+        return cut_lines(c.cuts.cut)
+    if view is View.CELL_LIGHTS and frame.primitive[y, x] >= 0:
+        asked = int(cell_lights(frame)[y, x])
+        return ["not known yet"] if asked < 0 else [f"its cell asks {count(asked)} of {count(frame.lights)} lights"]
+    return []
+
+
+def cut_lines(cut: LightCut) -> list[str]:
+    """What shades a pixel, in a few lines."""
+    many, single = len(cut.nodes), int((cut.lights == 1).sum())
+    lines = [f"{count(many)} clusters shade it, {count(single)} of them single lights"]
+    total = float(cut.sent.sum())
+    if total > 0.0:
+        top = np.sort(cut.sent)[::-1]
+        lines.append(f"the brightest sends {percent(float(top[0]), total)} of their light")
+    if many > MOST_DRAWN:
+        lines.append(f"drawn are the {MOST_DRAWN} that send most")
+    return lines
+
+
+def show(ui: Ui, area: Area) -> None:
+    """Beside the pointer, what is under it."""
+    c = ui.controller
+    at, frame = c.selection.hovered, c.frame
+    if at is None or frame is None or imgui.is_mouse_down(0):
+        return
+    lines = lines_at(ui, *pixel_at(frame, *at))
+    if not lines:
+        return
+    pad, line = em(0.4), imgui.get_text_line_height()
+    width, height = max(imgui.calc_text_size(text).x for text in lines) + 2.0 * pad, line * len(lines) + 2.0 * pad
+    mouse = imgui.get_io().mouse_pos
+    left, top = mouse.x + em(1.2), mouse.y + em(1.2)
+    if left + width > area.end.x:
+        left = mouse.x - em(0.6) - width
+    if top + height > area.end.y:
+        top = mouse.y - em(0.6) - height
+    draw = imgui.get_window_draw_list()
+    back, front = imgui.get_color_u32(_BACK), imgui.get_color_u32(_FRONT)
+    draw.add_rect_filled(ImVec2(left, top), ImVec2(left + width, top + height), back, em(0.3))
+    for number, text in enumerate(lines):
+        draw.add_text(ImVec2(left + pad, top + pad + number * line), front, text)
