@@ -191,7 +191,7 @@ class App:
     def _follow_pads(self) -> None:
         if not self.ui.key_wanted and not imgui.get_io().want_text_input:
             found = self.read_pads()
-            if found and not glfw.get_window_attrib(glfw_utils.glfw_window_hello_imgui(), glfw.FOCUSED):
+            if found and not places.in_front(glfw_utils.glfw_window_hello_imgui()):
                 return  # sticks are those of the program in front
             runs = {c.name: c.run for c in self.ui.commands if c.enabled()} if found else {}
             self.controller.pads.follow(found, runs)
