@@ -137,7 +137,7 @@ linkcheck:  ## check the documentation's links to other sites, which needs the n
 	@tools/environment.sh dev
 	$(RUN) -m sphinx -q -d .cache/docs -b linkcheck docs build/linkcheck
 
-pictures:  ## make the pictures of the README anew, from the real window (ARGS="film" or "still": one of them)
+pictures:  ## make the pictures of the README and of the methods anew (ARGS="film", "still" or "methods": one of them)
 	@tools/environment.sh dev
 	@$(RUN) tools/with_screen.py $(RUN) tools/make_pictures.py $(ARGS)
 

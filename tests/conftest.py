@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import tempfile
 from importlib.util import find_spec
@@ -20,6 +21,15 @@ BART = Path(__file__).resolve().parents[1].parent / "shared" / "bart"
 _HOME = tempfile.TemporaryDirectory(prefix="shadowcull-tests-")
 os.environ["SHADOWCULL_CONFIG_DIR"] = str(Path(_HOME.name) / "shadowcull")
 os.environ["XDG_CONFIG_HOME"] = _HOME.name
+
+
+# What is imported and collected lives to the end: nobody looks through it for garbage, then or later.
+gc.disable()
+
+
+def pytest_collection_finish() -> None:
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(scope="session")

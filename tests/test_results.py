@@ -90,3 +90,13 @@ def test_what_was_measured_quickly_is_never_written(capsys):
     with pytest.raises(SystemExit):
         main(["--quick", "--write"])
     assert "is no result" in capsys.readouterr().err
+
+
+def test_a_table_of_methods_takes_the_place_of_that_of_its_scene_alone():
+    from tests.bench.methods import BEGIN, END, with_tables
+
+    page = f"before\n{BEGIN}\n**Kitchen, 8 × 8**\n\n| a |\n\n**Office, 8 × 8**\n\n| b |\n\n{END}after\n"
+    assert with_tables(page, []) == page
+    one = with_tables(page, ["**Kitchen, 4 × 4**\n\n| c |\n", "**Courtyard, 4 × 4**\n\n| d |\n"])
+    tables = f"\n**Kitchen, 4 × 4**\n\n| c |\n\n**Office, 8 × 8**\n\n| b |\n\n**Courtyard, 4 × 4**\n\n| d |\n\n{END}"
+    assert one == f"before\n{BEGIN}{tables}after\n"

@@ -7,6 +7,7 @@
 # holds a pip of its own, which is there from then on.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+export PYTHONDONTWRITEBYTECODE=  # else each start of pip takes seconds
 kind=${1:?run or dev}
 say() { echo "shadowcull: $*" >&2; }
 
@@ -56,27 +57,38 @@ fi
 # Settings of a user's pip that would send packages elsewhere.
 export PIP_USER=0 PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_REQUIRE_VIRTUALENV=0
 unset PIP_TARGET PIP_PREFIX PIP_ROOT
-if .venv/bin/python -m pip --version >/dev/null 2>&1 || .venv/bin/python -m ensurepip >/dev/null 2>&1; then
-    pip=(.venv/bin/python -m pip)
-else
-    pip=()
-    for candidate in "${wanted:-python3}" python3 /usr/bin/python3 "$(.venv/bin/python -c 'import sys; print(sys._base_executable)')"; do
-        if "$candidate" -m pip --python .venv/bin/python --version >/dev/null 2>&1; then
-            pip=("$candidate" -m pip --python .venv/bin/python)
-            break
-        fi
-    done
-    if ((${#pip[@]} == 0)); then
+pip=()
+for candidate in .venv/bin/python "${wanted:-python3}" python3 /usr/bin/python3 "$(.venv/bin/python -c 'import sys; print(sys._base_executable)')"; do
+    if "$candidate" -m pip --python .venv/bin/python --version >/dev/null 2>&1; then
+        pip=("$candidate" -m pip --python .venv/bin/python)
+        break
+    fi
+done
+if ((${#pip[@]} == 0)); then
+    if ! .venv/bin/python -m ensurepip >/dev/null 2>&1; then
         say "needs pip 22.3 or newer, and finds none: install python3-pip (or python3-venv)"
         exit 1
     fi
+    pip=(.venv/bin/python -m pip)
 fi
 
 say "installing the packages of tools/$kind.lock into .venv (once)"
 # Python compiles a module when it is first imported: most of these packages' modules never are.
 quiet=(--quiet --no-input)
 [[ -t 2 ]] && quiet=(--no-input)
-if ! "${pip[@]}" install "${quiet[@]}" --no-compile --only-binary :all: --require-hashes -r "tools/$kind.lock"; then
+pip_install() { "${pip[@]}" install "$@" --no-compile --only-binary :all: --require-hashes; }
+
+# uv does in seconds what takes pip a minute.  Where the lock has none, or pip is set up with another index, pip does it,
+# as it does what uv could not.
+install_by_uv() {
+    grep -q '^uv==' "tools/$kind.lock" && [[ -z ${PIP_INDEX_URL:-$("${pip[@]}" config get global.index-url 2>/dev/null)} ]] || return
+    sed -n '/^uv==/,/[^\\]$/p' "tools/$kind.lock" >.cache/uv.lock
+    pip_install --quiet --no-input --no-deps -r .cache/uv.lock &&
+        .venv/bin/python -m uv pip install --no-config --quiet --python .venv/bin/python --only-binary :all: \
+            --require-hashes -r "tools/$kind.lock"
+}
+
+if ! install_by_uv 2>.cache/uv.log && ! pip_install "${quiet[@]}" -r "tools/$kind.lock"; then
     say "the packages could not be installed (pip's message is above); the first run needs the network"
     exit 1
 fi

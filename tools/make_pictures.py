@@ -1,10 +1,11 @@
 """Make the pictures of the README anew, from the real window: `make pictures`, or
 
-    python tools/with_screen.py python tools/make_pictures.py [film] [still]
+    python tools/with_screen.py python tools/make_pictures.py [film] [still] [methods]
 
 `viewer.png` is the window with a clicked pixel and its shadow rays.  `loop.webp` is a short film that repeats: a
 flight along the scene's own path, the occlusion modes and shadow modes that it has taught, and the wipe between the
 culled picture and the right one.  ImGui's test engine presses the keys, as in the tests of the window.
+`methods` are those of the page of methods (`tools/method_pictures.py`).
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from PIL import Image
 
 from tests.viewer import real_window
 from tests.viewer.driver import Driver
+from tools import method_pictures
 
 ROOT = Path(__file__).resolve().parent.parent
 SIZE = [1280, 800]  # of the window
@@ -102,11 +104,15 @@ def _begin(d: Driver) -> None:
 
 
 def main(names: list[str]) -> int:
-    made = {"film": film, "still": still}
+    made = {"film": film, "still": still, "methods": None}
     if not set(names) <= set(made):
         print(f"make_pictures: give any of {', '.join(made)}", file=sys.stderr)
         return 2
     for name in names or made:
+        if name == "methods":
+            if code := method_pictures.main([]):
+                return code
+            continue
         real_window.SCENARIOS[name] = made[name]
         with tempfile.TemporaryDirectory() as folder:
             os.environ["SHADOWCULL_CONFIG_DIR"] = folder

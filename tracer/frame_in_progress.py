@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from tracer.culling.cells import units_of
 from tracer.culling.counters import COUNTERS
 from tracer.culling.occlusion import count_pixels, occlusion_testing
+from tracer.fit import remark
 from tracer.frame import Frame
 from tracer.geometry.camera import Pinhole, pinhole
+from tracer.method import Method
 from tracer.methods.interface import ShadowMethod, Stage, StageTable
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.progressive import Parts
@@ -385,6 +387,8 @@ class FrameInProgress:
         for method in self.methods:
             method.report(statistics)
             layers |= method.layers(self)
+        lamps = int((np.diff(self.shading.lamps.first) > 1).sum())
+        statistics.say(remark(Method.parse(settings.method), lights, lamps))
         structures = {name: layers.pop(name) for name in list(layers) if not isinstance(layers[name], np.ndarray)}
 
         def per_pixel(rows: NDArray, recorded: bool) -> NDArray | None:

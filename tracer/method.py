@@ -15,6 +15,7 @@ from typing import Any
 
 ANY_NUMBER = 1 << 31
 MANY = 16  # lights: clusters of fewer are hardly ever worth it
+HELD = 31  # lights that words of modes have room for (`tracer.culling.modes.MAX_CULLED_LIGHTS`)
 #: Methods that are made of others and are worth a look (`line_up`), as far as these are known.
 TOGETHER = (
     "paper+cache",
@@ -39,7 +40,10 @@ class Kind:
     certificates, or may make some.  `adaptive`: it chooses by itself whether to cull.  `measures`: it serves
     measurements only and is not offered in the window.  `addition`: it can be added to a base; `alone`: and be the base
     itself, with nothing below it.  `lights`: of scenes with so many it has something to say, from least to most; it
-    is right for others, too.  `clusters`: it shades by clusters of lights.
+    is right for others, too.  `answers`: it answers rays to so many lights, the first ones, and leaves others to
+    tracing.  `lamps`: it answers rays to lamps of several samples.  `in_part`: of lights past `answers`, and of lamps,
+    it knows in part which are hidden.  `clusters`: it shades by clusters of lights.  `makes`: what it makes before
+    shading, and how, as in "voxels classified"; `FrameStatistics.certificates` is their number.
     """
 
     name: str
@@ -55,7 +59,15 @@ class Kind:
     addition: bool = False
     alone: bool = False
     lights: tuple[int, int] = (0, ANY_NUMBER)
+    answers: int = ANY_NUMBER
+    lamps: bool = True
+    in_part: bool = False
     clusters: bool = False
+    makes: str = ""
+
+    def fits(self, lights: int) -> bool:
+        """Whether it has anything to say of a scene with so many lights."""
+        return self.lights[0] <= lights <= self.lights[1]
 
     def load(self) -> Any:
         """The class that implements it."""
@@ -157,7 +169,7 @@ class Method:
 
     def fits(self, lights: int) -> bool:
         """Whether it has anything to say of a scene with so many lights."""
-        return all(kind.lights[0] <= lights <= kind.lights[1] for kind in self.kinds)
+        return all(kind.fits(lights) for kind in self.kinds)
 
     @property
     def exact(self) -> bool:
@@ -190,6 +202,11 @@ class Method:
         return any(kind.clusters for kind in self.kinds)
 
     @property
+    def makes(self) -> tuple[str, ...]:
+        """What it makes before shading, in words."""
+        return tuple(dict.fromkeys(kind.makes for kind in self.kinds if kind.makes))
+
+    @property
     def learns(self) -> bool:
         """Whether what it counts in a frame may depend on the frames before it: it knows something of them."""
         return self.culls or bool(self.added)
@@ -200,168 +217,56 @@ class Method:
         return any(kind.adaptive for kind in self.kinds)
 
 
-register(
-    Kind(
-        "none",
-        "Traces every shadow ray: the truth that others are compared with.",
-        "tracer.methods.none:NoCulling",
-        culls=False,
-    )
-)
-register(
-    Kind(
-        "paper",
-        "Culls by the paper's shadow modes of whole primitives; wrong now and then.",
-        "tracer.methods.paper:Paper",
-        exact=False,
-        uses_modes=True,
-    )
-)
-register(
-    Kind(
-        "cells",
-        "The paper's modes, kept for the cells of large triangles; wrong now and then.",
-        "tracer.methods.cells:Cells",
-        exact=False,
-        uses_modes=True,
-        uses_cells=True,
-    )
-)
-register(
-    Kind(
-        "certified",
-        "Culls by what is proven of the cells of triangles; never wrong.",
-        "tracer.methods.certified:certified",
-        has_certificates=True,
-    )
-)
-register(
-    Kind(
-        "auto",
-        "Culls by certificates where that is measured to be quicker; never wrong.",
-        "tracer.methods.auto:Auto",
-        has_certificates=True,
-        adaptive=True,
-    )
-)
-register(
-    Kind(
-        "free",
-        "Replays the answers of the same frame: no culling can be faster.",
-        "tracer.methods.free:Free",
-        measures=True,
-    )
-)
-register(
-    Kind(
-        "lightcuts",
-        "Shades by clusters of lights, as fine as a bound of the error asks for.",
-        "tracer.methods.lightcuts:Lightcuts",
-        exact=False,
-        lights=(MANY, ANY_NUMBER),
-        clusters=True,
-    )
-)
-register(
-    Kind(
-        "lightcuts-stochastic",
-        "Lightcuts with lights drawn for each pixel: noise, which averages out, instead of bands.",
-        "tracer.methods.lightcuts_stochastic:StochasticLightcuts",
-        exact=False,
-        lights=(MANY, ANY_NUMBER),
-        clusters=True,
-    )
-)
-register(
-    Kind(
-        "lightcuts-certified",
-        "Lightcuts of those lights that are not proven to be hidden.",
-        "tracer.methods.lightcuts_certified:CertifiedLightcuts",
-        exact=False,
-        lights=(MANY, ANY_NUMBER),
-        clusters=True,
-        has_certificates=True,
-    )
-)
-register(
-    Kind(
-        "voxels",
-        "Culls by cubes of space that are lit, or in shadow, as a whole; never wrong.",
-        "tracer.methods.voxels:Voxels",
-        has_certificates=True,
-        lights=(0, 31),
-        addition=True,
-        alone=True,
-    )
-)
-register(
-    Kind(
-        "lie-exact",
-        "Asks what is proven to block a light from a cell of space, and no light hidden from it; never wrong.",
-        "tracer.methods.lie:Environments",
-        has_certificates=True,
-        addition=True,
-        alone=True,
-    )
-)
-register(
-    Kind(
-        "lie",
-        "Local illumination environments, by samples as published; wrong now and then.",
-        "tracer.methods.lie:SampledEnvironments",
-        exact=False,
-        has_certificates=True,
-        addition=True,
-        alone=True,
-    )
-)
-register(Kind("cache", "Tests what blocked a light before first.", "tracer.methods.cache:OccluderCache", addition=True))
-register(Kind("rest", "Counts objects that rest as static.", "tracer.methods.rest:Resting", culls=False, addition=True))
-register(
-    Kind(
-        "lightbuffer",
-        "Looks up what each light sees in each direction; never wrong.",
-        "tracer.methods.lightbuffer:LightBuffer",
-        lights=(0, 31),
-        addition=True,
-        alone=True,
-    )
-)
-register(
-    Kind(
-        "cache-directions",
-        "Tests first what blocked a light before in this direction.",
-        "tracer.methods.cache:DirectionCache",
-        addition=True,
-        measures=True,
-    )
-)
-register(
-    Kind(
-        "cache-tile",
-        "Tests first what blocked a light before in this tile of the picture.",
-        "tracer.methods.cache:TileCache",
-        addition=True,
-        measures=True,
-    )
-)
-register(
-    Kind(
-        "packets16",
-        "Traces rays in packets of 16 instead of 128.",
-        "tracer.methods.packets:Packets16",
-        culls=False,
-        addition=True,
-        measures=True,
-    )
-)
-register(
-    Kind(
-        "packets1",
-        "Traces rays one by one instead of in packets.",
-        "tracer.methods.packets:Packets1",
-        culls=False,
-        addition=True,
-        measures=True,
-    )
-)
+_BY_MODES = {"exact": False, "uses_modes": True, "answers": HELD}
+_CUTS = {"exact": False, "lights": (MANY, ANY_NUMBER), "clusters": True}
+_EITHER = {"addition": True, "alone": True}
+_OF_SPACE = {**_EITHER, "has_certificates": True, "answers": HELD, "lamps": False}
+_IN_PART = {**_OF_SPACE, "in_part": True, "makes": "cells settled"}
+_FEW = {"lights": (0, HELD), "answers": HELD, "lamps": False}
+_PROVES = {"has_certificates": True, "makes": "certificates made"}
+_MEASURE = {"addition": True, "measures": True}
+
+# Name, class in `tracer.methods`, what it can do, and a sentence; in the order of menus.
+_TABLE: tuple[tuple[str, str, dict[str, Any], str], ...] = (
+    ("none", "none:NoCulling", {"culls": False},
+     "Traces every shadow ray: the truth that others are compared with."),
+    ("paper", "paper:Paper", _BY_MODES,
+     "Culls by the paper's shadow modes of whole primitives; wrong now and then."),
+    ("cells", "cells:Cells", {**_BY_MODES, "uses_cells": True},
+     "The paper's modes, kept for the cells of large triangles; wrong now and then."),
+    ("certified", "certified:certified", _PROVES,
+     "Culls by what is proven of the cells of triangles; never wrong."),
+    ("auto", "auto:Auto", {**_PROVES, "adaptive": True},
+     "Culls by certificates where that is measured to be quicker; never wrong."),
+    ("free", "free:Free", {"measures": True},
+     "Replays the answers of the same frame: no culling can be faster."),
+    ("lightcuts", "lightcuts:Lightcuts", _CUTS,
+     "Shades by clusters of lights, as fine as a bound of the error asks for."),
+    ("lightcuts-stochastic", "lightcuts_stochastic:StochasticLightcuts", _CUTS,
+     "Lightcuts with lights drawn for each pixel: noise, which averages out, instead of bands."),
+    ("lightcuts-certified", "lightcuts_certified:CertifiedLightcuts", {**_CUTS, **_PROVES},
+     "Lightcuts of those lights that are not proven to be hidden."),
+    ("voxels", "voxels:Voxels", {**_OF_SPACE, **_FEW, "makes": "voxels classified"},
+     "Culls by cubes of space that are lit, or in shadow, as a whole; never wrong."),
+    ("lie-exact", "lie:Environments", _IN_PART,
+     "Asks what is proven to block a light from a cell of space, and no light hidden from it; never wrong."),
+    ("lie", "lie:SampledEnvironments", {**_IN_PART, "exact": False},
+     "Local illumination environments, by samples as published; wrong now and then."),
+    ("cache", "cache:OccluderCache", {"addition": True},
+     "Tests what blocked a light before first."),
+    ("rest", "rest:Resting", {"addition": True, "culls": False},
+     "Counts objects that rest as static."),
+    ("lightbuffer", "lightbuffer:LightBuffer", {**_EITHER, **_FEW, "makes": "light buffers made"},
+     "Looks up what each light sees in each direction; never wrong."),
+    ("cache-directions", "cache:DirectionCache", _MEASURE,
+     "Tests first what blocked a light before in this direction."),
+    ("cache-tile", "cache:TileCache", _MEASURE,
+     "Tests first what blocked a light before in this tile of the picture."),
+    ("packets16", "packets:Packets16", {**_MEASURE, "culls": False},
+     "Traces rays in packets of 16 instead of 128."),
+    ("packets1", "packets:Packets1", {**_MEASURE, "culls": False},
+     "Traces rays one by one instead of in packets."),
+)  # fmt: skip
+
+for _name, _class, _can, _sentence in _TABLE:
+    register(Kind(_name, _sentence, f"tracer.methods.{_class}", **_can))

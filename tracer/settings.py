@@ -11,6 +11,7 @@ from tracer.scene.lights import MAX_SAMPLES
 
 MAX_SIDE = 16384
 MAX_NODES = 65536  # of a cut: each takes a kilobyte for each thread
+LIGHT_BUFFER_SIDES = (16, 32, 64, 128, 256, 512, 1024)
 
 
 @dataclass(frozen=True)
@@ -125,7 +126,7 @@ class Settings:
             ),
             (0 <= self.threads <= 1024, "threads lie in 0 to 1024"),
             (
-                self.light_buffer_side in (16, 32, 64, 128, 256, 512, 1024),
+                self.light_buffer_side in LIGHT_BUFFER_SIDES,
                 "light_buffer_side is a power of two from 16 to 1024",
             ),
             (self.light_buffer_memory >= 0, "light_buffer_memory is 0 or more"),

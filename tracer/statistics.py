@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.counters import BY_LIGHT, PRIMARY, RAYS, SECONDARY, SHADOW, STEPS, TESTS, ShadowCounter
+
+if TYPE_CHECKING:
+    from tracer.culling.certified.scheduler import Counts
 
 
 @dataclass
@@ -204,11 +208,12 @@ class FrameStatistics:
     occlusion_tests : int
         Extra tests between neighbouring pixels (§2.3).
     certificates, certificate_steps, certificate_tests : int
-        Certificates that were made, and the steps and tests that they took.
+        Certificates that were made, and the steps and tests that they took; or what a method makes in their place
+        (`tracer.method.Kind.makes`).
     part : float
         The part of the pixels that were shaded. Below 1, shadow and secondary rays are those of this part.
     decision : str
-        What the method "auto" does now and why, in a sentence.
+        What the method does now and why, and what of the scene it has nothing to say of, in a sentence or two.
     light_buffers : list of int
         How many cells an edge of each light's cube has, 0 for a light that is traced; for the method "lightbuffer".
     samples : SampleCounts or None
@@ -241,6 +246,16 @@ class FrameStatistics:
     seconds: float = 0.0
     by_modes: list[SaidByModes] = field(default_factory=list)
     phases: dict[str, float] = field(default_factory=dict)
+
+    def add_made(self, made: Counts) -> None:
+        """Count what one of the frame's methods has made, and what that took."""
+        self.certificates += made.certificates
+        self.certificate_steps += made.steps
+        self.certificate_tests += made.tests
+
+    def say(self, sentence: str) -> None:
+        """Add to what the method says of the frame; nothing, where it is empty."""
+        self.decision = " ".join(filter(None, (self.decision, sentence)))
 
     @property
     def by_modes_in_all(self) -> SaidByModes:

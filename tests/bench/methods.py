@@ -3,6 +3,7 @@
     make methods                                        BART's scenes where they are there, office and courtyard
     make methods ARGS="--frames 4 --size 128 kitchen.aff"
     make methods ARGS="--write"                         into the page of methods, docs/methods.md
+    make methods ARGS="--write --size 48 --frames 3 courtyard"   there, the table of this scene alone
 
 Every method has a renderer of its own, and they take turns frame by frame.  Steps, tests and wrong answers are those of
 the paper's structure, which counts ray by ray; with more lights than modes have room for, which would take it hours, of
@@ -15,6 +16,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import sys
 import time
 from collections.abc import Iterator
@@ -123,6 +125,24 @@ def markdown(name: str, sums: dict[str, Sums]) -> str:
     return f"**{name}**\n\n" + "\n".join(lines) + "\n"
 
 
+def with_tables(page: str, tables: list[str]) -> str:
+    """The page with these tables in the place of those of the same scenes, or after them; others stay."""
+    before, _, rest = page.partition(BEGIN)
+    there, _, after = rest.partition(END)
+    kept = dict(_sections(there)) | {_scene_of(table): table for table in tables}
+    return before + BEGIN + "\n" + "\n".join(f"{table.strip()}\n" for table in kept.values()) + "\n" + END + after
+
+
+def _sections(text: str) -> list[tuple[str, str]]:
+    """Tables with the names of their scenes."""
+    parts = re.split(r"^(?=\*\*\w)", text, flags=re.M)
+    return [(_scene_of(part), part) for part in parts if part.startswith("**")]
+
+
+def _scene_of(table: str) -> str:
+    return table.partition(",")[0].strip("*").lower()
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help="default: BART's if there, office and courtyard")
@@ -149,9 +169,7 @@ def main() -> int:
     options.json.parent.mkdir(parents=True, exist_ok=True)
     options.json.write_text(json.dumps({"machine": machine(), "scenes": figures}, indent=1) + "\n")
     if options.write:
-        before, _, rest = PAGE.read_text().partition(BEGIN)
-        _, _, after = rest.partition(END)
-        PAGE.write_text(before + BEGIN + "\n" + "\n".join(tables) + "\n" + END + after)
+        PAGE.write_text(with_tables(PAGE.read_text(), tables))
     for fault in faults:
         say(f"wrong: {fault}")
     return 1 if faults else 0

@@ -46,7 +46,7 @@ def test_who_reads_past_an_array_by_address_is_stopped(side: tuple[str, str]) ->
 @linux_only
 def test_kernels_stay_inside_their_arrays() -> None:
     """Compiled as usual, on guarded arrays; a process of its own, which a fault ends."""
-    many = examples(8 * len(CASES))
+    many = examples(4 * len(CASES))
     command = [sys.executable, "-m", "tests.fuzz.bounds", "--from", "0", "--until", str(time.time() + 500)]
     done = subprocess.run([*command, "--count", str(many)], cwd=ROOT, env=os.environ, capture_output=True, text=True)
     assert done.returncode == 0, (done.stdout[-1000:], done.stderr[-3000:])

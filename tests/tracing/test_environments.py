@@ -9,17 +9,16 @@ import numpy as np
 import pytest
 
 import tracer
-from tests.sweeps import cases
+from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.nasty_worlds import NastyWalk, flattened_walk, nasty_walk, static_part, with_lamps
 from tests.tracing.worlds import scene, wall
 from tracer.culling.environments.octree import HIDDEN, LIT, OUTSIDE, UNKNOWN, boxes_of, make_frame
-from tracer.culling.environments.sample import cells_of
 from tracer.culling.environments.store import CANDIDATES, EnvironmentStore
 from tracer.culling.modes import FULL_SHADOW, MAX_CULLED_LIGHTS, NON_SHADOW
 from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.rays import ray_batch
-from tracer.geometry.world import ACCELERATORS, World
+from tracer.geometry.world import World
 from tracer.scene.lamps import Lamps, LampTable
 from tracer.scene.lights import Light
 from tracer.scene.load import load_scene
@@ -38,7 +37,7 @@ def _store(world: World, lamps: Lamps, points: np.ndarray, memory: float = 3e7) 
     store.follow(lamps, nothing_rests(len(world.scene.objects)))
 
     def want() -> None:
-        store.wanted[cells_of(store, points)] = True
+        store.tree.wanted[store.tree.leaves_at(points)] = True
 
     store.work(want, np.inf)
     return store
@@ -50,12 +49,12 @@ def test_a_point_is_in_the_box_of_its_cell_by_either_way_down():
         corners = np.array(wall(4, 3)) * scale + move
         points = (rng.random((200, 3)) * (4.0, 3.0, 0.0) * scale + move).astype(np.float32)
         store = _store(World(scene(corners)), _lamps(np.array([[1.0, 1.0, 2.0]]) * scale + move), points)
-        cells = cells_of(store, points)
-        boxes = boxes_of(store.frame, store.cells[cells])
-        assert (cells != OUTSIDE).all() and (store.child[cells] == 0).all()
+        cells = store.tree.leaves_at(points)
+        boxes = boxes_of(store.tree.frame, store.tree.cells[cells])
+        assert (cells != OUTSIDE).all() and (store.tree.child[cells] == 0).all()
         assert (points >= boxes[:, :3]).all() and (points <= boxes[:, 3:]).all()
-        assert [store.cell_at(point) for point in points] == cells.tolist()
-    assert store.cell_at(np.full(3, 1e9, np.float32)) == OUTSIDE
+        assert [store.tree.leaf_at(point) for point in points] == cells.tolist()
+    assert store.tree.leaf_at(np.full(3, 1e9, np.float32)) == OUTSIDE
     assert make_frame(np.zeros((2, 3))).levels >= 0
 
 
@@ -75,8 +74,8 @@ def test_whatever_is_proved_of_a_cell_holds_for_the_rays_into_it(accelerator: st
         anywhere = points.min(0) + rng.random((300, 3)) * np.ptp(points, axis=0)
         points = np.concatenate([points, anywhere]).astype(np.float32)
         store = _store(world, _lamps(places), points)
-        cells = np.unique(cells_of(store, points))
-        boxes = boxes_of(store.frame, store.cells[cells])
+        cells = np.unique(store.tree.leaves_at(points))
+        boxes = boxes_of(store.tree.frame, store.tree.cells[cells])
         part = np.where(rng.random((len(cells), 16, 1)) < 0.4, rng.integers(0, 2, (len(cells), 16, 3)),
                         rng.random((len(cells), 16, 3)))  # fmt: skip
         ends = (boxes[:, None, :3] + part * (boxes[:, None, 3:] - boxes[:, None, :3])).astype(np.float32)

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
+from tests.sweeps import ACCELERATORS
 from tests.tracing.nasty_worlds import nasty_walk
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.shades import BEHIND, floor, going, kite, roof
@@ -20,7 +21,6 @@ from tracer.culling.lightbuffer.shapes import BLOCKED, COUNT, FIRST, LIT, WIDTH_
 from tracer.culling.lightbuffer.tell import Said, cell_of, full_depths, list_lengths, tell
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.verdicts import Verdict
-from tracer.geometry.world import ACCELERATORS
 from tracer.ray_tree import ray_tree
 from tracer.scene.animation import Animation
 from tracer.scene.model import Cancelled

@@ -79,17 +79,19 @@ def test_cells_ask_all_lights_but_those_that_they_know_to_be_hidden():
         points = (low + rng.random((40, 3)) * (high - low)).astype(np.float32)
         store = environments(world, lamps, points)
         store._known[rng.integers(0, len(lamps.places), 2)] = False  # as if they had moved
-        cells = np.array([store.cell_at(point) for point in points], np.int32)
+        cells = np.array([store.tree.leaf_at(point) for point in points], np.int32)
         asked = store.asked_in(cells)
         for cell, number in zip(cells.tolist(), asked.tolist(), strict=True):
-            listed = set(store.lights[max(store.first[cell], 0) : max(store.last[cell], 0)].tolist())
+            listed = set(
+                store.further.lights[max(store.further.first[cell], 0) : max(store.further.last[cell], 0)].tolist()
+            )
             expected = 0
             for light in range(len(lamps.places)):
                 known = store._known[light]
                 if light < store.held:
                     looks = not known or store.codes[cell, light] != HIDDEN or light in listed
                 else:
-                    looks = not known or store.first[cell] < 0 or light in listed
+                    looks = not known or store.further.first[cell] < 0 or light in listed
                 expected += looks
             assert number == expected, (seed, cell)
             fewer += number < len(lamps.places)

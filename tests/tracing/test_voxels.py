@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import tracer
-from tests.sweeps import cases
+from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.nasty_worlds import flattened_walk, nasty_walk, static_part, with_lamps
 from tests.tracing.worlds import scene, wall
 from tracer.culling.modes import FULL_SHADOW, MAX_CULLED_LIGHTS, NON_SHADOW, shadow_mode
@@ -20,7 +20,7 @@ from tracer.culling.voxels.grid import BLOCK, box_of, make_grid, voxel_at, voxel
 from tracer.culling.voxels.store import VoxelStore
 from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.rays import ray_batch
-from tracer.geometry.world import ACCELERATORS, World
+from tracer.geometry.world import World
 from tracer.scene.lamps import LampTable
 from tracer.scene.lights import Light
 

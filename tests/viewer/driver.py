@@ -20,7 +20,8 @@ from viewer.window.app import App
 PATIENCE = 240.0  # a first run compiles the kernels
 SIZES = ((1280, 800), (1600, 1000))  # of windows that people have
 FASTEST = 120.0  # frames a second
-SELDOM = 0.02  # seconds from frame to frame while it waits: others need the processor more
+SELDOM, BUSY = 0.02, 0.05  # seconds from frame to frame while it waits, and while it traces: that needs the processor
+RASTERIZER_DISCARD = 0x8C89  # what OpenGL calls: to draw up to where pixels would be filled
 
 
 class Driver:
@@ -31,6 +32,7 @@ class Driver:
         self.app, self.ui, self.c = app, app.ui, app.controller
         self.context, self.folder = context, folder
         self._in_frame: list[Callable[[], None]] = []
+        self._of_window: list[Callable[[], None]] = []  # done when the window is drawn, pixels and all
         stay_awake = app._stay_awake
 
         def with_errands() -> None:
@@ -43,6 +45,30 @@ class Driver:
         app._stay_awake = with_errands  # type: ignore[method-assign]
         if not dozes:
             app.params.fps_idling.fps_max = FASTEST
+        self._fill_only_what_is_seen()
+
+    def _fill_only_what_is_seen(self) -> None:
+        """Fill the window's pixels in those frames only of which a picture is taken: where a processor draws, that is
+        half of the time that a scenario takes.  All else is done in each frame, and the views are drawn as ever."""
+        app, call = self.app, self.app.params.callbacks
+        before_render, before_swap = call.before_imgui_render, call.before_swap
+        filled = True
+
+        def begin() -> None:
+            nonlocal filled
+            before_render()
+            filled = bool(self._of_window) or app._capture_this_frame
+            if not filled:
+                self.ui.display.context.enable_direct(RASTERIZER_DISCARD)
+
+        def end() -> None:
+            if not filled:
+                self.ui.display.context.disable_direct(RASTERIZER_DISCARD)
+            before_swap()
+            while filled and self._of_window:
+                self._of_window.pop()()
+
+        call.before_imgui_render, call.before_swap = begin, end
 
     def wait(self, until: Callable[[], bool], what: str, patience: float = PATIENCE) -> None:
         end = time.monotonic() + patience
@@ -50,7 +76,7 @@ class Driver:
             said = self.c.notices.message
             assert self.c.frame is not None or said is None or not said.error, said.text
             assert time.monotonic() < end, f"waited in vain: {what}; the status says {said}"
-            time.sleep(SELDOM)
+            time.sleep(BUSY if self.c.active else SELDOM)
             self.context.yield_()
         self.context.yield_()
 
@@ -87,10 +113,10 @@ class Driver:
         return got[0]
 
     def window(self) -> np.ndarray:
-        """All of the window as it was last drawn."""
+        """All of the window as it is drawn next."""
         got: list[np.ndarray] = []
         size = glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui())
-        self._in_frame.append(lambda: got.append(self.ui.display.read_window(*size)))
+        self._of_window.append(lambda: got.append(self.ui.display.read_window(*size)))
         while not got:
             self.context.yield_()
         return got[0]

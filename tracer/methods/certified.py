@@ -197,13 +197,11 @@ class CertifiedCells(ShadowMethod):
         return {"cells": np.where(cell > 0, cell, np.int32(-1)), "certificates": words.reshape(shape)}
 
     def report(self, statistics: FrameStatistics) -> None:
-        statistics.certificates = self._counts.certificates
-        statistics.certificate_steps = self._counts.steps
-        statistics.certificate_tests = self._counts.tests
+        statistics.add_made(self._counts)
 
     def finish(self, frame: FrameView, statistics: FrameStatistics) -> None:
         if self.scheduler is not None:
-            self.scheduler.finish(statistics.certificates, statistics.shadow.due)
+            self.scheduler.finish(self._counts.certificates, statistics.shadow.due)
 
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
         return None if self.store is None else self.store.describe(primitive, point, light)

@@ -187,9 +187,7 @@ class CertifiedLights(ShadowMethod):
         self.store.keep_within(1e6 * frame.settings.certificate_memory)
 
     def report(self, statistics: FrameStatistics) -> None:
-        statistics.certificates = self._counts.certificates
-        statistics.certificate_steps = self._counts.steps
-        statistics.certificate_tests = self._counts.tests
+        statistics.add_made(self._counts)
 
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
         if self.store is None:

@@ -110,8 +110,6 @@ class ShadowMethod:
 
     #: Other methods that this one is made of, which live as long as it does.
     parts: tuple[ShadowMethod, ...] = ()
-    #: The kernels of its stages, to be made ready before a frame needs them.
-    entries: tuple[Entry, ...] = ()
     #: How many rays may go through a tree side by side in its frames (`tracer.geometry.world.World.place`).
     together: int = MOST_TOGETHER
 

@@ -23,7 +23,7 @@ from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, Because, Verdict
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import borrowed
-from tracer.kernels import Entry, entry, kernel
+from tracer.kernels import entry, kernel
 from tracer.methods.interface import FrameView, Stage
 from tracer.methods.of_space import NOWHERE, CellsOfSpace
 from tracer.parallel import for_each_chunk
@@ -118,7 +118,6 @@ class Environments(CellsOfSpace):
     """Settles cells by proofs, and culls by what they know."""
 
     store: EnvironmentStore | None
-    entries: tuple[Entry, ...] = (find, select, choose)
     coarse = 0  # how often cells are divided at most, 0 for as often as is worth it
 
     def follow(self, frame: FrameView) -> None:
@@ -171,10 +170,10 @@ class Environments(CellsOfSpace):
         if store is None:
             return Because(Verdict.ANSWERED)
         state, named = store.state_at(point, answered.light)
-        cell = store.cell_at(point)
-        asked, side = int(store.asked_in(np.array(cell, np.int32))), 2.0 ** store.cells[cell, 3] * store.frame.side
+        tree, cell = store.tree, store.tree.leaf_at(point)
+        asked, side = int(store.asked_in(np.array(cell, np.int32))), 2.0 ** tree.cells[cell, 3] * tree.frame.side
         told = (
-            f"The cell is {side:.3g} wide, on level {store.frame.levels - int(store.cells[cell, 3])} of the octree; "
+            f"The cell is {side:.3g} wide, on level {tree.frame.levels - int(tree.cells[cell, 3])} of the octree; "
             f"it asks {asked:,} of {len(store.places):,} lights."
         )
         verdict = Verdict.CELL_LIT if answered.lit else Verdict.CELL_FULL

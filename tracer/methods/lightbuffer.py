@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.certified.scheduler import Counts
 from tracer.culling.lightbuffer.cubes import LEAST_SIDE, Cube, CubeMaker, Items, items_of
 from tracer.culling.lightbuffer.lookup import (
     CELLS,
@@ -81,8 +82,6 @@ class _Buffer:
 class LightBuffer(ShadowMethod):
     """Keeps a buffer for each light."""
 
-    entries = (choose,)
-
     def __init__(self, services: Services) -> None:
         super().__init__(services)
         self.forget()
@@ -94,7 +93,7 @@ class LightBuffer(ShadowMethod):
         self._since = nothing_rests(len(self.services.world.primitives.triangle_starts) - 1).since
         self._allowed = np.inf
         self._last: NDArray[np.float32] | None = None
-        self._made = self._steps = self._tests = 0
+        self._counts = Counts()
         self._asked = 0, 0.0
         self._lights = 0
         self._why_not: dict[int, str] = {}
@@ -123,7 +122,7 @@ class LightBuffer(ShadowMethod):
 
     def prepare(self, frame: FrameView) -> None:
         """Make the buffers that are wanting.  Raises Cancelled, with those that are done kept."""
-        self._made = self._steps = self._tests = 0
+        self._counts = Counts()
         world = self.services.world
         resting = np.flatnonzero(self._since > 0).tolist()
         if self._static is None:
@@ -158,9 +157,8 @@ class LightBuffer(ShadowMethod):
         for buffer, cube in zip(wanting, maker.make(lights, side, most, frame.workers, frame.cancel), strict=True):
             setattr(buffer, which, cube)
             buffer.refused = cube is None
-            self._made += cube is not None
-        self._steps += maker.steps
-        self._tests += maker.tests
+        made, before = sum(getattr(buffer, which) is not None for buffer in wanting), self._counts
+        self._counts = Counts(before.steps + maker.steps, before.tests + maker.tests, before.certificates + made)
 
     def _reach(self, light: NDArray[np.float32]) -> float:
         """No less than the length of any ray from a light to what never moves, or rests now."""
@@ -221,9 +219,7 @@ class LightBuffer(ShadowMethod):
         return {"light cubes": tuple(shown)} if shown else {}
 
     def report(self, statistics: FrameStatistics) -> None:
-        statistics.certificates += self._made
-        statistics.certificate_steps += self._steps
-        statistics.certificate_tests += self._tests
+        statistics.add_made(self._counts)
         there = {k: b.static.side for k, b in self.buffers.items() if b.static is not None and self._answers(b)}
         statistics.light_buffers = [there.get(k, 0) for k in range(self._lights)]
 

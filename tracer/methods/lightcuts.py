@@ -17,7 +17,7 @@ from tracer.culling.counters import SHADOW_COUNTERS
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.stages import call_at, vectors
 from tracer.geometry.memory import aligned_rows
-from tracer.kernels import Entry, entry
+from tracer.kernels import entry
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.scene.lamps import Lamps
 from tracer.shading.lightcuts.block import BLOCK, DARK, POINTS, ROOM, Clusters, CutWork
@@ -60,8 +60,6 @@ def shade(data, call, light, count, counts):
 
 class Lightcuts(ShadowMethod):
     """Shades by cuts of a tree of lights."""
-
-    entries: tuple[Entry, ...] = (shade,)
 
     def __init__(self, services: Services) -> None:
         super().__init__(services)

@@ -14,7 +14,7 @@ from tracer.culling.counters import SHADOW_COUNTERS
 from tracer.culling.regions.lookup import look
 from tracer.culling.regions.store import RegionView
 from tracer.culling.stages import call_at, selects, vectors
-from tracer.kernels import Entry, entry
+from tracer.kernels import entry
 from tracer.methods.certified_lights import WORDS, CertifiedLights
 from tracer.methods.interface import FrameView, Services, Stage
 from tracer.methods.lightcuts import Lightcuts
@@ -64,8 +64,6 @@ def shade(data, call, light, count, counts):
 
 class CertifiedLightcuts(Lightcuts):
     """Shades by cuts of the lights that are not proven to be hidden."""
-
-    entries: tuple[Entry, ...] = (shade,)
 
     def __init__(self, services: Services) -> None:
         super().__init__(services)

@@ -33,11 +33,9 @@ class CellsOfSpace(ShadowMethod):
         return {"cells": cell, "certificates": self.store.at_pixels(cell)}
 
     def report(self, statistics: FrameStatistics) -> None:
-        statistics.certificates = self._counts.certificates
-        statistics.certificate_steps = self._counts.steps
-        statistics.certificate_tests = self._counts.tests
+        statistics.add_made(self._counts)
         if self.store is not None:
-            statistics.decision = statistics.decision or self.store.told
+            statistics.say(self.store.told)
 
     def forget(self) -> None:
         self.store = None

@@ -24,7 +24,7 @@ from tracer.culling.voxels.tell import Stop
 from tracer.culling.voxels.view import voxel_view_at
 from tracer.culling.voxels.walk import states, voxels_at, walk
 from tracer.geometry.boxes import segments_miss_box
-from tracer.kernels import Entry, entry
+from tracer.kernels import entry
 from tracer.methods.interface import FrameView, Stage
 from tracer.methods.of_space import NOWHERE, CellsOfSpace
 from tracer.shading.points import points_in
@@ -89,7 +89,6 @@ class Voxels(CellsOfSpace):
     """Classifies voxels, and culls by their states."""
 
     store: VoxelStore | None
-    entries: tuple[Entry, ...] = (find, choose)
 
     def follow(self, frame: FrameView) -> None:
         settings = frame.settings

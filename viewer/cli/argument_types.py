@@ -246,8 +246,12 @@ def method(text: str) -> str:
 
 
 def methods_or_all(text: str) -> list[str]:
-    """Names of methods, or ["all"]."""
-    return ["all"] if text.strip() == "all" else several(method)(text)
+    """Names of methods, among them "all"."""
+    names = [part.strip() for part in text.split(",")]
+    try:
+        return [name if name == "all" else method(name) for name in names]
+    except argparse.ArgumentTypeError as error:
+        raise argparse.ArgumentTypeError(f"{error}; or all") from None
 
 
 class BeyondMemory(argparse.Action):

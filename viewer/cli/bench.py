@@ -50,9 +50,9 @@ def bench(path: Path, options: Namespace) -> bool:
     radii, samples = options.lamp_radius or [None], options.lamp_samples or [None]
     options.lamp_radius, options.lamp_samples = radii[0], samples[0]
     settings = tracing_settings(options)
-    methods = options.methods if options.methods == [ALL] else experiment.with_reference(options.methods)
+    methods = experiment.with_reference([method for method in options.methods if method != ALL])
     wanted = exports.wanted_files(options)
-    if "plot" in wanted and methods == [REFERENCE]:
+    if "plot" in wanted and methods == [REFERENCE] and ALL not in options.methods:
         raise ValueError(f"--plot: nothing to compare with {REFERENCE}; give another of --methods")
     by_lamps = len(radii) * len(samples) > 1
     if by_lamps and "plot" in wanted:
@@ -61,8 +61,8 @@ def bench(path: Path, options: Namespace) -> bool:
         scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
         for warning in scene.warnings:
             work.note(f"warning: {warning}")
-        if methods == [ALL]:
-            methods = line_up(len(scene.lights))
+        if ALL in options.methods:  # and those that are named besides
+            methods = experiment.with_reference([*line_up(len(scene.lights)), *methods])
         times = experiment.path_times(scene, options.path_frames)
         numbers = frame_range(options.frames, len(times))
         prepare_kernels(work, len(scene.lights), options.accelerator, *methods)

@@ -105,15 +105,29 @@ def print_table(table: Table) -> None:
     console = Console()
     title, table.title = table.title, None
     if not console.is_terminal:
-        console = Console(width=max(100, Console(width=1000).measure(table).maximum))
+        console = Console(width=max(100, width_of(table)))
     if title is not None:
         for line in str(title).split("\n"):
             console.print(Text(printable(line), str(table.title_style or "")), soft_wrap=True)
     console.print(table)
 
 
-def statistics_table(statistics: FrameStatistics, title: str, verified: bool = False, remark: str = "") -> Table:
-    """The counters of a frame, primary, secondary and shadow rays apart; wrong answers where it was verified."""
+def width_of(table: Table) -> int:
+    """How many columns a table takes, with its cells in one line each."""
+    return Console(width=1000).measure(table).maximum
+
+
+def terminal_width() -> int | None:
+    """The columns of the terminal; None where standard output is none."""
+    console = Console()
+    return console.width if console.is_terminal else None
+
+
+def statistics_table(
+    statistics: FrameStatistics, title: str, method: str, verified: bool = False, remark: str = ""
+) -> Table:
+    """The counters of a frame by a method, primary, secondary and shadow rays apart; wrong answers where it was
+    verified."""
     caption = "\n".join(filter(None, (statistics.decision, remark))) or None
     table = Table(title=title, title_justify="left", title_style="bold", caption=caption)
     table.caption_justify = "left"
@@ -141,8 +155,8 @@ def statistics_table(statistics: FrameStatistics, title: str, verified: bool = F
         table.add_row(f"  {terms.wrong_of(statistics)}", of, "", f"{shadow.wrong:,}")
     if shadow.passed_over:
         table.add_row(f"samples {terms.PASSED_OVER}", "", "", f"{shadow.passed_over:,}")
-    if statistics.certificates:
-        table.add_row("certificates made", "", "", f"{statistics.certificates:,}")
+    if statistics.certificates and terms.made(method)[0]:
+        table.add_row(terms.made(method)[0], "", "", f"{statistics.certificates:,}")
         table.add_row("  traversal steps", "", "", f"{statistics.certificate_steps:,}")
         table.add_row("  intersection tests", "", "", f"{statistics.certificate_tests:,}")
     table.add_row("occlusion tests", f"{statistics.occlusion_tests:,}", "", "", end_section=True)

@@ -10,13 +10,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.table import Table
-
-from tracer.experiment import REFERENCE
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.model import Cancelled, Scene
-from viewer.cli.console import Work, print_table, working
+from viewer.cli import sweep_table
+from viewer.cli.console import Work, print_table, terminal_width, working
 from viewer.cli.processes import Watch, cluster_of
 from viewer.cli.tracing_options import prepare_kernels
 from viewer.services.cluster import check_dask
@@ -67,7 +65,8 @@ def sweep(path: Path, options: Namespace) -> bool:
             plan = sweeping.planned(study, scenes, store)
     lines = _summary(plan, store)
     if lines:
-        print_table(_table(study, lines))
+        for table in sweep_table.tables(study, lines, terminal_width()):
+            print_table(table)
     if options.plot is not None:
         _plot(study, lines, options.plot)
     if not options.table and store.results.exists():
@@ -136,34 +135,6 @@ def _summary(plan: Plan, store: Store) -> list[Line]:
 
     lines = summary(store.read(), (key for task in plan.tasks for key in frames_of(task)))
     return [replace(line, scene=plan.study.label(line.scene)) for line in lines]
-
-
-def _table(study: Study, lines: list[Line]) -> Table:
-    """A section for each scene and size, a row for each method."""
-    from viewer.output.sweep_summary import COLUMNS
-
-    verified = all(line.verified for line in lines)
-    table = Table(title=printable(study.title), title_justify="left", title_style="bold", caption_justify="left")
-    table.caption = f"saved against {REFERENCE}, certificates included; times are processor time of one thread" + (
-        ", with verifying" if verified else "; verify = true counts wrong answers"
-    )
-    settings = any(line.settings for line in lines)
-    for heading in ("scene", "size", *(["settings"] if settings else []), "method"):
-        table.add_column(heading, no_wrap=heading != "settings")
-    columns = [(heading, cell) for heading, cell in COLUMNS if verified or heading != "wrong"]
-    for heading, _ in columns:
-        table.add_column(heading, justify="right", no_wrap=True)
-    before: tuple[str, ...] = ("", "", "")
-    for number, line in enumerate(lines):
-        where = (printable(line.scene), f"{line.width}×{line.height}", line.settings)
-        shown = ["" if where[: i + 1] == before[: i + 1] else where[i] for i in range(3 if settings else 2)]
-        next_ = lines[number + 1] if number + 1 < len(lines) else None
-        ends = next_ is not None and (next_.scene, next_.width, next_.height, next_.settings) != (
-            line.scene, line.width, line.height, line.settings,
-        )  # fmt: skip
-        table.add_row(*shown, line.method, *(cell(line) for _, cell in columns), end_section=ends)
-        before = where
-    return table
 
 
 def _plot(study: Study, lines: list[Line], path: Path) -> None:

@@ -30,7 +30,8 @@ A study is a TOML file:
   first = 0
   last = 49
   [settings]           # a value, or a list of them: depth, symmetric, zoom_factor, verify, accelerator, lamp_radius,
-  depth = [2, 10]      # lamp_samples, certificates, certificate_seconds, certificate_memory
+  depth = [2, 10]      # lamp_samples, certificates, certificate_seconds, certificate_memory, lightcuts_error,
+                       # lightcuts_nodes, light_buffer_side, light_buffer_memory
 
 Frames of methods that learn nothing are tasks of their own. Other methods trace their whole path in one task, as in
 bench, unless there is a warmup. Each task has one thread. Every frame is kept as soon as it is traced, as a row of

@@ -18,6 +18,8 @@ import pyarrow.parquet as pq
 from filelock import FileLock, Timeout
 
 from tracer.experiment import FIGURES
+from tracer.settings import Settings
+from viewer.state.study import ASPECTS
 from viewer.util.files import write_text, write_whole
 
 _COUNTERS = [name for name in FIGURES if name != "frame_seconds"]
@@ -38,6 +40,10 @@ _FIELDS: dict[str, pa.DataType] = {
     "certificates": pa.int64(),
     "certificate_seconds": pa.float64(),
     "certificate_memory": pa.float64(),
+    "lightcuts_error": pa.float64(),
+    "lightcuts_nodes": pa.int32(),
+    "light_buffer_side": pa.int32(),
+    "light_buffer_memory": pa.float64(),
     "seed": pa.int64(),
     "shake": pa.float64(),
     "warmup": pa.int32(),
@@ -155,10 +161,19 @@ class Store:
 
     def _read(self, path: Path) -> pa.Table:
         try:
-            return pq.read_table(path, partitioning=None).cast(SCHEMA)
+            return _with_all_settings(pq.read_table(path, partitioning=None)).cast(SCHEMA)
         except (OSError, ValueError, KeyError) as error:  # pyarrow's own are of these kinds
             text = " ".join(str(error).split())[:200]
             raise OSError(f"{path}: damaged; remove it, and its frames are traced again ({text})") from None
+
+
+def _with_all_settings(table: pa.Table) -> pa.Table:
+    """Rows that were kept before a setting could vary have its usual value."""
+    for name in ASPECTS:
+        if name not in table.column_names:
+            usual = pa.array([getattr(Settings(), name)] * len(table), _FIELDS[name])
+            table = table.add_column(SCHEMA.get_field_index(name), name, usual)
+    return table
 
 
 def keys_of(table: pa.Table) -> list[Key]:

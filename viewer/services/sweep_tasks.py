@@ -30,7 +30,7 @@ from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from viewer.output import fingerprint
-from viewer.state.study import Task
+from viewer.state.study import ASPECTS, Task
 from viewer.util.version import program_version, tracer_code
 
 Row = dict[str, Any]
@@ -75,16 +75,7 @@ def _row(task: Task, number: int, time: float, frame: Frame, processor_seconds: 
         "method": settings.method,
         "width": settings.width,
         "height": settings.height,
-        "depth": settings.depth,
-        "symmetric": settings.symmetric,
-        "zoom_factor": settings.zoom_factor,
-        "verify": settings.verify,
-        "accelerator": settings.accelerator,
-        "lamp_radius": settings.lamp_radius,
-        "lamp_samples": settings.lamp_samples,
-        "certificates": settings.certificates,
-        "certificate_seconds": settings.certificate_seconds,
-        "certificate_memory": settings.certificate_memory,
+        **{name: getattr(settings, name) for name in ASPECTS},
         "seed": task.seed,
         "shake": task.shake,
         "warmup": task.warmup,

@@ -50,7 +50,9 @@ class Row:
     @property
     def written_share(self) -> str:
         share = self.share
-        return "-" if share is None else f"{share:+.1f} %" if share else "0 %"
+        if share is None:
+            return "-"
+        return f"{share:+,.{1 if abs(share) < 1000.0 else 0}f} %" if share else "0 %"
 
 
 def rows(a: Frame, b: Frame) -> list[Row]:
@@ -87,9 +89,12 @@ def _rows(a: Frame, b: Frame) -> Iterator[Row]:
         tests = ours.intersection_tests, theirs.intersection_tests
         yield Row("  tests", f"of {kind} rays against primitives", *tests)
     yield Row("Occlusion tests", "whether a primitive hides that of a neighbour", s.occlusion_tests, t.occlusion_tests)
-    yield Row("New certificates", "proofs made in this frame", s.certificates, t.certificates)
-    yield Row("  steps", "that the proofs took", s.certificate_steps, t.certificate_steps)
-    yield Row("  tests", "that the proofs took", s.certificate_tests, t.certificate_tests)
+    made = {name: meaning for one in (a, b) for name, meaning in [terms.made(one.settings.method)] if name}
+    if made:
+        name = " and ".join(dict.fromkeys(made)).capitalize()
+        yield Row(name, "; ".join(made.values()), s.certificates, t.certificates)
+        yield Row("  steps", "that this took", s.certificate_steps, t.certificate_steps)
+        yield Row("  tests", "that this took", s.certificate_tests, t.certificate_tests)
     yield Row("Time", heading=True)
     yield Row("Frame", "from the request to the picture", 1e3 * s.seconds, 1e3 * t.seconds, " ms", 1)
     for name, (label, tip) in terms.PHASES.items():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tracer.method import Method, additions, bases
+from tracer.method import Kind, Method, additions, bases
 from viewer.state.views import View
 
 DEFAULT = "auto"
@@ -22,6 +22,17 @@ def default_for(view: View) -> str:
     if view is View.CERTIFICATE or view.needs_work:
         return CERTIFIED
     return BY_MODES if view.needs_verify else SHOWN_BY.get(view, DEFAULT)
+
+
+def groups() -> list[tuple[str, list[Kind]]]:
+    """The methods to choose from, those that are never wrong first."""
+    exact, other = ([kind for kind in bases() if kind.exact is never] for never in (True, False))
+    return [("Exact: the picture is that of none", exact), ("With errors", other)]
+
+
+def of_all_lights(lights: int) -> str:
+    """The methods that cull rays to each of so many lights, or shade by all of them, in words."""
+    return ", ".join(kind.name for kind in bases() if kind.culls and kind.answers >= lights and kind.fits(lights))
 
 
 def with_additions(method: str, more: Iterable[str]) -> str:

@@ -27,7 +27,8 @@ from tracer.settings import Settings
 
 ASPECTS = (
     "depth", "symmetric", "zoom_factor", "verify", "accelerator", "lamp_radius", "lamp_samples", "certificates",
-    "certificate_seconds", "certificate_memory",
+    "certificate_seconds", "certificate_memory", "lightcuts_error", "lightcuts_nodes", "light_buffer_side",
+    "light_buffer_memory",
 )  # fmt: skip
 """Settings that a study may vary, beside sizes and methods."""
 

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
 from tracer.scene.files import read_regular
-from tracer.settings import Settings
+from tracer.settings import LIGHT_BUFFER_SIDES, MAX_NODES, Settings
 from viewer.state.study import ASPECTS, Study
 from viewer.util import resources
 
@@ -104,6 +104,9 @@ class _Reader:
             "depth": (self._whole(0, 100), "a whole number from 0 to 100"),
             "lamp_samples": (self._whole(1, 1 << 20), "a whole number from 1"),
             "certificates": (self._whole(0, 1 << 40), "a whole number from 0"),
+            "lightcuts_error": (self._number(0.0, 1e9), "a number from 0, such as 0.02 for 2 %"),
+            "lightcuts_nodes": (self._whole(1, MAX_NODES), f"a whole number from 1 to {MAX_NODES}"),
+            "light_buffer_side": (self._one_of(LIGHT_BUFFER_SIDES), f"one of {_listed(LIGHT_BUFFER_SIDES)}"),
         }
         parse, what = kinds.get(name, (self._number(0.0, 1e12), "a number from 0"))
         if name not in table:
@@ -140,6 +143,15 @@ class _Reader:
             if isinstance(value, bool) or not isinstance(value, int | float) or not least <= value <= most:
                 raise TypeError
             return float(value)
+
+        return parse
+
+    @staticmethod
+    def _one_of(values: tuple[int, ...]) -> Callable[[Any], int]:
+        def parse(value: Any) -> int:
+            if type(value) is not int or value not in values:
+                raise TypeError
+            return value
 
         return parse
 
@@ -241,6 +253,10 @@ def _accelerator(value: Any) -> str:
     if value not in ACCELERATORS:
         raise TypeError
     return str(value)
+
+
+def _listed(values: tuple[int, ...]) -> str:
+    return f"{', '.join(map(str, values[:-1]))} and {values[-1]}"
 
 
 def _toml(value: Any) -> str:

@@ -6,6 +6,7 @@ JSON and CSV have names of their own, which do not change.
 from __future__ import annotations
 
 from tracer.frame import Frame
+from tracer.method import Method
 from tracer.statistics import FrameStatistics
 
 DUE = "due"
@@ -42,17 +43,36 @@ MEANINGS = {
     BEYOND: "pixels that differ from the picture by all lights by more than clusters of lights may be wrong by",
 }
 
+MADE = {
+    "certificates made": "proofs for parts of surfaces, made in this frame",
+    "voxels classified": "voxels, and blocks of them, of which it was found out in this frame what reaches them",
+    "cells settled": "cells of space of which it was found out in this frame what blocks a light from them",
+    "light buffers made": "cubes around lights that were filled in this frame with what the light sees",
+}
+"""What methods make before shading (`tracer.method.Kind.makes`), and what it is."""
+
 PHASES = {
     "place": ("dynamic objects", "moving them to where they are at this time, and rebuilding their trees"),
     "primary": ("primary rays", "from the camera to the first surface"),
     "occlusion testing": ("occlusion tests", "whether primitives hide each other at neighbouring pixels"),
-    "certification": ("certificates", "proving what blocks a light, or that nothing does"),
+    "certification": ("preparing", "finding out what blocks a light, or that nothing does, before shading"),
     "surfaces": ("surfaces", "what each pixel shows, and its light if nothing blocked it"),
     "shading": ("shading", "shadow rays, light, textures, reflections and refractions"),
     "filling": ("filling in", "pixels that are not shaded yet, from their neighbours"),
     "mode setting": ("modes", "setting the modes of primitives by what this frame has found"),
 }
 """The phases of a frame, in their order: the name of each, and what happens in it."""
+
+
+def made(method: str) -> tuple[str, str]:
+    """What a method makes before shading, as "certificates made", and its meaning; nothing where it makes nothing."""
+    found = Method.parse(method).makes
+    return " and ".join(found), "; ".join(MADE[one] for one in found)
+
+
+def things(made: str) -> str:
+    """What it is that was made: certificates, of "certificates made"."""
+    return " and ".join(one.rsplit(" ", 1)[0] for one in made.split(" and "))
 
 
 def wrong_of(statistics: FrameStatistics) -> str:

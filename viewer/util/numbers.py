@@ -1,11 +1,11 @@
-"""Numbers as the window, its pictures and its legends write them."""
+"""Numbers as people read them, in the window and on the command line alike."""
 
 from __future__ import annotations
 
 
 def count(number: float) -> str:
-    """A number that may be large, with thin groups: 12 345 678."""
-    return f"{int(number):,}".replace(",", " ")
+    """A number that may be large, in groups: 12,345,678."""
+    return f"{int(number):,}"
 
 
 def percent(part: float, whole: float) -> str:

@@ -29,7 +29,7 @@ from viewer.state.parts import parts_of
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, comparing, glfw_pads, menus, palette, places, preview, style
+from viewer.window import commands, comparing, glfw_pads, menus, palette, places, previewing, style
 from viewer.window.compared import Compared
 from viewer.window.display import Display, Look
 from viewer.window.guard import Guard
@@ -162,7 +162,7 @@ class App:
         step("Following the scene", lambda: self.controller.tick(self._room_for_picture()))
         step("The script's function", self._tell)
         step("Drawing the picture", self._draw_unless_lost)
-        step("Drawing the preview", lambda: preview.draw(self.ui))
+        step("Drawing the preview", lambda: previewing.draw(self.ui))
         step("Drawing recorded pictures", self._bring_shots)
         step("Saving the picture", self._capture_picture)
         self._stay_awake()

@@ -96,5 +96,5 @@ def _instead() -> str:
         version, by = ((get_string(name) or b"").decode(errors="replace") for name in (_GL_VERSION, _GL_RENDERER))
         return f", but {version} by {by}" if version else ""
     finally:
-        glfw.make_context_current(None)
+        glfw.make_context_current(None)  # type: ignore[arg-type]
         glfw.destroy_window(window)

@@ -1,14 +1,13 @@
 """A preview of a scene by the GPU alone, while the tracer's kernels are compiled: no shadows, no reflections.
 
-What is drawn comes to the GPU piece by piece, as many in each of the window's frames as keep it smooth.  All of it
-runs before the widgets of a frame, and leaves the window's framebuffer bound as it was.
+What is drawn comes to the GPU piece by piece, so that none of the window's frames waits long.
 """
 
 from __future__ import annotations
 
 import math
 import time
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import moderngl
 import numpy as np
@@ -18,11 +17,7 @@ from tracer.scene.camera import Camera
 from viewer.state.preview_geometry import MATERIAL, QUADRIC, VERTEX, PreviewGeometry
 from viewer.util.resources import shader_source
 
-if TYPE_CHECKING:
-    from viewer.window.ui import Ui
-
 PIECE = 1 << 20  # bytes that come to the GPU at once
-BRINGING = 0.01  # seconds of each of the window's frames, at most, unless one piece takes longer
 SMOOTH = 0.05  # seconds to draw one picture, at most, while the camera moves: else it becomes coarser
 COARSEST = 4
 BRIGHTEST = 1.5  # of all lights together that do not fall off with distance
@@ -31,36 +26,6 @@ LARGEST, ROUNDEST = 16, 32  # so many of them are the roundest, of so many rings
 LEAST = 3  # rings of the others
 A_ROW = 1024  # materials in a row of their texture
 _NEAREST = 2e-4  # of the way to the farthest that is drawn
-
-
-def draw(ui: Ui) -> None:
-    """Draw the preview where there is one, from where the camera is; free what it took once there is none any more."""
-    c, display = ui.controller, ui.display
-    geometry = c.preview.geometry
-    if display is None or geometry is None:
-        if ui.preview is not None:
-            ui.preview.release()
-            ui.preview = None
-        return
-    if ui.preview is None or ui.preview.geometry is not geometry:
-        if ui.preview is not None:
-            ui.preview.release()
-        ui.preview = PreviewDisplay(display.context, geometry)
-    width, height = ui.picture_area
-    if min(width, height) < 1:
-        return
-    window = display.context.detect_framebuffer()
-    try:
-        until = time.perf_counter() + BRINGING
-        while ui.preview.bring() and time.perf_counter() < until:
-            pass
-        if ui.preview.whole:
-            ui.preview.draw(c.session.camera, (width, height), hurried=c.motion.under_way)
-        else:
-            c.wake()
-    finally:
-        window.use()
-        display.context.disable(moderngl.DEPTH_TEST)
 
 
 class PreviewDisplay:

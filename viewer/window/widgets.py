@@ -170,11 +170,22 @@ def tooltip_above(text: str) -> None:
         imgui.end_tooltip()
 
 
+@contextmanager
+def outlined() -> Iterator[None]:
+    """Ticks within it have a border, so that those that are not set are seen as well."""
+    imgui.push_style_var(int(imgui.StyleVar_.frame_border_size), 1.0)
+    imgui.push_style_color(imgui.Col_.border, imgui.get_style_color_vec4(imgui.Col_.text_disabled))
+    yield
+    imgui.pop_style_color()
+    imgui.pop_style_var()
+
+
 def checkbox(label: str, state: bool, change: Callable[[bool], None], tip: str = "") -> None:
     """A tick that calls `change` with its new state; a label that is too long for its line ends in an ellipsis."""
     room = imgui.get_content_region_avail().x - imgui.get_frame_height() - imgui.get_style().item_inner_spacing.x
     shown = label if label.startswith("##") else fitted(label, room)
-    changed, now = imgui.checkbox(label if shown == label else f"{shown}###{label}", state)
+    with outlined():
+        changed, now = imgui.checkbox(label if shown == label else f"{shown}###{label}", state)
     if shown != label:
         tip = f"{label}: {tip}" if tip else label
     if tip:
@@ -264,5 +275,5 @@ def short(number: float) -> str:
 
 
 def in_window_style(text: str) -> str:
-    """Numbers of a text written as they are here: 10 570 (0.499 %) for 10,570 (0.499%)."""
-    return re.sub(r"(?<=\d)%", " %", re.sub(r"(?<=\d),(?=\d{3})", " ", text))
+    """Shares of a text written as they are here: 0.499 % for 0.499%."""
+    return re.sub(r"(?<=\d)%", " %", text)

@@ -153,6 +153,7 @@ def test_mistakes_are_one_line(wrong, said, capsys):
         (["--zoom-factor", "0"], "argument --zoom-factor: 0 is not in 1 to 1,000,000,000"),
         (["--method", "none"], "unrecognized arguments: --method none"),
         (["--methods", "telepathy"], "argument --methods: invalid choice: 'telepathy'; it is one of none"),
+        (["--methods", "all,telepathy"], "+cache and +rest and +lightbuffer; or all"),
         (["--methods", ""], "argument --methods: invalid choice: ''"),
     ],
 )
@@ -254,8 +255,8 @@ def test_ctrl_c_keeps_what_is_done(tmp_path: Path):
 
 
 def test_all_methods_have_a_line_each_and_the_best_is_named(tmp_path: Path, capsys) -> None:
-    results = bench(tmp_path, "--methods", "all", "--frames", "0:3")
-    assert {"none", "paper", "certified", "free", "certified+cache"} <= set(results["methods"])
+    results = bench(tmp_path, "--methods", "all, paper+rest,paper", "--frames", "0:3")
+    assert {"none", "paper", "certified", "free", "certified+cache", "paper+rest"} <= set(results["methods"])
     out = capsys.readouterr().out
     for name in results["methods"]:
         assert re.search(rf"^\│ {re.escape(name)} +│", out, re.MULTILINE), name

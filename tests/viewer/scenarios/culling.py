@@ -9,6 +9,7 @@ import numpy as np
 from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
+from tracer.method import additions, bases
 from tracer.renderer import Renderer
 from viewer.output.legend_counts import occlusion_legend
 from viewer.output.pictures import picture
@@ -74,7 +75,11 @@ def certifying(d: Driver) -> None:
     d.settle()
     assert d.c.frame.settings.method == "certified" and d.c.tracing.drawn_view is View.CERTIFICATE
     d.context.menu_click("//##MainMenuBar/Culling/Method certified")
-    d.context.item_click("//Culling/+cache")
+    d.context.item_click("//Culling/method/##method")
+    names = [*(kind.name for kind in bases()), *(f"+{kind.name}" for kind in additions("certified"))]
+    assert all(d.context.item_exists(f"//##Combo_00/{name}") for name in names), "all are listed"
+    d.context.item_click("//##Combo_00/+cache")
+    d.press(KEY.escape)
     d.settle()
     assert d.c.frame.settings.method == "certified+cache" == d.c.preferences.method
     assert d.c.frame.certificates is not None

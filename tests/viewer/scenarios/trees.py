@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tests.viewer.driver import Driver
-from tracer.geometry.accelerators import LAZY
+from tracer.geometry.accelerators import ACCELERATORS, LAZY
 
 
 def trees(d: Driver) -> None:
@@ -16,7 +16,8 @@ def trees(d: Driver) -> None:
     assert fast.statistics.built is None and not d.c.history.values("built").any()
     d.ui.show_panel("Rendering")
     d.frames(4)
-    d.c.settings.change(accelerator=LAZY)
+    d.context.item_click("//Rendering/quality/##accelerator")
+    d.context.item_click(f"//##Combo_00/$${ACCELERATORS.index(LAZY)}/{LAZY}")
     d.wait(lambda: d.c.frame.settings.accelerator == LAZY, "a picture by the other tree")
     d.settle()
     built = d.c.frame.statistics.built

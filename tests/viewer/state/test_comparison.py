@@ -108,7 +108,7 @@ def test_columns_have_differences_and_shares():
     assert (traced.difference, traced.written_share) == (-250, "-25.0 %")
     assert (frame.written(frame.a), frame.written_share) == ("200.0 ms", "-50.0 %")
     assert found["Due"].written_share == "0 %"
-    assert "Wrong answers" not in found and "New certificates" not in found, "what neither has is left out"
+    assert "Wrong answers" not in found and "Certificates made" not in found, "what neither has is left out"
     verified = replace(b, settings=replace(b.settings, verify=True))
     verified.statistics.shadow.wrong = 3
     wrong = {row.name: row for row in rows(a, verified)}["Wrong answers"]

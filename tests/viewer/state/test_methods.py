@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from tracer.experiment import with_reference
 from tracer.method import Method, additions, bases
-from viewer.state.methods import BY_MODES, CERTIFIED, DEFAULT, NO_CULLING, in_order, is_method, toggled, with_base
+from viewer.state.methods import (
+    BY_MODES,
+    CERTIFIED,
+    DEFAULT,
+    NO_CULLING,
+    groups,
+    in_order,
+    is_method,
+    of_all_lights,
+    toggled,
+    with_base,
+)
 
 
 def test_methods_that_are_chosen_by_name_can_do_what_they_are_chosen_for():
@@ -34,3 +45,17 @@ def test_methods_are_ordered_by_base_then_by_their_additions():
     methods = {"certified+cache", "certified", "paper+rest", "none", "cells", "paper", "certified+cache+rest"}
     ordered = ["none", "paper", "paper+rest", "cells", "certified", "certified+cache", "certified+cache+rest"]
     assert in_order(methods) == ordered == with_reference(in_order(methods))
+
+
+def test_the_list_of_methods_has_each_once_among_its_like():
+    listed = [kind for _, kinds in groups() for kind in kinds]
+    assert sorted(kind.name for kind in listed) == sorted(kind.name for kind in bases())
+    (_, exact), (_, wrong) = groups()
+    assert {kind.exact for kind in exact} == {True} and {kind.exact for kind in wrong} == {False}
+    assert all(kind.summary.endswith(".") for kind in (*listed, *additions()))
+
+
+def test_methods_of_all_lights_are_named():
+    named = of_all_lights(4096).split(", ")
+    assert {"certified", "auto", "lightcuts", "lightcuts-stochastic", "lightcuts-certified"} == set(named)
+    assert "paper" in of_all_lights(31).split(", ") and "lightcuts" not in of_all_lights(6)

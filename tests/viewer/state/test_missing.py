@@ -69,7 +69,7 @@ def test_so_many_lights_that_nothing_is_recorded_for_each():
     for view in (View.PENUMBRA, View.LIGHTS):
         assert not can_draw(frame, view) and missing(view, frame) is None, "it is on its way"
     assert missing(View.PENUMBRA, many) is None, "the chosen light is recorded alone"
-    assert "2 097 153 lights" in missing(View.LIGHTS, many).text and missing(View.COLOR, many) is None
+    assert "2,097,153 lights" in missing(View.LIGHTS, many).text and missing(View.COLOR, many) is None
 
 
 def test_what_is_recorded_of_one_light_shows_that_light():

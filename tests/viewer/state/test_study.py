@@ -52,6 +52,17 @@ def test_a_study_becomes_tasks(tmp_path: Path) -> None:
     assert study.label("room.aff") == "room"
 
 
+def test_settings_of_single_methods_vary_too(tmp_path: Path) -> None:
+    more = (
+        "lightcuts_error = [0.01, 0.1]\nlightcuts_nodes = 50\nlight_buffer_side = 64\nlight_buffer_memory = [2, 8.5]\n"
+    )
+    study = read(tmp_path, GOOD.replace("depth = [2, 10]", more).replace('"certified"', '"lightcuts"'))
+    found = [(s.lightcuts_error, s.lightcuts_nodes, s.light_buffer_side, s.light_buffer_memory) for s in study.settings]
+    assert found == [(0.01, 50, 64, 2.0), (0.01, 50, 64, 8.5), (0.1, 50, 64, 2.0), (0.1, 50, 64, 8.5)]
+    (task, *_) = study.tasks("room.aff", load_scene(tmp_path / "room.aff"), "code")
+    assert task.settings.lightcuts_error == 0.01
+
+
 def test_changes_are_said(tmp_path: Path) -> None:
     one = read(tmp_path, GOOD).to_json()
     other = read(tmp_path, GOOD.replace('"paper",', '"cells",').replace("frames = 8", "frames = 9")).to_json()
@@ -70,6 +81,27 @@ def test_changes_are_said(tmp_path: Path) -> None:
         ("depth = [2, 10]", "depth = [2, 200]", "line 16: settings.depth: 200 will not do; each is a whole number"),
         ("depth = [2, 10]", "zoom_factor = 0.5", "line 16: settings.zoom_factor: zoom_factor is a finite number"),
         ("depth = [2, 10]", "depth = []", "line 16: settings.depth: the list is empty"),
+        (
+            "verify = true",
+            "lightcut_error = 0.1",
+            "line 17: settings.lightcut_error: no such key; did you mean lightcuts_",
+        ),
+        (
+            "verify = true",
+            "lightcuts_error = -1",
+            "line 17: settings.lightcuts_error: -1 will not do; give a number from",
+        ),
+        (
+            "verify = true",
+            "lightcuts_nodes = 0",
+            "line 17: settings.lightcuts_nodes: 0 will not do; give a whole number",
+        ),
+        (
+            "verify = true",
+            "light_buffer_side = [64, 100]",
+            "100 will not do; each is one of 16, 32, 64, 128, 256, 512 and",
+        ),
+        ("verify = true", "light_buffer_memory = 1e99", "line 17: settings.light_buffer_memory: 1e+99 will not do"),
         ("verify = true", "verify = 1", "line 17: settings.verify: 1 will not do; give true or false"),
         ('"default"', '"defautl"', "line 2: scenes: no file"),
         ('"default"', '"room.aff"', 'line 2: scenes: "room.aff" is given twice'),

@@ -131,7 +131,7 @@ def test_a_small_share_does_not_look_like_none(part, whole, said):
 
 
 def test_numbers_of_other_places_are_written_as_in_the_window():
-    assert in_window_style("1,234,570 (0.499%), lights 0, 2: 12") == "1 234 570 (0.499 %), lights 0, 2: 12"
+    assert in_window_style("1,234,570 (0.499%), lights 0, 2: 12") == "1,234,570 (0.499 %), lights 0, 2: 12"
 
 
 def test_no_rings_where_nothing_is_wrong():

@@ -23,7 +23,7 @@ from tracer.culling.certified.cells import (
     RECEIVER,
     ROOTS,
 )
-from tracer.culling.certified.quadtree import descend
+from tracer.culling.certified.quadtree import enter_parts
 from tracer.culling.certified.shaft import LOWEST
 from tracer.culling.counters import CANDIDATES_ONLY, TESTS
 from tracer.culling.shadow_modes import answer, look_up, trusted, words_of
@@ -71,8 +71,8 @@ class CellPoints(NamedTuple):
         u, v, owner: coordinates in the triangle, and the owner there, NOWHERE for none.
         untried, doubtful: bits, sixteen points a number: those with a light for which nothing is known yet, and those
             with one for which only candidates are.
-        asked: points that test candidates, one after the other.
-        questions: memory for that.
+        asked: vectors that are on their way down, then points that test candidates, one after the other.
+        questions: memory for both.
     """
 
     memory: Memory
@@ -101,7 +101,7 @@ def find_cells(certified, points, count, found):
     are not looked at any closer."""
     highest, child, receivers = certified.highest, address_of(certified.child), address_of(certified.receivers)
     lifted, rooted_at = points.lifted, address_of(certified.rooted)
-    stride = 4 * lifted.shape[1]
+    stride, divided = 4 * lifted.shape[1], np.int64(0)
     for k in range(vectors(count)):
         found.looked_up[k] = found.untried[k] = found.doubtful[k] = 0
         at = 64 * k
@@ -140,7 +140,42 @@ def find_cells(certified, points, count, found):
         store(address_of(found.owner) + at, select(inside, owner, i32x16(NOWHERE)))
         cell = select(back, as_i32(row[ROOTS + 1]), as_i32(row[ROOTS]))
         cell = select(inside & mask16(lanes_below(count, k)), cell, i32x16(0))
-        store(address_of(found.unit) + at, descend(child, cell, u, v))
+        store(address_of(found.unit) + at, cell)
+        inside_u, inside_v = _inside(found, k)
+        store(inside_u, u)
+        store(inside_v, v)
+        found.asked[divided] = k
+        divided += any_lane(cell > np.int32(0))
+    _descend_together(child, found, divided)
+
+
+@inlined
+def _inside(found, k):
+    """Where the coordinates of the k-th vector of points in their cells are kept on the way down."""
+    return address_of(found.questions) + 64 * k, address_of(found.questions) + 4 * found.questions.shape[1] + 64 * k
+
+
+@subkernel
+def _descend_together(child, found, active):
+    """Go down to the leaves from the cells `found.unit`, one level after the other: of the vectors `found.asked`, so
+    many of them, which are written over.
+
+    Cells lie far apart in memory.  One vector after the other would wait for it at every level; so all wait at once."""
+    while active > 0:
+        left = np.int64(0)
+        for a in range(active):
+            k = np.int64(found.asked[a])
+            unit, (inside_u, inside_v) = address_of(found.unit) + 64 * k, _inside(found, k)
+            cell = load_i32x16(unit)
+            below = gather_i32x16(child, cell)
+            inner = below > np.int32(-1)
+            cell, u, v = enter_parts(cell, below, inner, load_f32x16(inside_u), load_f32x16(inside_v))
+            store(unit, cell)
+            store(inside_u, u)
+            store(inside_v, v)
+            found.asked[left] = k
+            left += any_lane(inner)
+        active = left
 
 
 @subkernel

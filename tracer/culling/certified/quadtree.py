@@ -48,22 +48,29 @@ def descend(child, cell, u, v):
     below = gather_i32x16(child, cell)
     inner = below > np.int32(-1)
     while any_lane(inner):
-        # Find the part of each point, as `part_of` does.
-        first = u + v <= HALF
-        second, third = (u >= HALF) & ~first, (v >= HALF) & ~first
-        third = third & ~second
-        middle = ~(first | second | third)
-        part = select(first, i32x16(0), select(second, i32x16(1), select(third, i32x16(2), i32x16(3))))
-
-        # Enter it, where the cell is divided, in the part's own coordinates.
-        u, v = u * TWO, v * TWO
-        part_u = select(second, u - ONE, select(middle, ONE - u, u))
-        part_v = select(third, v - ONE, select(middle, ONE - v, v))
-        cell = select(inner, below + part, cell)
-        u, v = select(inner, part_u, u), select(inner, part_v, v)
+        cell, u, v = enter_parts(cell, below, inner, u, v)
         below = gather_i32x16(child, cell)
         inner = below > np.int32(-1)
     return cell
+
+
+@inlined
+def enter_parts(cell, below, inner, u, v):
+    """Sixteen points' cells one level down, and their coordinates there, where the cell is divided (`inner`).
+
+    below (16,) int32 are the first parts of the cells."""
+    # Find the part of each point, as `part_of` does.
+    first = u + v <= HALF
+    second, third = (u >= HALF) & ~first, (v >= HALF) & ~first
+    third = third & ~second
+    middle = ~(first | second | third)
+    part = select(first, i32x16(0), select(second, i32x16(1), select(third, i32x16(2), i32x16(3))))
+
+    # Enter it, in the part's own coordinates.
+    u, v = u * TWO, v * TWO
+    part_u = select(second, u - ONE, select(middle, ONE - u, u))
+    part_v = select(third, v - ONE, select(middle, ONE - v, v))
+    return select(inner, below + part, cell), select(inner, part_u, u), select(inner, part_v, v)
 
 
 @inlined

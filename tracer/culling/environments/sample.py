@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.environments.octree import HIDDEN, LIT, OUTSIDE, ROOT, UNKNOWN
+from tracer.culling.environments.octree import HIDDEN, LIT, UNKNOWN
 from tracer.culling.environments.store import By, EnvironmentStore, Settle
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.voxels.classify import MOST, Light
@@ -41,25 +41,11 @@ def seen_points(primitive: NDArray[np.int32], depth: NDArray[np.float32], rays: 
     return (points - offset * way).astype(np.float32)
 
 
-def cells_of(store: EnvironmentStore, points: NDArray[np.float32]) -> NDArray[np.int64]:
-    """The leaves (n,) in which points (n, 3) lie, OUTSIDE for none."""
-    frame = store.frame
-    at = np.floor((points.astype(np.float64) - (frame.x, frame.y, frame.z)) * frame.per_unit)
-    there = ((at >= 0) & (at < 2**frame.levels)).all(1)
-    i, j, k = np.where(there[:, None], at, 0.0).astype(np.int64).T
-    cell = np.where(there, ROOT, OUTSIDE)
-    for level in range(frame.levels - 1, -1, -1):
-        first = store.child[cell]
-        octant = 4 * (i >> level & 1) + 2 * (j >> level & 1) + (k >> level & 1)
-        cell = np.where(first > 0, first + octant, cell)
-    return cell
-
-
 def settle_by_samples(world: World, points: NDArray[np.float32]) -> By:
     """What finds the codes of cells by rays to those of points (n, 3) that lie in them (`EnvironmentStore.work`)."""
 
     def by(store: EnvironmentStore, cells: NDArray[np.int64]) -> Settle:
-        of = cells_of(store, points)
+        of = store.tree.leaves_at(points)
         order = np.argsort(of, kind="stable")
         sorted_cells = of[order]
 
@@ -80,7 +66,7 @@ def settle_by_samples(world: World, points: NDArray[np.float32]) -> By:
             met[world.object_of[np.maximum(met, 0)] != 0] = -1  # what moves is asked in any case
             met = met.reshape(-1, SAMPLES)
             blocked, at = (met >= 0).sum(1), np.flatnonzero(enough)
-            level = store.cells[those[at], 3] - store.finest
+            level = store.tree.cells[those[at], 3] - store.finest
             codes[at[(blocked == 0) & (level < COARSEST)]] = LIT
             codes[at[(blocked == SAMPLES) & (level < COARSEST)]] = HIDDEN
             disagree = (codes[at] == UNKNOWN) & (level <= 0)

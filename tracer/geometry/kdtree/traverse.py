@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tracer.geometry.boxes import hit_box
-from tracer.geometry.intersect import ZERO, hit_quadric, hit_triangle, transform_ray
+from tracer.geometry.intersect import ZERO, transform_ray
+from tracer.geometry.kdtree.nearest import Best, between, no_hit, walk_leaves
 from tracer.geometry.kdtree.tree import STACK_SIZE, Stack, Trees, next_leaf, push
 from tracer.geometry.memory import local_float32, local_int32
 from tracer.geometry.queries import (
@@ -26,11 +27,10 @@ from tracer.geometry.queries import (
     OCCLUDER,
     STATIC_GEOMETRY,
     STEPS,
-    TESTS,
     WHICH,
     rays_of,
 )
-from tracer.geometry.rays import INFINITY, MISS, Ray, ray_at
+from tracer.geometry.rays import INFINITY, MISS, ray_at
 from tracer.kernels import entry, inlined, subkernel
 from tracer.simd import f32_at, i32_at, i64_at, load_i64, u8_at
 
@@ -72,21 +72,6 @@ class _Search(NamedTuple):
     counts: Any
 
 
-class _Best(NamedTuple):
-    """The nearest hit so far."""
-
-    t: Any
-    primitive: Any
-    u: Any
-    v: Any
-
-
-@inlined
-def _no_hit(t_max):
-    """Nothing hit yet, and only what is nearer than t_max will do."""
-    return _Best(t_max, np.int32(MISS), ZERO, ZERO)
-
-
 @inlined
 def _trees(data, words, items):
     return Trees(i32_at(load_i64(data + words)), f32_at(load_i64(data + words)), i32_at(load_i64(data + items)))
@@ -117,44 +102,14 @@ def _search(data, stack, top_stack, counts):
 
 
 @inlined
-def _hit_primitive(triangles, triangle_count, quadrics, ray, primitive):
-    """(t, u, v) of a ray, in the primitive's own space, on a primitive; t = inf for a miss."""
-    if primitive < triangle_count:
-        return hit_triangle(ray, triangles, primitive)
-    return hit_quadric(ray, quadrics, primitive - triangle_count), ZERO, ZERO
-
-
-@inlined
-def _between(ray, t_min, t_max):
-    return Ray(ray.ox, ray.oy, ray.oz, ray.dx, ray.dy, ray.dz, t_min, t_max)
-
-
-@inlined
 def _walk(s, trees, o, ray, enter, leave, best, nearest):
-    """The nearest hit in object o if it is nearer than `best`; or, where not the `nearest` is wanted, the first found.
-
-    Of hits at equal t the one on the lower number is the nearest.  `nearest` is a constant, so that either walk is
-    compiled without the other."""
+    """The nearest hit in object o if it is nearer than `best`; or, where not the `nearest` is wanted, the first."""
     # Start at the root with the ray's interval in the object's box.
-    near, far = hit_box(_between(ray, enter, leave), s.boxes, o)
+    near, far = hit_box(between(ray, enter, leave), s.boxes, o)
     if near > far:
         return best
     pending = push(s.stack, 0, s.roots[o], near, far)
-    while pending > 0 and (not nearest or s.stack.enter[pending - 1] <= best.t):
-        # Walk to the next leaf and test its primitives.
-        leaf = next_leaf(trees, ray, s.stack, pending)
-        pending = leaf.pending
-        s.counts[STEPS] += leaf.steps
-        for i in range(leaf.first, leaf.first + leaf.size):
-            s.counts[TESTS] += 1
-            primitive = trees.items[i]
-            t, u, v = _hit_primitive(s.triangles, s.triangle_count, s.quadrics, ray, primitive)
-            if nearest:
-                if t < best.t or (t == best.t and t < INFINITY and primitive < best.primitive):
-                    best = _Best(t, primitive, u, v)
-            elif t < INFINITY:
-                return _Best(t, primitive, u, v)
-    return best
+    return walk_leaves(s, trees, ray, pending, best, nearest)
 
 
 @subkernel
@@ -166,7 +121,7 @@ def _closest_in_tree(s, trees, o, ray, enter, leave, best):
 @subkernel
 def _any_in_tree(s, trees, o, ray, enter, leave):
     """The first primitive of object o that is found to be hit, or MISS."""
-    return _walk(s, trees, o, ray, enter, leave, _no_hit(INFINITY), False).primitive
+    return _walk(s, trees, o, ray, enter, leave, no_hit(INFINITY), False).primitive
 
 
 @inlined
@@ -195,7 +150,7 @@ def _walk_top(s, top, ray, best, nearest):
             else:
                 primitive = _any_in_tree(s, s.dynamic, o, local, enter, leave)
                 if primitive != MISS:
-                    return _Best(ZERO, primitive, ZERO, ZERO)
+                    return Best(ZERO, primitive, ZERO, ZERO)
     return best
 
 
@@ -208,7 +163,7 @@ def _closest_of(s, top, ray, best):
 @subkernel
 def _any_of(s, top, ray):
     """The first primitive of the objects of a tree that is found to be hit, or MISS."""
-    return _walk_top(s, top, ray, _no_hit(INFINITY), False).primitive
+    return _walk_top(s, top, ray, no_hit(INFINITY), False).primitive
 
 
 @entry
@@ -223,7 +178,7 @@ def closest(data, batch, first, last, counts):
     for i in range(first, last):
         # Search the static tree, then the objects that rest and those that move.
         ray = ray_at(rays, i)
-        best = _no_hit(ray.t_max)
+        best = no_hit(ray.t_max)
         best = _closest_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max, best)
         for number in range(2):
             top = s.resting if number == 0 else s.moving

@@ -13,8 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tracer.geometry.boxes import hit_box
-from tracer.geometry.intersect import ZERO, hit_quadric, hit_triangle, transform_ray
-from tracer.geometry.kdtree.tree import STACK_SIZE, Stack, Trees, next_leaf, push
+from tracer.geometry.intersect import transform_ray
+from tracer.geometry.kdtree.nearest import between, no_hit, walk_leaves
+from tracer.geometry.kdtree.tree import STACK_SIZE, Stack, Trees, push
 from tracer.geometry.lazy_tree.build import HEADER
 from tracer.geometry.lazy_tree.node import (
     AGAIN,
@@ -39,11 +40,10 @@ from tracer.geometry.queries import (
     OCCLUDER,
     STATIC_GEOMETRY,
     STEPS,
-    TESTS,
     WHICH,
     rays_of,
 )
-from tracer.geometry.rays import INFINITY, MISS, Ray, ray_at
+from tracer.geometry.rays import INFINITY, MISS, ray_at
 from tracer.kernels import entry, inlined, subkernel
 from tracer.simd import f32_at, i32_at, i64_at, load_i64, local_memory, u8_at
 
@@ -81,15 +81,6 @@ class _Search(NamedTuple):
     counts: Any
 
 
-class _Best(NamedTuple):
-    """The nearest hit so far."""
-
-    t: Any
-    primitive: Any
-    u: Any
-    v: Any
-
-
 @inlined
 def _search(data, upper, lower, stack, searched, counts):
     return _Search(
@@ -113,54 +104,20 @@ def _search(data, upper, lower, stack, searched, counts):
     )
 
 
-@inlined
-def _no_hit(t_max):
-    """Nothing hit yet, and only what is nearer than t_max will do."""
-    return _Best(t_max, np.int32(MISS), ZERO, ZERO)
-
-
-@inlined
-def _between(ray, t_min, t_max):
-    return Ray(ray.ox, ray.oy, ray.oz, ray.dx, ray.dy, ray.dz, t_min, t_max)
-
-
-@inlined
-def _hit_primitive(s, ray, primitive):
-    """(t, u, v) of a ray, in the primitive's own space, on a primitive; t = inf for a miss."""
-    if primitive < s.triangle_count:
-        return hit_triangle(ray, s.triangles, primitive)
-    return hit_quadric(ray, s.quadrics, primitive - s.triangle_count), ZERO, ZERO
-
-
 @subkernel
 def _in_subtree(s, node, ray, enter, leave, best, nearest):
-    """The nearer of `best` and the nearest hit in a SUBTREE; or, where not the `nearest` is wanted, the first found.
-
-    Of hits at equal t the one on the lower number is the nearest."""
+    """The nearer of `best` and the nearest hit in a SUBTREE; or, where not the `nearest` is wanted, the first found."""
     subtree = load_i64(node + FIRST)
     words = subtree + HEADER
     trees = Trees(i32_at(words), f32_at(words), i32_at(words + 4 * load_i64(subtree)))
     pending = push(s.stack, 0, np.int32(0), enter, leave)
-    while pending > 0 and (not nearest or s.stack.enter[pending - 1] <= best.t):
-        leaf = next_leaf(trees, ray, s.stack, pending)
-        pending = leaf.pending
-        s.counts[STEPS] += leaf.steps
-        for i in range(leaf.first, leaf.first + leaf.size):
-            s.counts[TESTS] += 1
-            primitive = trees.items[i]
-            t, u, v = _hit_primitive(s, ray, primitive)
-            if nearest:
-                if t < best.t or (t == best.t and t < INFINITY and primitive < best.primitive):
-                    best = _Best(t, primitive, u, v)
-            elif t < INFINITY:
-                return _Best(t, primitive, u, v)
-    return best
+    return walk_leaves(s, trees, ray, pending, best, nearest)
 
 
 @subkernel
 def _in_object(s, o, ray, enter, leave, best, nearest):
     """As `_in_subtree`, in all of object o; the ray is in its space."""
-    near, far = hit_box(_between(ray, enter, leave), s.object_boxes, o)
+    near, far = hit_box(between(ray, enter, leave), s.object_boxes, o)
     if near > far:
         return best
     pending = push_node(s.lower, 0, s.object_roots[o], near, far)
@@ -207,7 +164,7 @@ def _put_off(s, met, pending):
 @inlined
 def _closest(s, ray):
     """The nearest hit of a ray."""
-    best, searched, moving = _no_hit(ray.t_max), 0, _meets_what_moves(s, ray)
+    best, searched, moving = no_hit(ray.t_max), 0, _meets_what_moves(s, ray)
     near, far = hit_box(ray, s.bounds, 0)
     pending = push_node(s.upper, 0, s.root, near, far) if near <= far else 0
     while pending > 0:
@@ -248,7 +205,7 @@ def _any(s, ray, which):
         s.counts[STEPS] += met.steps
         if met.kind == SUBTREE:
             if which & STATIC_GEOMETRY:
-                primitive = _in_subtree(s, met.node, ray, met.enter, met.leave, _no_hit(INFINITY), False).primitive
+                primitive = _in_subtree(s, met.node, ray, met.enter, met.leave, no_hit(INFINITY), False).primitive
                 if primitive != MISS:
                     return STATIC_GEOMETRY, primitive
         elif met.kind == OBJECTS:
@@ -264,7 +221,7 @@ def _any(s, ray, which):
                 s.searched[searched % REMEMBERED] = o
                 searched += 1
                 local = _local(s, ray, o)
-                primitive = _in_object(s, o, local, ray.t_min, ray.t_max, _no_hit(INFINITY), False).primitive
+                primitive = _in_object(s, o, local, ray.t_min, ray.t_max, no_hit(INFINITY), False).primitive
                 if primitive == MISS:
                     continue
                 if kind == STATIC_GEOMETRY or which == DYNAMIC_OBJECTS:

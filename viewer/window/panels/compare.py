@@ -5,12 +5,11 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.method import Method, additions, bases
 from viewer.state.columns import Row, rows
 from viewer.state.comparison import RATES, Side, Source, Way
-from viewer.state.methods import toggled, with_base
 from viewer.state.told_apart import told_apart
 from viewer.state.views import LESS, MORE
+from viewer.window.panels.method_choice import method_list
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,
@@ -102,18 +101,8 @@ def _way(ui: Ui) -> None:
 
 def _second(ui: Ui) -> None:
     """The second method: a base, and what is added to it."""
-    comparing, method = ui.controller.comparing, Method.parse(ui.controller.comparing.state.second or "none")
-    if imgui.begin_combo("##second", str(method)):
-        for kind in bases():
-            if imgui.selectable(kind.name, kind is method.kind)[0]:
-                comparing.trace_by(with_base(str(method), kind.name))
-            tooltip(kind.summary)
-        imgui.separator()
-        for kind in additions(method.base):
-            if imgui.menu_item(f"+{kind.name}", "", method.has(kind.name), True)[0]:
-                comparing.trace_by(toggled(str(method), kind.name))
-            tooltip(kind.summary)
-        imgui.end_combo()
+    comparing = ui.controller.comparing
+    method_list(ui, "##second", comparing.state.second or "none", comparing.trace_by)
 
 
 def _limit(ui: Ui) -> None:

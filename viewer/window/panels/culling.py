@@ -5,12 +5,12 @@ from __future__ import annotations
 from imgui_bundle import ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.method import Method, additions, bases
+from tracer.method import Method
 from tracer.settings import MAX_NODES
 from viewer.services.controller import Controller
 from viewer.state import terms
-from viewer.state.methods import toggled, with_base
 from viewer.state.preferences import MOST_CERTIFYING
+from viewer.window.panels.method_choice import method_list
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     ERROR,
@@ -23,7 +23,6 @@ from viewer.window.widgets import (
     properties,
     row,
     same_line_for,
-    tooltip,
     wide_button,
 )
 
@@ -37,16 +36,18 @@ def show(ui: Ui) -> None:
     if frame is not None and frame.settings.method == c.session.settings.method and c.runs.current is None:
         if frame.statistics.decision:
             paragraph(frame.statistics.decision, QUIET)
-    tip = "test two neighbouring pixels both ways: each one's ray against the other's primitive (Y)"
-    checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.settings.change(symmetric=on), tip)
-    same_line_for("Verify")
+    clusters = Method.parse(s.method).clusters
+    if not clusters:  # which keep no modes
+        tip = "test two neighbouring pixels both ways: each one's ray against the other's primitive (Y)"
+        checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.settings.change(symmetric=on), tip)
+        same_line_for("Verify")
     tip = "trace every culled shadow ray as well, and count wrong answers (V)"
     checkbox("Verify", s.verify, lambda on: c.settings.change(verify=on), tip)
     said = wrong_answers(c)
     if said is not None:
         paragraph(*said)
     with properties("culling", 6.5) as shown:
-        if shown:
+        if shown and not clusters:
             row(
                 "Zoom factor",
                 "a primitive that covers this many times its highest pixel count is examined again",
@@ -55,7 +56,7 @@ def show(ui: Ui) -> None:
             changed, factor = imgui.slider_float("##zoom", s.zoom_factor, 1.0, 64.0, "%.1f", flags)
             if changed:
                 c.settings.change(zoom_factor=factor)
-        if shown and Method.parse(s.method).clusters:
+        if shown and clusters:
             row(
                 "Error of clusters",
                 "the part of a point's light that a cluster of lights may be wrong by; 0: no clusters",
@@ -69,10 +70,8 @@ def show(ui: Ui) -> None:
             if changed:
                 c.settings.change(lightcuts_nodes=min(max(most, 1), MAX_NODES))
         if shown and Method.parse(s.method).has_certificates:
-            row(
-                "Certificates",
-                "the share of each frame's time for making them while anything moves; when idle they get more",
-            )
+            made = terms.things(terms.made(s.method)[0])
+            row("Preparing", f"the share of each frame's time for {made} while anything moves; when idle they get more")
             share = 100.0 * p.certificate_share
             changed, share = imgui.slider_float("##share", share, 1.0, 100.0 * MOST_CERTIFYING, "%.0f %%")
             if changed:
@@ -102,23 +101,10 @@ def _method(ui: Ui) -> None:
     """The base, and what is added to it."""
     c = ui.controller
     name = c.session.settings.method
-    method = Method.parse(name)
     with properties("method", 4.0) as shown:
         if shown:
-            row("Method", f"{method.kind.summary} C turns culling off and on.")
-            if imgui.begin_combo("##method", method.base):
-                for kind in bases():
-                    if imgui.selectable(kind.name, kind is method.kind)[0]:
-                        c.settings.change(method=with_base(name, kind.name))
-                    tooltip(kind.summary)
-                imgui.end_combo()
-    for number, kind in enumerate(additions(method.base)):
-        if number:
-            same_line_for(f"+{kind.name}")
-        changed, _ = imgui.checkbox(f"+{kind.name}", method.has(kind.name))
-        tooltip(kind.summary)
-        if changed:
-            c.settings.change(method=toggled(name, kind.name))
+            row("Method", f"{Method.parse(name).kind.summary} C turns culling off and on.")
+            method_list(ui, "##method", name, lambda chosen: c.settings.change(method=chosen))
 
 
 def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:

@@ -7,14 +7,12 @@ from itertools import combinations
 import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 
-from tracer import experiment
-from tracer.experiment import REFERENCE, Results, Row
+from tracer.experiment import REFERENCE, Results
 from tracer.method import Kind, additions, bases
-from viewer.output.reports import LINES, WRONG
 from viewer.services.runs import LONGEST_SIDE, Experiment
 from viewer.state.methods import in_order
 from viewer.state.plans import ExperimentPlan
-from viewer.window.panels import going_back
+from viewer.window.panels import experiment_table, going_back
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
 from viewer.window.panels.runs import export_buttons, side_by_side, start_or_progress
 from viewer.window.ui import Ui
@@ -22,9 +20,8 @@ from viewer.window.widgets import (
     ERROR,
     QUIET,
     checkbox,
-    clipped,
     em,
-    in_window_style,
+    outlined,
     paragraph,
     properties,
     row,
@@ -33,14 +30,7 @@ from viewer.window.widgets import (
 )
 
 _WORKS = (("steps", "steps"), ("tests", "tests"))
-_SHORT = (
-    "steps saved", "  most (frame)", "tests saved", "  most (frame)", "extra / pixel", "wrong", "time in window",
-    "  all frames", "  preparing", "memory",
-)  # fmt: skip
-_TIMES = _SHORT[6:9]
-_TIME_TIP = "measured while the window draws as well: do not compare it with times of shadowcull bench"
 _FEWEST_FRAMES, _LEAST_TOP = 10, 2.0  # frames and percents that the plot's axes span at least
-_HEADING, _REFERENCE, _METHOD = 6.8, 5.4, 7.4  # widths of the table's columns in ems
 
 
 def show(ui: Ui) -> None:
@@ -51,15 +41,10 @@ def show(ui: Ui) -> None:
     side_by_side(
         lambda: _controls(ui, run),
         lambda size: _plot(ui, run, results, size),
-        lambda: _table(ui, run, results),
-        em(_table_width(columns)),
+        lambda: experiment_table.show(ui, run, results),
+        em(experiment_table.width_for(columns)),
         scrolls=True,
     )
-
-
-def _table_width(columns: int) -> float:
-    """Of the paper's table with so many methods, in ems."""
-    return _HEADING + _REFERENCE + _METHOD * (columns - 1) + 1.2
 
 
 def _controls(ui: Ui, run: Experiment | None) -> None:
@@ -119,6 +104,7 @@ def _method_ticks(plan: ExperimentPlan) -> None:
             tooltip("\n".join(f"+{kind.name}: {kind.summary}" for kind in added))
     for base in bases():
         imgui.table_next_column()
+        imgui.align_text_to_frame_padding()
         imgui.text_unformatted(base.name)
         tooltip(base.summary)
         for added in sets:
@@ -127,7 +113,8 @@ def _method_ticks(plan: ExperimentPlan) -> None:
                 continue
             method = "+".join(kind.name for kind in (base, *added))
             imgui.begin_disabled(method == REFERENCE)
-            changed, _ = imgui.checkbox(f"##{method}", method == REFERENCE or method in plan.methods)
+            with outlined():
+                changed, _ = imgui.checkbox(f"##{method}", method == REFERENCE or method in plan.methods)
             imgui.end_disabled()
             if changed:
                 plan.methods ^= {method}
@@ -206,46 +193,10 @@ def _savings(results: Results) -> list[tuple[str, np.ndarray]]:
 
 def _plot_wrong(results: Results, frames: np.ndarray) -> None:
     implot.set_axes(implot.ImAxis_.x1, implot.ImAxis_.y2)
+    first = next((method for method in results.methods if method != REFERENCE), "")
     for method, figures in results.methods.items():
         if method != REFERENCE:
             values = np.array(figures["wrong"], np.float64)
             spec = implot.Spec(line_color=ERROR, fill_color=ERROR, fill_alpha=0.55)
-            implot.plot_bars(f"wrong##{method}", frames, values, 0.8, spec)
+            implot.plot_bars("wrong" if method == first else f"##wrong {method}", frames, values, 0.8, spec)
     implot.set_axes(implot.ImAxis_.x1, implot.ImAxis_.y1)
-
-
-def _table(ui: Ui, run: Experiment | None, results: Results | None) -> None:
-    """A line for each figure of the paper's Table 1, a column for each method."""
-    if run is None or results is None:
-        return
-    rows: list[Row] = ui.cached("table 1", results, 0, lambda: experiment.table(results))
-    whole = len(results.frames) == len(run.times)
-    plural = "s" * (len(run.times) != 1)
-    done = f"{len(results.frames)} frame{plural}" if whole else f"{len(results.frames)} of {len(run.times)} frames"
-    clipped(f"{done}, {run.settings.width} x {run.settings.height}, {run.settings.accelerator}", QUIET)
-    flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg
-    scrolls = em(_table_width(len(rows)) - 1.2) > imgui.get_content_region_avail().x
-    if scrolls:
-        flags |= imgui.TableFlags_.scroll_x | imgui.TableFlags_.scroll_y
-    if not imgui.begin_table("table 1", 1 + len(rows), int(flags)):
-        return
-    imgui.table_setup_scroll_freeze(1, 1)
-    stretch, fixed = imgui.TableColumnFlags_.width_stretch, imgui.TableColumnFlags_.width_fixed
-    imgui.table_setup_column("", int(fixed if scrolls else stretch), em(_HEADING) if scrolls else 0.0)
-    for line in rows:
-        width = em(_REFERENCE if line.method == REFERENCE else _METHOD)
-        imgui.table_setup_column(line.method, int(fixed), width)
-    imgui.table_next_column()
-    for line in rows:
-        imgui.table_next_column()
-        clipped(line.method, QUIET)
-    for (heading, cell), short in zip(LINES, _SHORT, strict=True):
-        if heading == WRONG and not run.settings.verify:
-            continue
-        imgui.table_next_column()
-        clipped(short, QUIET)
-        tooltip(f"{heading.strip()}, {_TIME_TIP}" if short in _TIMES else heading.strip())
-        for line in rows:
-            imgui.table_next_column()
-            clipped(in_window_style(cell(line)), ERROR if heading == WRONG and line.wrong else None)
-    imgui.end_table()

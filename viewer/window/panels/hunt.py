@@ -5,12 +5,12 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.method import bases
 from tracer.scene.model import Scene
 from viewer.output import finds
 from viewer.output.finds import Find, Findings
 from viewer.services.hunt_controller import HuntController
 from viewer.services.runs import LONGEST_SIDE
+from viewer.window.panels.method_choice import method_list
 from viewer.window.panels.runs import side_by_side, start_or_progress
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -62,12 +62,7 @@ def _plan(ui: Ui, hunts: HuntController) -> None:
         if not shown:
             return
         row("Method", "whose wrong pixels are searched; of an exact one, it shows that there are none")
-        if imgui.begin_combo("##method", plan.method):
-            for kind in bases():
-                if imgui.selectable(kind.name, kind.name == plan.method)[0]:
-                    plan.method = kind.name
-                tooltip(kind.summary)
-            imgui.end_combo()
+        method_list(ui, "##method", plan.method, lambda name: setattr(plan, "method", name), combined=False)
         first, last = hunts.frames
         row("Frames", "the first and the last of the path, traced one after another")
         changed, span = imgui.input_int2("##frames", [first, last])

@@ -37,12 +37,9 @@ def show(ui: Ui, room: ImVec2, drag: Callable[[Ui, int, float, float], None]) ->
 def make_room(ui: Ui, width: float) -> None:
     """Put the next window, so wide, at the lower edge of the picture, which is to be seen."""
     viewport = imgui.get_main_viewport()
-    window = imgui.internal.find_window_by_name("Picture")
-    if window is None:
-        left, right, bottom = viewport.work_pos.x, viewport.work_size.x, viewport.work_pos.y + viewport.work_size.y
-    else:
-        left, right, bottom = window.pos.x, window.size.x, window.pos.y + window.size.y - ui.tour_height
-    place = ImVec2(left + 0.5 * right, bottom - em(0.8))
+    whole = viewport.work_pos.x, viewport.work_pos.y + viewport.work_size.y, viewport.work_size.x
+    left, lower, across = ui.tour_place or whole
+    place = ImVec2(left + 0.5 * across, lower - em(0.8))
     imgui.set_next_window_pos(place, int(imgui.Cond_.always), ImVec2(0.5, 1.0))
     imgui.set_next_window_size(ImVec2(min(width, 0.95 * viewport.work_size.x), 0.0))
 

@@ -8,6 +8,7 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import MAX_CULLED_LIGHTS
+from viewer.state.methods import of_all_lights
 from viewer.util.resources import embedded_scenes
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
@@ -92,8 +93,8 @@ def _lights(ui: Ui) -> None:
         return
     if number > MAX_CULLED_LIGHTS:
         paragraph(
-            f"{icons.ICON_FA_TRIANGLE_EXCLAMATION} Only the first {MAX_CULLED_LIGHTS} lights have modes. The methods "
-            "certified and auto take all of them into account.",
+            f"{icons.ICON_FA_TRIANGLE_EXCLAMATION} Only the first {MAX_CULLED_LIGHTS} lights have modes. Methods that "
+            f"take all of them into account: {of_all_lights(number)}.",
             WARNING,
         )
     lights.table(ui)

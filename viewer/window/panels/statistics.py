@@ -49,7 +49,7 @@ def show(ui: Ui) -> None:
         paragraph("These are for the previous settings; a new frame is being traced.", QUIET)
     if s.decision:
         paragraph(s.decision, QUIET)
-    certifies = Method.parse(frame.settings.method).has_certificates
+    certifies, prepares = Method.parse(frame.settings.method).has_certificates, terms.made(frame.settings.method)[0]
     _shadow_rays(frame, pixels, certifies)
     heading("Work")
     _work(ui)
@@ -67,7 +67,7 @@ def show(ui: Ui) -> None:
         if shown:
             amount("Frame", _milliseconds(s.seconds), "from the request to the picture; below, its parts")
             for name in [*terms.PHASES, *(n for n in s.phases if n not in terms.PHASES)]:
-                if name in s.phases and (certifies or name != "certification"):
+                if name in s.phases and (prepares or name != "certification"):
                     label, tip = terms.PHASES.get(name, (name, ""))
                     amount(f"  {label}", _milliseconds(s.phases[name]), tip)
             amount("Window drawn in", _milliseconds(c.drawn_seconds), "what the window needs for one of its own frames")
@@ -117,8 +117,9 @@ def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
         if frame.settings.keeps_modes:
             tip = f"whether a primitive hides that of the neighbouring pixel ({count(s.occlusion_tests)} in all)"
             amount("Occlusion tests per pixel", f"{s.occlusion_tests / pixels:.3f}", tip)
-        if certifies:
-            amount("New certificates", count(s.certificates), "proofs for parts of surfaces, made in this frame")
+        made, meaning = terms.made(frame.settings.method)
+        if made:
+            amount(made.capitalize(), count(s.certificates), meaning)
 
 
 @contextmanager
@@ -145,7 +146,7 @@ def _milliseconds(seconds: float) -> str:
 
 
 def _work(ui: Ui) -> None:
-    """Rays, steps and tests of each kind of ray, and steps and tests of certificates."""
+    """Rays, steps and tests of each kind of ray, and those of what the method makes."""
     frame = ui.controller.frame
     assert frame is not None
     s = frame.statistics
@@ -153,8 +154,9 @@ def _work(ui: Ui) -> None:
         (name, (part.rays, part.traversal_steps, part.intersection_tests))
         for name, part in (("primary", s.primary), ("secondary", s.secondary), ("shadow", s.shadow))
     ]
-    if Method.parse(frame.settings.method).has_certificates:
-        rows.append(("certificates", (0, s.certificate_steps, s.certificate_tests)))
+    made, _ = terms.made(frame.settings.method)
+    if made:
+        rows.append((terms.things(made), (0, s.certificate_steps, s.certificate_tests)))
     rows.append(("all", tuple(sum(numbers[n] for _, numbers in rows) for n in range(3))))
     meaning = "steps: nodes of the tree that rays enter; tests: rays against primitives"
     if frame.settings.accelerator == BVH8:

@@ -6,6 +6,7 @@ from imgui_bundle import ImVec2, hello_imgui, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.controller import Controller
+from viewer.state import terms
 from viewer.state.log import Level
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, tooltip
@@ -85,7 +86,8 @@ def doing(c: Controller) -> str:
     if c.tracing.certifies:
         made = c.frame.statistics.certificates if c.frame is not None else 0
         before = ", before more samples" if c.session.settings.samples > 1 else ""
-        return f"making certificates{before}{f': {count(made)} in the last picture' if made else ''}"
+        makes, _ = terms.made(c.session.settings.method)
+        return f"preparing{before}{f': {count(made)} {makes} in the last picture' if made else ''}"
     if c.renderer.busy or c.tracing.awaits:
         return "refining the picture" if c.tracing.becoming_finer or _learns(c) else "tracing"
     if c.tracing.adds_samples:

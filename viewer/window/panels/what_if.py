@@ -35,7 +35,7 @@ _TIPS = {
     "due": terms.MEANINGS[terms.DUE],
     "steps": "nodes of trees that rays of all kinds enter",
     "tests": "rays of all kinds tested against primitives",
-    "certified": "certificates made in this frame",
+    "certified": "certificates, voxels, cells or light buffers, whatever the method makes, in this frame",
 }
 _ROWS = 12  # of the list of lights that are seen at least: a few need no scroll bar in the panel, which has its own
 _MOST_PAIRS = 4  # of transitions of a light that are listed

@@ -1,0 +1,65 @@
+"""What a method leaves to tracing is said, and its pictures are right all the same."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import tracer
+from tests.tracing.shades import shadow_scene
+from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.fit import remark, worth
+from tracer.method import HELD, Method, bases
+from tracer.scene.model import Scene
+
+SETTINGS = tracer.Settings(width=24, height=18, depth=1, threads=1)
+
+
+def with_lights(count: int) -> Scene:
+    """The same room, where the first light stands in so many places."""
+    scene = shadow_scene()
+    light, (x, y, z) = scene.lights[0], scene.lights[0].position
+    return replace(scene, lights=tuple(replace(light, position=(x + 0.05 * k, y, z)) for k in range(count)))
+
+
+def test_words_hold_as_many_lights_as_the_table_says():
+    assert HELD == MAX_CULLED_LIGHTS
+
+
+@pytest.mark.parametrize("method", [kind.name for kind in bases()])
+def test_what_does_not_fit_is_said(method: str):
+    kind = Method.parse(method).kind
+    many = tracer.Renderer(with_lights(40), replace(SETTINGS, method=method)).render()
+    truth = tracer.Renderer(with_lights(40), replace(SETTINGS, method="none")).render()
+    said = many.statistics.decision
+    assert not kind.exact or np.array_equal(many.color, truth.color)
+    expected = kind.answers < 40
+    assert ("the others are traced" in said or "only knows which ones" in said) == expected, said
+    assert not expected or method in said
+    lamps = replace(SETTINGS, method=method, lamp_radius=0.1, lamp_samples=4)
+    said = tracer.Renderer(shadow_scene(), lamps).render().statistics.decision
+    assert ("lamps of several samples" in said) == (not kind.lamps), said
+
+
+def test_where_all_fits_nothing_is_said():
+    for kind in bases():
+        assert remark(Method.parse(kind.name), 20, 0) == "" and worth(kind, 20) == ""
+    assert worth(Method.parse("lightcuts").kind, 6) == "It is for 16 lights or more."
+    assert worth(Method.parse("voxels").kind, 4096) == "It is for 31 lights or fewer."
+    assert "it leaves the others alone" in remark(Method.parse("certified+voxels"), 40, 0)
+
+
+def test_what_a_base_and_an_addition_make_is_counted_together():
+    settings = replace(SETTINGS, width=96, height=72)
+    parts = [
+        tracer.Renderer(shadow_scene(), replace(settings, method=method)).render().statistics
+        for method in ("certified", "voxels", "certified+voxels", "voxels+lightbuffer")
+    ]
+    certified, voxels, both, buffered = parts
+    assert certified.certificates > 0 and voxels.certificates > 0
+    for name in ("certificates", "certificate_steps", "certificate_tests"):
+        assert getattr(both, name) == getattr(certified, name) + getattr(voxels, name), name
+    assert buffered.certificates == voxels.certificates + len(shadow_scene().lights)
+    assert Method.parse("certified+voxels").makes == ("certificates made", "voxels classified")

@@ -1,0 +1,38 @@
+"""What of a scene a method has nothing to say of, in a sentence."""
+
+from __future__ import annotations
+
+from tracer.method import Kind, Method
+
+
+def remark(method: Method, lights: int, lamps: int) -> str:
+    """Which lights a method leaves to tracing, where there are so many `lights`, and `lamps` of them have several
+    samples; nothing where it leaves none."""
+    return " ".join(filter(None, (_of(kind, lights, lamps, len(method.kinds) == 1) for kind in method.kinds)))
+
+
+def _of(kind: Kind, lights: int, lamps: int, alone: bool) -> str:
+    beyond = lights > kind.answers
+    left = lamps > 0 and not kind.lamps
+    if kind.in_part and (beyond or left):
+        which = " and ".join(
+            filter(None, ("lamps of several samples" * left, f"lights past the {kind.answers}st" * beyond))
+        )
+        return f"Of {which}, {kind.name} only knows which ones a single triangle hides from a cell."
+    traced = "rays to the others are traced" if alone else "it leaves the others alone"
+    if left and lamps == lights:
+        every = "every shadow ray is traced" if alone else "it answers no ray"
+        return f"All lights are lamps of several samples, of which {kind.name} knows nothing: {every}."
+    if left:
+        return f"Of lamps of several samples, {lamps:,} here, {kind.name} knows nothing; {traced}."
+    if beyond:
+        return f"Of {lights:,} lights, {kind.name} answers for the first {kind.answers}; {traced}."
+    return ""
+
+
+def worth(kind: Kind, lights: int) -> str:
+    """Why a method has nothing to say of a scene with so many lights; nothing where it has."""
+    least, most = kind.lights
+    if lights < least:
+        return f"It is for {least} lights or more."
+    return f"It is for {most} lights or fewer." if lights > most else ""
