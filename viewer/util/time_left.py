@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from bisect import bisect_left
 from collections.abc import Callable
+from statistics import median
 
 
 class TimeLeft:
@@ -15,6 +16,8 @@ class TimeLeft:
     """
 
     FEWEST = 8
+    LONGEST = 20.0
+    """Times the usual step: what took longer stood still, as when the machine slept, and counts no more than that."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
@@ -34,5 +37,13 @@ class TimeLeft:
             return None
         done, left = self._done[-1], self._total - self._done[-1]
         first = bisect_left(self._done, done - max(left, self.FEWEST))
-        pace = (self._at[-1] - self._at[first]) / (done - self._done[first])
+        pace = self._pace(first)
         return left * pace - min(self._clock() - self._at[-1], pace) if left else 0.0
+
+    def _pace(self, first: int) -> float:
+        """Seconds for a step, of those since mark `first`."""
+        marks = range(first + 1, len(self._at))
+        steps = [(self._done[n] - self._done[n - 1], self._at[n] - self._at[n - 1]) for n in marks]
+        paces = [seconds / count for count, seconds in steps if count]
+        longest = self.LONGEST * median(paces)
+        return sum(min(seconds, longest * max(count, 1)) for count, seconds in steps) / sum(count for count, _ in steps)

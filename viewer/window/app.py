@@ -49,6 +49,7 @@ TITLE = "Shadowcull"
 OnFrame = Callable[[Frame], bool | None]
 Runner = Callable[[hello_imgui.RunnerParams, immapp.AddOnsParams], None]
 WINDOW_SIZE = (1440, 900)
+SMALLEST_SIZE = (240, 160)
 FASTEST = 60.0  # frames a second of the window's own
 # Where a processor draws the window, each frame takes time from tracing: one is drawn for each picture and each of the
 # user's doings, up to so many a second, and while something moves not fewer than so many.
@@ -190,6 +191,8 @@ class App:
     def _follow_pads(self) -> None:
         if not self.ui.key_wanted and not imgui.get_io().want_text_input:
             found = self.read_pads()
+            if found and not places.in_front(glfw_utils.glfw_window_hello_imgui()):
+                return  # sticks are those of the program in front
             runs = {c.name: c.run for c in self.ui.commands if c.enabled()} if found else {}
             self.controller.pads.follow(found, runs)
 
@@ -361,6 +364,8 @@ class App:
             self.params.fps_idling.fps_max = FASTEST_BY_PROCESSOR
         self.controller.wake = hello_imgui.request_refresh
         window = glfw_utils.glfw_window_hello_imgui()
+        # While a window of few pixels grows, ImGui can take its growth for density, and has no room for such letters.
+        glfw.set_window_size_limits(window, *SMALLEST_SIZE, glfw.DONT_CARE, glfw.DONT_CARE)
         glfw.set_window_close_callback(window, self._close_wanted)
         glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list

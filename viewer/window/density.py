@@ -1,6 +1,8 @@
-"""How many pixels of the window a length takes on the screen that it is on now: it may be dragged to another."""
+"""How much larger letters are on the screen that the window is on now: it may be dragged to another."""
 
 from __future__ import annotations
+
+import sys
 
 from imgui_bundle import glfw_utils, imgui
 
@@ -9,23 +11,22 @@ import glfw  # after imgui_bundle, which brings the library that both must share
 
 def content_scale() -> float:
     """What the desktop wants everything enlarged by on the window's screen; needs a window."""
-    return max(glfw.get_window_content_scale(glfw_utils.glfw_window_hello_imgui()))
+    if sys.platform == "darwin":  # there windows are measured in points, and are enlarged with their letters
+        return 1.0
+    return float(max(glfw.get_window_content_scale(glfw_utils.glfw_window_hello_imgui())))
 
 
 class Density:
-    """Fonts begin as large as Hello ImGui makes them for the first screen, and follow from there."""
+    """Letters begin as large as Hello ImGui makes them for the first screen, and follow from there."""
 
     def __init__(self) -> None:
         self._first: tuple[float, float] | None = None
 
     def follow(self) -> None:
         """Let letters be as large on this screen as they were on others; to be called where no frame is under way."""
-        framebuffer = imgui.get_io().display_framebuffer_scale.x
-        if framebuffer <= 0.0:
-            return
-        now = content_scale() / framebuffer  # where a window is measured in points, the desktop enlarges it itself
-        style = imgui.get_style()
+        now, style = content_scale(), imgui.get_style()
         if self._first is None:
             self._first = style.font_scale_dpi, now
-        fonts, then = self._first
-        style.font_scale_dpi = fonts * now / then
+        letters, then = self._first
+        if now > 0.0 and then > 0.0:
+            style.font_scale_dpi = letters * now / then

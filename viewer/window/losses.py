@@ -9,6 +9,7 @@ import ctypes
 import time
 from collections import deque
 from collections.abc import Callable
+from typing import Any
 
 from imgui_bundle import glfw_utils  # noqa: F401  # brings the GLFW that is imported next  # isort: skip
 import glfw  # isort: skip
@@ -28,7 +29,9 @@ def reset_status() -> Callable[[], int]:
     for name in _ASKED:
         address = glfw.get_proc_address(name)
         if address:
-            return getattr(ctypes, "WINFUNCTYPE", ctypes.CFUNCTYPE)(ctypes.c_uint)(address)  # type: ignore[no-any-return]
+            prototype: Any = getattr(ctypes, "WINFUNCTYPE", ctypes.CFUNCTYPE)(ctypes.c_uint)
+            status: Callable[[], int] = prototype(address)
+            return status
     return lambda: 0
 
 

@@ -6,6 +6,7 @@ import ctypes
 import time
 import warnings
 from collections.abc import Callable
+from typing import Any
 
 from imgui_bundle import glfw_utils  # noqa: F401  # brings the GLFW that is imported next  # isort: skip
 import glfw  # isort: skip
@@ -71,7 +72,7 @@ def _gives_window(robust: bool) -> bool:
     return bool(window)
 
 
-def _hidden_window() -> ctypes.c_void_p | None:
+def _hidden_window() -> Any:
     glfw.window_hint(glfw.VISIBLE, False)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", glfw.GLFWError)
@@ -90,9 +91,10 @@ def _instead() -> str:
         address = glfw.get_proc_address("glGetString")
         if not address:
             return ""
-        get_string = ctypes.CFUNCTYPE(ctypes.c_char_p, ctypes.c_uint)(address)
+        prototype: Any = ctypes.CFUNCTYPE(ctypes.c_char_p, ctypes.c_uint)
+        get_string = prototype(address)
         version, by = ((get_string(name) or b"").decode(errors="replace") for name in (_GL_VERSION, _GL_RENDERER))
         return f", but {version} by {by}" if version else ""
     finally:
-        glfw.make_context_current(None)
+        glfw.make_context_current(None)  # type: ignore[arg-type]
         glfw.destroy_window(window)

@@ -104,3 +104,8 @@ def is_normal(window: Any) -> bool:
 def place_of(window: Any) -> Rect:
     """Where a window is, without the desktop's frame around it."""
     return (*glfw.get_window_pos(window), *glfw.get_window_size(window))
+
+
+def in_front(window: Any) -> bool:
+    """Whether what is typed goes to this window."""
+    return bool(glfw.get_window_attrib(window, glfw.FOCUSED))

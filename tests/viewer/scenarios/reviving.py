@@ -1,4 +1,4 @@
-"""What becomes of the window when the machine changes under it."""
+"""What becomes of the window when the machine changes under it: its graphics driver, its screens, their density."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ import glfw  # after imgui_bundle, which brings the library that both must share
 from tests.viewer.driver import Driver
 from tracer.frame import Frame
 from viewer.state.views import View
+from viewer.window import density
+from viewer.window.places import place_of
 
 KEY = imgui.Key
 SMALL = (1100, 700)
@@ -49,3 +51,38 @@ def _revived(d: Driver, state: tuple[Any, ...], picture: np.ndarray, frame: Fram
     assert (d.c.frame.width, d.c.frame.height) == (frame.width, frame.height)
     assert np.array_equal(d.shown(), picture)
     assert d.c.notices.message.text.startswith("the graphics driver was reset: the window was made anew")
+    _denser_screen(d)
+    _smaller_screen(d)
+
+
+def _denser_screen(d: Driver) -> None:
+    """Letters and lengths follow the screen, and go back with it."""
+    known, style = density.content_scale, imgui.get_style()
+    before = _lengths()
+    for scale in (2.0, 1.5, 1.0):
+        density.content_scale = lambda scale=scale: scale
+        d.frames(3)
+        assert style.font_scale_dpi == scale and d.ui.fold.folded == (scale > 1.0)
+        assert np.allclose(_lengths(), np.multiply(before, scale), atol=1.0)
+    density.content_scale = known
+    assert _lengths() == before
+    d.frames(3)
+
+
+def _lengths() -> tuple[float, ...]:
+    style = imgui.get_style()
+    return style.frame_padding.x, style.item_spacing.x, style.scrollbar_size, style.indent_spacing
+
+
+def _smaller_screen(d: Driver) -> None:
+    """A window of which most is on no screen any more comes to one, and has its place there again after it was full."""
+    window, place = glfw_utils.glfw_window_hello_imgui(), d.ui.full_screen.place
+    areas, place._areas = place._areas, lambda: [(0, 0, 400, 300)]
+    d.wait(lambda: place_of(window) == (0, 0, 400, 300), "the window to come back", 20.0)
+    d.ui.full_screen.toggle()
+    screen = glfw.get_video_mode(glfw.get_monitors()[0]).size
+    d.wait(lambda: place_of(window) == (0, 0, *screen), "a full window", 20.0)
+    d.ui.full_screen.toggle()
+    d.wait(lambda: place_of(window) == (0, 0, 400, 300), "the window as it was", 20.0)
+    place._areas = areas
+    d.resize(*SMALL)

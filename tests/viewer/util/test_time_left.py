@@ -53,3 +53,9 @@ def test_it_counts_down_within_a_step_but_not_past_it() -> None:
     assert left.seconds() == pytest.approx(12.5)
     clock.now += 60.0
     assert left.seconds() == pytest.approx(12.0)
+
+
+def test_a_machine_that_slept_does_not_make_the_rest_long() -> None:
+    """An hour in one step of two seconds: without it 20 s are left, and not much more with it."""
+    left, _ = after([2.0] * 9 + [3602.0], 20)
+    assert left.seconds() == pytest.approx(2.0 * 9 + 40.0)

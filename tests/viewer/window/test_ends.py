@@ -11,8 +11,9 @@ import pytest
 from tests.platforms import posix_only
 
 pytest.importorskip("imgui_bundle")
-from viewer.window import app
+from viewer.window import app, opening
 from viewer.window.layout_file import END, LayoutFile
+from viewer.window.losses import LATELY, OFTEN, Losses
 from viewer.window.signals import closing_by_signals
 
 
@@ -61,3 +62,54 @@ def test_a_layout_that_is_not_whole_is_neither_kept_nor_read(tmp_path: Path, wri
     third = LayoutFile(tmp_path)
     assert third.working_copy.read_text() == ""
     third.keep()
+
+
+def test_a_window_that_was_full_begins_at_its_own_place(tmp_path: Path) -> None:
+    written = f"[AppWindow]\nWindowPosition=0,0\nWindowSize=1600,1000\n{END}\n{{}}\n"
+    layout = LayoutFile(tmp_path)
+    layout.working_copy.write_text(written)
+    layout.put_window(None)
+    assert layout.working_copy.read_text() == written
+    layout.put_window((5, -6, 700, 800))
+    layout.keep()
+    assert (tmp_path / "layout.ini").read_text() == (
+        f"[AppWindow]\nWindowPosition=5,-6\nWindowSize=700,800\n{END}\n{{}}\n"
+    )
+
+
+def test_a_driver_that_is_reset_again_and_again_ends_the_window(monkeypatch: pytest.MonkeyPatch) -> None:
+    window, opened = app.App(None), []
+    monkeypatch.setattr(opening, "_gives_window", lambda robust: True)
+
+    def lose(*_: object) -> None:
+        window.was_open = True
+        opened.append(True)
+        window.losses.status = lambda: 0x8253
+        assert window.losses.look()
+
+    with pytest.raises(OSError, match="took too long, again and again"):
+        window.run(lose)
+    assert len(opened) == OFTEN
+
+
+def test_losses_long_ago_do_not_count() -> None:
+    now = [0.0]
+    losses = Losses(lambda: now[0])
+    losses.status = lambda: 0x8254
+    for _ in range(3 * OFTEN):
+        now[0] += LATELY / 2
+        assert losses.look() and losses.look() and "another program" in losses.cause and not losses.too_many
+        losses.cause = ""
+
+
+def test_a_driver_without_contexts_that_tell_of_their_loss_gives_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[bool] = []
+    monkeypatch.setattr(opening, "_ask_for", lambda robust: asked.append(robust) or True)
+    monkeypatch.setattr(opening, "_gives_window", lambda robust: not robust)
+
+    def run() -> None:
+        if asked[-1]:
+            raise RuntimeError("this driver cannot")
+
+    opening.open_window(run, lambda: False)
+    assert asked == [True, False]
