@@ -58,14 +58,13 @@ class Edit:
 
 
 EDITS = (
-    Edit("tracer/geometry/kdtree/traverse.py", "        s.counts[STEPS] += leaf.steps\n", 2),
-    Edit("tracer/geometry/kdtree/traverse.py", "            s.counts[TESTS] += 1\n", 1),
+    Edit("tracer/geometry/kdtree/nearest.py", "        s.counts[STEPS] += leaf.steps\n", 1),
+    Edit("tracer/geometry/kdtree/nearest.py", "            s.counts[TESTS] += 1\n", 1),
+    Edit("tracer/geometry/kdtree/traverse.py", "        s.counts[STEPS] += leaf.steps\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "    steps = 1\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "        steps += 1\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "    steps: int\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "leave, steps, pending)", 1, "leave, pending)"),
-    Edit("tracer/geometry/lazy_tree/traverse.py", "            s.counts[TESTS] += 1\n", 1),
-    Edit("tracer/geometry/lazy_tree/traverse.py", "        s.counts[STEPS] += leaf.steps\n", 1),
     Edit("tracer/geometry/lazy_tree/traverse.py", "        s.counts[STEPS] += met.steps\n", 3),
     Edit("tracer/methods/voxels.py", "        counted[STEPS] += ones(live) if voxels.by_ray else 1\n", 1),
     *(  # the deepest first: they end like the others
