@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
 import pytest
 
+from tests.bench import results
 from tests.bench import results_tables as tables
 from tests.bench.results import PARTS, ROOT, main, written
 
@@ -90,6 +95,29 @@ def test_what_was_measured_quickly_is_never_written(capsys):
     with pytest.raises(SystemExit):
         main(["--quick", "--write"])
     assert "is no result" in capsys.readouterr().err
+
+
+def test_going_on_never_takes_what_was_measured_quickly_for_a_result(tmp_path, monkeypatch):
+    commands = []
+
+    def run_it(command: list[str], **_):
+        commands.append(command)
+        Path(command[-1]).write_text(json.dumps({"runs": len(commands)}))
+        return SimpleNamespace(returncode=0)
+
+    page = tmp_path / "docs" / "performance.md"
+    page.parent.mkdir()
+    page.write_text("<!-- make results: lamps -->\n<!-- end of what is measured -->\n")
+    monkeypatch.setattr(results, "ROOT", tmp_path)
+    monkeypatch.setattr(results, "SCENES", ())
+    monkeypatch.setattr(results, "subprocess", SimpleNamespace(run=run_it, DEVNULL=None))
+    part = results.Part("performance", ("lamps",), lambda runs: f"| {runs[0]['runs']} |\n")
+    monkeypatch.setitem(PARTS, "lamps", part)
+    assert main(["--only", "lamps", "--quick"]) == 0
+    assert main(["--only", "lamps", "--resume", "--write"]) == 0
+    assert ["--size" in command for command in commands] == [True, False]
+    assert "| 2 |" in page.read_text()
+    assert main(["--only", "lamps", "--quick", "--resume"]) == 0 and len(commands) == 2
 
 
 def test_a_table_of_methods_takes_the_place_of_that_of_its_scene_alone():

@@ -16,16 +16,18 @@ def _of(kind: Kind, lights: int, lamps: int, alone: bool) -> str:
     left = lamps > 0 and not kind.lamps
     if kind.in_part and (beyond or left):
         which = " and ".join(
-            filter(None, ("lamps of several samples" * left, f"lights past the {kind.answers}st" * beyond))
+            filter(None, ("lamps of several samples" * left, f"lights after the first {kind.answers}" * beyond))
         )
         return f"Of {which}, {kind.name} only knows which ones a single triangle hides from a cell."
-    traced = "rays to the others are traced" if alone else "it leaves the others alone"
     if left and lamps == lights:
         every = "every shadow ray is traced" if alone else "it answers no ray"
         return f"All lights are lamps of several samples, of which {kind.name} knows nothing: {every}."
     if left:
-        return f"Of lamps of several samples, {lamps:,} here, {kind.name} knows nothing; {traced}."
+        nor = f", nor of lights after the first {kind.answers}" if beyond else ""
+        traced = "rays to them are traced" if alone else "it leaves them alone"
+        return f"Of lamps of several samples, {lamps:,} here, {kind.name} knows nothing{nor}; {traced}."
     if beyond:
+        traced = "rays to the others are traced" if alone else "it leaves the others alone"
         return f"Of {lights:,} lights, {kind.name} answers for the first {kind.answers}; {traced}."
     return ""
 

@@ -7,8 +7,8 @@
     make results ARGS="--quick"                    small pictures and few frames, to see that all of it works
 
 Every run is a command of its own, one after the other, because they must not disturb each other.  What each wrote, and
-on which machine, stays in build/results.  BART's scenes are needed.  Where other work took the processor, the line
-below a table says so: figures of time want a quiet machine, counters do not.
+on which machine, stays in build/results, or in build/results-quick.  BART's scenes are needed.  Where other work took
+the processor, the line below a table says so: figures of time want a quiet machine, counters do not.
 """
 
 from __future__ import annotations
@@ -30,7 +30,6 @@ from tests.bench.results_tables import Figures
 from viewer.cli.console import say
 
 ROOT = Path(__file__).resolve().parents[2]
-RUNS = ROOT / "build" / "results"
 KITCHEN, ROBOT, MUSEUM = map(str, SCENES)
 TABLE_1 = ["--path-frames", "100", "--methods", "none,paper"]
 METHODS = ["--path-frames", "100", "--verify", "--methods", "none,paper,cells,certified,certified+cache"]
@@ -110,23 +109,28 @@ PARTS: dict[str, Part] = {
 
 def measure(name: str, quick: bool) -> None:
     """Run a command, and keep what it wrote beside what is known of the machine; raises RuntimeError in one line."""
-    about, file = machine(), RUNS / "figures.json"
+    about, file = machine(), _folder(quick) / "figures.json"
     module, *arguments = COMMANDS[name]
     arguments += QUICK[module] if quick else []
     screen = [sys.executable, "tools/with_screen.py"] if module in WINDOWS else []
-    RUNS.mkdir(parents=True, exist_ok=True)
+    file.parent.mkdir(parents=True, exist_ok=True)
     command = [*screen, sys.executable, "-m", module, *arguments, "--json", str(file)]
     done = subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL)
     if done.returncode or not file.exists():
         raise RuntimeError(f"{name} ended with {done.returncode}: {' '.join(COMMANDS[name])}")
     kept = {"machine": about, "command": [module, *arguments], "figures": json.loads(file.read_text())}
-    _kept(name).write_text(json.dumps(kept) + "\n")
+    _kept(name, quick).write_text(json.dumps(kept) + "\n")
     file.unlink()
 
 
-def _kept(name: str) -> Path:
+def _folder(quick: bool) -> Path:
+    """Quick runs are kept apart, so that `--resume --write` never takes them for results."""
+    return ROOT / "build" / ("results-quick" if quick else "results")
+
+
+def _kept(name: str, quick: bool) -> Path:
     """What a run measured, and where."""
-    return RUNS / f"{name}-measured.json"
+    return _folder(quick) / f"{name}-measured.json"
 
 
 def _about(kept: list[dict[str, Any]]) -> str:
@@ -164,16 +168,16 @@ def main(arguments: list[str] | None = None) -> int:
         say(f"BART's scenes are needed: there is no {missing[0]}")
         return 1
     if not options.resume:
-        shutil.rmtree(RUNS, ignore_errors=True)
+        shutil.rmtree(_folder(options.quick), ignore_errors=True)
     wanted = list(dict.fromkeys(run for name in options.only for run in PARTS[name].runs))
     try:
         for number, name in enumerate(wanted):
-            if not _kept(name).exists():
+            if not _kept(name, options.quick).exists():
                 say(f"{name}, {number + 1} of {len(wanted)}: {' '.join(COMMANDS[name])}")
                 measure(name, options.quick)
         for name in options.only:
             part = PARTS[name]
-            kept = [json.loads(_kept(run).read_text()) for run in part.runs]
+            kept = [json.loads(_kept(run, options.quick).read_text()) for run in part.runs]
             text = f"{part.table([one['figures'] for one in kept])}\n{_about(kept)}\n"
             print(f"{name}\n\n{text}")
             if options.write:
