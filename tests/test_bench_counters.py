@@ -13,6 +13,7 @@ from tracer.kernel_cache import cache_root
 from viewer.util.resources import embedded_scenes
 
 TRAVERSE, TREE = "tracer/geometry/kdtree/traverse.py", "tracer/geometry/kdtree/tree.py"
+NEAREST = "tracer/geometry/kdtree/nearest.py"
 PACKET, SINGLE = "tracer/geometry/bvh8/packet_tree.py", "tracer/geometry/bvh8/single_ray.py"
 STREAM, ROOTS = "tracer/geometry/bvh8/stream.py", "tracer/geometry/bvh8/roots.py"
 CACHE, LOOKUP = "tracer/culling/occluder_cache.py", "tracer/culling/certified/lookup.py"
@@ -24,7 +25,7 @@ LAZY, GRID = "tracer/geometry/lazy_tree/traverse.py", "tracer/methods/voxels.py"
 WALK, CLASSIFY = "tracer/culling/voxels/walk.py", "tracer/culling/voxels/classify.py"
 CELLS = "tracer/culling/environments/ask.py"
 SOURCES = (
-    *(TRAVERSE, TREE, PACKET, SINGLE, STREAM, ROOTS, CACHE, LOOKUP, CERTIFY, BEAMS, LAMPS, HIDERS, REGIONS),
+    *(TRAVERSE, TREE, NEAREST, PACKET, SINGLE, STREAM, ROOTS, CACHE, LOOKUP, CERTIFY, BEAMS, LAMPS, HIDERS, REGIONS),
     *(ASKED, BUFFERS, LAZY, GRID, WALK, CLASSIFY, CELLS),
 )
 
@@ -39,8 +40,8 @@ def test_the_lines_that_count_are_taken_out_and_nothing_else(tmp_path: Path) -> 
         if before != after:
             changed[name] = [line for line in difflib.ndiff(before, after) if line[:2] in ("- ", "+ ")]
     assert set(changed) == set(SOURCES)
-    assert len(changed[TRAVERSE]) == 3 and all("s.counts[" in line for line in changed[TRAVERSE])
-    assert len(changed[LAZY]) == 5 and all("s.counts[" in line for line in changed[LAZY])
+    for file, lines in ((NEAREST, 2), (TRAVERSE, 1), (LAZY, 3)):
+        assert len(changed[file]) == lines and all("s.counts[" in line for line in changed[file])
     assert len(changed[GRID]) == 1 and "counted[STEPS]" in changed[GRID][0]
     assert len(changed[TREE]) == 5 and all("steps" in line for line in changed[TREE] if line[0] == "-")
     counted = {

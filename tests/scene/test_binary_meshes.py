@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 import tracemalloc
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import trimesh
 
 from tests.bench.large_scenes import write_ply, write_stl
 from tests.bench.meshes import frequency_for
-from tracer.scene import assembly, binary_meshes, crease, files, meshes, pieces
+from tracer.scene import assembly, binary_meshes, crease, files, meshes, pieces, room
 from tracer.scene.binary_meshes import is_plain, read_binary
 from tracer.scene.load import load_scene
 from tracer.scene.mesh_options import AS_IN_FILE, IN_STUDIO
@@ -121,6 +122,30 @@ def test_what_is_wrong_is_one_line(tmp_path, monkeypatch):
     for path in (stl(tmp_path / "a.stl"), ply(tmp_path / "b.ply")):
         with pytest.raises(SceneError, match=f"{path.name}: more than 300 triangles; make it simpler"):
             load_scene(path)
+
+
+@pytest.mark.parametrize("line", [b"property float16 x\n", b"property list uchar int64 x\n"])
+def test_a_head_of_unknown_types_is_one_line(tmp_path, line):
+    path = ply(tmp_path / "a.ply")
+    data = path.read_bytes()
+    for where in (b"element vertex", b"property float x\n"):  # of no element, and of one
+        path.write_bytes(data.replace(where, line + where, 1))
+        assert not is_plain(path)
+        with pytest.raises(SceneError, match=r"a\.ply: cannot be read as PLY: it is damaged or incomplete"):
+            load_scene(path)
+
+
+def test_a_file_that_turns_out_to_have_polygons_needs_the_memory_of_those(tmp_path, monkeypatch):
+    path = ply(tmp_path / "a.ply", faces=[[0, 1, 2]])
+    path.write_bytes(path.read_bytes().replace(b"face 1\n", b"face 2\n") + struct.pack("<B4i", 4, 2, 3, 4, 5))
+    monkeypatch.delenv(room.ANYHOW, raising=False)
+    monkeypatch.setattr(room, "_SMALL", 0)
+    monkeypatch.setattr(room, "available", lambda: room.reading(path) + 1)
+    assert is_plain(path)
+    with pytest.raises(SceneError, match="of memory to be read"):
+        load_scene(path)
+    monkeypatch.setattr(room, "available", lambda: room.reading(path, whole=True) + 1)
+    assert load_scene(path).triangle_count == 3
 
 
 def test_a_file_that_becomes_shorter_meanwhile_is_one_line(tmp_path, monkeypatch):

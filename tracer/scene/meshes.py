@@ -32,6 +32,7 @@ from tracer.scene.model import Camera, Progress, Scene, SceneError
 from tracer.scene.pieces import IndexedMesh, Mesh, Piece
 from tracer.scene.ply_lists import with_even_lists
 from tracer.scene.punctual_lights import has_lights, punctual_lights
+from tracer.scene.room import check_reading
 from tracer.scene.studio import build_studio, with_floor
 from tracer.scene.textures import open_image
 from tracer.scene.tristrips import with_strips
@@ -82,6 +83,7 @@ def load_mesh(
         geometry.meshes.append(_piece_of_binary(binary, path, table, _crease(options, alone, path), smoothing))
         del binary
     else:
+        check_reading(path, whole=True)  # its first face may have looked as if parts would do
         model, notes, head = _read(path, SceneFiles(path, folders))
         own_camera = _own_camera(model)
         alone = options.studio and own_camera is None and not has_lights(model)

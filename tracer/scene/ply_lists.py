@@ -100,6 +100,8 @@ def elements_of(lines: list[str], order: str, most: int = MOST_PRIMITIVES) -> tu
                 raise ValueError(line)
             elements.append(Element(name, int(number), lines=[line]))
         elif words[:1] == ["property"]:
+            if not elements:
+                raise ValueError(f"{line}: of no element")
             elements[-1].properties.append(_property(words, order))
             elements[-1].lines.append(line)
         else:
@@ -108,6 +110,8 @@ def elements_of(lines: list[str], order: str, most: int = MOST_PRIMITIVES) -> tu
 
 
 def _property(words: list[str], order: str) -> Property:
+    if unknown := [word for word in words[1:-1] if word not in {"list", *KINDS}]:
+        raise ValueError(f"unknown type {unknown[0]}")
     if words[1] == "list":
         _, _, count, said, name = words
         if KINDS[count][0] == "f":

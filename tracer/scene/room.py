@@ -36,18 +36,19 @@ _SIZES = {
 }  # fmt: skip
 
 
-def check_reading(path: Path) -> None:
-    """Raise SceneError, in one line, where reading this file needs more memory than there is."""
+def check_reading(path: Path, whole: bool = False) -> None:
+    """Raise SceneError, in one line, where reading this file, as a `whole` if it must be, needs more memory than there
+    is."""
     with suppress(OSError):  # the reader says what is wrong
-        _check(path, reading(path), "to be read")
+        _check(path, reading(path, whole), "to be read")
 
 
-def reading(path: Path) -> float:
+def reading(path: Path, whole: bool = False) -> float:
     """Bytes that reading this file takes at most, about; raises OSError."""
     triangles = triangles_of(path)
     if triangles is None:
         return READING_TEXT * path.stat().st_size
-    return (READING_PLAIN if is_plain(path) else READING) * triangles
+    return (READING_PLAIN if not whole and is_plain(path) else READING) * triangles
 
 
 def check_showing(path: Path, triangles: int) -> None:

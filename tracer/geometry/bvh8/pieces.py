@@ -13,6 +13,7 @@ import mmap
 import sys
 import threading
 import weakref
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,15 +58,19 @@ class PiecewiseTree:
         self._locks, self._room = [threading.Lock() for _ in range(pieces)], threading.Lock()
         self._raised: BaseException | None = None
         self._broken = False
+        self.table = table = np.full(1 + pieces, -1, np.int64)
         this = weakref.ref(self)
 
         def called(piece: int, _a: int, _b: int, _c: int, _d: int) -> None:
-            tree = this()
-            if tree is not None:
-                tree.ask_for(piece)
+            try:
+                tree = this()
+                if tree is not None:
+                    tree.ask_for(piece)
+            finally:  # the ray goes on with whatever stands there
+                if table[1 + piece] < 0:
+                    table[1 + piece] = nothing
 
         self._called = _CALLED(called)
-        self.table = np.full(1 + pieces, -1, np.int64)
         self.table[0] = ctypes.cast(self._called, ctypes.c_void_p).value or 0
 
     def ask_for(self, piece: int) -> None:
@@ -120,10 +125,16 @@ class PiecewiseTree:
             write_topology(tree, links, topology, triangles, Offsets(node, block, 0, 0, piece))
             fill_blocks(tree.blocks, self._rows, block, end)
             pad_blocks(tree, links, self.padding, block, end)
+            self._padded[quadrics] = self._boxes[quadrics]  # an interrupted build may have padded them
             for quadric in quadrics.tolist():
                 pad_quadrics(tree, links, self._padded, self.padding, quadric, quadric + 1)
             unite_nodes(tree, links, node, node + used)
-            self.table[1 + piece] = node
+            # A reader takes no lock.  Letting go of one here and taking it again orders what was written before the
+            # number, on processors that reorder writes as well.
+            with self._room:
+                pass
+            with self._room:
+                self.table[1 + piece] = node
             self._items[piece] = items[:0]
 
     def opened(self, code: int) -> int:
@@ -153,10 +164,19 @@ class PiecewiseTree:
 def _reserved_rows(rows: int, columns: int) -> Float32:
     """(rows, columns) float32 zeros, aligned, whose memory is taken from the system where it is first written."""
     size = max(4 * rows * columns, 1)
+    try:
+        memory = _reserved(size)
+    except OSError as error:
+        raise MemoryError(f"no room for a tree of {size >> 20} MB") from error
+    return np.frombuffer(memory, np.float32, rows * columns).reshape(rows, columns)
+
+
+def _reserved(size: int) -> mmap.mmap:
     if sys.platform == "win32":
-        return np.frombuffer(mmap.mmap(-1, size), np.float32, rows * columns).reshape(rows, columns)
+        return mmap.mmap(-1, size)
     flags = mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS | getattr(mmap, "MAP_NORESERVE", 0)
     memory = mmap.mmap(-1, size, flags=flags)
     if hasattr(mmap, "MADV_HUGEPAGE"):
-        memory.madvise(mmap.MADV_HUGEPAGE)
-    return np.frombuffer(memory, np.float32, rows * columns).reshape(rows, columns)
+        with suppress(OSError):  # of a kernel without large pages
+            memory.madvise(mmap.MADV_HUGEPAGE)
+    return memory
