@@ -22,11 +22,12 @@ MOST_DRAWN = 100
 
 
 class CutQuestion:
-    """The cut of a pixel; `found` once there is an answer, and `over` as well where there is none to be had."""
+    """The cut of a pixel; `over` once there is an answer: `found`, or None where the pixel has no cut."""
 
     def __init__(self, frame: Frame, x: int, y: int) -> None:
         self.frame, self.x, self.y = frame, x, y
         self.found: LightCut | None = None
+        self.over = False
 
     @property
     def time(self) -> float:
@@ -37,6 +38,7 @@ class CutQuestion:
             self.found = light_cut(cast(Renderer, renderer), self.frame, self.x, self.y)
         except LookupError:  # another frame has begun meanwhile: it will be asked about that one
             self.found = None
+        self.over = True
 
 
 class DrawnNode(NamedTuple):
@@ -79,7 +81,7 @@ class CutInspector:
         if asked is None or asked.frame is not frame or (asked.x, asked.y) != at:
             self._asked = asked = CutQuestion(frame, *at)
             self._renderer.ask(asked)
-        if asked.found is not None:
+        if asked.over:
             self.cut = asked.found
         elif self.cut is not None and self.cut.frame is not frame:
             self.cut = None

@@ -11,8 +11,9 @@ from collections.abc import Callable
 from tracer.scene.camera import Camera
 from tracer.scene.framing import bounds
 from tracer.scene.model import Progress, Scene
+from tracer.scene.studio import model_bounds
 from viewer.services.jobs import Job
-from viewer.services.motion import Motion
+from viewer.services.motion import Corner, Motion
 from viewer.services.scene_loader import SceneLoader
 from viewer.state.notices import Notices
 from viewer.state.preview_geometry import MOST_READ, PreviewGeometry, preview_geometry
@@ -30,7 +31,7 @@ class Preview:
         self.geometry: PreviewGeometry | None = None
         self._scene: Scene | None = None
         self._start: Camera | None = None
-        self._job: Job[PreviewGeometry] | None = None
+        self._job: Job[tuple[PreviewGeometry, tuple[Corner, Corner] | None]] | None = None
 
     @property
     def flown(self) -> Camera | None:
@@ -50,21 +51,21 @@ class Preview:
             job, self._job = self._job, None
             if job.failure is not None:
                 self._notices.report(job.failure)
-            self.geometry = job.result
+            elif job.result is not None:
+                self.geometry, box = job.result
+                self._motion.enter(box)
 
     def _enter(self, scene: Scene, time: float | None, camera: Camera | None) -> None:
         session = self._session
-        if scene.triangle_count > MOST_READ:
+        if scene.primitive_count > MOST_READ:
             return
         self._scene = session.previewed = scene
         self._start = session.free_camera = camera
         start = session.time = scene.time_range[0] if time is None else time
 
-        def gather(progress: Progress) -> PreviewGeometry:
-            return preview_geometry(scene, start, progress)
+        def gather(progress: Progress) -> tuple[PreviewGeometry, tuple[Corner, Corner] | None]:
+            return preview_geometry(scene, start, progress), _bounds(scene)
 
-        box = bounds(scene.objects, scene.animation, start)
-        self._motion.enter(None if box is None else (box[0].tolist(), box[1].tolist()))
         self._job = Job("The preview", gather, self._wake)
 
     def _leave(self) -> None:
@@ -74,3 +75,12 @@ class Preview:
         if session.scene is None:
             session.free_camera = None
         session.previewed = self._scene = self._start = self._job = self.geometry = None
+
+
+def _bounds(scene: Scene) -> tuple[Corner, Corner] | None:
+    """Least and greatest corner of what the camera goes around: the same as once the scene is traced, so that it is
+    as fast then."""
+    box = model_bounds(scene)
+    if box is None:
+        box = bounds(scene.objects, scene.animation, scene.time_range[0])
+    return None if box is None else (box[0].tolist(), box[1].tolist())

@@ -138,7 +138,7 @@ class SceneLoader:
             if job.failure is not None:
                 self._notices.report(replace(job.failure, text=f"the tracer could not be compiled: {job.failure.text}"))
         if self.load_job is not None and self.load_job.done:
-            load, self.load_job = self.load_job, None
+            load, self.load_job, self._seen = self.load_job, None, []
             self._restored = self._loaded(load)
         self._let_go()
         self._abandoned = [job for job in self._abandoned if not job.done]
@@ -229,6 +229,7 @@ class SceneLoader:
         if job is not None and job.stopping and time.monotonic() - self._cancelled_at > PATIENCE:
             self._abandoned.append(job)
             self.load_job = self._place = None
+            self._seen = []
             self._say_cancelled()
 
     def _say_cancelled(self) -> None:

@@ -24,7 +24,7 @@ from tracer.scene.model import Progress, Scene, SceneObject
 MOST_TRIANGLES = 300_000
 MOST_QUADRICS = 12_000
 MOST_READ = 3_000_000
-"""Triangles of a scene that is previewed at all: gathering more takes too much memory."""
+"""Primitives of a scene that is previewed at all: gathering more takes too much memory and time."""
 MOST_LIGHTS = 8
 """More are merged into so many."""
 MOST_TEXELS = 1024

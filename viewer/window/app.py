@@ -161,10 +161,10 @@ class App:
         step("Opening dropped files", self._open_dropped)
         step("Following the scene", lambda: self.controller.tick(self._room_for_picture()))
         step("The script's function", self._tell)
-        step("Drawing the picture", self._draw_unless_lost)
-        step("Drawing the preview", lambda: previewing.draw(self.ui))
-        step("Drawing recorded pictures", self._bring_shots)
-        step("Saving the picture", self._capture_picture)
+        self._draws("Drawing the picture", self._draw)
+        self._draws("Drawing the preview", lambda: previewing.draw(self.ui))
+        self._draws("Drawing recorded pictures", self._bring_shots)
+        self._draws("Saving the picture", self._capture_picture)
         self._stay_awake()
 
     def widgets(self) -> None:
@@ -184,7 +184,7 @@ class App:
 
     def after_widgets(self) -> None:
         """The window is drawn but not yet shown."""
-        self.ui.guard.step("Saving the window", self._capture_window)
+        self._draws("Saving the window", self._capture_window)
         self.controller.undo.held = imgui.is_any_item_active()
         self.controller.drawn_seconds = time.perf_counter() - self._frame_began
 
@@ -218,12 +218,17 @@ class App:
             self._room = self.ui.picture_area
         return self._room
 
-    def _draw_unless_lost(self) -> None:
-        try:
-            self._draw()
-        except Exception:
-            if not self.losses.look():
-                raise
+    def _draws(self, name: str, work: Callable[[], None]) -> None:
+        """A step that uses GL: what fails as the context is lost is no fault, as another window comes."""
+
+        def unless_lost() -> None:
+            try:
+                work()
+            except Exception:
+                if not self.losses.look():
+                    raise
+
+        self.ui.guard.step(name, unless_lost)
 
     def _draw(self) -> None:
         """Bring a new frame to the GPU, and draw the view if anything about it has changed."""
@@ -404,9 +409,7 @@ class App:
         if self.ui.magnifier is not None:
             self.ui.magnifier.release()
             self.ui.magnifier = None
-        if self.ui.preview is not None:
-            self.ui.preview.release()
-            self.ui.preview = None
+        previewing.release(self.ui)
         if self.ui.display is not None:
             self.ui.display.release()
             self.ui.display = None

@@ -42,6 +42,13 @@ class PreviewDisplay:
         self._drawn: object = None
         self._target: Any = None
         self._coarse = 1
+        try:
+            self._make(geometry)
+        except Exception:
+            self.release()
+            raise
+
+    def _make(self, geometry: PreviewGeometry) -> None:
         fragment = shader_source("preview.frag")
         self._soup = self._program("preview.vert", fragment)
         self._round = self._program("preview-quadric.vert", fragment)
@@ -71,7 +78,7 @@ class PreviewDisplay:
         """Bring the next piece to the GPU; whether there was any."""
         if self._images:
             number, pixels = self._images.pop(0)
-            self._textures[number] = self._kept(self._image(pixels))
+            self._textures[number] = self._image(pixels)
         elif self._pieces:
             buffer, data = self._pieces[0]
             raw = data.view(np.uint8)
@@ -160,7 +167,7 @@ class PreviewDisplay:
         return texture
 
     def _image(self, pixels: NDArray[np.uint8]) -> Any:
-        texture = self._context.texture(pixels.shape[1::-1], 3, pixels.tobytes(), alignment=1)
+        texture = self._kept(self._context.texture(pixels.shape[1::-1], 3, pixels.tobytes(), alignment=1))
         texture.build_mipmaps()
         return texture
 

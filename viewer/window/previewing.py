@@ -6,6 +6,8 @@ import time
 
 import moderngl
 
+from viewer.state.preview_geometry import PreviewGeometry
+from viewer.window.display import Display
 from viewer.window.preview import PreviewDisplay
 from viewer.window.ui import Ui
 
@@ -13,17 +15,32 @@ BRINGING = 0.01  # seconds of each of the window's frames, at most, unless one p
 
 
 def draw(ui: Ui) -> None:
-    """Draw the preview where there is one, from where the camera is; free what it took once there is none any more."""
-    c, display = ui.controller, ui.display
-    geometry = c.preview.geometry
-    if display is None or geometry is None:
-        if ui.preview is not None:
-            ui.preview.release()
-            ui.preview = None
-        return
+    """Draw the preview where there is one, from where the camera is; free what it took once there is none any more.
+
+    A geometry that failed to be drawn is not tried again in this window."""
+    geometry = ui.controller.preview.geometry
+    if ui.display is None or geometry is None:
+        release(ui)
+    elif ui.not_previewed is not geometry:
+        try:
+            _draw(ui, ui.display, geometry)
+        except Exception:
+            release(ui)
+            ui.not_previewed = geometry
+            raise
+
+
+def release(ui: Ui) -> None:
+    """Free what the preview took; whatever comes next is tried."""
+    if ui.preview is not None:
+        ui.preview.release()
+    ui.preview = ui.not_previewed = None
+
+
+def _draw(ui: Ui, display: Display, geometry: PreviewGeometry) -> None:
+    c = ui.controller
     if ui.preview is None or ui.preview.geometry is not geometry:
-        if ui.preview is not None:
-            ui.preview.release()
+        release(ui)
         ui.preview = PreviewDisplay(display.context, geometry)
     width, height = ui.picture_area
     if min(width, height) < 1:

@@ -21,6 +21,7 @@ from viewer.state.annotations import Annotation, Kind
 from viewer.state.keymap import Keymap
 from viewer.state.pixels import Pixels, Point
 from viewer.state.preferences import default_screenshot_folder
+from viewer.state.preview_geometry import PreviewGeometry
 from viewer.window.command import Command, is_key, key_label
 from viewer.window.compared import Compared
 from viewer.window.display import Display
@@ -142,6 +143,7 @@ class Ui:
     shots: Shots | None = None
     cube_shows: int = 0
     preview: PreviewDisplay | None = None
+    not_previewed: PreviewGeometry | None = None
     screening: Screening | None = None
     compared: Compared | None = None
     magnifier: Magnifier | None = None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
+from unittest import mock
 
 import numpy as np
 from imgui_bundle import glfw_utils, imgui
@@ -35,9 +36,16 @@ def reviving(d: Driver) -> Callable[[Driver], Any]:
     d.settle()
     d.frames(4)
     before = _state(d), d.shown(), d.c.frame
-    d.app.losses.status = lambda: UNKNOWN_RESET
-    while not d.app.losses.cause:
-        d.frames(1)
+    bring = d.app._bring_shots
+
+    def lose() -> None:
+        """In the middle of a frame, as something else than the picture is drawn: that is no fault."""
+        d.app._bring_shots = bring  # type: ignore[method-assign]
+        d.app.losses.status = lambda: UNKNOWN_RESET
+        raise RuntimeError("made to fail")
+
+    d.app._bring_shots = lose  # type: ignore[method-assign]
+    d.wait(lambda: bool(d.app.losses.cause), "the loss to be seen", 20.0)
     return lambda d: _revived(d, *before)
 
 
@@ -51,20 +59,20 @@ def _revived(d: Driver, state: tuple[Any, ...], picture: np.ndarray, frame: Fram
     assert (d.c.frame.width, d.c.frame.height) == (frame.width, frame.height)
     assert np.array_equal(d.shown(), picture)
     assert d.c.notices.message.text.startswith("the graphics driver was reset: the window was made anew")
+    assert d.c.notices.faults.notice is None
     _denser_screen(d)
     _smaller_screen(d)
 
 
 def _denser_screen(d: Driver) -> None:
     """Letters and lengths follow the screen, and go back with it."""
-    known, style = density.content_scale, imgui.get_style()
+    style = imgui.get_style()
     before = _lengths()
     for scale in (2.0, 1.5, 1.0):
-        density.content_scale = lambda scale=scale: scale
-        d.frames(3)
-        assert style.font_scale_dpi == scale and d.ui.fold.folded == (scale > 1.0)
-        assert np.allclose(_lengths(), np.multiply(before, scale), atol=1.0)
-    density.content_scale = known
+        with mock.patch.object(density, "content_scale", lambda scale=scale: scale):
+            d.frames(3)
+            assert style.font_scale_dpi == scale and d.ui.fold.folded == (scale > 1.0)
+            assert np.allclose(_lengths(), np.multiply(before, scale), atol=1.0)
     assert _lengths() == before
     d.frames(3)
 
@@ -77,12 +85,11 @@ def _lengths() -> tuple[float, ...]:
 def _smaller_screen(d: Driver) -> None:
     """A window of which most is on no screen any more comes to one, and has its place there again after it was full."""
     window, place = glfw_utils.glfw_window_hello_imgui(), d.ui.full_screen.place
-    areas, place._areas = place._areas, lambda: [(0, 0, 400, 300)]
-    d.wait(lambda: place_of(window) == (0, 0, 400, 300), "the window to come back", 20.0)
-    d.ui.full_screen.toggle()
-    screen = glfw.get_video_mode(glfw.get_monitors()[0]).size
-    d.wait(lambda: place_of(window) == (0, 0, *screen), "a full window", 20.0)
-    d.ui.full_screen.toggle()
-    d.wait(lambda: place_of(window) == (0, 0, 400, 300), "the window as it was", 20.0)
-    place._areas = areas
+    with mock.patch.object(place, "_areas", lambda: [(0, 0, 400, 300)]):
+        d.wait(lambda: place_of(window) == (0, 0, 400, 300), "the window to come back", 20.0)
+        d.ui.full_screen.toggle()
+        screen = glfw.get_video_mode(glfw.get_monitors()[0]).size
+        d.wait(lambda: place_of(window) == (0, 0, *screen), "a full window", 20.0)
+        d.ui.full_screen.toggle()
+        d.wait(lambda: place_of(window) == (0, 0, 400, 300), "the window as it was", 20.0)
     d.resize(*SMALL)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 import time
+import weakref
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import make_frame
+from tests.viewer.fakes import make_frame, make_scene
+from tracer.scene.model import SceneError
 from viewer.services.capture_service import CaptureService
 from viewer.services.scene_loader import Arrival, SceneLoader
 from viewer.state.notices import Notices
@@ -146,3 +149,36 @@ def test_a_load_that_cannot_stop_is_left_to_itself_when_it_is_cancelled(
     (job,) = door.loader._abandoned or [None]
     assert job is None or job.join(20.0)
     assert door.loader.follow() is None
+
+
+@pytest.mark.parametrize("end", ["cancelled", "abandoned", "failed"])
+def test_a_scene_that_waited_in_vain_is_let_go(door: Door, tiny_scene_file: Path, monkeypatch, end: str):
+    go_on, read = threading.Event(), []
+
+    def waits(path, settings, ready, progress, folders, files, meshes, seen):
+        scene = make_scene()
+        read.append(weakref.ref(scene))
+        seen(scene)
+        while not go_on.is_set():
+            if end == "cancelled":
+                progress("waiting", 0.5)
+            go_on.wait(0.01)
+        raise SceneError("no more")
+
+    monkeypatch.setattr("viewer.services.scene_files.open_scene", waits)
+    monkeypatch.setattr("viewer.services.scene_loader.PATIENCE", 60.0 if end == "cancelled" else 0.05)
+    door.loader.open(tiny_scene_file)
+    until = time.monotonic() + 20.0
+    while door.loader.waiting is None:
+        assert time.monotonic() < until, "in vain"
+        time.sleep(0.002)
+    if end == "failed":
+        go_on.set()
+    else:
+        door.loader.cancel()
+    assert door.arrival() is None and door.loader.waiting is None
+    go_on.set()
+    assert all([job.join(20.0) for job in door.loader._abandoned])
+    door.loader.follow()
+    gc.collect()
+    assert read[0]() is None

@@ -92,6 +92,21 @@ def test_a_driver_that_is_reset_again_and_again_ends_the_window(monkeypatch: pyt
     assert len(opened) == OFTEN
 
 
+def test_what_fails_as_the_context_is_lost_is_no_fault() -> None:
+    window = app.App(None)
+    faults = window.controller.notices.faults
+
+    def fail() -> None:
+        raise RuntimeError("the driver said no")
+
+    window._draws("Drawing", fail)
+    assert faults.notice is not None and "the driver said no" in faults.notice.text
+    faults.dismiss()
+    window.losses.status = lambda: 0x8253
+    window._draws("Drawing", fail)
+    assert faults.notice is None and window.losses.cause
+
+
 def test_losses_long_ago_do_not_count() -> None:
     now = [0.0]
     losses = Losses(lambda: now[0])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -61,6 +62,44 @@ def test_the_preview_has_the_surfaces_of_the_traced_picture():
             assert off[inside].mean() < 0.004
             light = frame.color.clip(0, 1).mean(axis=2), drawn.mean(axis=2) / 255.0
             assert np.corrcoef(light[0].ravel(), light[1].ravel())[0, 1] > 0.6, "much the same colours"
+    context.release()
+
+
+@pytest.mark.gui
+@pytest.mark.parametrize("fails", ["vertex_array", "texture"])
+def test_a_preview_that_cannot_be_made_frees_what_it_took_and_is_not_tried_again(fails: str):
+    moderngl = pytest.importorskip("moderngl")
+    from viewer.window import previewing
+
+    geometry, made = _geometry(make_scene()), []
+
+    class Failing:
+        """A context that keeps what it made, and fails at last."""
+
+        def __getattr__(self, name: str):
+            def make(*arguments, **options):
+                if name == fails:
+                    raise moderngl.Error("out of memory")
+                made.append(getattr(context, name)(*arguments, **options))
+                return made[-1]
+
+            return make
+
+    context = moderngl.create_context(standalone=True, require=330)
+    controller = SimpleNamespace(preview=SimpleNamespace(geometry=geometry))
+    ui = SimpleNamespace(
+        controller=controller, display=SimpleNamespace(context=Failing()), preview=None, not_previewed=None
+    )
+    with context:
+        with pytest.raises(moderngl.Error, match="out of memory"):
+            previewing.draw(ui)
+        count = len(made)
+        assert count > 1 and all(isinstance(one.mglo, moderngl.mgl.InvalidObject) for one in made)
+        previewing.draw(ui)
+        assert len(made) == count and ui.preview is None, "said once"
+        previewing.release(ui)  # another window
+        with pytest.raises(moderngl.Error):
+            previewing.draw(ui)
     context.release()
 
 
