@@ -249,7 +249,7 @@ _TABLE: tuple[tuple[str, str, dict[str, Any], str], ...] = (
     ("voxels", "voxels:Voxels", {**_OF_SPACE, **_FEW, "makes": "voxels classified"},
      "Culls by cubes of space that are lit, or in shadow, as a whole; never wrong."),
     ("lie-exact", "lie:Environments", _IN_PART,
-     "Asks what is proven to block a light from a cell of space, and no light hidden from it; never wrong."),
+     "Tests only what can block a light from a cell of space, and no light that is hidden there; never wrong."),
     ("lie", "lie:SampledEnvironments", {**_IN_PART, "exact": False},
      "Local illumination environments, by samples as published; wrong now and then."),
     ("cache", "cache:OccluderCache", {"addition": True},

@@ -207,4 +207,5 @@ def methods() -> str:
 
     lines = [(kind.name, kind.summary) for kind in bases(measures=True)]
     lines += [(f"+{kind.name}", kind.summary) for kind in additions(measures=True)]
-    return "\nmethods:\n" + "".join(f"  {name:10} {summary}\n" for name, summary in lines)
+    width = max(len(name) for name, _ in lines)
+    return "\nmethods:\n" + "".join(f"  {name:{width}}  {summary}\n" for name, summary in lines)

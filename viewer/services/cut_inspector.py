@@ -83,7 +83,7 @@ class CutInspector:
             self._renderer.ask(asked)
         if asked.over:
             self.cut = asked.found
-        elif self.cut is not None and self.cut.frame is not frame:
+        elif self.cut is not None and (self.cut.frame is not frame or (self.cut.x, self.cut.y) != at):
             self.cut = None
 
     def drawn(self) -> list[DrawnNode]:

@@ -349,6 +349,7 @@ class RenderThread:
                 first = None
                 for frame, second in refining:
                     first = first or frame.statistics
+                    self._answer_meanwhile(renderer, request.time)  # a newer picture makes the window ask anew
                     if not self._deliver(renderer, Traced(request, frame, first, second)):
                         break
                     self._answer_meanwhile(renderer, request.time)

@@ -303,6 +303,25 @@ def test_of_questions_only_the_newest_is_answered_and_none_about_a_time_that_was
     assert not left.by and not older.by and len(newer.by) == 1
 
 
+def test_a_question_is_answered_though_the_next_picture_makes_the_window_ask_anew(thread, monkeypatch):
+    """Where a sample takes seconds and the window milliseconds, nothing would be answered before the last sample."""
+    renderer = held_at(thread, request(0.0))
+    asked, anew = Asked(0.0), Asked(0.0)
+    thread.ask(asked)
+    deliver = thread._deliver
+
+    def seen_at_once(*delivered) -> bool:
+        on = deliver(*delivered)
+        thread.ask(anew)
+        return on
+
+    monkeypatch.setattr(thread, "_deliver", seen_at_once)
+    renderer.go.set()
+    assert anew.answered.wait(5.0)
+    idle(thread)
+    assert len(asked.by) == len(anew.by) == 1
+
+
 class AskedOtherwise(Asked):
     """A question of another kind."""
 
