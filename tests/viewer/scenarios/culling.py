@@ -113,6 +113,7 @@ def _clusters(d: Driver) -> None:
     expected = picture(d.c.frame, View.CUTS)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     d.context.item_input_value("//Culling/**/##cuts", 20.0)
+    d.settle()  # the words above the sliders are of another length then, and the sliders elsewhere
     d.context.item_input_value("//Culling/**/##nodes", 3)
     d.settle()
     assert (d.c.frame.settings.lightcuts_error, d.c.frame.settings.lightcuts_nodes) == (0.2, 3)
