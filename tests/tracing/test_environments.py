@@ -11,36 +11,18 @@ import pytest
 import tracer
 from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.nasty_worlds import NastyWalk, flattened_walk, nasty_walk, static_part, with_lamps
+from tests.tracing.spaces import environment_store, point_lamps
 from tests.tracing.worlds import scene, wall
 from tracer.culling.environments.octree import HIDDEN, LIT, OUTSIDE, UNKNOWN, boxes_of, make_frame
-from tracer.culling.environments.store import CANDIDATES, EnvironmentStore
+from tracer.culling.environments.store import CANDIDATES
 from tracer.culling.modes import FULL_SHADOW, MAX_CULLED_LIGHTS, NON_SHADOW
-from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
-from tracer.scene.lamps import Lamps, LampTable
 from tracer.scene.lights import Light
 from tracer.scene.load import load_scene
 from tracer.settings import Settings
 from viewer.util.resources import embedded_scenes
-
-
-def _lamps(places: np.ndarray) -> Lamps:
-    table = LampTable(tuple(Light(f"light {i}", (0.0, 0.0, 0.0)) for i in range(len(places))))
-    return table.at(np.asarray(places, np.float64))
-
-
-def _store(world: World, lamps: Lamps, points: np.ndarray, memory: float = 3e7) -> EnvironmentStore:
-    """Cells that are settled around points (n, 3)."""
-    store = EnvironmentStore(world, lamps, 1, memory, True)
-    store.follow(lamps, nothing_rests(len(world.scene.objects)))
-
-    def want() -> None:
-        store.tree.wanted[store.tree.leaves_at(points)] = True
-
-    store.work(want, np.inf)
-    return store
 
 
 def test_a_point_is_in_the_box_of_its_cell_by_either_way_down():
@@ -48,7 +30,9 @@ def test_a_point_is_in_the_box_of_its_cell_by_either_way_down():
     for scale, move in ((1.0, 0.0), (1e-3, 5.0), (1e4, -1e6)):
         corners = np.array(wall(4, 3)) * scale + move
         points = (rng.random((200, 3)) * (4.0, 3.0, 0.0) * scale + move).astype(np.float32)
-        store = _store(World(scene(corners)), _lamps(np.array([[1.0, 1.0, 2.0]]) * scale + move), points)
+        store = environment_store(
+            World(scene(corners)), point_lamps(np.array([[1.0, 1.0, 2.0]]) * scale + move), points
+        )
         cells = store.tree.leaves_at(points)
         boxes = boxes_of(store.tree.frame, store.tree.cells[cells])
         assert (cells != OUTSIDE).all() and (store.tree.child[cells] == 0).all()
@@ -73,7 +57,7 @@ def test_whatever_is_proved_of_a_cell_holds_for_the_rays_into_it(accelerator: st
         points = those[:, :3] + at[:, :1] * those[:, 3:6] + (1 - at[:, 1:]) * those[:, 6:]
         anywhere = points.min(0) + rng.random((300, 3)) * np.ptp(points, axis=0)
         points = np.concatenate([points, anywhere]).astype(np.float32)
-        store = _store(world, _lamps(places), points)
+        store = environment_store(world, point_lamps(places), points)
         cells = np.unique(store.tree.leaves_at(points))
         boxes = boxes_of(store.tree.frame, store.tree.cells[cells])
         part = np.where(rng.random((len(cells), 16, 1)) < 0.4, rng.integers(0, 2, (len(cells), 16, 3)),

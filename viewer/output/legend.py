@@ -12,6 +12,7 @@ from enum import Enum
 
 import numpy as np
 
+from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.frame import Frame
 from tracer.method import Method
 from tracer.scene.lights import Light, number_of
@@ -31,7 +32,7 @@ from viewer.output.legend_counts import (
 )
 from viewer.state import terms
 from viewer.state.readings import can_draw, has_modes_of_cells, span_of, voxels_of
-from viewer.state.slices import AXES, MIDDLE, STATE_NAMES, Slice, middle_of
+from viewer.state.slices import AXES, MIDDLE, Slice, middle_of
 from viewer.state.tone import NEUTRAL, clipped
 from viewer.state.tone import Tone as DisplayTone
 from viewer.state.views import (

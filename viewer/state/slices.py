@@ -12,9 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.modes import FULL_SHADOW, NON_SHADOW
 from tracer.culling.voxels.grid import BLOCK, VoxelGrid
-from tracer.culling.voxels.tell import VoxelStates, index_of
+from tracer.culling.voxels.tell import STATE_NAMES, VoxelStates, index_of
 from tracer.frame import Frame
 from tracer.geometry.camera import pinhole
 from viewer.util.json_numbers import number
@@ -140,6 +139,3 @@ def voxel_words(frame: Frame, states: VoxelStates, light: int, cut: Slice, x: in
     index = index_of(states.grid, number)
     state = int(states.states(light, np.array(number)))
     return "{}, {}, {}".format(*index), STATE_NAMES[state]
-
-
-STATE_NAMES = {0: "unknown", FULL_SHADOW: "full", NON_SHADOW: "null"}

@@ -82,7 +82,7 @@ class Walked(NamedTuple):
         if self.stop is Stop.HERE:
             side = states.level(light, self.first)
             block = f", with the whole block of {side} x {side} x {side} around it" if side > 1 else ", by itself"
-            return f"{where[0].upper()}{where[1:]} is {_STATES[self.state]}{block}."
+            return f"{where[0].upper()}{where[1:]} is {STATE_NAMES[self.state]}{block}."
         others = self.entered - 1
         way = f"The {where} of the point is unknown. The walk towards the light "
         if self.stop is Stop.BLOCKED and not others:
@@ -90,13 +90,14 @@ class Walked(NamedTuple):
         went = f"entered {others} more voxel{'s' * (others != 1)} and ended "
         x, y, z = self.last
         if self.stop is Stop.KNOWN:
-            return f"{way}{went}in voxel {x}, {y}, {z}, which is {_STATES[self.state]}."
+            return f"{way}{went}in voxel {x}, {y}, {z}, which is {STATE_NAMES[self.state]}."
         if self.stop is Stop.BLOCKED:
             return f"{way}{went}in voxel {x}, {y}, {z}, at what blocks the ray."
         return f"{way}{went}{self.stop.value}: nothing static is in its way."
 
 
-_STATES = {0: "unknown", FULL_SHADOW: "full", NON_SHADOW: "null"}
+STATE_NAMES = {0: "unknown", FULL_SHADOW: "full", NON_SHADOW: "null"}
+"""What is known of a light in a voxel, in the words of Woo and Amanatides."""
 
 
 def index_of(grid: VoxelGrid, number: int) -> Index:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.light_cut import LightCut
 from viewer.services.cut_inspector import MOST_DRAWN
 from viewer.state.picking import pixel_at
 from viewer.state.readings import cell_lights, voxels_of
-from viewer.state.slices import AXES, STATE_NAMES, middle_of, slice_seen, voxel_seen
+from viewer.state.slices import AXES, middle_of, slice_seen, voxel_seen
 from viewer.state.views import View
 from viewer.window.layers_of_slice import go_to
 from viewer.window.panels.area import Area
