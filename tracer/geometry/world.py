@@ -22,6 +22,7 @@ from tracer.geometry.primitives import Outlines, Primitives, WorldTriangles
 from tracer.geometry.queries import EVERYTHING, batch_of
 from tracer.geometry.rays import Hits, Ray, Rays
 from tracer.geometry.structure import Built, Structure
+from tracer.geometry.tree_parts import TreeParts
 from tracer.geometry.visits import Visit
 from tracer.kernels import Entry
 from tracer.parallel import for_each_chunk, thread_count
@@ -318,6 +319,10 @@ class World:
     def built(self) -> Built | None:
         """How much of the trees rays have had built so far; None where all are built before rays come."""
         return self.structure.built()
+
+    def parts_built(self) -> TreeParts | None:
+        """What rays have had built so far, and where; None where all is built before rays come."""
+        return self.structure.parts_built()
 
     def bounds(self) -> NDArray[np.float32]:
         """Box (6,) around everything that is there now; inverted for an empty world."""

@@ -17,6 +17,7 @@ from tracer.geometry.bvh8 import pieces, traverse
 from tracer.geometry.bvh8.build import build_tree
 from tracer.geometry.bvh8.layout import BOX, CHILDREN, PRIMITIVES, Tree
 from tracer.geometry.bvh8.object_trees import blocks_of, build_object_trees, build_top_level, load_corners, move_objects
+from tracer.geometry.bvh8.parts import PieceParts
 from tracer.geometry.bvh8.pieces import PiecewiseTree
 from tracer.geometry.bvh8.placed import DYNAMIC_TREES, MOVING_TREE, RESTING_TREE, STATIC_TREE, STATIC_TREES
 from tracer.geometry.bvh8.walk import TreeAt, Walk
@@ -74,7 +75,9 @@ class Bvh8:
     def make_ready() -> None:
         """Compile, or load, what only large trees need."""
         triangle, box = np.eye(1, 9, 3, np.float32), np.ones((1, 6), np.float32)
-        PiecewiseTree(triangle, box, np.zeros(2, np.int64), 1).build_all()
+        tree = PiecewiseTree(triangle, box, np.zeros(2, np.int64), 1)
+        tree.build_all()
+        PieceParts(tree, box[0], 1).at(box[:, :3].copy(), 0)
 
     def _topology(self, index: int, progress: Progress | None = None) -> Topology:
         """The topology of a dynamic object's tree; of one that deforms, that for the time it is nearest to."""
@@ -203,6 +206,12 @@ class Bvh8:
         starts = self._primitives.triangle_starts[1] + self._primitives.quadric_starts[1]
         size = large.memory_bytes + moving.nodes.nbytes + moving.blocks.nbytes
         return Built(len(large.used.nodes) + len(moving.nodes), large.built + total - int(starts), total, size)
+
+    def parts_built(self) -> PieceParts | None:
+        """Which pieces of what never moves are built, and how."""
+        if self._pieces is None or not self._lazy:
+            return None
+        return PieceParts(self._pieces, tree_box(self.static), len(self._primitives.object_of))
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""

@@ -138,6 +138,9 @@ class KdTree(InObjectSpace):
     def built(self) -> None:
         """All of it is built before rays come."""
 
+    def parts_built(self) -> None:
+        """None of it waits."""
+
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""
         boxes = np.stack([self.parts.boxes[0], self.parts.resting_box, self.parts.moving_box])

@@ -1,0 +1,67 @@
+"""What of a tree that is built where rays arrive lies at points of space: what is there by now, and what waits.
+
+Reading builds nothing, and may happen while rays build: a part is there as a whole or not at all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.parallel import for_each_chunk, thread_count
+
+CHUNK = 1 << 14  # points that a thread looks up at a time
+NOWHERE = -1  # the number of no part
+
+
+class PartsAt(NamedTuple):
+    """Of n points, the smallest part of a tree that is known around each.
+
+    numbers (n,) int64, the same for points in one part, NOWHERE for points in none; owners (n,) int32, the object, or
+    the piece of a large tree, that the part belongs to, -1 for neither; levels (n,) uint8 below the root; built (n,)
+    uint8, 0 for a part that waits for its first ray; widths (n,) float32, the shorter side of the part across the axis
+    that is asked for; held (n,) int32, how many primitives are in a leaf, -1 for what is none."""
+
+    numbers: NDArray[np.int64]
+    owners: NDArray[np.int32]
+    levels: NDArray[np.uint8]
+    built: NDArray[np.uint8]
+    widths: NDArray[np.float32]
+    held: NDArray[np.int32]
+
+
+class TreeParts(Protocol):
+    """A tree as a frame found it, with objects where they were then; it goes on being built, and is let go of with its
+    world.
+
+    `name` is that of the structure, `owner` the word for what owners are, `bounds` (6,) float32 lies around everything,
+    and `levels` is about how many levels there are where all is built."""
+
+    name: str
+    owner: str
+    bounds: NDArray[np.float32]
+    levels: int
+
+    def at(self, points: NDArray[np.float32], across: int) -> PartsAt | None:
+        """What lies at points (n, 3) float32, NaN for none, with widths across an axis, 0 to 2; None if the tree is no
+        more."""
+
+
+def nothing_at(n: int) -> PartsAt:
+    """Where nothing has been found yet at n points."""
+    return PartsAt(
+        np.full(n, NOWHERE, np.int64),
+        np.full(n, -1, np.int32),
+        np.zeros(n, np.uint8),
+        np.zeros(n, np.uint8),
+        np.zeros(n, np.float32),
+        np.full(n, -1, np.int32),
+    )
+
+
+def in_chunks(n: int, find: Callable[[slice], None]) -> None:
+    """Call find for all of n points, a part of them at a time, in all threads."""
+    for_each_chunk(lambda chunk, _: find(slice(chunk * CHUNK, (chunk + 1) * CHUNK)), -(-n // CHUNK), thread_count())
