@@ -79,7 +79,7 @@ def _leaves(address: int, low: np.ndarray, high: np.ndarray, level: int) -> Iter
         if kind != SUBTREE:
             yield _Leaf(low, high, level, False, -1)
             return
-        words, items = (ctypes.c_int64 * 2).from_address(first)
+        words, _ = (ctypes.c_int64 * 2).from_address(first)
         both = np.array((ctypes.c_int32 * words).from_address(first + HEADER), np.int32)
         yield from _below(both, 0, low, high, level)
         return
@@ -145,7 +145,8 @@ def test_a_tree_that_is_gone_says_so() -> None:
     assert parts is not None
     del world
     assert parts.at(np.zeros((1, 3), np.float32), 0) is None
-    assert tracer.World(made(50), 0.0, "kdtree").parts_built() is tracer.World(made(50), 0.0, lazy=True).parts_built() is None
+    for accelerator in ("kdtree", "bvh8"):
+        assert tracer.World(made(50), 0.0, accelerator, lazy=True).parts_built() is None
 
 
 # --- a large 8-wide tree in pieces -----------------------------------------------------------------

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tracer.geometry.accelerators import ACCELERATORS, BVH8, KD_TREE, LAZY, MOST_TOGETHER
 from tracer.geometry.boxes import NO_BOX
+from tracer.geometry.bvh8 import pieces
 from tracer.geometry.bvh8.structure import Bvh8
 from tracer.geometry.kdtree.structure import KdTree
 from tracer.geometry.lazy_tree.structure import LazyKdTree
@@ -33,6 +34,9 @@ CHUNK = 8192  # rays a thread takes at a time
 EACH = 1024  # rays, traced alone, after which somebody may cancel
 
 STRUCTURES: dict[str, Any] = {KD_TREE: KdTree, LAZY: LazyKdTree, BVH8: Bvh8}
+
+LARGE = pieces.LARGE
+"""Primitives that never move: of more, the 8-wide tree may be built where rays arrive."""
 
 
 class World:

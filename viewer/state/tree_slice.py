@@ -1,0 +1,131 @@
+"""A slice through a tree that is built where rays arrive: which part of it each pixel sees, and whether it is built.
+
+The slice is drawn through everything.  Wherever a ray of the picture passes the tree is built; so what waits is what
+lies behind something, and would never be seen if that hid the slice.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.frame import Frame
+from tracer.geometry.camera import pinhole
+from tracer.geometry.tree_parts import NOWHERE, PartsAt, TreeParts, nothing_at
+from viewer.state.slices import FEWEST, Slice
+
+LEVEL, WAITS, LINE, BORDER, HIDDEN = 0xFF, 0x100, 0x200, 0x400, 0x800  # of a code: a mask, and flags
+NOTHING = 0xFFFF  # the code of no part
+LAYERS = 100  # steps from one side of everything to the other
+SAMPLES = 128  # along each side of a slice, of which parts are counted
+STRIPE = 4  # pixels: the width of the stripes of what waits
+
+
+def layer_of(cut: Slice) -> int:
+    """Which of the LAYERS a slice lies in."""
+    return min(int(cut.at * LAYERS), LAYERS - 1)
+
+
+def place_of(parts: TreeParts, cut: Slice) -> float:
+    """Where the plane of a slice lies along its axis, in units of the scene."""
+    low, high = float(parts.bounds[cut.axis]), float(parts.bounds[cut.axis + 3])
+    return low + cut.at * (high - low)
+
+
+class TreeSeen(NamedTuple):
+    """Of each pixel (h, w), the part of the tree that it sees in a slice; whether something lies before it; and how
+    many pixels wide the part is there."""
+
+    parts: PartsAt
+    hidden: NDArray[np.bool_]
+    wide: NDArray[np.float32]
+
+
+def tree_seen(frame: Frame, parts: TreeParts, cut: Slice) -> TreeSeen:
+    """Which part of the tree each pixel sees in a slice; none once the tree is no more."""
+    rays, shape = pinhole(frame.camera, frame.width, frame.height), frame.primitive.shape
+    x, y = np.arange(frame.width, dtype=np.float32), np.arange(frame.height, dtype=np.float32)[:, None]
+    points = np.empty((*shape, 3), np.float32)
+    with np.errstate(all="ignore"):
+        ways = [rays.corner[k] + x * rays.column[k] + y * rays.row[k] for k in range(3)]
+        place = np.float32(place_of(parts, cut))
+        t = np.where(ways[cut.axis] != 0.0, (place - np.float32(rays.origin[cut.axis])) / ways[cut.axis], np.nan)
+        t = np.where(t > 0.0, t, np.nan).astype(np.float32)
+        for k in range(3):
+            points[..., k] = place + 0.0 * t if k == cut.axis else rays.origin[k] + t * ways[k]
+        distance = t * np.sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2])
+        found = parts.at(points.reshape(-1, 3), cut.axis) or nothing_at(t.size)
+        shaped = PartsAt(*(column.reshape(shape) for column in found))
+        wide = np.where(shaped.numbers != NOWHERE, shaped.widths / (distance * rays.spread), np.float32(0.0))
+        return TreeSeen(shaped, distance > frame.depth, wide)
+
+
+def tree_codes(frame: Frame, parts: TreeParts, cut: Slice) -> NDArray[np.uint16]:
+    """(h, w) for each pixel the level of the part that it sees in a slice, with flags: that it WAITS, that a LINE
+    between parts, or the BORDER of an object or a piece, is there, and that something lies before it, so that it would
+    be HIDDEN; else NOTHING."""
+    seen = tree_seen(frame, parts, cut)
+    found, there = seen.parts, seen.parts.numbers != NOWHERE
+    codes = found.levels.astype(np.uint16)
+    codes[found.built == 0] |= WAITS
+    codes[_apart(found.numbers) & (_least(seen.wide) >= FEWEST)] |= LINE
+    codes[_apart(found.owners)] |= BORDER
+    codes[seen.hidden] |= HIDDEN
+    return np.where(there, codes, np.uint16(NOTHING))
+
+
+def _apart(of: NDArray) -> NDArray[np.bool_]:
+    """Pixels whose neighbour to the right, or below, has another of these (h, w)."""
+    line = np.zeros(of.shape, np.bool_)
+    line[:, :-1] |= of[:, 1:] != of[:, :-1]
+    line[:-1] |= of[1:] != of[:-1]
+    return line
+
+
+def _least(wide: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The least of a pixel and of its neighbours to the right and below: lines belong to both sides."""
+    least = wide.copy()
+    least[:, :-1] = np.minimum(least[:, :-1], wide[:, 1:])
+    least[:-1] = np.minimum(least[:-1], wide[1:])
+    return least
+
+
+def share_built(parts: TreeParts, cut: Slice) -> float | None:
+    """Which share of what a slice has of the tree is built, by SAMPLES x SAMPLES points; None where it has none."""
+    steps = (np.arange(SAMPLES, dtype=np.float32) + np.float32(0.5)) / np.float32(SAMPLES)
+    low, high = parts.bounds[:3], parts.bounds[3:]
+    points = np.empty((SAMPLES, SAMPLES, 3), np.float32)
+    one, other = (k for k in range(3) if k != cut.axis)
+    points[..., cut.axis] = place_of(parts, cut)
+    points[..., one] = low[one] + steps[:, None] * (high[one] - low[one])
+    points[..., other] = low[other] + steps * (high[other] - low[other])
+    found = parts.at(points.reshape(-1, 3), cut.axis)
+    there = found.numbers != NOWHERE if found is not None else np.zeros(0, np.bool_)
+    return float(found.built[there].mean()) if found is not None and there.any() else None
+
+
+class PartSeen(NamedTuple):
+    """What one pixel sees in a slice."""
+
+    level: int
+    built: bool
+    held: int
+    owner: int
+
+
+def part_seen(seen: TreeSeen, x: int, y: int) -> PartSeen | None:
+    """The part that a pixel sees; None where it sees none."""
+    found = seen.parts
+    if found.numbers[y, x] == NOWHERE:
+        return None
+    return PartSeen(int(found.levels[y, x]), bool(found.built[y, x]), int(found.held[y, x]), int(found.owners[y, x]))
+
+
+def part_words(part: PartSeen | None, owner: str) -> tuple[str, ...]:
+    """That in a few short lines, with the word for what owners are; a dash for no part."""
+    if part is None:
+        return ("-",)
+    what = "not built yet" if not part.built else "inner node" if part.held < 0 else f"leaf of {part.held}"
+    return (what, f"level {part.level}", *((f"{owner} {part.owner}",) if part.owner >= 0 else ()))
