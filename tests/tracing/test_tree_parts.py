@@ -17,7 +17,7 @@ from tracer.geometry.lazy_tree.build import HEADER
 from tracer.geometry.lazy_tree.node import KIND, SUBTREE, UNBUILT
 from tracer.geometry.lazy_tree.structure import LazyTree
 from tracer.geometry.rays import Rays
-from tracer.geometry.tree_parts import NOWHERE, PartsAt
+from tracer.geometry.tree_parts import NOWHERE, PartsAt, most_of
 from tracer.scene.model import Scene
 
 Box = tuple[np.ndarray, np.ndarray]
@@ -196,3 +196,17 @@ def test_each_point_lies_in_the_deepest_box_of_pieces_that_are_there(many: int, 
     assert inside > 300 and found.numbers[0] == NOWHERE
     assert set(found.built[found.numbers >= 0]) == {0: {0, 1}, 2: {0, 1}, 400: {1}}[many]
     assert (found.held > 0).any() == (many > 0)
+
+
+def test_a_few_primitives_far_away_do_not_widen_what_most_are_in() -> None:
+    boxes = np.random.default_rng(2).uniform(-1.0, 1.0, (1000, 6)).astype(np.float32)
+    boxes[:, 3:] = boxes[:, :3] + 0.1
+    boxes[0] = -500.0, -500.0, 0.0, 500.0, 500.0, 0.0
+    most = most_of(boxes, np.full(1000, 16))
+    for k in range(3):
+        low, high = np.sort(boxes[:, k]), np.sort(boxes[:, k + 3])
+        assert (most[k], most[k + 3]) == (low[4], high[-5])
+    assert (np.abs(most) < 1.2).all() and (most_of(boxes[:0], np.zeros(0)) == 0.0).all()
+    world = tracer.World(made(), 0.3, "kdtree-lazy")
+    extent, bounds = world.parts_built().extent, world.bounds()
+    assert (extent[:3] >= bounds[:3]).all() and (extent[3:] <= bounds[3:]).all() and (extent[3:] > extent[:3]).all()

@@ -15,6 +15,7 @@ from tracer.parallel import for_each_chunk, thread_count
 
 CHUNK = 1 << 14  # points that a thread looks up at a time
 NOWHERE = -1  # the number of no part
+OUTSIDE = 0.005  # of all primitives: so many may lie beyond each side of what most are in
 
 
 class PartsAt(NamedTuple):
@@ -37,17 +38,31 @@ class TreeParts(Protocol):
     """A tree as a frame found it, with objects where they were then; it goes on being built, and is let go of with its
     world.
 
-    `name` is that of the structure, `owner` the word for what owners are, `bounds` (6,) float32 lies around everything,
-    and `levels` is about how many levels there are where all is built."""
+    `name` is that of the structure, `owner` the word for what owners are, `levels` is about how many levels there are
+    where all is built, and `extent` (6,) float32 lies around most of it (`most_of`)."""
 
     name: str
     owner: str
-    bounds: NDArray[np.float32]
     levels: int
+
+    @property
+    def extent(self) -> NDArray[np.float32]: ...
 
     def at(self, points: NDArray[np.float32], across: int) -> PartsAt | None:
         """What lies at points (n, 3) float32, NaN for none, with widths across an axis, 0 to 2; None if the tree is no
         more."""
+
+
+def most_of(boxes: NDArray[np.float32], weights: NDArray) -> NDArray[np.float32]:
+    """The box (6,) around boxes (n, 6) but for those at its sides that hold no more than the part OUTSIDE of all
+    weights (n,): a floor without an end is not what a model is as large as.  Zeros for no boxes."""
+    found = np.zeros(6, np.float32)
+    if len(boxes) == 0:
+        return found
+    for k in range(6):
+        order = np.argsort(boxes[:, k] if k < 3 else -boxes[:, k], kind="stable")
+        found[k] = boxes[order[np.searchsorted(np.cumsum(weights[order]), OUTSIDE * weights.sum())], k]
+    return found
 
 
 def nothing_at(n: int) -> PartsAt:

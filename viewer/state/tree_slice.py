@@ -18,7 +18,7 @@ from viewer.state.slices import FEWEST, Slice
 
 LEVEL, WAITS, LINE, BORDER, HIDDEN = 0xFF, 0x100, 0x200, 0x400, 0x800  # of a code: a mask, and flags
 NOTHING = 0xFFFF  # the code of no part
-LAYERS = 100  # steps from one side of everything to the other
+LAYERS = 100  # steps from one side of what most primitives are in to the other
 SAMPLES = 128  # along each side of a slice, of which parts are counted
 STRIPE = 4  # pixels: the width of the stripes of what waits
 
@@ -30,7 +30,7 @@ def layer_of(cut: Slice) -> int:
 
 def place_of(parts: TreeParts, cut: Slice) -> float:
     """Where the plane of a slice lies along its axis, in units of the scene."""
-    low, high = float(parts.bounds[cut.axis]), float(parts.bounds[cut.axis + 3])
+    low, high = float(parts.extent[cut.axis]), float(parts.extent[cut.axis + 3])
     return low + cut.at * (high - low)
 
 
@@ -95,7 +95,7 @@ def _least(wide: NDArray[np.float32]) -> NDArray[np.float32]:
 def share_built(parts: TreeParts, cut: Slice) -> float | None:
     """Which share of what a slice has of the tree is built, by SAMPLES x SAMPLES points; None where it has none."""
     steps = (np.arange(SAMPLES, dtype=np.float32) + np.float32(0.5)) / np.float32(SAMPLES)
-    low, high = parts.bounds[:3], parts.bounds[3:]
+    low, high = parts.extent[:3], parts.extent[3:]
     points = np.empty((SAMPLES, SAMPLES, 3), np.float32)
     one, other = (k for k in range(3) if k != cut.axis)
     points[..., cut.axis] = place_of(parts, cut)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import weakref
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from tracer.geometry.accelerators import BVH8
 from tracer.geometry.bvh8.layout import CHILDREN, COUNT, PIECE, QUADRIC
-from tracer.geometry.tree_parts import PartsAt, in_chunks, nothing_at
+from tracer.geometry.tree_parts import PartsAt, in_chunks, most_of, nothing_at
 from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.kernels import kernel
 
@@ -67,10 +68,15 @@ class PieceParts:
 
     name, owner = BVH8, "piece"
 
-    def __init__(self, tree: PiecewiseTree, bounds: NDArray[np.float32], primitives: int) -> None:
+    def __init__(self, tree: PiecewiseTree, primitives: int) -> None:
         self._tree = weakref.ref(tree)
-        self.bounds = bounds
         self.levels = round(math.log2(max(primitives, 8)) / 2)  # half-full nodes of eight children, down to leaves
+
+    @cached_property
+    def extent(self) -> NDArray[np.float32]:
+        """A box around most primitives; zeros once the tree is no more."""
+        tree = self._tree()
+        return most_of(tree.boxes, tree.sizes) if tree is not None else np.zeros(6, np.float32)
 
     def at(self, points: NDArray[np.float32], across: int) -> PartsAt | None:
         """What lies at points (n, 3)."""

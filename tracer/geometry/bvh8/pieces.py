@@ -39,16 +39,18 @@ class PiecewiseTree:
     """The tree over triangles (t, 9), corner and edges, and boxes (q, 6) of quadrics: a crown, and pieces that wait.
 
     `tree` has room for all of it, which takes memory only where something is; `table` is what rays read
-    (`placed.root_of_piece`), and is of use while this object lives.  control (2,) int64: the build ends with Cancelled
-    once control[CANCELLED] is set."""
+    (`placed.root_of_piece`), and is of use while this object lives; `boxes` (p, 6) lie around pieces of so many
+    triangles and quadrics, `sizes` (p,).  control (2,) int64: the build ends with Cancelled once control[CANCELLED] is
+    set."""
 
     def __init__(self, rows: Float32, boxes: Float32, control: NDArray[np.int64], threads: int) -> None:
         self._rows, self._boxes, self._padded = rows, boxes, boxes.copy()
         crown = crown_over(rows, boxes, PIECE_SIZE, control, threads)
         self._items, pieces = crown.items, len(crown.items)
-        self._sizes = np.array([len(items) for items in crown.items])
+        self.sizes = np.array([len(items) for items in crown.items])
+        self.boxes = crown.boxes
         self.padding = np.float32(PADDING * np.abs(crown.boxes).max(initial=0))
-        nodes, blocks = len(crown.children) + 1 + int(np.maximum(self._sizes, 1).sum()), 1 + len(rows)
+        nodes, blocks = len(crown.children) + 1 + int(np.maximum(self.sizes, 1).sum()), 1 + len(rows)
         self.tree = Tree(_reserved_rows(nodes, NODE_SIZE), _reserved_rows(blocks, BLOCK_SIZE))
         self._links = make_links(nodes, blocks, len(boxes), pieces)
         write_crown(self.tree, crown, self.padding)
@@ -95,11 +97,11 @@ class PiecewiseTree:
         """Build what is not built yet; raises Cancelled once control[CANCELLED] is set, and counts what is done in
         control[DONE]."""
         control = np.zeros(2, np.int64) if control is None else control
-        waiting = [p for p in np.argsort(-self._sizes, kind="stable").tolist() if self.table[1 + p] < 0]
+        waiting = [p for p in np.argsort(-self.sizes, kind="stable").tolist() if self.table[1 + p] < 0]
 
         def one(chunk: int, worker: int) -> None:
             self._build(waiting[chunk], control)
-            control[DONE] += self._sizes[waiting[chunk]]
+            control[DONE] += self.sizes[waiting[chunk]]
 
         for_each_chunk(one, len(waiting), threads, lambda: bool(control[CANCELLED]))
 
@@ -152,7 +154,7 @@ class PiecewiseTree:
     @property
     def built(self) -> int:
         """How many primitives lie in pieces that are built."""
-        return int(self._sizes[self.table[1:] >= 0].sum())
+        return int(self.sizes[self.table[1:] >= 0].sum())
 
     @property
     def memory_bytes(self) -> int:

@@ -77,7 +77,7 @@ class Bvh8:
         triangle, box = np.eye(1, 9, 3, np.float32), np.ones((1, 6), np.float32)
         tree = PiecewiseTree(triangle, box, np.zeros(2, np.int64), 1)
         tree.build_all()
-        PieceParts(tree, box[0], 1).at(box[:, :3].copy(), 0)
+        PieceParts(tree, 1).at(box[:, :3].copy(), 0)
 
     def _topology(self, index: int, progress: Progress | None = None) -> Topology:
         """The topology of a dynamic object's tree; of one that deforms, that for the time it is nearest to."""
@@ -211,7 +211,7 @@ class Bvh8:
         """Which pieces of what never moves are built, and how."""
         if self._pieces is None or not self._lazy:
             return None
-        return PieceParts(self._pieces, tree_box(self.static), len(self._primitives.object_of))
+        return PieceParts(self._pieces, len(self._primitives.object_of))
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import weakref
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +15,7 @@ from tracer.geometry.kdtree.tree import LEAF
 from tracer.geometry.lazy_tree.build import HEADER
 from tracer.geometry.lazy_tree.node import FIRST, KIND, PLANE, SECOND, SUBTREE, UNBUILT
 from tracer.geometry.lazy_tree.shared_memory import read_shared
-from tracer.geometry.tree_parts import PartsAt, in_chunks, nothing_at
+from tracer.geometry.tree_parts import PartsAt, in_chunks, most_of, nothing_at
 from tracer.kernels import kernel
 from tracer.simd import i32_at, load_f32, load_i64
 
@@ -92,8 +93,17 @@ class LazyParts:
     def __init__(self, structure: LazyKdTree, present: NDArray[np.int32], primitives: int) -> None:
         self._structure = weakref.ref(structure)
         self._present, self._to_object = present, structure.told.to_object
-        self.bounds = structure.told.bounds
+        self._boxes = structure.world_boxes
         self.levels = round(8 + 1.3 * math.log2(max(primitives, 1)))  # as kd-trees are mostly deep
+
+    @cached_property
+    def extent(self) -> NDArray[np.float32]:
+        """A box around most primitives; zeros once the tree is no more."""
+        structure = self._structure()
+        trees = structure.trees if structure is not None else []
+        boxes, weights = trees[0].groups if trees else (self._boxes[:0], np.zeros(0, np.int64))
+        moving = np.array([trees[o].primitives for o in self._present.tolist()] if trees else [], np.int64)
+        return most_of(np.concatenate([boxes, self._boxes[: len(moving)]]), np.concatenate([weights, moving]))
 
     def at(self, points: NDArray[np.float32], across: int) -> PartsAt | None:
         """What lies at points (n, 3)."""

@@ -73,6 +73,12 @@ class LazyTree:
         fell.compile()  # now: when a tree goes, nothing may be compiled, as something may be being compiled just then
         weakref.finalize(self, fell.call, self.root, 0, 0, 0, 0).atexit = False
 
+    @property
+    def groups(self) -> tuple[Float32, NDArray[np.int64]]:
+        """Boxes (g, 6) around its primitives, some together, and how many are in each."""
+        lowest = self._held.first >= 0
+        return self._held.boxes[lowest], self._held.weights[lowest].astype(np.int64)
+
     def counted(self, what: int) -> int:
         """NODES that are built, or BYTES."""
         return int(self._table[what // 8])
@@ -109,6 +115,7 @@ class LazyKdTree(InObjectSpace):
         object_boxes = np.stack([tree.box for tree in self._trees])
         boxes = transform_boxes(object_boxes[objects].astype(np.float64), poses.to_world[objects])
         boxes = boxes.astype(np.float32)
+        self.world_boxes = boxes  # of those that are present
         moves = moving[objects]
         bounds = bounds_of(union_of(np.concatenate([object_boxes[:1], boxes]))[None])
         root = self._trees[0].root
