@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from tracer.frame import Frame, Settings
+from tracer.geometry.accelerators import BVH8, LAZY
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
@@ -84,11 +85,13 @@ class OfMethod:
     view: View
     stray: int
     cut: Slice = MIDDLE
+    accelerator: str = BVH8
 
     def frame(self, world: World | None = None) -> Frame:
         """The frame; `world` as in `Renderer`."""
         scene = load_scene(embedded_scenes()[self.scene]) if world is None else world.scene
-        renderer = Renderer(scene, replace(SETTINGS, method=self.method), world=world)
+        settings = replace(SETTINGS, method=self.method, accelerator=self.accelerator)
+        renderer = Renderer(scene, settings, world=world)
         return renderer.render(scene.frame_time(0))
 
     def picture(self, frame: Frame) -> NDArray[np.uint8]:
@@ -100,6 +103,7 @@ EXACT = "figure3-exact"
 OF_METHODS = (
     OfMethod("default-voxels", "default", "voxels", View.VOXELS, stray=60, cut=Slice(1, 0.2)),
     OfMethod("default-cell-lights", "default", "lie-exact", View.CELL_LIGHTS, stray=60),
+    OfMethod("default-tree", "default", "none", View.TREE, stray=60, cut=Slice(1, 0.2), accelerator=LAZY),
     *(OfMethod(EXACT, "figure3", method, View.COLOR, stray=4) for method in ("voxels", "lie-exact", "lightbuffer")),
 )
 

@@ -22,7 +22,9 @@ _LACKS = {
 }
 
 
-_LAZY = f"{LAZY} builds it where they arrive, and so does {BVH8} with more than {count(LARGE)} primitives."
+_LAZY = (
+    f"{LAZY} builds it where they arrive, and so does {BVH8} with more than {count(LARGE)} primitives that never move."
+)
 
 
 @dataclass(frozen=True)

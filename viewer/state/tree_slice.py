@@ -45,11 +45,16 @@ class TreeSeen(NamedTuple):
 
 def tree_seen(frame: Frame, parts: TreeParts, cut: Slice) -> TreeSeen:
     """Which part of the tree each pixel sees in a slice; none once the tree is no more."""
-    rays, shape = pinhole(frame.camera, frame.width, frame.height), frame.primitive.shape
-    x, y = np.arange(frame.width, dtype=np.float32), np.arange(frame.height, dtype=np.float32)[:, None]
-    points = np.empty((*shape, 3), np.float32)
+    return _seen(frame, parts, cut, slice(0, frame.width), slice(0, frame.height))
+
+
+def _seen(frame: Frame, parts: TreeParts, cut: Slice, columns: slice, rows: slice) -> TreeSeen:
+    """The same of some pixels."""
+    rays, depth = pinhole(frame.camera, frame.width, frame.height), frame.depth[rows, columns]
+    x, y = (np.arange(side.start, side.stop, dtype=np.float32) for side in (columns, rows))
+    points = np.empty((*depth.shape, 3), np.float32)
     with np.errstate(all="ignore"):
-        ways = [rays.corner[k] + x * rays.column[k] + y * rays.row[k] for k in range(3)]
+        ways = [rays.corner[k] + x * rays.column[k] + y[:, None] * rays.row[k] for k in range(3)]
         place = np.float32(place_of(parts, cut))
         t = np.where(ways[cut.axis] != 0.0, (place - np.float32(rays.origin[cut.axis])) / ways[cut.axis], np.nan)
         t = np.where(t > 0.0, t, np.nan).astype(np.float32)
@@ -57,9 +62,9 @@ def tree_seen(frame: Frame, parts: TreeParts, cut: Slice) -> TreeSeen:
             points[..., k] = place + 0.0 * t if k == cut.axis else rays.origin[k] + t * ways[k]
         distance = t * np.sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2])
         found = parts.at(points.reshape(-1, 3), cut.axis) or nothing_at(t.size)
-        shaped = PartsAt(*(column.reshape(shape) for column in found))
+        shaped = PartsAt(*(column.reshape(depth.shape) for column in found))
         wide = np.where(shaped.numbers != NOWHERE, shaped.widths / (distance * rays.spread), np.float32(0.0))
-        return TreeSeen(shaped, distance > frame.depth, wide)
+        return TreeSeen(shaped, distance > depth, wide)
 
 
 def tree_codes(frame: Frame, parts: TreeParts, cut: Slice) -> NDArray[np.uint16]:
@@ -71,7 +76,7 @@ def tree_codes(frame: Frame, parts: TreeParts, cut: Slice) -> NDArray[np.uint16]
     codes = found.levels.astype(np.uint16)
     codes[found.built == 0] |= WAITS
     codes[_apart(found.numbers) & (_least(seen.wide) >= FEWEST)] |= LINE
-    codes[_apart(found.owners)] |= BORDER
+    codes[_in_company(_apart(found.owners))] |= BORDER
     codes[seen.hidden] |= HIDDEN
     return np.where(there, codes, np.uint16(NOTHING))
 
@@ -82,6 +87,14 @@ def _apart(of: NDArray) -> NDArray[np.bool_]:
     line[:, :-1] |= of[:, 1:] != of[:, :-1]
     line[:-1] |= of[1:] != of[:-1]
     return line
+
+
+def _in_company(line: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Pixels of lines but for lone ones, as of an object that is seen from its side."""
+    padded = np.pad(line, 1)
+    height, width = line.shape
+    near = [padded[y : y + height, x : x + width] for y in range(3) for x in range(3) if (y, x) != (1, 1)]
+    return line & np.logical_or.reduce(near)
 
 
 def _least(wide: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -115,12 +128,12 @@ class PartSeen(NamedTuple):
     owner: int
 
 
-def part_seen(seen: TreeSeen, x: int, y: int) -> PartSeen | None:
+def part_seen(frame: Frame, parts: TreeParts, cut: Slice, x: int, y: int) -> PartSeen | None:
     """The part that a pixel sees; None where it sees none."""
-    found = seen.parts
-    if found.numbers[y, x] == NOWHERE:
+    found = _seen(frame, parts, cut, slice(x, x + 1), slice(y, y + 1)).parts
+    if found.numbers[0, 0] == NOWHERE:
         return None
-    return PartSeen(int(found.levels[y, x]), bool(found.built[y, x]), int(found.held[y, x]), int(found.owners[y, x]))
+    return PartSeen(int(found.levels[0, 0]), bool(found.built[0, 0]), int(found.held[0, 0]), int(found.owners[0, 0]))
 
 
 def part_words(part: PartSeen | None, owner: str) -> tuple[str, ...]:

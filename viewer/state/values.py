@@ -114,7 +114,7 @@ def words_at(
         return voxel_words(frame, voxels_of(frame), light, cut, x, y)
     if view is View.TREE:
         tree = tree_of(frame)
-        return part_words(part_seen(tree_seen(frame, tree, cut), x, y), tree.owner)
+        return part_words(part_seen(frame, tree, cut, x, y), tree.owner)
     if frame.primitive[y, x] < 0:
         return ("miss",)
     return _WORDS[view](frame, light, x, y)

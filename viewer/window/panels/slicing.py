@@ -11,7 +11,7 @@ from viewer.services.cut_inspector import MOST_DRAWN
 from viewer.state.picking import pixel_at
 from viewer.state.readings import cell_lights, tree_of, voxels_of
 from viewer.state.slices import AXES, slice_seen, voxel_seen
-from viewer.state.tree_slice import part_seen, part_words, tree_seen
+from viewer.state.tree_slice import part_seen, part_words
 from viewer.state.views import View
 from viewer.window.layers_of_slice import go_to, layer_now
 from viewer.window.panels.area import Area
@@ -59,8 +59,7 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
         return [f"voxel {named}: {STATE_NAMES[found.state]}", *([block] if block else []), inside]
     if view is View.TREE:
         tree, cut = tree_of(frame), c.session.cut
-        parts = ui.cached("tree slice", frame, cut, lambda: tree_seen(frame, tree, cut))
-        part = part_seen(parts, x, y)
+        part = part_seen(frame, tree, cut, x, y)
         return [] if part is None else list(part_words(part, tree.owner))
     if view is View.CUTS and c.cuts.cut is not None and (c.cuts.cut.x, c.cuts.cut.y) == (x, y):
         return cut_lines(c.cuts.cut)
