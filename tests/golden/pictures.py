@@ -16,6 +16,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -75,6 +76,12 @@ GOLDEN = (
 )
 
 
+@cache
+def _lazy_world(scene: str) -> World:
+    """A world that is built where rays arrive, of which only one picture is made: others would have more built."""
+    return World(load_scene(embedded_scenes()[scene]), accelerator=LAZY)
+
+
 @dataclass(frozen=True)
 class OfMethod:
     """A view of what a method keeps of a scene, or its plain picture, in the first frame; `stray` pixels may differ."""
@@ -89,6 +96,8 @@ class OfMethod:
 
     def frame(self, world: World | None = None) -> Frame:
         """The frame; `world` as in `Renderer`."""
+        if self.accelerator == LAZY:  # the frame shows its world's tree, which must not go
+            world = _lazy_world(self.scene)
         scene = load_scene(embedded_scenes()[self.scene]) if world is None else world.scene
         settings = replace(SETTINGS, method=self.method, accelerator=self.accelerator)
         renderer = Renderer(scene, settings, world=world)

@@ -142,9 +142,9 @@ def test_each_point_lies_in_the_leaf_that_holds_it_or_in_what_waits(many: int) -
 def test_a_tree_that_is_gone_says_so() -> None:
     world = tracer.World(made(50), 0.0, "kdtree-lazy")
     parts = world.parts_built()
-    assert parts is not None
+    assert parts is not None and parts.alive
     del world
-    assert parts.at(np.zeros((1, 3), np.float32), 0) is None
+    assert not parts.alive and parts.at(np.zeros((1, 3), np.float32), 0) is None
     for accelerator in ("kdtree", "bvh8"):
         assert tracer.World(made(50), 0.0, accelerator, lazy=True).parts_built() is None
 

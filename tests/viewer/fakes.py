@@ -178,11 +178,11 @@ class CubesBuilt:
 
     def __init__(self) -> None:
         self.extent = np.array([-2.0, -0.25, -1.0, 2.0, 1.75, 1.0], np.float32)
-        self.gone = False
+        self.alive = True
 
     def at(self, points: NDArray[np.float32], across: int) -> PartsAt | None:
         """What lies at points (n, 3)."""
-        if self.gone:
+        if not self.alive:
             return None
         with np.errstate(invalid="ignore"):
             inside = ((points >= self.extent[:3]) & (points < self.extent[3:])).all(1)

@@ -35,8 +35,8 @@ class PartsAt(NamedTuple):
 
 
 class TreeParts(Protocol):
-    """A tree as a frame found it, with objects where they were then; it goes on being built, and is let go of with its
-    world.
+    """A tree as a frame found it, with objects where they were then; it goes on being built, and it is let go of with
+    its world, whoever keeps the frame: `alive` says that it has not been.
 
     `name` is that of the structure, `owner` the word for what owners are, `levels` is about how many levels there are
     where all is built, and `extent` (6,) float32 lies around most of it (`most_of`)."""
@@ -44,6 +44,9 @@ class TreeParts(Protocol):
     name: str
     owner: str
     levels: int
+
+    @property
+    def alive(self) -> bool: ...
 
     @property
     def extent(self) -> NDArray[np.float32]: ...

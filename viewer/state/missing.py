@@ -9,7 +9,7 @@ from tracer.geometry.accelerators import BVH8, LAZY
 from tracer.geometry.world import LARGE
 from tracer.method import Method
 from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY
-from viewer.state.readings import MOST_RECORDED, can_draw, can_record_lights
+from viewer.state.readings import MOST_RECORDED, TREE, TREE_IS_GONE, can_draw, can_record_lights
 from viewer.state.views import View
 from viewer.util.numbers import count
 
@@ -51,6 +51,8 @@ def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) 
         return Missing(why, "" if method.clusters else CLUSTERED)
     if view in _LACKS and not can_draw(frame, view):
         return Missing(f"The method {method} {_LACKS[view]}; {SHOWN_BY[view]} does.", SHOWN_BY[view])
+    if view is View.TREE and TREE in frame.structures and not can_draw(frame, view):
+        return Missing(f"There is nothing to see: {TREE_IS_GONE}.", "")
     if view is View.TREE and not can_draw(frame, view):
         return Missing(f"All of the tree was built before rays came ({frame.settings.accelerator}). {_LAZY}", "", LAZY)
     if view is View.SAVED or (view is View.COST and shares):

@@ -26,6 +26,7 @@ _NO_CUTS = "the method of the frame shades by all lights, not by clusters of the
 _NO_CELLS = "the method of the frame has no cells that know which lights they must look at"
 _NO_VOXELS = "the method of the frame has no voxels"
 _NO_TREE = "all of the frame's tree was built before its rays came"
+TREE_IS_GONE = "the frame's tree was let go of with its world"
 _NO_WORK = "the frame did not record the work at its pixels"
 _NO_LIGHTS = "the frame did not record which samples of its lights reach its pixels"
 
@@ -47,7 +48,7 @@ def can_draw(frame: Frame, view: View, light: int = 0) -> bool:
     if view is View.VOXELS:
         return VOXELS in frame.structures
     if view is View.TREE:
-        return TREE in frame.structures
+        return TREE in frame.structures and frame.structures[TREE].alive
     return frame.settings.keeps_modes or not view.of_modes
 
 
@@ -163,10 +164,13 @@ def voxels_of(frame: Frame) -> VoxelStates:
 
 
 def tree_of(frame: Frame) -> TreeParts:
-    """The tree that the frame's rays were building; raises ValueError for a frame whose tree was there before."""
+    """The tree that the frame's rays were building; raises ValueError for a frame whose tree was there before, or is
+    no more."""
     if TREE not in frame.structures:
         raise ValueError(_NO_TREE)
     found: TreeParts = frame.structures[TREE]
+    if not found.alive:
+        raise ValueError(TREE_IS_GONE)
     return found
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from viewer.state.readings import TREE, VOXELS, tree_of, voxels_of
+from viewer.state.readings import VOXELS, can_draw, tree_of, voxels_of
 from viewer.state.slices import AXES, Slice, middle_of
 from viewer.state.tree_slice import LAYERS, layer_of, place_of
 from viewer.state.views import View
@@ -25,7 +25,7 @@ def layer_now(ui: Ui) -> Layer | None:
     if frame is not None and view is View.VOXELS and VOXELS in frame.structures:
         states = voxels_of(frame)
         return Layer(cut.layer(states.shape), states.shape[cut.axis], middle_of(states.grid, cut))
-    if frame is not None and view is View.TREE and TREE in frame.structures:
+    if frame is not None and view is View.TREE and can_draw(frame, view):
         return Layer(layer_of(cut), LAYERS, place_of(tree_of(frame), cut))
     return None
 

@@ -11,6 +11,7 @@ import pytest
 from tests.viewer.fakes import CubesBuilt, make_frame, with_tree
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import pinhole
+from viewer.state.missing import missing
 from viewer.state.readings import can_draw, tree_of
 from viewer.state.slices import Slice
 from viewer.state.tree_slice import (
@@ -101,9 +102,13 @@ def test_the_share_that_is_built_is_that_of_the_slice_whatever_is_seen_of_it(fra
 
 def test_a_tree_that_is_gone_shows_nothing(frame: Frame) -> None:
     gone = CubesBuilt()
-    gone.gone = True
+    gone.alive = False
     assert (tree_codes(frame, gone, CUTS[0]) == NOTHING).all() and share_built(gone, CUTS[0]) is None
     assert not can_draw(make_frame(), View.TREE) and can_draw(frame, View.TREE)
+    left = replace(frame, structures={"tree": gone})
+    assert not can_draw(left, View.TREE) and "let go of" in missing(View.TREE, left).text
+    with pytest.raises(ValueError, match="let go of"):
+        tree_of(left)
     with pytest.raises(ValueError, match="built before"):
         tree_of(make_frame())
     assert part_words(None, "object") == ("-",)

@@ -72,6 +72,11 @@ class PieceParts:
         self._tree = weakref.ref(tree)
         self.levels = round(math.log2(max(primitives, 8)) / 2)  # half-full nodes of eight children, down to leaves
 
+    @property
+    def alive(self) -> bool:
+        """Whether the tree is still there."""
+        return self._tree() is not None
+
     @cached_property
     def extent(self) -> NDArray[np.float32]:
         """A box around most primitives; zeros once the tree is no more."""

@@ -96,6 +96,11 @@ class LazyParts:
         self._boxes = structure.world_boxes
         self.levels = round(8 + 1.3 * math.log2(max(primitives, 1)))  # as kd-trees are mostly deep
 
+    @property
+    def alive(self) -> bool:
+        """Whether the tree is still there."""
+        return self._structure() is not None
+
     @cached_property
     def extent(self) -> NDArray[np.float32]:
         """A box around most primitives; zeros once the tree is no more."""
