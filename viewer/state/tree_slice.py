@@ -140,5 +140,6 @@ def part_words(part: PartSeen | None, owner: str) -> tuple[str, ...]:
     """That in a few short lines, with the word for what owners are; a dash for no part."""
     if part is None:
         return ("-",)
-    what = "not built yet" if not part.built else "inner node" if part.held < 0 else f"leaf of {part.held}"
+    leaf = f"leaf of {part.held} primitive{'s' * (part.held != 1)}" if part.held else "empty leaf"
+    what = "not built yet" if not part.built else "inner node" if part.held < 0 else leaf
     return (what, f"level {part.level}", *((f"{owner} {part.owner}",) if part.owner >= 0 else ()))

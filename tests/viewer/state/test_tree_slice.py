@@ -21,6 +21,7 @@ from viewer.state.tree_slice import (
     LINE,
     NOTHING,
     WAITS,
+    PartSeen,
     part_words,
     place_of,
     share_built,
@@ -69,7 +70,7 @@ def test_each_pixel_sees_the_part_that_its_ray_meets_whatever_lies_before(frame:
             expected = (6 if k >= 0 else 3) | (0 if i % 2 == 0 else WAITS) | HIDDEN * (distance > frame.depth[y, x])
             assert int(codes[y, x]) & ~(LINE | BORDER) == expected, (x, y)
             owned = ("object 3",) if i >= 4 else ()
-            what = "leaf of 2" if i % 2 == 0 else "not built yet"
+            what = "leaf of 2 primitives" if i % 2 == 0 else "not built yet"
             assert words_at(frame, View.TREE, 0, x, y, cut=cut) == (what, f"level {expected & LEVEL}", *owned)
             wide = 0.25 / (distance * float(pinhole(frame.camera, frame.width, frame.height).spread))
             assert seen.wide[y, x] == pytest.approx(wide, rel=1e-3)
@@ -112,3 +113,5 @@ def test_a_tree_that_is_gone_shows_nothing(frame: Frame) -> None:
     with pytest.raises(ValueError, match="built before"):
         tree_of(make_frame())
     assert part_words(None, "object") == ("-",)
+    assert part_words(PartSeen(3, True, 0, -1), "piece") == ("empty leaf", "level 3")
+    assert part_words(PartSeen(3, True, -1, 7), "piece") == ("inner node", "level 3", "piece 7")
