@@ -90,11 +90,11 @@ def _apart(of: NDArray) -> NDArray[np.bool_]:
 
 
 def _in_company(line: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Pixels of lines but for lone ones, as of an object that is seen from its side."""
+    """Pixels of lines with two neighbours of lines at least: others are dots, as of a flat box that is far away."""
     padded = np.pad(line, 1)
     height, width = line.shape
     near = [padded[y : y + height, x : x + width] for y in range(3) for x in range(3) if (y, x) != (1, 1)]
-    return line & np.logical_or.reduce(near)
+    return line & (np.sum(near, axis=0, dtype=np.uint8) >= 2)
 
 
 def _least(wide: NDArray[np.float32]) -> NDArray[np.float32]:

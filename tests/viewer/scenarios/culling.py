@@ -165,7 +165,8 @@ def _tree(d: Driver) -> None:
     assert layer_of(d.c.session.cut) == layer_of(at) + 1
     d.press(chord("Shift+LeftBracket"))
     home = d.c.session.camera
-    d.c.motion.move(replace(home, target=tuple(2.0 * p - t for p, t in zip(home.position, home.target, strict=True))))
+    x, y, z = home.direction
+    d.c.motion.move(replace(home, direction=(-x, -y, -z)))
     d.settle()
     assert d.c.frame.statistics.built.nodes > before.nodes, "looking back has built nothing"
     d.c.motion.move(home)
