@@ -62,7 +62,7 @@ def _seen(frame: Frame, parts: TreeParts, cut: Slice, columns: slice, rows: slic
             points[..., k] = place + 0.0 * t if k == cut.axis else rays.origin[k] + t * ways[k]
         distance = t * np.sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2])
         found = parts.at(points.reshape(-1, 3), cut.axis) or nothing_at(t.size)
-        shaped = PartsAt(*(column.reshape(depth.shape) for column in found))
+        shaped = PartsAt._make(column.reshape(depth.shape) for column in found)
         wide = np.where(shaped.numbers != NOWHERE, shaped.widths / (distance * rays.spread), np.float32(0.0))
         return TreeSeen(shaped, distance > depth, wide)
 

@@ -51,7 +51,7 @@ def _locate(nodes, codes, counts, table, across, points, numbers, owners, levels
                 if code >= PIECE:
                     owner = code - PIECE
                     child = table[1 + owner]
-                    there = np.int64(child >= 0)
+                    there = 1 if child >= 0 else 0
                 if level > best:
                     best = level
                     numbers[i], owners[i], levels[i], built[i] = WIDTH * node + c, owner, min(level, 255), there

@@ -32,7 +32,7 @@ def _locate(root, bounds, to_object, scale, across, owner, points, numbers, owne
     where none is left out."""
     cell, at = np.empty(6, np.float32), np.empty(3, np.float32)
     known = False
-    number, level, there, width, many = np.int64(0), 0, 0, np.float32(0), 0
+    number, level, there, width, many = np.int64(0), 0, 0, np.float32(0), np.int64(0)
     for i in range(len(points)):
         inside, same = True, known
         for k in range(3):
@@ -62,7 +62,7 @@ def _locate(root, bounds, to_object, scale, across, owner, points, numbers, owne
                     node = load_i64(node + SECOND)
                 level += 1
                 word = read_shared(node) & KIND
-            number, there, many = node, np.int64(word == SUBTREE), -1
+            number, there, many = node, 1 if word == SUBTREE else 0, np.int64(-1)
             if there:
                 words, place = load_i64(node + FIRST) + HEADER, np.int64(0)
                 while True:
