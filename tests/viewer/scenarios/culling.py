@@ -159,6 +159,7 @@ def _tree(d: Driver) -> None:
     d.c.settings.change(method="none")
     d.settle()
     before, at = d.c.frame.statistics.built, d.c.session.cut
+    assert "all that has been seen" in d.c.recipes.now().history
     expected = picture(d.c.frame, View.TREE, shading=d.c.preferences.shading, beneath=d.c.preferences.beneath, cut=at)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     d.press(chord("Shift+RightBracket"))
