@@ -21,8 +21,9 @@ from tracer.geometry.bvh8.parts import PieceParts
 from tracer.geometry.bvh8.pieces import PiecewiseTree
 from tracer.geometry.bvh8.placed import DYNAMIC_TREES, MOVING_TREE, RESTING_TREE, STATIC_TREE, STATIC_TREES
 from tracer.geometry.bvh8.walk import TreeAt, Walk
+from tracer.geometry.layout import triangle_rows
 from tracer.geometry.poses import Poses, products
-from tracer.geometry.primitives import Primitives, WorldTriangles, triangle_rows
+from tracer.geometry.primitives import Primitives, WorldTriangles
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, Placed
 from tracer.geometry.rays import Ray
 from tracer.geometry.structure import Built
