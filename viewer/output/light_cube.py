@@ -74,15 +74,6 @@ def unfolded(cells: NDArray, empty: NDArray) -> NDArray:
     return cross
 
 
-def counts_of(cube: Cube) -> CellCounts:
-    """How many cells have what."""
-    lengths, covered = list_lengths(cube), np.isfinite(full_depths(cube))
-    alone = (lengths < 0) & covered
-    return CellCounts(
-        int((lengths == 0).sum()), int(alone.sum()), int((lengths > 0).sum()), int(((lengths < 0) & ~covered).sum())
-    )
-
-
 @dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
 class CubeSeen:
     """A cube as it is drawn: `lengths` (6, side, side) int32 of the lists of its cells, -1 where these are too long, or
@@ -96,6 +87,12 @@ class CubeSeen:
     def covered(self) -> NDArray[np.bool_]:
         """(6, side, side): cells of one triangle that covers them, before which there is nothing."""
         return (self.lengths < 0) & np.isfinite(self.depths)
+
+    @cached_property
+    def counts(self) -> CellCounts:
+        """How many cells have what."""
+        masks = self.lengths == 0, self.covered, self.lengths > 0, (self.lengths < 0) & ~self.covered
+        return CellCounts(*(int(mask.sum()) for mask in masks))
 
     @property
     def longest(self) -> int:
@@ -190,23 +187,19 @@ def _beside(left: NDArray[np.uint8], right: NDArray[np.uint8]) -> NDArray[np.uin
 
 def lists_legend(drawn: CubeSeen, light: str) -> Legend:
     """Of what is known of each cell."""
-    cells = drawn.lengths.size
+    counts = drawn.counts
     rows = (
-        ("nothing there", NOTHING_THERE, drawn.lengths == 0, "nothing is in the way of any ray in this direction"),
-        ("covered by one triangle", COVERED, drawn.covered, "before it there is nothing, behind it all is in shadow"),
-        (
-            "longer lists",
-            GREY,
-            (drawn.lengths < 0) & ~drawn.covered,
-            "more than are tested: rays are traced",
-        ),
+        ("nothing there", NOTHING_THERE, counts.empty, "nothing is in the way of any ray in this direction"),
+        ("covered by one triangle", COVERED, counts.covered, "before it there is nothing, behind it all is in shadow"),
+        ("longer lists", GREY, counts.many, "more than are tested: rays are traced"),
     )
     entries = tuple(
-        Entry(name, color, (percent(int(where.sum()), cells),), f"{meaning}: {count(int(where.sum()))} cells")
-        for name, color, where, meaning in rows
+        Entry(name, color, (percent(number, counts.cells),), f"{meaning}: {count(number)} cells")
+        for name, color, number, meaning in rows
     )
-    listed = int((drawn.lengths > 0).sum())
-    facts = (Entry("with a list", None, (percent(listed, cells),), "of candidates, that rays are tested against"),)
+    facts = (
+        Entry("with a list", None, (percent(counts.few, counts.cells),), "of candidates, that rays are tested against"),
+    )
     scale = Scale("1", f"{drawn.longest}", "in the list")
     return Legend(f"What {light} sees: lists", ("cells",), entries, scale, facts)
 

@@ -12,6 +12,7 @@ import numpy as np
 from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
+from tests.viewer.previews import colors_of
 from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.scene.model import Progress
 from viewer.services import scene_files, scene_loader
@@ -70,6 +71,6 @@ def previewing(d: Driver) -> None:
 
 def _read(d: Driver) -> np.ndarray:
     got: list[np.ndarray] = []
-    d._in_frame.append(lambda: got.append(d.ui.preview.read()))
+    d._in_frame.append(lambda: got.append(colors_of(d.ui.preview)))
     d.wait(lambda: bool(got), "the preview to be read")
     return got[0]
