@@ -168,7 +168,9 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
         implot.plot_line(name, frames, values, spec)
     place = going_back.pointed(0, len(results.frames) - 1, results.frames)
     implot.end_plot()
-    said = [f"{name}: {values[place]:.1f} % saved" for name, values in savings] if place is not None else []
+    said = []
+    if place is not None:
+        said = [f"{name}: {in_window_style(saved_in_words(values[place] / 100.0))}" for name, values in savings]
     going_back.of_experiment(ui, run, results, place, said)
 
 
