@@ -2,7 +2,57 @@
 
 from __future__ import annotations
 
-from tracer.method import Kind, Method
+from collections.abc import Iterable
+
+from tracer.method import MANY, Kind, Method, bases
+from tracer.scene.lights import Light, as_lamps
+
+
+def lamps_in(lights: tuple[Light, ...], radius: float | None, samples: int | None) -> tuple[int, int]:
+    """How many of a scene's lights are lamps of several samples, with such settings, and how many samples all lights
+    have together."""
+    each = [light.samples if light.kind != "point" else 1 for light in as_lamps(lights, radius, samples)]
+    return sum(count > 1 for count in each), sum(each)
+
+
+def too_few(method: Method, samples: int) -> str:
+    """Why clusters of lights gain nothing where lights have so few samples together; nothing where they may."""
+    if not method.clusters or samples >= MANY:
+        return ""
+    which = "the only light" if samples == 1 else f"each of the {samples} here" if samples else "none, as there is none"
+    return f"{method.base} is for {MANY} lights or more, and looks at {which}"
+
+
+def says_nothing(method: Method, lights: int, lamps: int) -> bool:
+    """Whether a method knows nothing of any light: all of them are lamps of several samples."""
+    return lights == lamps and all(not kind.lamps and not kind.in_part for kind in method.kinds)
+
+
+def overview(lights: int, lamps: int) -> str:
+    """What each method can do with so many lights, `lamps` of them with several samples; nothing where all methods
+    answer for all lights."""
+    culling = [kind for kind in bases() if kind.culls]
+    part = [kind for kind in culling if kind.in_part]
+    first = [kind for kind in culling if kind.answers < lights and kind not in part]
+    blind = [kind for kind in culling if lamps and not kind.lamps and kind not in part]
+    every = [kind for kind in culling if kind.answers >= lights and kind.fits(lights) and (kind.lamps or not lamps)]
+    said = []
+    if first:
+        said = [
+            f"Methods that take all {lights:,} lights into account: {', '.join(kind.name for kind in every)}.",
+            f"{_names(first)} answer for the first {first[0].answers} and trace the rays to the others.",
+        ]
+    if blind:
+        which = f"{lamps:,} of the lights are lamps" if lamps < lights else "All lights are lamps"
+        said.append(f"{which} of several samples, of which {_names(blind)} know nothing: rays to them are traced.")
+    if part and (first or blind):
+        said.append(f"Of these lights, {_names(part)} only know which ones a single triangle hides from a cell.")
+    return " ".join(said)
+
+
+def _names(kinds: Iterable[Kind]) -> str:
+    *names, last = (kind.name for kind in kinds)
+    return f"{', '.join(names)} and {last}" if names else last
 
 
 def remark(method: Method, lights: int, lamps: int) -> str:

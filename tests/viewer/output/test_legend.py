@@ -270,3 +270,8 @@ def test_modes_say_what_the_papers_method_would_cull(frame: Frame):
     assert of_light[0].quiet and of_light[1].name == "culled"
     assert [fact.values for fact in of(frame, View.OCCLUSION).facts] == [("all lights",), ("10.0 %",), ("2.5 %",)]
     assert of(frame, View.OCCLUSION).facts[1].name == "culled"
+
+
+def test_what_voxels_and_certificates_say_of_a_light_has_the_same_words():
+    for state in (ShadowMode.FULL_SHADOW, ShadowMode.NON_SHADOW):
+        assert STATE_NAMES[int(state)] == Certificate(int(state)).name.lower()
