@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tracer.method import MANY, Kind, Method, bases
+from tracer.method import HELD, MANY, Kind, Method, bases
 from tracer.scene.lights import Light, as_lamps
 
 
@@ -19,8 +19,7 @@ def too_few(method: Method, samples: int) -> str:
     """Why clusters of lights gain nothing where lights have so few samples together; nothing where they may."""
     if not method.clusters or samples >= MANY:
         return ""
-    which = "the only light" if samples == 1 else f"each of the {samples} here" if samples else "none, as there is none"
-    return f"{method.base} is for {MANY} lights or more, and looks at {which}"
+    return f"{method.base} is for {MANY} lights or more, and there {'is' if samples == 1 else 'are'} {samples} here"
 
 
 def says_nothing(method: Method, lights: int, lamps: int) -> bool:
@@ -29,25 +28,23 @@ def says_nothing(method: Method, lights: int, lamps: int) -> bool:
 
 
 def overview(lights: int, lamps: int) -> str:
-    """What each method can do with so many lights, `lamps` of them with several samples; nothing where all methods
-    answer for all lights."""
+    """Which methods take all of so many lights into account, `lamps` of them with several samples, and what the others
+    leave to tracing, in a sentence; nothing where none leaves any."""
     culling = [kind for kind in bases() if kind.culls]
     part = [kind for kind in culling if kind.in_part]
-    first = [kind for kind in culling if kind.answers < lights and kind not in part]
     blind = [kind for kind in culling if lamps and not kind.lamps and kind not in part]
-    every = [kind for kind in culling if kind.answers >= lights and kind.fits(lights) and (kind.lamps or not lamps)]
-    said = []
-    if first:
-        said = [
-            f"Methods that take all {lights:,} lights into account: {', '.join(kind.name for kind in every)}.",
-            f"{_names(first)} answer for the first {first[0].answers} and trace the rays to the others.",
-        ]
-    if blind:
-        which = f"{lamps:,} of the lights are lamps" if lamps < lights else "All lights are lamps"
-        said.append(f"{which} of several samples, of which {_names(blind)} know nothing: rays to them are traced.")
-    if part and (first or blind):
-        said.append(f"Of these lights, {_names(part)} only know which ones a single triangle hides from a cell.")
-    return " ".join(said)
+    none = blind if lamps == lights else []
+    first = [kind for kind in culling if kind.answers < lights and kind not in (*part, *none)]
+    every = [kind for kind in culling if kind.answers >= lights and kind.fits(lights) and kind not in (*part, *blind)]
+    if not first and not blind:
+        return ""
+    said = [f"All lights are taken into account by {_names(every)}"]
+    said += [f"the first {HELD} by {_names(first)}"] if first else []
+    said += [f"some by {_names(part)}"] if part else []
+    said += [f"none by {_names(none)}, which leave lamps of several samples to tracing"] if none else []
+    if blind and not none:
+        said += [f"{_names(blind)} leave the {lamps:,} lamps of several samples to tracing"]
+    return "; ".join(said) + "."
 
 
 def _names(kinds: Iterable[Kind]) -> str:

@@ -63,9 +63,11 @@ def _table(title: str, shown: list[Line], lines: list[Line], left: tuple[str, ..
     verified = all(line.verified for line in lines)
     known = f"\n{KNOWN}: shadow rays that are culled, or tested against dynamic objects only" * (KNOWN not in left)
     table = Table(title=printable(title), title_justify="left", title_style="bold", caption_justify="left")
-    table.caption = f"saved against {REFERENCE}, certificates included; times are processor time of one thread" + (
-        ", with verifying" if verified else "; verify = true counts wrong answers"
-    ) + known
+    table.caption = (
+        f"saved against {REFERENCE}, certificates included; times are processor time of one thread"
+        + (", with verifying" if verified else "; verify = true counts wrong answers")
+        + known
+    )
     settings = where and any(line.settings for line in lines)
     for heading in (*(("scene", "size") if where else ()), *(["settings"] if settings else []), "method"):
         table.add_column(heading, no_wrap=heading != "settings")

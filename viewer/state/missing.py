@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tracer.fit import too_few
 from tracer.frame import Frame
 from tracer.method import Method
 from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY
@@ -42,8 +41,6 @@ def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) 
     if view is View.CUTS and not can_draw(frame, view):
         why = decision if method.clusters else f"The method {method.base} clusters no lights; {CLUSTERED} does."
         return Missing(why, "" if method.clusters else CLUSTERED)
-    if view is View.CUTS:
-        return _each_light(frame, method)
     if view in _MADE_BY and not can_draw(frame, view):
         return Missing(f"{_MADE_BY[view]}, not by {method}.", SHOWN_BY[view])
     if view is View.SAVED or (view is View.COST and shares):
@@ -59,15 +56,6 @@ def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) 
     if view.of_modes and not can_draw(frame, view):
         return Missing(f"This run keeps no modes with the method {method}.", "")
     return None
-
-
-def _each_light(frame: Frame, method: Method) -> Missing | None:
-    """For a map of clusters of lights, which is of one colour where each light is one of its own."""
-    cuts = frame.statistics.cuts
-    if cuts is None or not cuts.blocks or cuts.nodes < cuts.blocks * cuts.lights:
-        return None
-    why = too_few(method, cuts.lights) or f"no cluster of the {count(cuts.lights)} lights is within the chosen error"
-    return Missing(f"Every pixel is shaded by each light by itself: {why}.", "")
 
 
 def _nothing_saved(view: View, frame: Frame) -> Missing | None:

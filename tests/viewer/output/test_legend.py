@@ -18,6 +18,8 @@ from tests.viewer.fakes import (
     with_lamps,
     with_voxels,
 )
+from tracer.culling.modes import ShadowMode
+from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.frame import Frame, Settings
 from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.legend import Chosen, Legend, Tone, legend_of, light_in_words
@@ -25,7 +27,7 @@ from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, QUIET, TEXT,
 from viewer.output.legend_picture import with_legend
 from viewer.state.readings import voxels_of
 from viewer.state.slices import Slice
-from viewer.state.views import OCCLUSION_COLORS, WRONG, View, color_map
+from viewer.state.views import OCCLUSION_COLORS, WRONG, Certificate, View, color_map
 from viewer.util.numbers import percent
 
 SETTINGS = Settings(width=160, height=96, verify=True, record_work=True)

@@ -10,11 +10,11 @@ from tests.viewer.fakes import make_frame, make_scene, with_cuts
 from tracer.fit import overview
 from tracer.frame import Settings
 from tracer.statistics import CutCounts
+from viewer.output.legend import legend_of
 from viewer.state.arriving import fitting_view
-from viewer.state.missing import missing
 from viewer.state.views import View
 
-FEW = "lightcuts is for 16 lights or more, and looks at each of the 6 here."
+FEW = "lightcuts is for 16 lights or more, and there are 6 here."
 LAMPS = {"lamp_radius": 0.1, "lamp_samples": 16}
 
 
@@ -39,16 +39,25 @@ def test_a_view_with_nothing_to_show_gives_way_to_the_picture(view, method, ligh
 
 def test_a_map_of_clusters_in_which_each_light_is_one_says_so():
     frame = with_cuts(make_frame(Settings(16, 8, method="lightcuts")))
-    assert missing(View.CUTS, frame) is None
-    frame.statistics.cuts = CutCounts(6, 7, 42, 0, 6)
-    assert missing(View.CUTS, frame).text == f"Every pixel is shaded by each light by itself: {FEW}"
-    frame.statistics.cuts = CutCounts(100, 7, 700, 0, 100)
-    assert "within the chosen error" in missing(View.CUTS, frame).text
+    assert legend_of(frame, View.CUTS).notes == ()
+    for cuts, said in (
+        (CutCounts(6, 7, 40, 0, 6), f"Nearly every light is a cluster of its own: {FEW}"),
+        (CutCounts(100, 7, 700, 0, 100), "Nearly every light is a cluster of its own."),
+    ):
+        frame.statistics.cuts = cuts
+        (note,) = legend_of(frame, View.CUTS).notes
+        assert note.text == said
 
 
 def test_the_overview_names_every_method_that_leaves_lights_to_tracing():
-    said = overview(4096, 0)
-    assert "all 4,096 lights into account: certified, auto, lightcuts, lightcuts-stochastic, lightcuts-certified." in said
-    assert "paper, cells, voxels and lightbuffer answer for the first 31" in said and "lie-exact and lie only" in said
-    assert overview(6, 0) == "" and "All lights are lamps" in overview(6, 6) and "voxels and light" in overview(6, 6)
-    assert "3 of the lights are lamps" in overview(6, 3) and "paper" not in overview(6, 3)
+    assert overview(6, 0) == ""
+    every = "All lights are taken into account by certified, auto, lightcuts, lightcuts-stochastic and "
+    assert overview(4096, 0) == (
+        f"{every}lightcuts-certified; the first 31 by paper, cells, voxels and lightbuffer; some by lie-exact and lie."
+    )
+    assert overview(256, 256) == (
+        f"{every}lightcuts-certified; the first 31 by paper and cells; some by lie-exact and lie; none by voxels and "
+        "lightbuffer, which leave lamps of several samples to tracing."
+    )
+    assert overview(6, 3).endswith("; some by lie-exact and lie; voxels and lightbuffer leave the 3 lamps of several "
+                                   "samples to tracing.")  # fmt: skip

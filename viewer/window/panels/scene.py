@@ -8,7 +8,6 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.fit import lamps_in, overview
-from tracer.method import HELD
 from viewer.util.resources import embedded_scenes
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
@@ -94,8 +93,7 @@ def _lights(ui: Ui) -> None:
     radius, samples = c.session.settings.lamp_radius, c.session.settings.lamp_samples
 
     def look() -> str:
-        modes = f"Only the first {HELD} lights have modes. " if number > HELD else ""
-        return modes + overview(number, lamps_in(scene.lights, radius, samples)[0])
+        return overview(number, lamps_in(scene.lights, radius, samples)[0])
 
     said = ui.cached("what methods do with the lights", scene, (radius, samples), look)
     if said:
