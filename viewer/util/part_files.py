@@ -73,23 +73,23 @@ def _created(target: Path) -> tuple[Path, BinaryIO]:
     while True:
         path = part_name(target, secrets.token_hex(8))
         file = path.open("xb")
-        if _is_locked(file) and _is_at(path, file):
+        if _is_kept(path, file):
             return path, file
-        file.close()  # whoever clears the folder has taken it for one of the dead
 
 
 def _claim(path: Path) -> BinaryIO | None:
     """The file that claims a name, locked; None if somebody at work has it."""
-    try:
-        file = path.open("xb")
-    except FileExistsError:
-        with suppress(OSError):
-            _remove_if_dead(path)
-        return None if path.exists() else _claim(path)
-    if _is_locked(file) and _is_at(path, file):
-        return file
-    file.close()
-    return None
+    while True:
+        try:
+            file = path.open("xb")
+        except FileExistsError:
+            with suppress(OSError):
+                _remove_if_dead(path)
+            if path.exists():
+                return None
+        else:
+            if _is_kept(path, file):
+                return file
 
 
 def _clear(folder: Path) -> None:
@@ -114,16 +114,18 @@ def _remove_if_dead(path: Path) -> None:
                 path.unlink()
 
 
-def _is_locked(file: BinaryIO) -> bool:
-    """Lock a file; false where somebody else has. Where there are no locks, nobody asks for them."""
+def _is_kept(path: Path, file: BinaryIO) -> bool:
+    """Lock a file that was just made; false, and closed, where somebody took it for one of the dead before.
+
+    Waits for the lock: nobody else keeps one on a new file for longer than it takes to remove it.
+    """
     if fcntl is not None:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return False
-        except OSError:
-            pass
-    return True
+        with suppress(OSError):  # where there are no locks, nobody asks for them
+            fcntl.flock(file, fcntl.LOCK_EX)
+    if _is_at(path, file):
+        return True
+    file.close()
+    return False
 
 
 def _is_at(path: Path, file: BinaryIO) -> bool:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from threading import Timer
+from typing import BinaryIO
 
 import pytest
 
@@ -54,6 +56,29 @@ def test_what_the_dead_have_claimed_is_free(tmp_path: Path) -> None:
     assert len(list(tmp_path.iterdir())) == 1
     with reserved(tmp_path, "room", ".png") as path:
         assert path.name == "room.png"
+
+
+@posix_only
+def test_a_name_that_somebody_only_looks_at_is_not_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who clears the folder meets a claim that is not locked yet, and takes it for one of the dead."""
+    fcntl, looked = part_files.fcntl, list[Path]()
+    lock = fcntl.flock
+
+    def remove(other: BinaryIO) -> None:
+        looked[0].unlink()
+        other.close()
+
+    def flock(file: BinaryIO, how: int) -> None:
+        if not looked:
+            looked.append(Path(file.name))
+            other = looked[0].open("rb")
+            lock(other, fcntl.LOCK_EX)
+            Timer(0.05, remove, [other]).start()
+        lock(file, how)
+
+    monkeypatch.setattr(fcntl, "flock", flock)
+    with reserved(tmp_path, "room", ".png") as path:
+        assert looked and path.name == "room.png"
 
 
 @pytest.mark.parametrize("name", ["é" * 120 + ".png", "室" * 80 + ".png"])
