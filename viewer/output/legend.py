@@ -317,7 +317,8 @@ def _cuts(frame: Frame, view: View, chosen: Chosen) -> Legend:
     scale = Scale("0", count(found.most), count(found.most // 2) if found.most % 2 == 0 else "")
     if chosen.span is not None:
         scale = Scale(f"{chosen.span[0]:.4g}", f"{chosen.span[1]:.4g}")
-    cuts, notes = frame.statistics.cuts, ()
+    cuts = frame.statistics.cuts
+    notes: tuple[Note, ...] = ()
     if cuts is not None and cuts.blocks and cuts.mean > NEARLY_ALL * cuts.lights:
         few = too_few(Method.parse(frame.settings.method), cuts.lights)
         notes = (Note(f"Nearly every light is a cluster of its own{f': {few}' if few else ''}.", Tone.WARNING),)

@@ -28,6 +28,10 @@ NOTHING_THERE: Color = (0.93, 0.94, 0.96)
 COVERED: Color = SHADOW_COLORS[ShadowMode.FULL_SHADOW]
 
 
+EMPTY, ONE, FEW, MANY = "nothing there", "covered by one triangle", "candidates to test", "too many: traced"
+"""What cells are called, in the order of CellCounts."""
+
+
 class CellCounts(NamedTuple):
     """How many cells of a cube have nothing in them; a triangle that covers them, before which there is nothing; few
     candidates; and too many."""
@@ -192,13 +196,13 @@ def lists_legend(drawn: CubeSeen, light: str) -> Legend:
     """Of what is known of each cell."""
     cells = drawn.lengths.size
     rows = (
-        ("nothing there", NOTHING_THERE, drawn.lengths == 0, "nothing is in the way of any ray in this direction"),
-        ("covered by one triangle", COVERED, drawn.covered, "before it there is nothing, behind it all is in shadow"),
+        (EMPTY, NOTHING_THERE, drawn.lengths == 0, "nothing is in the way of any ray in this direction"),
+        (ONE, COVERED, drawn.covered, "before it there is nothing, behind it all is in shadow"),
         (
-            "longer lists",
+            MANY,
             GREY,
             (drawn.lengths < 0) & ~drawn.covered,
-            "more than are tested: rays are traced",
+            "so many candidates that rays are traced instead of tested against them",
         ),
     )
     entries = tuple(
@@ -206,8 +210,8 @@ def lists_legend(drawn: CubeSeen, light: str) -> Legend:
         for name, color, where, meaning in rows
     )
     listed = int((drawn.lengths > 0).sum())
-    facts = (Entry("with a list", None, (percent(listed, cells),), "of candidates, that rays are tested against"),)
-    scale = Scale("1", f"{drawn.longest}", "in the list")
+    facts = (Entry(FEW, None, (percent(listed, cells),), "a list of primitives that rays are tested against"),)
+    scale = Scale("1", f"{drawn.longest}", "candidates")
     return Legend(f"What {light} sees: lists", ("cells",), entries, scale, facts)
 
 
