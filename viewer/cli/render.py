@@ -213,7 +213,8 @@ def check_view(settings: Settings, view: View) -> None:
     """Raise ValueError, in one line, where the method has nothing for a view of what single methods have."""
     method = Method.parse(settings.method)
     if view is View.CUTS and not method.clusters:
-        raise ValueError(f"--view {view.value}: not with the method {settings.method}; give --method {SHOWN_BY[view]}")
+        why = f"the method {settings.method} makes no clusters of lights"
+        raise ValueError(f"--view {view.value}: {why}; give --method {SHOWN_BY[view]}")
     shows = {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}.get(view)
     if shows is not None and not any(name == method.base or method.has(name) for name in shows):
         raise ValueError(f"--view {view.value}: not with the method {settings.method}; give --method {shows[0]}")

@@ -367,7 +367,7 @@ def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None
         (["-o", "OUT/x.png", "--view", "certificat"], "'certificat' is not a view: did you mean certificate:LIGHT?"),
         (
             ["-o", "OUT/x.png", "--view", "cuts", "--method", "auto"],
-            "not with the method auto; give --method light",
+            "auto makes no clusters of lights; give --method light",
         ),
         (["-o", "OUT/x.png", "--view", "shadow:7"], "lights are 0 to 1"),
         (["-o", "OUT/x.png", "--view", "depth:1"], "is not a view"),
