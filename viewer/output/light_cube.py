@@ -28,6 +28,10 @@ NOTHING_THERE: Color = (0.93, 0.94, 0.96)
 COVERED: Color = SHADOW_COLORS[ShadowMode.FULL_SHADOW]
 
 
+EMPTY, ONE, FEW, MANY = "nothing there", "covered by one triangle", "candidates to test", "too many: traced"
+"""What cells are called, in the order of CellCounts."""
+
+
 class CellCounts(NamedTuple):
     """How many cells of a cube have nothing in them; a triangle that covers them, before which there is nothing; few
     candidates; and too many."""
@@ -189,18 +193,18 @@ def lists_legend(drawn: CubeSeen, light: str) -> Legend:
     """Of what is known of each cell."""
     counts = drawn.counts
     rows = (
-        ("nothing there", NOTHING_THERE, counts.empty, "nothing is in the way of any ray in this direction"),
-        ("covered by one triangle", COVERED, counts.covered, "before it there is nothing, behind it all is in shadow"),
-        ("longer lists", GREY, counts.many, "more than are tested: rays are traced"),
+        (EMPTY, NOTHING_THERE, counts.empty, "nothing is in the way of any ray in this direction"),
+        (ONE, COVERED, counts.covered, "before it there is nothing, behind it all is in shadow"),
+        (MANY, GREY, counts.many, "so many candidates that rays are traced instead of tested against them"),
     )
     entries = tuple(
         Entry(name, color, (percent(number, counts.cells),), f"{meaning}: {count(number)} cells")
         for name, color, number, meaning in rows
     )
     facts = (
-        Entry("with a list", None, (percent(counts.few, counts.cells),), "of candidates, that rays are tested against"),
+        Entry(FEW, None, (percent(counts.few, counts.cells),), "a list of primitives that rays are tested against"),
     )
-    scale = Scale("1", f"{drawn.longest}", "in the list")
+    scale = Scale("1", f"{drawn.longest}", "candidates")
     return Legend(f"What {light} sees: lists", ("cells",), entries, scale, facts)
 
 

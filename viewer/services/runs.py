@@ -201,7 +201,7 @@ class Experiment(Run[experiment.Results]):
             depth=plan.depth,
             verify=plan.verify,
             samples=1,
-            accelerator="kdtree",  # whose steps are the paper's, as the command has it
+            accelerator=plan.accelerator,
             certificate_seconds=math.inf,  # a count of certificates is what repeats exactly
         ).validated()
         self.shown = self.methods[-1]
