@@ -87,9 +87,8 @@ class World:
         if accelerator not in ACCELERATORS:
             raise ValueError(f"there is no accelerator {accelerator!r}; there is {', '.join(ACCELERATORS)}")
         self.accelerator = accelerator
-        if progress is not None:
-            progress("laying out primitives", 0.0)
-        self.primitives = Primitives(scene)
+        report = progress or (lambda what, fraction: None)
+        self.primitives = Primitives(scene, lambda done: report("laying out primitives", done))
         self.attributes, self.normals = self.primitives.attributes, self.primitives.normals
         self.object_of = self.primitives.object_of
         self.scene = scene

@@ -37,6 +37,7 @@ _COLUMNS = {
     "time of a frame, median": "a frame",
     "time of all frames": "all frames",
     "  of it preparing": "preparing",
+    "speed-up over none, all frames": "speed-up",
     "memory of the method": "memory",
 }
 

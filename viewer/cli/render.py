@@ -32,7 +32,7 @@ from viewer.output.recipe import Recipe, Style
 from viewer.services import stills
 from viewer.services.lamps import LampSamples
 from viewer.state import terms
-from viewer.state.methods import CERTIFIED, default_for
+from viewer.state.methods import CERTIFIED, SHOWN_BY, default_for
 from viewer.state.readings import MOST_RECORDED
 from viewer.state.slices import MIDDLE
 from viewer.state.tone import Tone
@@ -215,6 +215,9 @@ def check_display(options: Namespace) -> None:
 def check_view(settings: Settings, view: View) -> None:
     """Raise ValueError, in one line, where the method has nothing for a view of what single methods have."""
     method = Method.parse(settings.method)
+    if view is View.CUTS and not method.clusters:
+        why = f"the method {settings.method} makes no clusters of lights"
+        raise ValueError(f"--view {view.value}: {why}; give --method {SHOWN_BY[view]}")
     shows = {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}.get(view)
     if shows is not None and not any(name == method.base or method.has(name) for name in shows):
         raise ValueError(f"--view {view.value}: not with the method {settings.method}; give --method {shows[0]}")

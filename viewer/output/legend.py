@@ -13,6 +13,7 @@ from enum import Enum
 import numpy as np
 
 from tracer.culling.voxels.tell import STATE_NAMES
+from tracer.fit import too_few
 from tracer.frame import Frame
 from tracer.method import Method
 from tracer.scene.lights import Light, number_of
@@ -51,6 +52,8 @@ from viewer.state.views import (
     View,
 )
 from viewer.util.numbers import count, percent
+
+NEARLY_ALL = 0.9  # of the lights: cuts of more clusters show nothing
 
 
 class Tone(Enum):
@@ -317,7 +320,12 @@ def _cuts(frame: Frame, view: View, chosen: Chosen) -> Legend:
     scale = Scale("0", count(found.most), count(found.most // 2) if found.most % 2 == 0 else "")
     if chosen.span is not None:
         scale = Scale(f"{chosen.span[0]:.4g}", f"{chosen.span[1]:.4g}")
-    return Legend("Clusters of lights that each pixel is shaded by", (), entries, scale, facts)
+    cuts = frame.statistics.cuts
+    notes: tuple[Note, ...] = ()
+    if cuts is not None and cuts.blocks and cuts.mean > NEARLY_ALL * cuts.lights:
+        few = too_few(Method.parse(frame.settings.method), cuts.lights)
+        notes = (Note(f"Nearly every light is a cluster of its own{f': {few}' if few else ''}.", Tone.WARNING),)
+    return Legend("Clusters of lights that each pixel is shaded by", (), entries, scale, facts, notes)
 
 
 def _voxels(frame: Frame, view: View, chosen: Chosen) -> Legend:

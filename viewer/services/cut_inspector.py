@@ -12,7 +12,7 @@ import numpy as np
 from tracer.frame import Frame
 from tracer.light_cut import LightCut, light_cut
 from tracer.renderer import Renderer
-from viewer.services.render_thread import Question, Traces
+from viewer.services.render_request import Question, Traces
 from viewer.services.selection import Selection
 from viewer.state.picking import pixel_at
 from viewer.state.projection import Stroke, place, strokes

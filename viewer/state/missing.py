@@ -16,9 +16,9 @@ from viewer.util.numbers import count
 CLUSTERED = SHOWN_BY[View.CUTS]
 """The method that shades by clusters of lights."""
 
-_LACKS = {
-    View.VOXELS: "has no voxels",
-    View.CELL_LIGHTS: "has no cells that know their lights",
+_MADE_BY = {
+    View.VOXELS: "Voxels are made by the method voxels",
+    View.CELL_LIGHTS: "Cells that know their lights are made by the methods lie-exact and lie",
 }
 
 
@@ -49,8 +49,8 @@ def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) 
     if view is View.CUTS and not can_draw(frame, view):
         why = decision if method.clusters else f"The method {method.base} clusters no lights; {CLUSTERED} does."
         return Missing(why, "" if method.clusters else CLUSTERED)
-    if view in _LACKS and not can_draw(frame, view):
-        return Missing(f"The method {method} {_LACKS[view]}; {SHOWN_BY[view]} does.", SHOWN_BY[view])
+    if view in _MADE_BY and not can_draw(frame, view):
+        return Missing(f"{_MADE_BY[view]}, not by {method}.", SHOWN_BY[view])
     if view is View.TREE and TREE in frame.structures and not can_draw(frame, view):
         return Missing(f"There is nothing to see: {TREE_IS_GONE}.", "")
     if view is View.TREE and not can_draw(frame, view):

@@ -371,7 +371,13 @@ def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None
         (["-o", "OUT/x.png", "--size", "999999x999999"], "more than"),
         (["-o", "OUT/x.png", "--samples", "0"], "0 is not in 1 to 4096"),
         (["-o", "OUT/x.png", "--method", "magic"], "invalid choice: 'magic'"),
+        (["-o", "OUT/x.png", "--method", "certfied"], "invalid choice: 'certfied': did you mean 'certified'?"),
         (["-o", "OUT/x.png", "--view", "heat"], "'heat' is not a view"),
+        (["-o", "OUT/x.png", "--view", "certificat"], "'certificat' is not a view: did you mean certificate:LIGHT?"),
+        (
+            ["-o", "OUT/x.png", "--view", "cuts", "--method", "auto"],
+            "auto makes no clusters of lights; give --method light",
+        ),
         (["-o", "OUT/x.png", "--view", "shadow:7"], "lights are 0 to 1"),
         (["-o", "OUT/x.png", "--view", "depth:1"], "is not a view"),
         (["-o", "OUT/x.png", "--view", "difference:1"], "is not a view"),
@@ -444,6 +450,7 @@ def test_an_output_that_cannot_be_written_is_known_before_tracing(
     [
         (["rendr", "x.aff"], "did you mean 'render'?"),
         (["inof"], "did you mean 'info'?"),
+        (["info", "figur4"], "figur4: no such file, and no scene of the program: did you mean 'figure4'?"),
         (["frobnicate"], "the commands are render, bench, zoom, explain, info"),
         (["--frame", "3"], "unrecognized arguments"),
     ],

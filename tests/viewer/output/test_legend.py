@@ -19,6 +19,8 @@ from tests.viewer.fakes import (
     with_tree,
     with_voxels,
 )
+from tracer.culling.modes import ShadowMode
+from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.frame import Frame, Settings
 from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.legend import Chosen, Legend, Tone, legend_of, light_in_words
@@ -26,7 +28,7 @@ from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, QUIET, TEXT,
 from viewer.output.legend_picture import with_legend
 from viewer.state.readings import voxels_of
 from viewer.state.slices import Slice
-from viewer.state.views import OCCLUSION_COLORS, WRONG, View, color_map
+from viewer.state.views import OCCLUSION_COLORS, WRONG, Certificate, View, color_map
 from viewer.util.numbers import percent
 
 SETTINGS = Settings(width=160, height=96, verify=True, record_work=True)
@@ -280,3 +282,8 @@ def test_modes_say_what_the_papers_method_would_cull(frame: Frame):
     assert of_light[0].quiet and of_light[1].name == "culled"
     assert [fact.values for fact in of(frame, View.OCCLUSION).facts] == [("all lights",), ("10.0 %",), ("2.5 %",)]
     assert of(frame, View.OCCLUSION).facts[1].name == "culled"
+
+
+def test_what_voxels_and_certificates_say_of_a_light_has_the_same_words():
+    for state in (ShadowMode.FULL_SHADOW, ShadowMode.NON_SHADOW):
+        assert STATE_NAMES[int(state)] == Certificate(int(state)).name.lower()

@@ -21,8 +21,9 @@ from tracer.geometry.bvh8.parts import PieceParts
 from tracer.geometry.bvh8.pieces import PiecewiseTree
 from tracer.geometry.bvh8.placed import DYNAMIC_TREES, MOVING_TREE, RESTING_TREE, STATIC_TREE, STATIC_TREES
 from tracer.geometry.bvh8.walk import TreeAt, Walk
+from tracer.geometry.layout import triangle_rows
 from tracer.geometry.poses import Poses, products
-from tracer.geometry.primitives import Primitives, WorldTriangles, triangle_rows
+from tracer.geometry.primitives import Primitives, WorldTriangles
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, Placed
 from tracer.geometry.rays import Ray
 from tracer.geometry.structure import Built
@@ -165,7 +166,7 @@ class Bvh8:
     def triangles_of(self, index: int, to_world: Float64) -> WorldTriangles:
         """The triangles of an object in the world, just as they are intersected, with the boxes of their blocks."""
         triangles = self._primitives.triangles_of(index)
-        blocks = self._all_static().blocks if index == 0 else blocks_of(self._object_trees, index)
+        blocks = self._static_blocks() if index == 0 else blocks_of(self._object_trees, index)
         numbers = blocks.view(np.int32)[:, PRIMITIVES : PRIMITIVES + WIDTH]
         block, lane = np.nonzero((numbers >= triangles.start) & (numbers < triangles.stop))
         where, count = numbers[block, lane] - triangles.start, triangles.stop - triangles.start
@@ -176,14 +177,13 @@ class Bvh8:
 
     def build(self) -> None:
         """Build the pieces that wait for rays, in all threads."""
-        self._all_static()
+        if self._pieces is not None:
+            self._pieces.build_all(threads=thread_count())
 
-    def _all_static(self) -> Tree:
-        """The tree of what never moves, of which all is built now."""
-        if self._pieces is None:
-            return self.static
-        self._pieces.build_all(threads=thread_count())
-        return self._pieces.used
+    def _static_blocks(self) -> Float32:
+        """The blocks of what never moves, all of which is built now."""
+        self.build()
+        return (self.static if self._pieces is None else self._pieces.used).blocks
 
     def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
         """The nodes that a ray itself enters, whatever its packet does."""
