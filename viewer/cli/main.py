@@ -84,7 +84,8 @@ def _failed(error: Exception) -> int:
         say("cancelled")
         return INTERRUPTED
     if isinstance(error, MemoryError):
-        say("out of memory; a smaller --size needs less", ERROR)
+        why = f": {error}" if str(error) else ""
+        say(f"out of memory{why}; a simpler scene or a smaller --size needs less", ERROR)
     elif isinstance(error, SceneError | ValueError | OSError) and str(error):
         say(error, ERROR)
     else:

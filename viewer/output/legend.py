@@ -32,16 +32,18 @@ from viewer.output.legend_counts import (
     work_legend,
 )
 from viewer.state import terms
-from viewer.state.readings import can_draw, has_modes_of_cells, span_of, voxels_of
+from viewer.state.readings import can_draw, has_modes_of_cells, span_of, tree_of, voxels_of
 from viewer.state.slices import AXES, MIDDLE, Slice, middle_of
 from viewer.state.tone import NEUTRAL, clipped
 from viewer.state.tone import Tone as DisplayTone
+from viewer.state.tree_slice import SAMPLES, place_of, share_built
 from viewer.state.views import (
     ARRIVAL_COLORS,
     ARRIVAL_MEANING,
     BLACK,
     GREY,
     TOO_BRIGHT,
+    TREE_WAITS,
     VOXEL_COLORS,
     VOXEL_MEANING,
     WRONG,
@@ -149,6 +151,7 @@ def legend_of(frame: Frame, view: View, chosen: Chosen = Chosen()) -> Legend | N
         View.CUTS: _cuts,
         View.VOXELS: _voxels,
         View.CELL_LIGHTS: _cell_lights,
+        View.TREE: _tree,
     }
     return makers[view](frame, view, chosen) if view in makers and can_draw(frame, view, chosen.light) else None
 
@@ -363,6 +366,25 @@ def _cell_lights(frame: Frame, view: View, chosen: Chosen) -> Legend:
     return Legend("Lights that the cell must look at", (), entries, scale, facts)
 
 
+def _tree(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    parts, built = tree_of(frame), frame.statistics.built
+    share = share_built(parts, chosen.cut)
+    low, high = chosen.span or span_of(frame, view)
+    facts = [Entry(f"slice at {AXES[chosen.cut.axis]}", None, (f"{place_of(parts, chosen.cut):.4g}",))]
+    if share is not None:
+        facts.append(Entry("built of the slice", None, (percent(share, 1.0),), _OF_SLICE))
+    if built is not None:
+        in_nodes = f"{percent(built.primitives, built.of)} of {count(built.of)}"
+        facts.append(Entry("nodes built", None, (count(built.nodes),)))
+        facts.append(Entry("primitives in them", None, (in_nodes,), "of all; the others wait for a ray to come near"))
+    entries = (
+        Entry("not built: no ray has come", TREE_WAITS[1]),
+        Entry(f"border of {'an object' if parts.owner == 'object' else 'a piece'}", (1.0, 1.0, 1.0)),
+    )
+    scale = Scale(f"level {low:.4g}", f"{high:.4g}")
+    return Legend(f"{view.label}: levels of its parts, {parts.name}", (), entries, scale, tuple(facts))
+
+
 def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
     """What is wrong in the frame, or why nothing is."""
     found, shadow = difference_legend(frame), frame.statistics.shadow
@@ -402,6 +424,7 @@ _ARRIVALS = {
     Arrival.LIT: "fully lit",
     Arrival.UNKNOWN: "not known yet",
 }
+_OF_SLICE = f"its area, by {SAMPLES} x {SAMPLES} points; what lies outside of all boxes counts for neither"
 _TOO_BRIGHT = "red, green or blue is brighter than the screen's"
 _BLACK = "no channel is brighter than nothing"
 

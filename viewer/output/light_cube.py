@@ -78,15 +78,6 @@ def unfolded(cells: NDArray, empty: NDArray) -> NDArray:
     return cross
 
 
-def counts_of(cube: Cube) -> CellCounts:
-    """How many cells have what."""
-    lengths, covered = list_lengths(cube), np.isfinite(full_depths(cube))
-    alone = (lengths < 0) & covered
-    return CellCounts(
-        int((lengths == 0).sum()), int(alone.sum()), int((lengths > 0).sum()), int(((lengths < 0) & ~covered).sum())
-    )
-
-
 @dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
 class CubeSeen:
     """A cube as it is drawn: `lengths` (6, side, side) int32 of the lists of its cells, -1 where these are too long, or
@@ -100,6 +91,12 @@ class CubeSeen:
     def covered(self) -> NDArray[np.bool_]:
         """(6, side, side): cells of one triangle that covers them, before which there is nothing."""
         return (self.lengths < 0) & np.isfinite(self.depths)
+
+    @cached_property
+    def counts(self) -> CellCounts:
+        """How many cells have what."""
+        masks = self.lengths == 0, self.covered, self.lengths > 0, (self.lengths < 0) & ~self.covered
+        return CellCounts(*(int(mask.sum()) for mask in masks))
 
     @property
     def longest(self) -> int:
@@ -194,23 +191,19 @@ def _beside(left: NDArray[np.uint8], right: NDArray[np.uint8]) -> NDArray[np.uin
 
 def lists_legend(drawn: CubeSeen, light: str) -> Legend:
     """Of what is known of each cell."""
-    cells = drawn.lengths.size
+    counts = drawn.counts
     rows = (
-        (EMPTY, NOTHING_THERE, drawn.lengths == 0, "nothing is in the way of any ray in this direction"),
-        (ONE, COVERED, drawn.covered, "before it there is nothing, behind it all is in shadow"),
-        (
-            MANY,
-            GREY,
-            (drawn.lengths < 0) & ~drawn.covered,
-            "so many candidates that rays are traced instead of tested against them",
-        ),
+        (EMPTY, NOTHING_THERE, counts.empty, "nothing is in the way of any ray in this direction"),
+        (ONE, COVERED, counts.covered, "before it there is nothing, behind it all is in shadow"),
+        (MANY, GREY, counts.many, "so many candidates that rays are traced instead of tested against them"),
     )
     entries = tuple(
-        Entry(name, color, (percent(int(where.sum()), cells),), f"{meaning}: {count(int(where.sum()))} cells")
-        for name, color, where, meaning in rows
+        Entry(name, color, (percent(number, counts.cells),), f"{meaning}: {count(number)} cells")
+        for name, color, number, meaning in rows
     )
-    listed = int((drawn.lengths > 0).sum())
-    facts = (Entry(FEW, None, (percent(listed, cells),), "a list of primitives that rays are tested against"),)
+    facts = (
+        Entry(FEW, None, (percent(counts.few, counts.cells),), "a list of primitives that rays are tested against"),
+    )
     scale = Scale("1", f"{drawn.longest}", "candidates")
     return Legend(f"What {light} sees: lists", ("cells",), entries, scale, facts)
 

@@ -34,7 +34,8 @@ from viewer.services.questions import Questions
 from viewer.services.ray_inspector import RayInspector
 from viewer.services.recipes import Recipes
 from viewer.services.record import Record
-from viewer.services.render_thread import RenderThread, Traced
+from viewer.services.render_request import Traced
+from viewer.services.render_thread import RenderThread
 from viewer.services.run_controller import RunController
 from viewer.services.scene_loader import Arrival, SceneLoader
 from viewer.services.scene_table import SceneTable

@@ -29,7 +29,7 @@ from viewer.state.parts import parts_of
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, comparing, glfw_pads, menus, palette, places, previewing, style
+from viewer.window import commands, comparing, glfw_pads, menus, palette, previewing, style, window_place
 from viewer.window.compared import Compared
 from viewer.window.display import Display, Look
 from viewer.window.guard import Guard
@@ -98,7 +98,7 @@ class App:
         self.drawn_by_processor = self.iconified = self.was_open = self._opened = self._ended = False
         self.losses = Losses()
         self._room = (0, 0)
-        self._place: places.Rect | None = None
+        self._place: window_place.Rect | None = None
         self.read_pads = glfw_pads.Pads().read
         if problem:
             self.controller.notices.say(problem, error=True)
@@ -191,7 +191,7 @@ class App:
     def _follow_pads(self) -> None:
         if not self.ui.key_wanted and not imgui.get_io().want_text_input:
             found = self.read_pads()
-            if found and not places.in_front(glfw_utils.glfw_window_hello_imgui()):
+            if found and not window_place.in_front(glfw_utils.glfw_window_hello_imgui()):
                 return  # sticks are those of the program in front
             runs = {c.name: c.run for c in self.ui.commands if c.enabled()} if found else {}
             self.controller.pads.follow(found, runs)
@@ -214,7 +214,7 @@ class App:
         size = imgui.get_io().display_size
         if self.iconified or min(size.x, size.y) < 1:
             return 0, 0
-        if imgui.get_frame_count() >= places.SETTLED:
+        if imgui.get_frame_count() >= window_place.SETTLED:
             self._room = self.ui.picture_area
         return self._room
 

@@ -252,10 +252,19 @@ def test_slices_and_cells_are_drawn_by_methods_that_have_them(
     assert code == 0 and "--view voxels:1" in out and "--slice x:0.7" in out
     code, out, errors = render(capfd, room, "-o", path, "--view", "cell-lights", "--range", "0:2")
     assert code == 0 and "method lie-exact" in out, errors
+    lazy = "--view", "tree", "--accelerator", "kdtree-lazy", "--method", "none"
+    drawn = []
+    for more in ((), (), ("--slice", "x:0.9")):
+        code, _, errors = render(capfd, room, "-o", path, *lazy, "--legend", *more)
+        assert code == 0, errors
+        with Image.open(path) as image:
+            drawn.append(np.asarray(image))
+    assert (drawn[0] == drawn[1]).all() and (drawn[0] != drawn[2]).any()
     for wrong, said in (
+        (("--view", "tree"), "bvh8 builds all of its tree before rays come; give --accelerator kdtree-lazy"),
         (("--view", "voxels", "--method", "none"), "not with the method none; give --method voxels"),
         (("--view", "cell-lights", "--method", "paper"), "give --method lie-exact"),
-        (("--slice", "x:0.1"), "--slice is for the view voxels, not color"),
+        (("--slice", "x:0.1"), "--slice is for the views voxels and tree, not color"),
         (("--view", "voxels", "--slice", "q:0.1"), "is no slice"),
     ):
         code, _, errors = render(capfd, room, "-o", path, *wrong)

@@ -16,6 +16,7 @@ from tests.viewer.fakes import (
     with_certificates,
     with_cuts,
     with_lamps,
+    with_tree,
     with_voxels,
 )
 from tracer.culling.modes import ShadowMode
@@ -40,7 +41,7 @@ def measure(text: str) -> float:
 
 @pytest.fixture
 def frame() -> Frame:
-    return with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(make_frame(SETTINGS))))))
+    return with_tree(with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(make_frame(SETTINGS)))))))
 
 
 def of(frame: Frame, view: View, **chosen) -> Legend:
@@ -70,6 +71,15 @@ def test_voxels_are_counted_in_the_slice_and_in_all(frame: Frame):
     lamp = of(frame, View.VOXELS, light=2)
     assert not lamp.entries and "Nothing is known of this light" in lamp.notes[0].text
     assert legend_of(make_frame(), View.VOXELS) is None
+
+
+def test_what_rays_have_built_is_counted(frame: Frame):
+    legend = of(frame, View.TREE, cut=Slice(0, 0.01))
+    said = {fact.name: fact.values for fact in legend.facts}
+    assert said["slice at x"] == ("-1.96",) and said["built of the slice"] == ("100.0 %",)
+    assert said["nodes built"] == ("123",) and said["primitives in them"] == ("25.0 % of 160",)
+    assert (legend.scale.low, legend.scale.high) == ("level 0", "8") and "kdtree-lazy" in legend.title
+    assert of(frame, View.TREE, span=(1.0, 2.5)).scale.high == "2.5" and legend_of(make_frame(), View.TREE) is None
 
 
 def test_the_lights_that_cells_ask_are_counted(frame: Frame):

@@ -13,6 +13,7 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
+from tests.viewer.previews import colors_of
 from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.scene.model import Progress
 from viewer.services import scene_files, scene_loader
@@ -102,6 +103,6 @@ def _tour_fits(d: Driver) -> None:
 
 def _read(d: Driver) -> np.ndarray:
     got: list[np.ndarray] = []
-    d._in_frame.append(lambda: got.append(d.ui.preview.read()))
+    d._in_frame.append(lambda: got.append(colors_of(d.ui.preview)))
     d.wait(lambda: bool(got), "the preview to be read")
     return got[0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
@@ -15,7 +16,8 @@ from tracer.culling.voxels.grid import BLOCK, VoxelGrid
 Index = tuple[int, int, int]
 
 
-class VoxelStates(NamedTuple):
+@dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
+class VoxelStates:
     """The voxels of a scene as a picture found them.
 
     `words` (voxels + 1,) are the packed words of all voxels, with one more for what lies outside; `known` (lights,)
