@@ -17,75 +17,87 @@ from typing import NamedTuple
 from tracer import compilation
 from tracer.compilation import compiled_before, warm_up
 from tracer.compile_beside import _die_with_parent
+from tracer.compile_steps import PARTS, steps_of
 
 # Lights (modes in 32 and in 64 bits) and structure.
 VARIANTS = ((1, "bvh8"), (1, "kdtree"), (16, "bvh8"), (16, "kdtree"), (1, "kdtree-lazy"))
-# What several tests render by, and each of their processes would compile at the same time.
-METHODS = ("lightcuts", "lightcuts-certified", "lightbuffer", "voxels", "lie")
 
 
 class Part(NamedTuple):
-    """What a process of its own compiles: a part of `tracer.compile_beside`, or what a method has of its own."""
+    """A part of `tracer.compile_steps`, or what a method has of its own that several tests render by: each of their
+    processes would compile it at the same time."""
 
     name: str
     lights: int
     accelerator: str
 
+    def compile(self) -> None:
+        if self.name in PARTS:
+            for _step in steps_of(*self):
+                pass
+        else:
+            compilation.make_ready(*self)
 
-# Each part after those that it shares kernels with, so that none is compiled twice; what most waits for comes first.
-TREES, FRAME, QUERIES = (Part(name, 1, "bvh8") for name in ("trees", "frame", "queries"))
-CERTIFICATES = Part("certificates", 1, "bvh8")
+
+Job = tuple[Part, ...]
+"""What one process compiles: it takes seconds to start, and to load what its parts share."""
+
+
+def job(lights: int, accelerator: str, *names: str) -> Job:
+    return tuple(Part(name, lights, accelerator) for name in names)
+
+
+# Each job after those that it shares kernels with, so that none is compiled twice.  What most waits for comes first,
+# then what takes longest, so that no core is idle at the end.
+TREES, FRAME, QUERIES = (job(1, "bvh8", name) for name in ("trees", "frame", "queries"))
+CERTIFICATES = job(1, "bvh8", "certificates")
 AFTER = {
     TREES: (),
     FRAME: (),
     CERTIFICATES: (TREES,),
-    Part("certificates", 16, "bvh8"): (CERTIFICATES,),
     QUERIES: (),
-    Part("queries", 1, "kdtree"): (),
-    Part("queries", 1, "kdtree-lazy"): (),
-    **{Part(method, 1, "bvh8"): (TREES, FRAME, QUERIES) for method in METHODS},
-    Part("frame", 16, "bvh8"): (FRAME,),
-    Part("trees", 1, "kdtree"): (TREES,),
-    Part("trees", 1, "kdtree-lazy"): (TREES,),
+    job(1, "bvh8", "lightcuts", "lightcuts-certified"): (TREES, FRAME, QUERIES),
+    job(1, "kdtree-lazy", "queries", "trees"): (TREES,),
+    job(1, "bvh8", "lightbuffer", "voxels", "lie"): (TREES, FRAME, QUERIES),
+    job(16, "bvh8", "certificates", "frame"): (FRAME, CERTIFICATES),
+    job(1, "kdtree", "queries", "trees"): (TREES,),
 }
 
 
-def main(method: str = "", lights: str = "1", accelerator: str = "bvh8") -> int:
-    """Compile everything, or what a method has of its own."""
-    if method:
+def main(*parts: str) -> int:
+    """Compile everything, or some parts, each given as NAME:LIGHTS:ACCELERATOR."""
+    if parts:
         threading.Thread(target=_die_with_parent, daemon=True).start()
-        compilation.make_ready(method, int(lights), accelerator)
+        for part in parts:
+            name, lights, accelerator = part.split(":")
+            Part(name, int(lights), accelerator).compile()
         os._exit(0)  # without taking everything down piece by piece: that takes a second
     if all(compiled_before(*variant) for variant in VARIANTS):
         return 0
     print("compiling the kernels, once for all tests", flush=True)
-    compile_parts(max(2, os.cpu_count() or 1))
+    compile_jobs(max(2, os.cpu_count() or 1))
     compilation.compile_beside = lambda *arguments: None  # type: ignore[assignment]  # that has been done
     for variant in VARIANTS:
-        warm_up(None, *variant)  # loads what the parts made, compiles what they left, and says that all is there
+        warm_up(None, *variant)  # loads what the jobs made, compiles what they left, and says that all is there
     return 0
 
 
-def compile_parts(slots: int) -> None:
-    """Compile all parts into the cache, so many at once; one that fails costs time only."""
+def compile_jobs(slots: int) -> None:
+    """Do all jobs, so many at once; one that fails costs time only."""
     waiting, running, ended = list(AFTER), {}, set()
     while waiting or running:
-        for part in [part for part in waiting if ended.issuperset(AFTER[part])][: slots - len(running)]:
-            waiting.remove(part)
-            running[part] = subprocess.Popen(
-                [sys.executable, "-m", _module(part), *map(str, part)],
+        for job in [job for job in waiting if ended.issuperset(AFTER[job])][: slots - len(running)]:
+            waiting.remove(job)
+            running[job] = subprocess.Popen(
+                [sys.executable, "-m", "tests.compiled", *(":".join(map(str, part)) for part in job)],
                 cwd=Path(__file__).parents[1],
                 stdin=subprocess.PIPE,  # it ends when this closes, so with this process
                 stdout=subprocess.DEVNULL,
             )
         time.sleep(0.05)
-        for part in [part for part, process in running.items() if process.poll() is not None]:
-            ended.add(part)
-            del running[part]
-
-
-def _module(part: Part) -> str:
-    return "tests.compiled" if part.name in METHODS else "tracer.compile_beside"
+        for job in [job for job, process in running.items() if process.poll() is not None]:
+            ended.add(job)
+            del running[job]
 
 
 if __name__ == "__main__":

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import os
+import sys
 import tempfile
 from importlib.util import find_spec
 from pathlib import Path
@@ -30,6 +32,16 @@ gc.disable()
 def pytest_collection_finish() -> None:
     gc.freeze()
     gc.enable()
+
+
+# glibc keeps what threads have freed for threads to come: of a process of tests, gigabytes.
+_trim = getattr(ctypes.CDLL(None), "malloc_trim", None) if sys.platform.startswith("linux") else None
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    if _trim is not None and (nextitem is None or nextitem.path != item.path):
+        _trim(ctypes.c_size_t(0))
 
 
 @pytest.fixture(scope="session")

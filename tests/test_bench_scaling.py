@@ -109,7 +109,7 @@ def test_a_scene_that_is_not_there_is_one_line(tmp_path: Path, capsys: pytest.Ca
 @pytest.mark.gui
 def test_the_window_is_timed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out" / "window.json"
-    options = ["--seconds", "1", "--size", "800x600", "--no-cold", "--json", str(out)]
+    options = ["--seconds", "0.7", "--size", "800x600", "--no-cold", "--no-rehearsal", "--json", str(out)]
     assert window_times.main([str(scene_path("figure4")), *options]) == 0
     (window,) = json.loads(out.read_text())["windows"]
     assert window["faults"] == []

@@ -21,6 +21,7 @@ import tracer
 from tracer import experiment
 from tracer.scene.load import load_scene
 from viewer.__main__ import main
+from viewer.cli.sweep import RESULTS
 from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
 from viewer.state.study_file import read_study
@@ -59,12 +60,21 @@ def test_readme_is_short() -> None:
 
 
 def test_examples_run(tmp_path: Path) -> None:
-    """Each page is one script, run in the project's folder; what takes arguments is a script of its own."""
+    """Each page is one script, run in the project's folder; what takes arguments is a script of its own.
+
+    One process runs them all, with names of its own for each, as most of its time goes into its start."""
     pages = [page for page in PAGES if blocks(page, "python")]
     assert {README, PYTHON} <= set(pages)
+    scripts = []
     for page in pages:
-        code = "\n".join(block for block in blocks(page, "python") if "sys.argv" not in block)
-        assert run(ROOT, tmp_path / "script.py", code)
+        scripts.append(tmp_path / f"{page.stem}.py")
+        scripts[-1].write_text("\n".join(block for block in blocks(page, "python") if "sys.argv" not in block))
+    code = (
+        'import runpy, sys\nfor path in sys.argv[1:]:\n    runpy.run_path(path, run_name="__main__")\n    print(path)\n'
+    )
+    said = run(ROOT, tmp_path / "all.py", code, *scripts)
+    parts = re.split("|".join(rf"^{re.escape(str(path))}\n" for path in scripts), said, flags=re.MULTILINE)
+    assert len(parts) == len(pages) + 1 and all(parts[:-1]), "each prints something"
 
 
 def run(folder: Path, script: Path, code: str, *arguments: object) -> str:
@@ -154,6 +164,11 @@ def test_studies_are_read(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(shown)
     study = read_study(tmp_path / "study.toml")
     assert len(study.settings) == 4 and study.seeds == (1, 2, 3) and study.shake == 0.01
+
+
+def test_results_of_studies_do_not_dirty_a_clone() -> None:
+    ignored = (ROOT / ".gitignore").read_text().splitlines()
+    assert f"*{RESULTS}/" in ignored
 
 
 @each_page

@@ -211,6 +211,20 @@ def test_a_folder_that_may_only_be_read_is_read(package: Path) -> None:
         assert answers == [11.0] and cached not in other.parents
 
 
+def test_kernels_stay_where_the_clock_was_set_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SHADOWCULL_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(kernel_cache, "_KEPT", 8)
+    for age in range(8):
+        old = tmp_path / f"{age:016x}"
+        old.mkdir()
+        os.utime(old, (time.time() + 3e8 - age,) * 2)
+    for program in range(6):  # each with sources of its own
+        kernel_cache._clock.cache_clear()
+        kernel_cache._make_folder(f"{program:015x}f")
+    there = {folder.name for folder in tmp_path.iterdir()}
+    assert there == {f"{program:015x}f" for program in range(6)} | {f"{age:016x}" for age in range(2)}
+
+
 def test_kernels_of_old_sources_are_removed_at_last(package: Path) -> None:
     cached, most = package / "cache", kernel_cache._KEPT
     for age in range(most + 5):

@@ -1,8 +1,10 @@
 """Names of methods, and what they can do."""
 
+import re
+
 import pytest
 
-from tracer.method import Kind, Method, additions, bases, choice, register, unregister
+from tracer.method import Kind, Method, additions, bases, choice, meant, register, unregister
 from viewer.state.methods import with_base
 
 
@@ -29,7 +31,28 @@ def test_a_name_gives_a_base_additions_and_capabilities():
 def test_other_names_are_refused_in_one_line_that_says_what_there_is(name):
     with pytest.raises(ValueError, match="method is one of none, paper") as error:
         Method.parse(name)
-    assert "\n" not in str(error.value) and "+cache and +rest" in str(error.value)
+    assert "\n" not in str(error.value)
+    assert all(f"+{kind.name}" in str(error.value) for kind in additions(measures=True))
+
+
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [
+        ("certfied", "certified"),
+        ("Paper", "paper"),
+        ("certified+cahe", "certified+cache"),
+        ("none+packet16", "none+packets16"),
+        ("cache", "none+cache"),
+        ("paper+cache+cache", "paper+cache"),
+        ("paper+none", ""),
+        ("telepathy", ""),
+    ],
+)
+def test_what_may_have_been_meant_is_asked(name: str, found: str):
+    assert meant(name) == found
+    if found:
+        with pytest.raises(ValueError, match=f"did you mean '{re.escape(found)}'"):
+            Method.parse(name)
 
 
 def test_what_stands_alone_is_a_base_and_an_addition_but_not_both_at_once():

@@ -28,9 +28,10 @@ from tracer.geometry.primitives import Outlines
 from tracer.geometry.world import World
 from tracer.parallel import thread_count
 from tracer.renderer import Renderer
-from tracer.scene.edits import Edited, thing_numbers, things
+from tracer.scene.edits import Edited
 from tracer.scene.lamps import LampTable
 from tracer.scene.lights import Light, as_lamps
+from tracer.scene.things import thing_numbers, things
 
 NO_UNITS = np.empty(0, np.int32)
 

@@ -103,8 +103,7 @@ def _queries(accelerator: str) -> Iterator[str]:
 
 def _trees(lights: int, accelerator: str) -> Iterator[str]:
     yield from _smoothing()
-    _renderer(lights, accelerator)
-    _builders(accelerator)
+    _builders(accelerator, _renderer(lights, accelerator))
 
 
 def _smoothing() -> Iterator[str]:
@@ -116,7 +115,7 @@ def _smoothing() -> Iterator[str]:
 def _frame(lights: int, accelerator: str) -> Iterator[str]:
     yield "the builder"
     renderer = _renderer(lights, accelerator)
-    _builders(accelerator)
+    _builders(accelerator, renderer)
     frame = renderer.begin(0.0, progressive=True)
     frame.place_objects_and_lights()
     for name, phase in (
@@ -131,11 +130,14 @@ def _frame(lights: int, accelerator: str) -> Iterator[str]:
         phase()
 
 
-def _builders(accelerator: str) -> None:
-    """What only large scenes need, if the structure has any."""
+def _builders(accelerator: str, renderer: Renderer) -> None:
+    """What only large scenes need, and what tells how much is built, if the structure has any."""
     with_more = getattr(STRUCTURES[accelerator], "make_ready", None)
     if with_more is not None:
         with_more()
+    parts = renderer.world.parts_built()
+    if parts is not None:
+        parts.at(np.zeros((1, 3), np.float32), 0)
 
 
 def _see_and_find(frame: FrameInProgress) -> None:
@@ -269,6 +271,9 @@ class _Nowhere:
         return np.ones_like(poses.present)
 
     def built(self) -> None:
+        pass
+
+    def parts_built(self) -> None:
         pass
 
     def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:

@@ -19,6 +19,7 @@ import os
 import re
 import shutil
 import tempfile
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
@@ -144,8 +145,19 @@ def _make_folder(name: str) -> Path:
         folder = Path(_temporary_folder().name) / name
         folder.mkdir(exist_ok=True)
     with suppress(OSError):
-        os.utime(folder)  # used now
+        now = _clock(folder.parent)()
+        os.utime(folder, (now, now))  # used now
     return folder
+
+
+@cache
+def _clock(root: Path) -> Callable[[], float]:
+    """A clock by which now is later than when any folder was used: the system's may have been set back since."""
+    with suppress(OSError):
+        latest = max(entry.stat().st_mtime for entry in os.scandir(root))
+        begin, started = max(time.time(), latest + 0.001), time.monotonic()
+        return lambda: begin + time.monotonic() - started
+    return time.time
 
 
 def version_folder() -> Path:

@@ -13,6 +13,8 @@ from functools import cache
 from importlib import import_module
 from typing import Any
 
+from tracer.similar import similar
+
 ANY_NUMBER = 1 << 31
 MANY = 16  # lights: clusters of fewer are hardly ever worth it
 HELD = 31  # lights that words of modes have room for (`tracer.culling.modes.MAX_CULLED_LIGHTS`)
@@ -113,8 +115,24 @@ def _can_be_base(kind: Kind | None) -> bool:
 
 def choice() -> str:
     """What there is to choose from, in words."""
-    names = ", ".join(kind.name for kind in bases(measures=True))
-    return f"one of {names}, which may be followed by {' and '.join(f'+{kind.name}' for kind in additions())}"
+    names, added = (", ".join(f"{plus}{kind.name}" for kind in kinds) for plus, kinds in _offered())
+    return f"one of {names}, each of which may be followed by any of {added}"
+
+
+def _offered() -> tuple[tuple[str, tuple[Kind, ...]], tuple[str, tuple[Kind, ...]]]:
+    """All bases and all additions, those included that only measure, and what stands before their names."""
+    return ("", bases(measures=True)), ("+", additions(measures=True))
+
+
+def meant(name: str) -> str:
+    """The method that somebody may have meant by a name that is none; "" where it is like none."""
+    base, *extras = name.split("+")
+    known = [[kind.name for kind in kinds] for _, kinds in _offered()]
+    if base in known[1] and base not in known[0]:  # it can only be added
+        base, extras = "none", [base, *extras]
+    found = [similar(base, known[0]), *(similar(extra, known[1]) for extra in extras)]
+    whole = "+".join(dict.fromkeys(found))
+    return whole if all(found) and whole != name and found[0] not in found[1:] else ""
 
 
 def line_up(lights: int) -> list[str]:
@@ -142,7 +160,8 @@ class Method:
         kind, added = _KINDS.get(base), tuple(_KINDS.get(extra) for extra in extras)
         repeated = len({base, *extras}) <= len(extras)
         if not _can_be_base(kind) or repeated or not all(extra and extra.addition for extra in added):
-            raise ValueError(f"method is {choice()}, not {name!r}")
+            close = meant(name)
+            raise ValueError(f"method is {choice()}, not {name!r}" + (f": did you mean '{close}'?" if close else ""))
         return Method(_KINDS[base], tuple(_KINDS[extra] for extra in extras))
 
     def __str__(self) -> str:

@@ -26,6 +26,8 @@ from rich.table import Table
 from tests.bench.frame_times import KITCHEN, machine
 from tests.bench.meshes import bumpy_sphere, frequency_for
 from tests.bench.of_scenes import finish
+from tracer.scene.load import check_scene_file
+from tracer.scene.model import SceneError
 from viewer.util.messages import say
 from viewer.util.resources import scene_path
 
@@ -78,7 +80,8 @@ def inspect(path: Path, size: int) -> dict[str, Any]:
 
 
 def measured(path: Path, size: int) -> dict[str, Any]:
-    """`inspect` in a process of its own; raises RuntimeError, in one line, where that fails."""
+    """`inspect` in a process of its own; raises RuntimeError or SceneError, in one line, where that fails."""
+    check_scene_file(path)  # before a process takes its time to start
     command = [sys.executable, "-m", "tests.bench.memory", str(path.absolute()), "--inspect", "--size", str(size)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     if done.returncode:
@@ -134,7 +137,7 @@ def main(arguments: list[str] | None = None) -> int:
                 write_mesh(mesh, options.triangles)
                 scenes.append(mesh)
             report["scenes"] = [measured(scene, options.size) for scene in scenes]
-    except RuntimeError as error:
+    except (RuntimeError, SceneError) as error:
         say(error)
         return 1
     return finish(report, table(report["scenes"]), options.json, [])

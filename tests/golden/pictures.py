@@ -16,6 +16,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from tracer.frame import Frame, Settings
+from tracer.geometry.accelerators import BVH8, LAZY
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
@@ -74,6 +76,12 @@ GOLDEN = (
 )
 
 
+@cache
+def _lazy_world(scene: str) -> World:
+    """A world that is built where rays arrive, of which only one picture is made: others would have more built."""
+    return World(load_scene(embedded_scenes()[scene]), accelerator=LAZY)
+
+
 @dataclass(frozen=True)
 class OfMethod:
     """A view of what a method keeps of a scene, or its plain picture, in the first frame; `stray` pixels may differ."""
@@ -84,11 +92,15 @@ class OfMethod:
     view: View
     stray: int
     cut: Slice = MIDDLE
+    accelerator: str = BVH8
 
     def frame(self, world: World | None = None) -> Frame:
         """The frame; `world` as in `Renderer`."""
+        if self.accelerator == LAZY:  # the frame shows its world's tree, which must not go
+            world = _lazy_world(self.scene)
         scene = load_scene(embedded_scenes()[self.scene]) if world is None else world.scene
-        renderer = Renderer(scene, replace(SETTINGS, method=self.method), world=world)
+        settings = replace(SETTINGS, method=self.method, accelerator=self.accelerator)
+        renderer = Renderer(scene, settings, world=world)
         return renderer.render(scene.frame_time(0))
 
     def picture(self, frame: Frame) -> NDArray[np.uint8]:
@@ -100,6 +112,7 @@ EXACT = "figure3-exact"
 OF_METHODS = (
     OfMethod("default-voxels", "default", "voxels", View.VOXELS, stray=60, cut=Slice(1, 0.2)),
     OfMethod("default-cell-lights", "default", "lie-exact", View.CELL_LIGHTS, stray=60),
+    OfMethod("default-tree", "default", "none", View.TREE, stray=60, cut=Slice(1, 0.2), accelerator=LAZY),
     *(OfMethod(EXACT, "figure3", method, View.COLOR, stray=4) for method in ("voxels", "lie-exact", "lightbuffer")),
 )
 

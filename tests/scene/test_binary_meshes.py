@@ -14,10 +14,10 @@ from tests.bench.large_scenes import write_ply, write_stl
 from tests.bench.meshes import frequency_for
 from tracer.scene import assembly, binary_meshes, crease, files, meshes, pieces, room
 from tracer.scene.binary_meshes import is_plain, read_binary
+from tracer.scene.distinct_points import DistinctPoints
 from tracer.scene.load import load_scene
 from tracer.scene.mesh_options import AS_IN_FILE, IN_STUDIO
 from tracer.scene.model import Cancelled, Scene, SceneError
-from tracer.scene.places import Places
 
 AXES = ("x", "y", "z")
 NORMALS = ("nx", "ny", "nz")
@@ -73,7 +73,7 @@ def assert_same(a: Scene, b: Scene) -> None:
 def test_the_scene_is_the_one_that_trimesh_reads(tmp_path, monkeypatch, options, rows):
     monkeypatch.setattr(binary_meshes, "ROWS", rows)
     monkeypatch.setattr(crease, "BLOCK", rows)
-    monkeypatch.setattr("tracer.scene.places._FEWEST", 8)
+    monkeypatch.setattr("tracer.scene.distinct_points._FEWEST", 8)
     paths = [
         stl(tmp_path / "a.stl"),
         ply(tmp_path / "a.ply"),
@@ -209,12 +209,12 @@ def test_few_bytes_are_held_for_each_triangle(tmp_path, monkeypatch, write, most
 
 @pytest.mark.parametrize("expected", [0, 4000])
 def test_places_are_numbered_in_the_order_in_which_they_are_met(monkeypatch, expected):
-    monkeypatch.setattr("tracer.scene.places._FEWEST", 4)
+    monkeypatch.setattr("tracer.scene.distinct_points._FEWEST", 4)
     rng = np.random.default_rng(5)
     points = rng.integers(-6, 7, (3000, 3)).astype(np.float32)
     points[rng.random(points.shape) < 0.1] = -0.0
     points[::50] = np.inf
-    places = Places(expected)
+    places = DistinctPoints(expected)
     numbers = np.concatenate([places.numbered(points[i : i + 700]) for i in range(0, 3000, 700)])
     different, first, inverse = np.unique(points + 0.0, axis=0, return_index=True, return_inverse=True)
     rank = np.argsort(np.argsort(first))

@@ -97,7 +97,7 @@ def test_memory_is_what_is_left_of_the_least_of_all_limits(monkeypatch: pytest.M
     assert there is not None and there > 0
     monkeypatch.setattr(room, "_of_group", lambda: 5.0)
     assert room.available() == 5.0
-    monkeypatch.setattr(room, "_of_limit", lambda: -7.0)
+    monkeypatch.setattr(room, "of_limit", lambda: -7.0)
     assert room.available() == 0.0
 
 

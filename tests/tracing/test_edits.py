@@ -18,8 +18,9 @@ from tracer.culling import modes
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation, Keys, TrackSet
-from tracer.scene.edits import NO_EDITS, Edits, Origin, edited, thing_numbers, thing_of, things
+from tracer.scene.edits import NO_EDITS, Edits, Origin, edited
 from tracer.scene.model import Camera, Light, Scene, SceneObject, empty_quadrics
+from tracer.scene.things import thing_numbers, thing_of, things
 from tracer.settings import Settings
 
 SMALL = Settings(width=40, height=30, threads=1, depth=2)

@@ -16,7 +16,7 @@ from tests.tracing.same import assert_same
 from tests.tracing.worlds import random_corners, scene
 from tracer.geometry.bvh8 import pieces
 from tracer.geometry.bvh8.pieces import PiecewiseTree
-from tracer.geometry.primitives import triangle_rows
+from tracer.geometry.layout import triangle_rows
 from tracer.geometry.rays import Rays
 from tracer.geometry.structure import Built
 from tracer.geometry.wide_tree.cells import cells_over
@@ -183,3 +183,45 @@ def test_a_build_in_pieces_can_be_stopped() -> None:
     tree = PiecewiseTree(rows, nothing, np.zeros(2, np.int64), 1)
     with pytest.raises(Cancelled):
         tree.build_all(np.array([1, 0]), 2)
+
+
+def test_a_tree_with_few_addresses_is_the_same_in_less_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    made, rays = large(), random_rays(np.random.default_rng(1), 300)
+    whole = tracer.World(made, 0.0)
+    most = 4 * (whole.structure.static.nodes.size + whole.structure.static.blocks.size)
+    monkeypatch.setattr(pieces.room, "of_limit", lambda: 1.9 * most)
+    lazy, few = tracer.World(made, 0.0, lazy=True), tracer.World(made, 0.0)
+    assert_alike(lazy, whole, rays)
+    lazy.build()
+    assert built(lazy).primitives == built(lazy).of  # all of it has found room
+    for world in (lazy, few):
+        tree = world.structure.static
+        assert 4 * (tree.nodes.size + tree.blocks.size) < 0.7 * most
+    monkeypatch.setattr(pieces.room, "of_limit", lambda: 2.1 * most)
+    assert tracer.World(made, 0.0, lazy=True).structure.static.nodes.shape == whole.structure.static.nodes.shape
+
+
+def test_no_room_at_all_is_an_error_of_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    def reserved(size: int) -> bytearray:
+        raise OSError(12, "Cannot allocate memory")
+
+    monkeypatch.setattr(pieces, "_reserved", reserved)
+    with pytest.raises(MemoryError, match=r"no room for a tree of 0\.\d GB"):
+        tracer.World(large(), 0.0, lazy=True)
+
+
+def test_pieces_that_are_interrupted_again_and_again_never_leave_their_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pieces.room, "of_limit", lambda: 1000.0)
+    world = tracer.World(large(), 0.0, lazy=True)
+    write = pieces.write_topology
+
+    def interrupted(*arguments) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(pieces, "write_topology", interrupted)
+    for _ in range(50):
+        with pytest.raises((KeyboardInterrupt, MemoryError)):
+            world.build()
+    monkeypatch.setattr(pieces, "write_topology", write)
+    with pytest.raises(MemoryError, match="no room for a piece"):
+        world.build()

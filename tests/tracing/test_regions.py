@@ -20,7 +20,7 @@ from tracer.culling.regions.light_tree import LEAVES, build_light_tree
 from tracer.culling.regions.store import RegionStore
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.explanation import explain
-from tracer.geometry.primitives import triangle_rows
+from tracer.geometry.layout import triangle_rows
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
 from tracer.methods.certified_lights import CertifiedLights

@@ -63,6 +63,12 @@ def test_pictures_hold_the_states_that_they_found():
     store.follow(table.at(moved), nothing_rests(len(world.scene.objects)))
     store.classify(np.inf, 1)
     assert store.shown() is not shown and np.array_equal(shown.words, kept), "a picture that is kept has changed"
+    del shown
+    store.shown()
+    words, before = store.words, store.words.copy()
+    store.follow(table.at(places), nothing_rests(len(world.scene.objects)))
+    store.classify(np.inf, 1)
+    assert store.words is words and not np.array_equal(words, before), "what no picture holds is not copied"
 
 
 def test_cells_ask_all_lights_but_those_that_they_know_to_be_hidden():

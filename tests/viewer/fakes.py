@@ -8,10 +8,12 @@ from pathlib import Path
 from threading import Event
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracer.culling.voxels.grid import VoxelGrid
 from tracer.culling.voxels.tell import VoxelStates
 from tracer.frame import Frame, Settings
+from tracer.geometry.tree_parts import PartsAt, nothing_at
 from tracer.scene.animation import Animation
 from tracer.scene.model import (
     Camera,
@@ -24,7 +26,7 @@ from tracer.scene.model import (
     Triangles,
     empty_quadrics,
 )
-from tracer.statistics import CutCounts, FrameStatistics
+from tracer.statistics import BuiltPart, CutCounts, FrameStatistics
 
 TINY_SCENE = """
 b 0.3 0.4 0.5
@@ -167,6 +169,38 @@ def with_voxels(frame: Frame) -> Frame:
         words |= np.random.default_rng(light).integers(0, 3, len(words)).astype(np.uint32) << np.uint32(2 + 2 * light)
     states = VoxelStates(grid, words, np.arange(frame.lights) != 2)
     return replace(frame, structures=frame.structures | {"voxels": states})
+
+
+class CubesBuilt:
+    """A tree of cubes whose sides are a quarter, of which those of even x are built: deeper where z is above 0."""
+
+    name, owner, levels = "kdtree-lazy", "object", 8
+
+    def __init__(self) -> None:
+        self.extent = np.array([-2.0, -0.25, -1.0, 2.0, 1.75, 1.0], np.float32)
+        self.alive = True
+
+    def at(self, points: NDArray[np.float32], across: int) -> PartsAt | None:
+        """What lies at points (n, 3)."""
+        if not self.alive:
+            return None
+        with np.errstate(invalid="ignore"):
+            inside = ((points >= self.extent[:3]) & (points < self.extent[3:])).all(1)
+            i, j, k = np.where(inside[:, None], np.floor(4.0 * points), 0).astype(np.int64).T
+        found = nothing_at(len(points))
+        found.numbers[inside] = (((i + 64) << 14) + ((j + 64) << 7) + k + 64)[inside]
+        found.owners[inside & (i >= 4)] = 3
+        found.levels[inside] = np.where(k >= 0, 6, 3)[inside]
+        found.built[inside] = (i % 2 == 0)[inside]
+        found.widths[inside] = 0.25
+        found.held[inside & (i % 2 == 0)] = 2
+        return found
+
+
+def with_tree(frame: Frame) -> Frame:
+    """The frame as of a tree that its rays have built in part."""
+    statistics = replace(frame.statistics, built=BuiltPart(123, 40, 160, 10_000))
+    return replace(frame, structures=frame.structures | {"tree": CubesBuilt()}, statistics=statistics)
 
 
 def with_cell_lights(frame: Frame) -> Frame:

@@ -12,6 +12,7 @@ compiling shaders.  What is said meanwhile goes to standard error.
 from __future__ import annotations
 
 import ctypes
+import gc
 import json
 import os
 import sys
@@ -75,6 +76,7 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
 
 
 def main() -> None:
+    gc.freeze()  # what is imported lives to the end
     with os.fdopen(os.dup(1), "w") as answers:
         os.dup2(2, 1)  # what ImGui prints is no answer
         for line in sys.stdin:

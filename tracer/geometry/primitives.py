@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.attributes import CORNER_NORMALS, FACE_NORMAL, OBJECT, attribute_rows, edge_products
+from tracer.geometry.attributes import CORNER_NORMALS, FACE_NORMAL, OBJECT, edge_products
 from tracer.geometry.boxes import OUTWARDS
+from tracer.geometry.layout import Report, box_of, laid_out, triangle_rows
 from tracer.geometry.poses import Poses, inverses, products
 from tracer.kernels import kernel
 from tracer.scene.arrays import Float32, Float64, Int32
 from tracer.scene.deformation import deformed
 from tracer.scene.model import SPHERE, Scene, SceneObject
-
-
-def triangle_rows(corners: Float32) -> Float32:
-    """Triangles as rows (n, 9) float32, a corner and two edges, from their corners (n, 3, 3)."""
-    first = corners[:, 0].astype(np.float64)
-    edges = [corners[:, i] - first for i in (1, 2)]
-    return np.concatenate([first, *edges], axis=1).astype(np.float32)
 
 
 @kernel
@@ -70,13 +65,12 @@ class Primitives:
     to_canonical (q, 3, 4), its inverse to_object.  Those of object i begin at triangle_starts[i] and
     quadric_starts[i], (n + 1,) int32, and end before the next object's; object_of (t + q,) int32 tells whose
     each is.  boxes (n, 6) float64 are around objects, whatever shape those take that deform; inverted around none.
+    `report` is given the part that is laid out, again and again, and may raise Cancelled.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, report: Report = lambda done: None) -> None:
         objects = scene.objects
-        corners = np.concatenate([o.triangles.corners for o in objects])
-        self.triangles = triangle_rows(corners)
-        self.corners = corners[scene.triangle_offsets[1] :].copy()
+        self.corners = np.concatenate([objects[0].triangles.corners[:0], *(o.triangles.corners for o in objects[1:])])
         quadrics = [o.quadrics for o in objects]
         self.to_object = np.concatenate([q.to_object for q in quadrics])
         self.to_canonical = inverses(self.to_object)
@@ -89,21 +83,20 @@ class Primitives:
         self.quadric_starts: Int32 = scene.quadric_offsets - scene.quadric_offsets[0]
         counts = np.diff(self.triangle_starts), np.diff(self.quadric_starts)
         self.object_of = np.concatenate([np.repeat(np.arange(len(objects)), n) for n in counts]).astype(np.int32)
-        self.attributes = attribute_rows(scene, self.triangles, self.object_of)
-        self.normals = self.attributes[: len(corners), CORNER_NORMALS:FACE_NORMAL]
+        self.triangles, self.attributes = laid_out(scene, self.object_of, lambda done: report(0.9 * done))
+        self.normals = self.attributes[: len(self.triangles), CORNER_NORMALS:FACE_NORMAL]
         self.deformations = {i: o.deformation for i, o in enumerate(objects) if o.deformation is not None}
         self._parts = [o.part_of for o in objects]
-        self.boxes = np.array([self._box(i, o) for i, o in enumerate(objects)])
+        self.boxes = np.array([self._box(i, o, lambda: report(0.9)) for i, o in enumerate(objects)])
 
-    def _box(self, index: int, one: SceneObject) -> Float64:
+    def _box(self, index: int, one: SceneObject, report: Callable[[], None]) -> Float64:
         which, corners = (
             self.quadrics_of(index),
             one.triangles.corners if one.deformation is None else one.deformation.corners,
         )
-        points, boxes = corners.reshape(-1, 3), self.quadric_boxes(which, self.to_object[which])
-        lower = np.concatenate([points, boxes[:, :3]]).min(0, initial=np.inf)
-        upper = np.concatenate([points, boxes[:, 3:]]).max(0, initial=-np.inf)
-        return np.concatenate([lower, upper]).astype(np.float64)
+        around, boxes = box_of(corners.reshape(-1, 3), report), self.quadric_boxes(which, self.to_object[which])
+        lower, upper = boxes[:, :3].min(0, initial=np.inf), boxes[:, 3:].max(0, initial=-np.inf)
+        return np.concatenate([np.minimum(around[:3], lower), np.maximum(around[3:], upper)])
 
     def triangles_of(self, index: int) -> slice:
         """The numbers of an object\'s triangles."""

@@ -15,6 +15,7 @@ from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import WorldTriangles
 from tracer.geometry.queries import Placed
 from tracer.geometry.rays import Ray
+from tracer.geometry.tree_parts import TreeParts
 from tracer.geometry.visits import Visit
 from tracer.kernels import Entry
 from tracer.scene.arrays import Float64
@@ -64,6 +65,9 @@ class Structure(Protocol):
 
     def built(self) -> Built | None:
         """How much of it rays have had built so far; None for a structure that is built before they come."""
+
+    def parts_built(self) -> TreeParts | None:
+        """What rays have had built so far, and where; None where `built` is None."""
 
     def bounds(self) -> NDArray[np.float32]:
         """Box (6,) around everything that is placed; inverted for an empty world."""

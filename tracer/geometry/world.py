@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tracer.geometry.accelerators import ACCELERATORS, BVH8, KD_TREE, LAZY, MOST_TOGETHER
 from tracer.geometry.boxes import NO_BOX
+from tracer.geometry.bvh8 import pieces
 from tracer.geometry.bvh8.structure import Bvh8
 from tracer.geometry.kdtree.structure import KdTree
 from tracer.geometry.lazy_tree.structure import LazyKdTree
@@ -22,6 +23,7 @@ from tracer.geometry.primitives import Outlines, Primitives, WorldTriangles
 from tracer.geometry.queries import EVERYTHING, batch_of
 from tracer.geometry.rays import Hits, Ray, Rays
 from tracer.geometry.structure import Built, Structure
+from tracer.geometry.tree_parts import TreeParts
 from tracer.geometry.visits import Visit
 from tracer.kernels import Entry
 from tracer.parallel import for_each_chunk, thread_count
@@ -32,6 +34,9 @@ CHUNK = 8192  # rays a thread takes at a time
 EACH = 1024  # rays, traced alone, after which somebody may cancel
 
 STRUCTURES: dict[str, Any] = {KD_TREE: KdTree, LAZY: LazyKdTree, BVH8: Bvh8}
+
+LARGE = pieces.LARGE
+"""Primitives that never move: of more, the 8-wide tree may be built where rays arrive."""
 
 
 class World:
@@ -82,9 +87,8 @@ class World:
         if accelerator not in ACCELERATORS:
             raise ValueError(f"there is no accelerator {accelerator!r}; there is {', '.join(ACCELERATORS)}")
         self.accelerator = accelerator
-        if progress is not None:
-            progress("laying out primitives", 0.0)
-        self.primitives = Primitives(scene)
+        report = progress or (lambda what, fraction: None)
+        self.primitives = Primitives(scene, lambda done: report("laying out primitives", done))
         self.attributes, self.normals = self.primitives.attributes, self.primitives.normals
         self.object_of = self.primitives.object_of
         self.scene = scene
@@ -318,6 +322,10 @@ class World:
     def built(self) -> Built | None:
         """How much of the trees rays have had built so far; None where all are built before rays come."""
         return self.structure.built()
+
+    def parts_built(self) -> TreeParts | None:
+        """What rays have had built so far, and where; None where all is built before rays come."""
+        return self.structure.parts_built()
 
     def bounds(self) -> NDArray[np.float32]:
         """Box (6,) around everything that is there now; inverted for an empty world."""

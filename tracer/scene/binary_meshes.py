@@ -18,10 +18,10 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from tracer.scene.arrays import Float32, Float64, Int32
+from tracer.scene.distinct_points import DistinctPoints
 from tracer.scene.files import open_regular
 from tracer.scene.limits import MOST_PRIMITIVES
 from tracer.scene.model import SceneError
-from tracer.scene.places import Places
 from tracer.scene.ply_lists import CORNERS, LONGEST_HEAD, Element, elements_of
 
 ROWS = 1 << 18
@@ -91,7 +91,7 @@ def _read_stl(path: Path, file: BinaryIO, report: Report) -> BinaryMesh | None:
     file.seek(0)
     head = file.read(HEAD)
     file.seek(84)
-    places, faces = Places(count // 2), np.empty((count, 3), np.int32)
+    places, faces = DistinctPoints(count // 2), np.empty((count, 3), np.int32)
     for start in range(0, count, ROWS):
         report(start / count)
         rows = _rows(file, _STL, min(ROWS, count - start))

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.scene.arrays import Float32, Float64, Int32
+from tracer.scene.distinct_points import DistinctPoints
 from tracer.scene.mesh_kernels import count_around, measure_faces, smooth, sort_around
-from tracer.scene.places import Places
 
 BLOCK = 1 << 18
 """Faces that are worked on at once."""
@@ -65,7 +65,7 @@ def _blocks(faces: NDArray[np.integer]) -> Iterator[tuple[slice, Int32]]:
 
 def _places(vertices: Float32 | Float64, report: Report) -> Int32:
     """(vertices,) numbers that are equal where the positions are."""
-    places, found = Places(len(vertices) // 4), np.empty(len(vertices), np.int32)
+    places, found = DistinctPoints(len(vertices) // 4), np.empty(len(vertices), np.int32)
     for start in range(0, len(vertices), BLOCK):
         report(0.2 * start / len(vertices))
         found[start : start + BLOCK] = places.numbered(vertices[start : start + BLOCK])

@@ -8,7 +8,6 @@ edited.
 from __future__ import annotations
 
 import weakref
-from collections import Counter
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -22,26 +21,10 @@ from tracer.scene.deformation import deformed
 from tracer.scene.lights import Light, Vector
 from tracer.scene.model import Quadrics, Scene, SceneObject, Triangles
 from tracer.scene.normals import unit_normals
+from tracer.scene.things import Held, Thing, held_by, owner_of, things
 
 NEVER = "(hidden)"
 """The name of a track that shows nothing."""
-
-
-@dataclass(frozen=True)
-class Thing:
-    """What people call an object: a dynamic object of a scene, or a part of what never moves.
-
-    name is no other thing's; index is the object's in `Scene.objects`, part its number in `SceneObject.parts`, -1 for
-    all of an object."""
-
-    name: str
-    index: int
-    part: int = -1
-
-    @property
-    def moves(self) -> bool:
-        """Whether it is an object that can move."""
-        return self.index > 0
 
 
 @dataclass(frozen=True)
@@ -161,73 +144,7 @@ class Edited:
 
     def thing_of(self, primitive: int) -> Thing:
         """The thing that holds a primitive of this scene."""
-        return self._things[_owner(self.original, int(self.primitives[primitive]))]
-
-
-_known: dict[int, tuple[weakref.ref[Scene], tuple[Thing, ...]]] = {}  # by the identity of scenes that are in use
-
-
-def things(scene: Scene) -> tuple[Thing, ...]:
-    """All things of a scene, named once: first the parts of what never moves, then the objects that can move."""
-    key = id(scene)
-    known = _known.get(key)
-    if known is None or known[0]() is not scene:
-        known = _known[key] = weakref.ref(scene, lambda _: _known.pop(key, None)), _named(scene)
-    return known[1]
-
-
-def _named(scene: Scene) -> tuple[Thing, ...]:
-    """Its things, each with a name that no other has."""
-    found: list[tuple[str, int, int]] = []
-    for index, one in enumerate(scene.objects):
-        if one.part_of is not None:
-            found += [(name or "static", index, part) for part, name in enumerate(one.parts)]
-        elif len(one.triangles) or len(one.quadrics):
-            found.append((one.name or f"object {index}", index, -1))
-    taken = Counter(name for name, _, _ in found)
-    seen: Counter[str] = Counter()
-    made = []
-    for name, index, part in found:
-        seen[name] += 1
-        number, unique = seen[name], name
-        while number > 1 and taken[unique := f"{name} #{number}"]:
-            number += 1
-        taken[unique] += 1
-        made.append(Thing(unique, index, part))
-    return tuple(made)
-
-
-def thing_of(scene: Scene, primitive: int) -> Thing:
-    """The thing that holds a primitive."""
-    owner = _owner(scene, primitive)
-    return next(thing for thing in things(scene) if (thing.index, thing.part) == owner)
-
-
-def _owner(scene: Scene, primitive: int) -> tuple[int, int]:
-    """The object that holds a primitive, and the part of it, -1 for all."""
-    index = scene.object_of(primitive)
-    part_of = scene.objects[index].part_of
-    return index, -1 if part_of is None else int(part_of[_place(scene, index, primitive)])
-
-
-def thing_numbers(scene: Scene) -> Int32:
-    """(primitives,) int32: the place of each primitive's thing among all `things`."""
-    places = {(thing.index, thing.part): n for n, thing in enumerate(things(scene))}
-    found = np.empty(scene.primitive_count, np.int32)
-    for index, one in enumerate(scene.objects):
-        held = np.concatenate(_held(scene, index))
-        if one.part_of is None:
-            found[held] = places.get((index, -1), -1)
-        else:
-            found[held] = np.array([places[index, part] for part in range(len(one.parts))], np.int32)[one.part_of]
-    return found
-
-
-def _place(scene: Scene, index: int, primitive: int) -> int:
-    """A primitive's place in its object: its triangles, then its quadrics."""
-    if primitive < scene.triangle_count:
-        return primitive - int(scene.triangle_offsets[index])
-    return len(scene.objects[index].triangles) + primitive - int(scene.quadric_offsets[index])
+        return self._things[owner_of(self.original, int(self.primitives[primitive]))]
 
 
 def edited(scene: Scene, edits: Edits) -> Edited:
@@ -291,13 +208,10 @@ class Origin:
 
 # --- objects -----------------------------------------------------------------------------------------
 
-Held = tuple[NDArray[np.intp], NDArray[np.intp]]
-"""The numbers of an object's triangles, and of its quadrics, in the scene as it was read."""
-
 
 def _objects(scene: Scene, edits: Edits) -> tuple[list[SceneObject], list[Held]]:
     """The objects of the edited scene, and which primitives each holds."""
-    static, static_held = scene.objects[0], _held(scene, 0)
+    static, static_held = scene.objects[0], held_by(scene, 0)
     never = [thing for thing in things(scene) if thing.index == 0]
     part_of = static.part_of
     if part_of is None:
@@ -318,7 +232,7 @@ def _objects(scene: Scene, edits: Edits) -> tuple[list[SceneObject], list[Held]]
     names = {thing.index: thing.name for thing in things(scene)}
     times = dict(edits.static)
     for index, one in enumerate(scene.objects[1:], 1):
-        held, name = _held(scene, index), names.get(index, "")
+        held, name = held_by(scene, index), names.get(index, "")
         kept = ~np.isin(np.concatenate(held), list(edits.hidden_primitives))
         if not kept.all():
             one, held = _subset(one, kept), _of(held, kept)
@@ -329,12 +243,6 @@ def _objects(scene: Scene, edits: Edits) -> tuple[list[SceneObject], list[Held]]
         dynamic.append((replace(one, chain=(NEVER, *one.chain)) if name in edits.hidden else one, held))
     every = [(static, static_held), *dynamic, *freed]
     return [one for one, _ in every], [held for _, held in every]
-
-
-def _held(scene: Scene, index: int) -> Held:
-    first, last = scene.triangle_offsets[index : index + 2]
-    begin, end = scene.quadric_offsets[index : index + 2]
-    return np.arange(first, last), np.arange(begin, end)
 
 
 def _of(held: Held, kept: NDArray[np.bool_]) -> Held:

@@ -135,8 +135,14 @@ def _far_away(matrix: Float64, box: Float64 | None) -> tuple[float, float, float
 
 def _exposed(lights: Sequence[Light], objects: Sequence[SceneObject]) -> tuple[Light, ...]:
     """The lights, scaled alike."""
-    centers = np.concatenate([np.empty((0, 3)), *(o.triangles.corners.mean(axis=1) for o in objects)])
-    centers = centers[:: max(1, len(centers) // _MOST_TRIANGLES)]
+    if not lights:
+        return ()
+    step = max(1, sum(len(o.triangles) for o in objects) // _MOST_TRIANGLES)
+    chosen, before = [np.empty((0, 3))], 0
+    for o in objects:
+        chosen.append(o.triangles.corners[-before % step :: step].mean(axis=1))
+        before += len(o.triangles)
+    centers = np.concatenate(chosen)
     arriving = np.zeros(len(centers))
     for light in lights:
         squares = np.sum((centers - light.position) ** 2, axis=1) if light.falloff != "none" else np.ones(len(centers))

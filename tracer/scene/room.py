@@ -70,7 +70,7 @@ def _check(path: Path, needed: float, what: str) -> None:
 
 def available() -> float | None:
     """Bytes of memory that this process may still take without another being ended; None where nobody knows."""
-    found = [_of_system(), _of_group(), _of_limit()]
+    found = [_of_system(), _of_group(), of_limit()]
     known = [bytes_ for bytes_ in found if bytes_ is not None]
     return max(min(known), 0.0) if known else None
 
@@ -99,7 +99,7 @@ def _of_group() -> float | None:
         return None
 
 
-def _of_limit() -> float | None:
+def of_limit() -> float | None:
     """What is left of the addresses that this process may use, where `ulimit -v` bounds them."""
     try:
         import resource

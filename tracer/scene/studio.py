@@ -10,8 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracer.scene.arrays import Float32, Float64
 from tracer.scene.framing import extent
@@ -100,13 +102,22 @@ def with_floor(static: SceneObject, floor: Triangles, report: Callable[[], None]
     t = static.triangles
     fields = []
     for name in t.__dataclass_fields__:
-        report()
-        fields.append(np.concatenate([getattr(t, name), getattr(floor, name)]))
+        fields.append(_joined(getattr(t, name), getattr(floor, name), report))
     joined = Triangles(*fields)
     assert static.part_of is not None
     n = len(t)
     part_of = np.insert(static.part_of, n, [len(static.parts)] * len(floor)).astype(np.int32)
     return replace(static, triangles=joined, parts=(*static.parts, FLOOR), part_of=part_of)
+
+
+def _joined(many: NDArray[Any], few: NDArray[Any], report: Callable[[], None]) -> NDArray[Any]:
+    """Both arrays, one behind the other."""
+    joined = np.empty((len(many) + len(few), *many.shape[1:]), many.dtype)
+    for start in range(0, len(many), _BLOCK):
+        report()
+        joined[start : start + _BLOCK][: len(many) - start] = many[start : start + _BLOCK]
+    joined[len(many) :] = few
+    return joined
 
 
 def model_bounds(scene: Scene) -> Float64 | None:

@@ -197,9 +197,15 @@ def view(text: str) -> ChosenView:
     shown = {View.WIPE: ":PART"} | {
         v: ":LIGHT" if v.of_light else "[:share]" for v in View if v.of_light or v.needs_work
     }
-    known = ", ".join(v.value + shown.get(v, "") for v in View)
-    if name not in set(View) or (colon and not re.fullmatch(details.get(View(name), r"(?!)"), detail, re.ASCII)):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a view; the views are {known}")
+    forms = {v.value: v.value + shown.get(v, "") for v in View}
+    if name not in forms:
+        from tracer.similar import similar
+
+        close = _VIEW_NAMES.get(found := similar(name, [*forms, *_VIEW_NAMES]), found)
+        hint = f": did you mean {forms[close]}?" if close else f"; the views are {', '.join(forms.values())}"
+        raise argparse.ArgumentTypeError(f"{text!r} is not a view{hint}")
+    if colon and not re.fullmatch(details.get(View(name), r"(?!)"), detail, re.ASCII):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a view; the views are {', '.join(forms.values())}")
     view = View(name)
     wipe = float(detail) if view is View.WIPE and detail else 0.5
     if wipe > 1.0:
@@ -237,12 +243,14 @@ def lamp_samples(text: str) -> int:
 
 def method(text: str) -> str:
     """The name of a method."""
-    from tracer.method import Method, choice
+    from tracer.method import Method, choice, meant
 
     try:
         return str(Method.parse(text))
     except ValueError:
-        raise argparse.ArgumentTypeError(f"invalid choice: {text!r}; it is {choice()}") from None
+        close = meant(text)
+        hint = f": did you mean '{close}'?" if close else f"; it is {choice()}"
+        raise argparse.ArgumentTypeError(f"invalid choice: {text!r}{hint}") from None
 
 
 def methods_or_all(text: str) -> list[str]:
@@ -251,7 +259,8 @@ def methods_or_all(text: str) -> list[str]:
     try:
         return [name if name == "all" else method(name) for name in names]
     except argparse.ArgumentTypeError as error:
-        raise argparse.ArgumentTypeError(f"{error}; or all") from None
+        known = str(error).endswith("?")
+        raise argparse.ArgumentTypeError(f"{error}" if known else f"{error}; or all") from None
 
 
 class BeyondMemory(argparse.Action):

@@ -16,7 +16,7 @@ from viewer.cli.console import print_table, working
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
 from viewer.output.legend import named_light
-from viewer.output.light_cube import counts_of, described, picture_of
+from viewer.output.light_cube import EMPTY, FEW, MANY, ONE, described, picture_of, seen
 from viewer.output.pictures import lights_in_words
 from viewer.util.messages import printable
 
@@ -43,11 +43,11 @@ def cube(path: Path, options: Namespace) -> None:
     options.output.parent.mkdir(parents=True, exist_ok=True)
     name = named_light(scene.lights, options.light)
     Image.fromarray(picture_of(found) if options.no_legend else described(found, name)).save(options.output)
-    counts = counts_of(found)
+    counts = seen(found).counts
     table = Table(title=f"{path.name}, {name}, {time:.3f} s", title_justify="left")
     table.add_column("cells of its cube")
     table.add_column("", justify="right")
-    for name, number in zip(("nothing there", "covered", "few candidates", "others"), counts, strict=True):
+    for name, number in zip((EMPTY, ONE, FEW, MANY), counts, strict=True):
         table.add_row(name, f"{number / counts.cells:.1%}")
     table.add_row("memory", f"{found.bytes / 1e6:.1f} MB")
     table.add_row("building, all lights", f"{1e3 * frame.statistics.phases['certification']:.0f} ms")

@@ -74,7 +74,8 @@ def edits_of(options: Namespace) -> Edits:
 
 def edited_scene(scene: Scene, options: Namespace) -> Scene:
     """The scene as the options edit it; raises ValueError, in one line, for what the scene does not have."""
-    from tracer.scene.edits import edited, things
+    from tracer.scene.edits import edited
+    from tracer.scene.things import things
 
     edits = edits_of(options)
     known = {thing.name: thing.moves for thing in things(scene)}

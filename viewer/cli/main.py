@@ -7,7 +7,6 @@
     shadowcull sweep STUDY      many scenes, methods and settings, by several processes
     shadowcull zoom SCENE       towards a primitive, and whether its shadows keep up
     shadowcull explain SCENE    what became of the rays of one pixel
-    shadowcull cube SCENE       what a light sees, from its light buffer
     shadowcull hunt SCENE       the worst wrong pixels of a method
     shadowcull cube SCENE       what a light sees in each direction, as a picture
     shadowcull figure SCENE     a frame by several methods, side by side
@@ -20,7 +19,6 @@ imported only to open the window.
 
 from __future__ import annotations
 
-import difflib
 import os
 import sys
 from argparse import Namespace
@@ -28,6 +26,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tracer.similar import did_you_mean
 from viewer.cli import hunt_parser, parsers, picture_parsers, sweep_parser
 from viewer.cli.mesh_arguments import as_arguments, mesh_options
 from viewer.cli.parsers import MISUSED
@@ -85,7 +84,8 @@ def _failed(error: Exception) -> int:
         say("cancelled")
         return INTERRUPTED
     if isinstance(error, MemoryError):
-        say("out of memory; a smaller --size needs less", ERROR)
+        why = f": {error}" if str(error) else ""
+        say(f"out of memory{why}; a simpler scene or a smaller --size needs less", ERROR)
     elif isinstance(error, SceneError | ValueError | OSError) and str(error):
         say(error, ERROR)
     else:
@@ -117,9 +117,8 @@ def _check_is_scene(parser: parsers.Parser, name: str, commands: list[str]) -> N
     """A word that is no file may be a command mistyped: better said now than as an error about a missing file."""
     if name in resources.embedded_scenes() or Path(name).exists() or Path(name).suffix:
         return
-    close = difflib.get_close_matches(name, [*commands, *resources.embedded_scenes()], n=1)
-    hint = f"did you mean '{close[0]}'?" if close else f"the commands are {', '.join(commands)}"
-    parser.error(f"{name!r} is not a command, a file or a scene that comes with the program: {hint}")
+    hint = did_you_mean(name, [*commands, *resources.embedded_scenes()]) or f": the commands are {', '.join(commands)}"
+    parser.error(f"{name!r} is not a command, a file or a scene that comes with the program{hint}")
 
 
 def _picture_instead(options: Namespace) -> int:

@@ -70,8 +70,8 @@ def _add_picture(parser: Parser) -> None:
         default="color",
         metavar="V",
         help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference, "
-        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, lights, cuts, voxels:LIGHT, cell-lights, saved or cost, as "
-        "counts of rays or as shares like saved:share (default: color)",
+        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, lights, cuts, voxels:LIGHT, cell-lights, tree, saved or cost, "
+        "as counts of rays or as shares like saved:share (default: color)",
     )
     add("--legend", action="store_true", help="draw the view's legend into the picture")
     _add_display(parser)
@@ -180,7 +180,7 @@ def _add_style(parser: Parser) -> None:
     add("--outlines", action="store_true", help="draw the borders between primitives")
     help_ = "how much of the light shows under flat colours, 0 to 1 (default: 0.35)"
     add("--shading", type=number(0.0, 1.0), default=0.35, metavar="S", help=help_)
-    help_ = "the slice of the view voxels: across which axis, and where along it, 0 to 1 (default: y:0.25)"
+    help_ = "the slice of the views voxels and tree: across which axis, and where along it, 0 to 1 (default: y:0.25)"
     add("--slice", type=slice_, default=MIDDLE, metavar="AXIS:PART", help=help_)
     help_ = f"brightness of the picture beneath the difference, and behind a slice, 0 to 1 (default: {BENEATH:g})"
     add("--beneath", type=number(0.0, 1.0), default=BENEATH, metavar="B", help=help_)

@@ -16,6 +16,8 @@ import numpy as np
 from PIL import Image
 
 from tracer.frame import Frame, Settings
+from tracer.geometry.accelerators import BVH8, LAZY
+from tracer.geometry.world import LARGE
 from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
@@ -30,7 +32,7 @@ from viewer.output.recipe import Recipe, Style
 from viewer.services import stills
 from viewer.services.lamps import LampSamples
 from viewer.state import terms
-from viewer.state.methods import CERTIFIED, default_for
+from viewer.state.methods import CERTIFIED, SHOWN_BY, default_for
 from viewer.state.readings import MOST_RECORDED
 from viewer.state.slices import MIDDLE
 from viewer.state.tone import Tone
@@ -77,6 +79,7 @@ def render(path: Path, options: Namespace) -> None:
             words = recipe.arguments(wanted, scene, str(options.output or f"{path.stem}.png"))
             print(shlex.join(["shadowcull", *words]))
             return
+        check_tree(settings, view, scene)
         if not stills.lights_fit(wanted, scene, everything):
             raise ValueError(_too_many_lights(options, settings.width * settings.height, len(scene.lights)))
         prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
@@ -203,7 +206,7 @@ def check_display(options: Namespace) -> None:
     if options.mark_clipped and not view.shows_clipped:
         raise ValueError(f"--mark-clipped is for the views color and wipe, not {view.value}")
     if options.slice != MIDDLE and not view.has_slice:
-        raise ValueError(f"--slice is for the view voxels, not {view.value}")
+        raise ValueError(f"--slice is for the views voxels and tree, not {view.value}")
     if options.range is not None and (not view.has_range or shares):
         names = ", ".join(one.value for one in View if one.has_range)
         raise ValueError(f"--range is for views of numbers: {names}{' as counts' if shares else ''}")
@@ -212,9 +215,20 @@ def check_display(options: Namespace) -> None:
 def check_view(settings: Settings, view: View) -> None:
     """Raise ValueError, in one line, where the method has nothing for a view of what single methods have."""
     method = Method.parse(settings.method)
+    if view is View.CUTS and not method.clusters:
+        why = f"the method {settings.method} makes no clusters of lights"
+        raise ValueError(f"--view {view.value}: {why}; give --method {SHOWN_BY[view]}")
     shows = {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}.get(view)
     if shows is not None and not any(name == method.base or method.has(name) for name in shows):
         raise ValueError(f"--view {view.value}: not with the method {settings.method}; give --method {shows[0]}")
+
+
+def check_tree(settings: Settings, view: View, scene: Scene) -> None:
+    """Raise ValueError, in one line, where a view of what rays have had built meets a tree that is built before."""
+    waits = settings.accelerator == LAZY or (settings.accelerator == BVH8 and scene.primitive_count > LARGE)
+    if view is View.TREE and not waits:
+        why = f"{settings.accelerator} builds all of its tree before rays come; give --accelerator {LAZY}"
+        raise ValueError(f"--view {view.value}: {why}")
 
 
 def write_picture(path: Path, scene: Scene, frame: Frame, wanted: Recipe) -> None:

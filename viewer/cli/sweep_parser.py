@@ -37,6 +37,10 @@ Frames of methods that learn nothing are tasks of their own. Other methods trace
 bench, unless there is a warmup. Each task has one thread. Every frame is kept as soon as it is traced, as a row of
 Parquet in the folder of results, and the same command again traces only what is missing. Ctrl-C ends the sweep at once.
 
+The table says of each method, under the same circumstances, how many steps and tests it saves on average; which part
+of the shadow rays is known, that is culled or tested against dynamic objects only; the median processor time of a
+frame; and the speed-up, which is the processor time of all frames by none over that by the method.
+
 --scheduler takes the address of a Dask scheduler whose workers have the same version of Shadowcull and one thread each;
 scenes are sent to them. Needs Dask and PyArrow: install shadowcull[sweep].
 """

@@ -58,12 +58,15 @@ def _of_part(part: list[Line], lines: list[Line], left: tuple[str, ...]) -> Tabl
 
 def _table(title: str, shown: list[Line], lines: list[Line], left: tuple[str, ...] = (), where: bool = True) -> Table:
     """A section for each scene, size and combination of settings, a row for each method."""
-    from viewer.output.sweep_summary import COLUMNS
+    from viewer.output.sweep_summary import COLUMNS, KNOWN
 
     verified = all(line.verified for line in lines)
+    known = f"\n{KNOWN}: shadow rays that are culled, or tested against dynamic objects only" * (KNOWN not in left)
     table = Table(title=printable(title), title_justify="left", title_style="bold", caption_justify="left")
-    table.caption = f"saved against {REFERENCE}, certificates included; times are processor time of one thread" + (
-        ", with verifying" if verified else "; verify = true counts wrong answers"
+    table.caption = (
+        f"saved against {REFERENCE}, certificates included; times are processor time of one thread"
+        + (", with verifying" if verified else "; verify = true counts wrong answers")
+        + known
     )
     settings = where and any(line.settings for line in lines)
     for heading in (*(("scene", "size") if where else ()), *(["settings"] if settings else []), "method"):

@@ -21,6 +21,7 @@ from viewer.output.recipe import Recipe
 from viewer.state.readings import work_top
 from viewer.state.session import Session
 from viewer.state.views import View, color_map
+from viewer.util.numbers import changed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -108,8 +109,8 @@ class Shown:
         steps, tests = rays.traversal_steps + cost.certificate_steps, rays.intersection_tests + cost.certificate_tests
 
         def work(now: int, then: int) -> str:
-            saved = "" if method == "none" or not then else f" ({now / then - 1.0:+.1%})".replace("-", "−")
-            return f"{now:,}{saved}"
+            against = "" if method == "none" or not then else f" ({changed(now / then - 1.0)})"
+            return f"{now:,}{against}"
 
         return [
             ("shadow rays due", f"{rays.due:,}"),

@@ -20,6 +20,7 @@ from matplotlib.ticker import MaxNLocator, PercentFormatter
 from tracer.experiment import REFERENCE, Results, Row, table
 from viewer.output.reports import frames_in_words
 from viewer.util.files import write_whole
+from viewer.util.numbers import saved
 
 ENDINGS = (".png", ".svg", ".pdf")
 # Okabe and Ito's colours, those that read well as letters first; in greys, dashes and marks distinguish methods.
@@ -117,18 +118,18 @@ def _draw_savings(panel: Axes, results: Results, rows: list[Row], work: str) -> 
     labels = []
     lowest, highest = 0.0, 0.05
     for number, row in enumerate(rows):
-        saved = results.reductions(row.method, work)
+        savings = results.reductions(row.method, work)
         average, most, frame = (getattr(row, name.format(work)) for name in _COLUMNS)
-        color = _draw_curve(panel, results, saved, number)
+        color = _draw_curve(panel, results, savings, number)
         panel.axhline(average, linewidth=1.0, color=color, linestyle=DASHES[number % len(DASHES)])
         panel.plot([frame], [most], MARKS[number % len(MARKS)], color=color, markersize=11, mec="white", zorder=4)
-        label, greatest = f"{row.method}, average {average:.1%}", f"most {most:.1%}, frame {frame}"
+        label, greatest = f"{row.method}, average {saved(average)}", f"most {saved(most)}, frame {frame}"
         if len(rows) == 1:
             _label_above(panel, results, frame, most, greatest, color)
         else:
             label += f"\n{greatest}"
         labels.append((average, label, color))
-        lowest, highest = min(lowest, float(saved.min())), max(highest, most)
+        lowest, highest = min(lowest, float(savings.min())), max(highest, most)
     extent = highest - lowest
     panel.set_ylim(lowest - 0.03 * extent, highest + (0.22 if len(rows) == 1 else 0.08) * extent)
     panel.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))

@@ -13,6 +13,7 @@ from enum import Enum
 import numpy as np
 
 from tracer.culling.voxels.tell import STATE_NAMES
+from tracer.fit import too_few
 from tracer.frame import Frame
 from tracer.method import Method
 from tracer.scene.lights import Light, number_of
@@ -31,16 +32,18 @@ from viewer.output.legend_counts import (
     work_legend,
 )
 from viewer.state import terms
-from viewer.state.readings import can_draw, has_modes_of_cells, span_of, voxels_of
+from viewer.state.readings import can_draw, has_modes_of_cells, span_of, tree_of, voxels_of
 from viewer.state.slices import AXES, MIDDLE, Slice, middle_of
 from viewer.state.tone import NEUTRAL, clipped
 from viewer.state.tone import Tone as DisplayTone
+from viewer.state.tree_slice import SAMPLES, place_of, share_built
 from viewer.state.views import (
     ARRIVAL_COLORS,
     ARRIVAL_MEANING,
     BLACK,
     GREY,
     TOO_BRIGHT,
+    TREE_WAITS,
     VOXEL_COLORS,
     VOXEL_MEANING,
     WRONG,
@@ -49,6 +52,8 @@ from viewer.state.views import (
     View,
 )
 from viewer.util.numbers import count, percent
+
+NEARLY_ALL = 0.9  # of the lights: cuts of more clusters show nothing
 
 
 class Tone(Enum):
@@ -146,6 +151,7 @@ def legend_of(frame: Frame, view: View, chosen: Chosen = Chosen()) -> Legend | N
         View.CUTS: _cuts,
         View.VOXELS: _voxels,
         View.CELL_LIGHTS: _cell_lights,
+        View.TREE: _tree,
     }
     return makers[view](frame, view, chosen) if view in makers and can_draw(frame, view, chosen.light) else None
 
@@ -314,7 +320,12 @@ def _cuts(frame: Frame, view: View, chosen: Chosen) -> Legend:
     scale = Scale("0", count(found.most), count(found.most // 2) if found.most % 2 == 0 else "")
     if chosen.span is not None:
         scale = Scale(f"{chosen.span[0]:.4g}", f"{chosen.span[1]:.4g}")
-    return Legend("Clusters of lights that each pixel is shaded by", (), entries, scale, facts)
+    cuts = frame.statistics.cuts
+    notes: tuple[Note, ...] = ()
+    if cuts is not None and cuts.blocks and cuts.mean > NEARLY_ALL * cuts.lights:
+        few = too_few(Method.parse(frame.settings.method), cuts.lights)
+        notes = (Note(f"Nearly every light is a cluster of its own{f': {few}' if few else ''}.", Tone.WARNING),)
+    return Legend("Clusters of lights that each pixel is shaded by", (), entries, scale, facts, notes)
 
 
 def _voxels(frame: Frame, view: View, chosen: Chosen) -> Legend:
@@ -353,6 +364,25 @@ def _cell_lights(frame: Frame, view: View, chosen: Chosen) -> Legend:
     if chosen.span is not None:
         scale = Scale(f"{chosen.span[0]:.4g}", f"{chosen.span[1]:.4g}")
     return Legend("Lights that the cell must look at", (), entries, scale, facts)
+
+
+def _tree(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    parts, built = tree_of(frame), frame.statistics.built
+    share = share_built(parts, chosen.cut)
+    low, high = chosen.span or span_of(frame, view)
+    facts = [Entry(f"slice at {AXES[chosen.cut.axis]}", None, (f"{place_of(parts, chosen.cut):.4g}",))]
+    if share is not None:
+        facts.append(Entry("built of the slice", None, (percent(share, 1.0),), _OF_SLICE))
+    if built is not None:
+        in_nodes = f"{percent(built.primitives, built.of)} of {count(built.of)}"
+        facts.append(Entry("nodes built", None, (count(built.nodes),)))
+        facts.append(Entry("primitives in them", None, (in_nodes,), "of all; the others wait for a ray to come near"))
+    entries = (
+        Entry("not built: no ray has come", TREE_WAITS[1]),
+        Entry(f"border of {'an object' if parts.owner == 'object' else 'a piece'}", (1.0, 1.0, 1.0)),
+    )
+    scale = Scale(f"level {low:.4g}", f"{high:.4g}")
+    return Legend(f"{view.label}: levels of its parts, {parts.name}", (), entries, scale, tuple(facts))
 
 
 def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
@@ -394,6 +424,7 @@ _ARRIVALS = {
     Arrival.LIT: "fully lit",
     Arrival.UNKNOWN: "not known yet",
 }
+_OF_SLICE = f"its area, by {SAMPLES} x {SAMPLES} points; what lies outside of all boxes counts for neither"
 _TOO_BRIGHT = "red, green or blue is brighter than the screen's"
 _BLACK = "no channel is brighter than nothing"
 

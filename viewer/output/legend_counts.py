@@ -207,7 +207,7 @@ def cuts_legend(frame: Frame) -> CutsLegend:
 
 @dataclass(frozen=True)
 class VoxelsLegend:
-    """How many voxels of a slice, and in all, are unknown, full and null, in this order."""
+    """How many voxels of a slice, and in all, are unknown, full and lit, in this order."""
 
     in_slice: tuple[int, int, int]
     in_all: tuple[int, int, int]

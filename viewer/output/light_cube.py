@@ -28,6 +28,10 @@ NOTHING_THERE: Color = (0.93, 0.94, 0.96)
 COVERED: Color = SHADOW_COLORS[ShadowMode.FULL_SHADOW]
 
 
+EMPTY, ONE, FEW, MANY = "nothing there", "covered by one triangle", "candidates to test", "too many: traced"
+"""What cells are called, in the order of CellCounts."""
+
+
 class CellCounts(NamedTuple):
     """How many cells of a cube have nothing in them; a triangle that covers them, before which there is nothing; few
     candidates; and too many."""
@@ -74,15 +78,6 @@ def unfolded(cells: NDArray, empty: NDArray) -> NDArray:
     return cross
 
 
-def counts_of(cube: Cube) -> CellCounts:
-    """How many cells have what."""
-    lengths, covered = list_lengths(cube), np.isfinite(full_depths(cube))
-    alone = (lengths < 0) & covered
-    return CellCounts(
-        int((lengths == 0).sum()), int(alone.sum()), int((lengths > 0).sum()), int(((lengths < 0) & ~covered).sum())
-    )
-
-
 @dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
 class CubeSeen:
     """A cube as it is drawn: `lengths` (6, side, side) int32 of the lists of its cells, -1 where these are too long, or
@@ -96,6 +91,12 @@ class CubeSeen:
     def covered(self) -> NDArray[np.bool_]:
         """(6, side, side): cells of one triangle that covers them, before which there is nothing."""
         return (self.lengths < 0) & np.isfinite(self.depths)
+
+    @cached_property
+    def counts(self) -> CellCounts:
+        """How many cells have what."""
+        masks = self.lengths == 0, self.covered, self.lengths > 0, (self.lengths < 0) & ~self.covered
+        return CellCounts(*(int(mask.sum()) for mask in masks))
 
     @property
     def longest(self) -> int:
@@ -190,24 +191,20 @@ def _beside(left: NDArray[np.uint8], right: NDArray[np.uint8]) -> NDArray[np.uin
 
 def lists_legend(drawn: CubeSeen, light: str) -> Legend:
     """Of what is known of each cell."""
-    cells = drawn.lengths.size
+    counts = drawn.counts
     rows = (
-        ("nothing there", NOTHING_THERE, drawn.lengths == 0, "nothing is in the way of any ray in this direction"),
-        ("covered by one triangle", COVERED, drawn.covered, "before it there is nothing, behind it all is in shadow"),
-        (
-            "longer lists",
-            GREY,
-            (drawn.lengths < 0) & ~drawn.covered,
-            "more than are tested: rays are traced",
-        ),
+        (EMPTY, NOTHING_THERE, counts.empty, "nothing is in the way of any ray in this direction"),
+        (ONE, COVERED, counts.covered, "before it there is nothing, behind it all is in shadow"),
+        (MANY, GREY, counts.many, "so many candidates that rays are traced instead of tested against them"),
     )
     entries = tuple(
-        Entry(name, color, (percent(int(where.sum()), cells),), f"{meaning}: {count(int(where.sum()))} cells")
-        for name, color, where, meaning in rows
+        Entry(name, color, (percent(number, counts.cells),), f"{meaning}: {count(number)} cells")
+        for name, color, number, meaning in rows
     )
-    listed = int((drawn.lengths > 0).sum())
-    facts = (Entry("with a list", None, (percent(listed, cells),), "of candidates, that rays are tested against"),)
-    scale = Scale("1", f"{drawn.longest}", "in the list")
+    facts = (
+        Entry(FEW, None, (percent(counts.few, counts.cells),), "a list of primitives that rays are tested against"),
+    )
+    scale = Scale("1", f"{drawn.longest}", "candidates")
     return Legend(f"What {light} sees: lists", ("cells",), entries, scale, facts)
 
 

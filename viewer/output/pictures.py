@@ -22,13 +22,17 @@ from viewer.state.readings import (
     lights_due,
     samples_of,
     span_of,
+    tree_of,
     units_of,
     voxels_of,
     whole_of,
     work_of,
 )
-from viewer.state.slices import LINE, MIDDLE, NOTHING, STATE, Slice, slice_codes
+from viewer.state.slices import LINE as VOXEL_LINE
+from viewer.state.slices import MIDDLE, NOTHING, STATE, Slice, slice_codes
 from viewer.state.tone import NEUTRAL, Tone, clipped, toned
+from viewer.state.tree_slice import BORDER, HIDDEN, LEVEL, LINE, STRIPE, WAITS, tree_codes
+from viewer.state.tree_slice import NOTHING as NO_PART
 from viewer.state.views import (
     ARRIVAL_COLORS,
     BACKGROUND,
@@ -43,6 +47,7 @@ from viewer.state.views import (
     RING_DIMMING,
     SHADOW_COLORS,
     TOO_BRIGHT,
+    TREE_WAITS,
     VOXEL_COLORS,
     WIPE_LINE,
     WRONG,
@@ -110,6 +115,8 @@ def picture(
         colors = _on_background(frame, _cell_lights(frame, span or span_of(frame, view)))
     elif view is View.VOXELS:
         colors = _voxels(frame, light, beneath, outlines, tone, cut)
+    elif view is View.TREE:
+        colors = _tree(frame, span or span_of(frame, view), shading, beneath, outlines, tone, cut)
     elif view is View.DEPTH:
         colors = _on_background(frame, _depth(frame, span))
     elif view is View.NORMAL:
@@ -227,9 +234,32 @@ def _voxels(frame: Frame, light: int, beneath: float, outlines: bool, tone: Tone
     palette = np.asarray(list(VOXEL_COLORS.values()), np.float32)
     there = codes != NOTHING
     sliced = palette[codes[there] & STATE]
-    sliced[codes[there] & LINE != 0] *= np.float32(CELL_LINE)
+    sliced[codes[there] & VOXEL_LINE != 0] *= np.float32(CELL_LINE)
     colors[there] = sliced
     return colors
+
+
+def _tree(
+    frame: Frame,
+    span: tuple[float, float],
+    shading: float,
+    beneath: float,
+    outlines: bool,
+    tone: Tone,
+    cut: Slice,
+) -> NDArray:
+    """A slice through a tree, by the levels of its parts, through everything; around it the picture is dimmed."""
+    codes = tree_codes(frame, tree_of(frame), cut)
+    colors = _on_background(frame, beneath * np.clip(toned(frame.color, tone), 0.0, 1.0))
+    if outlines:
+        colors = _outlined(frame, colors)
+    y, x = np.indices(codes.shape)
+    waits = np.asarray(TREE_WAITS, np.float32)[(x + y) // STRIPE % 2]
+    sliced = np.where((codes & WAITS != 0)[..., None], waits, _mapped(_in_range((codes & LEVEL).astype(float), span)))
+    sliced = np.where((codes & LINE != 0)[..., None], np.float32(FAINT_LINE) * sliced, sliced)
+    sliced = np.where((codes & HIDDEN != 0)[..., None], _shaded(frame, sliced, shading), sliced)
+    sliced = np.where((codes & BORDER != 0)[..., None], np.float32(1.0), sliced)
+    return np.where((codes != NO_PART)[..., None], sliced, colors)
 
 
 def _outlined(frame: Frame, colors: NDArray) -> NDArray:

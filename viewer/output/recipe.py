@@ -132,7 +132,7 @@ def needs_history(method: str, view: View) -> bool:
     """Whether a picture by a method in a view depends on the frames before it."""
     parsed = Method.parse(method)
     of_work = view is View.CERTIFICATE or (view.needs_work and parsed.culls)
-    return of_work or view.of_modes or not parsed.exact
+    return of_work or view.of_modes or view is View.TREE or not parsed.exact
 
 
 def by_chance(settings: Settings, view: View) -> bool:

@@ -14,49 +14,63 @@ from tracer.lamp_experiment import LampResults, LampRow
 from tracer.method import Method
 from tracer.zoom import Approach, Change, Step
 from viewer.state import terms
-from viewer.util.numbers import memory
+from viewer.util.numbers import memory, saved
 
 # --- experiments -----------------------------------------------------------------------------------
 
 
-def _saved(text: str) -> Callable[[Row], str]:
-    """A cell of what a method saves, for the reference empty."""
-    return lambda row: text.format(row) if row.method != REFERENCE else ""
+def _compared(cell: Callable[[Row], str]) -> Callable[[Row], str]:
+    """A cell of what a method is against the reference; empty for that."""
+    return lambda row: cell(row) if row.method != REFERENCE else ""
 
 
 WRONG = "wrong answers (of rays due)"
 LINES: tuple[tuple[str, Callable[[Row], str]], ...] = (
-    ("traversal steps saved, average", _saved("{0.average_steps:.1%}")),
-    ("  most (frame)", _saved("{0.most_steps:.1%} ({0.most_steps_frame})")),
-    ("intersection tests saved, average", _saved("{0.average_tests:.1%}")),
-    ("  most (frame)", _saved("{0.most_tests:.1%} ({0.most_tests_frame})")),
+    ("traversal steps saved, average", _compared(lambda row: saved(row.average_steps))),
+    ("  most (frame)", _compared(lambda row: f"{saved(row.most_steps)} ({row.most_steps_frame})")),
+    ("intersection tests saved, average", _compared(lambda row: saved(row.average_tests))),
+    ("  most (frame)", _compared(lambda row: f"{saved(row.most_tests)} ({row.most_tests_frame})")),
     ("extra occlusion tests per pixel", lambda row: f"{row.extra_tests_per_pixel:.3f}"),
     (WRONG, lambda row: f"{row.wrong:,} ({row.wrong_part:.3%})"),
     ("time of a frame, median", lambda row: f"{1000.0 * row.frame_seconds:,.0f} ms"),
     ("time of all frames", lambda row: f"{row.path_seconds:,.2f} s"),
     ("  of it preparing", lambda row: f"{row.build_seconds:,.2f} s" if row.build_seconds >= 0.005 else ""),
+    ("speed-up over none, all frames", _compared(lambda row: f"{row.speed_up:.2f}")),
     ("memory of the method", lambda row: memory(row.memory_bytes) if row.memory_bytes else ""),
 )
 """The table's lines: what each is called, and what it says of a method; WRONG means nothing unless verified."""
 
+QUICKER = 1.03
+"""Speed-up over the reference from which on a method is called quicker: less is within what clocks differ by."""
+SAVING = 0.0005  # part of the work that is worth a word: less is shown as 0.0%
+
 
 def leaders(rows: Sequence[Row]) -> list[str]:
-    """Which exact method is the best of several in each respect, a line for each; none where there is nothing to
-    choose from."""
-    choice = [row for row in rows if Method.parse(row.method).exact and not _measures_only(row.method)]
-    if len(choice) < 3:
+    """Which exact method is the best of several in each respect, a line for each, or that none is better than the
+    reference; no lines where there is nothing to choose from."""
+    others = [row for row in rows if Method.parse(row.method).exact and not _measures_only(row.method)]
+    others = [row for row in others if row.method != REFERENCE]
+    if len(others) < 2:
         return []
-    steps, tests, time = (
-        max(choice, key=lambda row: row.average_steps),
-        max(choice, key=lambda row: row.average_tests),
-        min(choice, key=lambda row: row.path_seconds),
-    )
-    (none,) = (row for row in rows if row.method == REFERENCE)
+    culling = [row for row in others if max(row.most_steps, row.most_tests) > 0.0]  # else it is only chance
+    steps = _best(others, lambda row: row.average_steps, SAVING)
+    tests = _best(others, lambda row: row.average_tests, SAVING)
+    time = _best(culling, lambda row: row.speed_up, QUICKER)
+    none = f"{REFERENCE}; no other"
     return [
-        f"fewest steps, of exact methods: {steps.method} ({steps.average_steps:.1%} saved)",
-        f"fewest tests, of exact methods: {tests.method} ({tests.average_tests:.1%} saved)",
-        f"least time, of exact methods: {time.method} ({time.path_seconds / none.path_seconds:.2f} of {REFERENCE}'s)",
+        "fewest steps, of exact methods: "
+        + (f"{steps.method} ({saved(steps.average_steps)} saved)" if steps else f"{none} saves any"),
+        "fewest tests, of exact methods: "
+        + (f"{tests.method} ({saved(tests.average_tests)} saved)" if tests else f"{none} saves any"),
+        "least time, of exact methods: "
+        + (f"{time.method} ({time.speed_up:.2f} times as fast as {REFERENCE})" if time else f"{none} is quicker"),
     ]
+
+
+def _best(rows: Sequence[Row], figure: Callable[[Row], float], least: float) -> Row | None:
+    """The row with the largest figure; None where that is not worth naming."""
+    best = max(rows, key=figure, default=None)
+    return best if best is not None and figure(best) >= least else None
 
 
 def _measures_only(method: str) -> bool:

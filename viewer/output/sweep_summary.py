@@ -12,6 +12,7 @@ import pyarrow as pa
 from tracer.experiment import REFERENCE
 from viewer.output.sweep_store import Key, keys_of
 from viewer.state.study import ASPECTS
+from viewer.util.numbers import saved
 
 Group = tuple[str, int, int, tuple[Any, ...]]
 """A scene, a size, and the values of ASPECTS."""
@@ -22,9 +23,9 @@ NOTHING = float("nan")
 class Line:
     """A method under the same circumstances.  Savings are averages over frames, parts of 1, against `none`; `spread` is
     how far the averages of seeds deviate from the steps that are saved (standard deviation).  `known` is the part of
-    the shadow rays that was culled, or tested against dynamic objects only.  `seconds` is the median of processor
-    time, for which it matters little what else the machine does, and `speed_up` the quotient of all of it.  NaN: not
-    known.
+    the shadow rays that was culled, or tested against dynamic objects only.  `seconds` is the median of a frame's
+    processor time, for which it matters little what else the machine does, and `speed_up` that of all frames by `none`
+    over that of the method.  NaN: not known.
 
     `settings` names those that the study varies."""
 
@@ -78,12 +79,12 @@ def _line(
     pairs = [(row, reference[_moment(data, row)]) for row in rows if _moment(data, row) in reference]
     mine, theirs = [row for row, _ in pairs], [row for _, row in pairs]
 
-    def saved(traced: str, certified: str) -> np.ndarray:
+    def savings(traced: str, certified: str) -> np.ndarray:
         before, after = of(traced, theirs), of(traced, mine) + of(certified, mine)
         return np.divide(before - after, before, out=np.zeros_like(before), where=before > 0)
 
-    steps = saved("shadow_traversal_steps", "certificate_steps")
-    tests = saved("shadow_intersection_tests", "certificate_tests")
+    steps = savings("shadow_traversal_steps", "certificate_steps")
+    tests = savings("shadow_intersection_tests", "certificate_tests")
     seeds = np.array([data["seed"][row] for row in mine])
     by_seed = [float(steps[seeds == seed].mean()) for seed in np.unique(seeds)]
     due, wrong = of("shadow_rays_due", rows).sum(), of("wrong", rows).sum()
@@ -122,19 +123,18 @@ def _shown(value: Any) -> str:
     return "as in the scene" if value is None else f"{value:g}" if isinstance(value, float) else str(value).lower()
 
 
-def _percent(value: float, spread: float = NOTHING) -> str:
-    if value != value:
-        return ""
-    return f"{value:.1%}" + (f" ± {100 * spread:.1f}" if spread == spread else "")
+def _saved(value: float, spread: float = NOTHING) -> str:
+    return "" if value != value else saved(value, spread if spread == spread else None)
 
 
+KNOWN = "known"
 COLUMNS: tuple[tuple[str, Callable[[Line], str]], ...] = (
     ("frames", lambda line: f"{line.frames:,}"),
-    ("steps\nsaved", lambda line: "" if line.method == REFERENCE else _percent(line.steps, line.spread)),
-    ("tests\nsaved", lambda line: "" if line.method == REFERENCE else _percent(line.tests)),
-    ("known", lambda line: "" if line.method == REFERENCE else _percent(line.known)),
+    ("steps\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.steps, line.spread)),
+    ("tests\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.tests)),
+    (KNOWN, lambda line: "" if line.method == REFERENCE else f"{line.known:.1%}"),
     ("wrong", lambda line: f"{line.wrong:,}" if line.verified else ""),
-    ("frame\nms", lambda line: "" if line.seconds != line.seconds else f"{1000 * line.seconds:,.1f}"),
-    ("speed-\nup", lambda line: "" if line.speed_up != line.speed_up else f"{line.speed_up:.2f}"),
+    ("frame,\nmedian\nms", lambda line: "" if line.seconds != line.seconds else f"{1000 * line.seconds:,.1f}"),
+    ("speed-\nup, all\nframes", lambda line: "" if line.speed_up != line.speed_up else f"{line.speed_up:.2f}"),
 )
 """What a table says of a line: headings, and the cells below them."""

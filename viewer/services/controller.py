@@ -34,7 +34,8 @@ from viewer.services.questions import Questions
 from viewer.services.ray_inspector import RayInspector
 from viewer.services.recipes import Recipes
 from viewer.services.record import Record
-from viewer.services.render_thread import RenderThread, Traced
+from viewer.services.render_request import Traced
+from viewer.services.render_thread import RenderThread
 from viewer.services.run_controller import RunController
 from viewer.services.scene_loader import Arrival, SceneLoader
 from viewer.services.scene_table import SceneTable
@@ -46,6 +47,7 @@ from viewer.services.teachers import Teachers
 from viewer.services.time_travel import TimeTravel
 from viewer.services.tracing import Conditions, Tracing
 from viewer.services.undo import Undo
+from viewer.state.arriving import fitting_view
 from viewer.state.history import History
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
@@ -194,16 +196,27 @@ class Controller:
         arrival, flown = self.loader.follow(), self.preview.flown
         if arrival is None:
             return
+        said = ""
         if arrival.again:
             self._show_again(arrival)
         elif arrival.opened is not None:
             self.show(arrival.opened.scene, arrival.opened.renderer, arrival.opened.info)
+            said = self._fit_view() if arrival.place is None else ""
         if arrival.place is not None:
             self.undo.call_next("the place of a saved picture")
             self.restore(arrival.place)
         if flown is not None:  # while the scene was waiting for its kernels
             self.session.move(flown)
-        self.notices.say(arrival.text)
+        self.notices.say(f"{arrival.text}. {said}" if said else arrival.text)
+
+    def _fit_view(self) -> str:
+        """Show the picture where the view has nothing to show in the scene that has just been opened; returns what is
+        to be said of it, and of the method there."""
+        session = self.session
+        view, said = fitting_view(session.view, session.settings, session.scene.lights if session.scene else ())
+        if view is not session.view:
+            self.settings.set_view(view)
+        return said
 
     def _show_again(self, arrival: Arrival) -> None:
         """Show the scene that was open as it is now, from where we are."""

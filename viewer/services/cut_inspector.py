@@ -12,7 +12,7 @@ import numpy as np
 from tracer.frame import Frame
 from tracer.light_cut import LightCut, light_cut
 from tracer.renderer import Renderer
-from viewer.services.render_thread import Question, Traces
+from viewer.services.render_request import Question, Traces
 from viewer.services.selection import Selection
 from viewer.state.picking import pixel_at
 from viewer.state.projection import Stroke, place, strokes
@@ -67,7 +67,9 @@ class CutInspector:
         self._drawn: tuple[LightCut, list[DrawnNode]] | None = None
 
     def follow(self, frame: Frame | None, idle: bool) -> None:
-        """Ask about the pixel of the newest whole frame, None where nobody wants to know, and take up what has come."""
+        """Ask about the pixel of the newest whole frame, None where nobody wants to know, and take up what has come.
+
+        A cut is that of a picture, however many samples it gets: it is asked for once, and stays while they come."""
         if frame is None or not idle:
             self._asked = self.cut = self._drawn = None
             return
@@ -78,12 +80,14 @@ class CutInspector:
             self._asked = self.cut = None
             return
         asked = self._asked
-        if asked is None or asked.frame is not frame or (asked.x, asked.y) != at:
+        if asked is None or asked.frame.primitive is not frame.primitive or (asked.x, asked.y) != at:
             self._asked = asked = CutQuestion(frame, *at)
             self._renderer.ask(asked)
         if asked.over:
             self.cut = asked.found
-        elif self.cut is not None and (self.cut.frame is not frame or (self.cut.x, self.cut.y) != at):
+        elif self.cut is not None and (
+            self.cut.frame.primitive is not frame.primitive or (self.cut.x, self.cut.y) != at
+        ):
             self.cut = None
 
     def drawn(self) -> list[DrawnNode]:

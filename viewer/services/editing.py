@@ -15,10 +15,12 @@ from typing import cast
 from tracer.carry_modes import carry_modes
 from tracer.frame import Settings
 from tracer.renderer import Renderer
-from tracer.scene.edits import NO_EDITS, Edited, Edits, edited, things
+from tracer.scene.edits import NO_EDITS, Edited, Edits, edited
 from tracer.scene.lights import Vector
 from tracer.scene.model import Cancelled, Scene
-from viewer.services.render_thread import RenderThread, Traces
+from tracer.scene.things import things
+from viewer.services.render_request import Traces
+from viewer.services.render_thread import RenderThread
 from viewer.state.notices import Notices
 from viewer.state.session import Session
 from viewer.util.failures import KNOWN, Failure, failure

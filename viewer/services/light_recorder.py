@@ -11,7 +11,7 @@ from typing import Protocol, cast
 from tracer.frame import Frame
 from tracer.one_light import with_light
 from tracer.renderer import Renderer
-from viewer.services.render_thread import Question, Traces
+from viewer.services.render_request import Question, Traces
 from viewer.state.readings import can_draw
 from viewer.state.session import Session
 

@@ -19,7 +19,7 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled
 from tracer.told_rays import RayTree
 from viewer.output.ray_rows import Key, RayRows, Row, unfolded
-from viewer.services.render_thread import Question, Traced, Traces
+from viewer.services.render_request import Question, Traced, Traces
 from viewer.services.selection import Selection
 from viewer.state.picking import pixel_of
 from viewer.state.ray_lines import RayLine, ray_lines

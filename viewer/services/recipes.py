@@ -21,6 +21,7 @@ from viewer.state.views import View
 
 UNKNOWN = "its modes were learnt from other frames as well"
 CHANCE = "what is certified depends on time and threads"
+BUILT = "what rays have had built depends on all that has been seen"
 
 
 class Recipes:
@@ -81,6 +82,8 @@ class Recipes:
             return found
         if recipe.by_chance(frame.settings, found.view):
             return replace(found, history=CHANCE)
+        if found.view is View.TREE:
+            return replace(found, history=BUILT)
         repeats = self._tracing.learnt.repeats(frame)
         return replace(found, history=UNKNOWN) if repeats is None else replace(found, repeats=repeats)
 
@@ -114,7 +117,9 @@ class Recipes:
         except UnicodeEncodeError:
             self._notices.say("not copied: the name of the scene's file is no text", error=True)
             return None
-        if found.history:
+        if found.history == BUILT:
+            self._notices.say(f"copied, but the picture may differ: {found.history}")
+        elif found.history:
             self._notices.say(f"copied, but the picture may differ: {found.history} (Backspace forgets them)")
         else:
             self._notices.say(f"copied: {words}")

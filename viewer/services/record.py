@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.scene.edits import NO_EDITS
-from viewer.services.render_thread import RenderRequest, Traced
+from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.history import History
 from viewer.state.moments import MOST, Moment, Moments
 from viewer.state.picking import Pick

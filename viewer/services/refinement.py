@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tracer.method import Method
-from viewer.services.render_thread import RenderRequest, Traced
+from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.views import View
 
 MOST_FRAMES = 40

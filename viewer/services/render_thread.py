@@ -16,130 +16,21 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator
 from contextlib import closing
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
-from typing import Any, Protocol
 
-from tracer.renderer import Frame, Settings
-from tracer.scene.model import Camera, Cancelled
-from tracer.statistics import FrameStatistics
+from tracer.renderer import Frame
+from tracer.scene.model import Cancelled
 from viewer.services.jobs import TRACER, step_back
 from viewer.services.pair import Asked, Pair
+from viewer.services.render_request import Question, RenderRequest, Task, Traced, Traces
 from viewer.util.failures import Failure, failure
 
 MOST_WHOLE = 16
 """Whole frames that wait to be taken; the window asks for one at a time, and takes what has come before."""
 _KNOWN = (MemoryError, OSError)  # what may go wrong here without a mistake of the program's
-
-
-class Traces(Protocol):
-    """The part of `tracer.Renderer` that is used here."""
-
-    settings: Settings
-
-    def refine(
-        self,
-        time: float,
-        camera: Camera | None = None,
-        cancel: Callable[[], bool] | None = None,
-        parts: Sequence[float] = ...,
-        samples: int = ...,
-        focus: tuple[float, float] | None = None,
-    ) -> Generator[Frame, None, None]: ...
-
-    def reset_modes(self) -> None: ...
-
-    def beside(self) -> Traces: ...
-
-    def follow(self, other: Any) -> None: ...
-
-    def take_turn(self, time: float) -> None: ...
-
-
-@dataclass(frozen=True)
-class RenderRequest:
-    """What to trace: a picture, with so many samples a pixel in the end.
-
-    `second` is the method that traces the same once more, if any, after each part of the picture.
-    `divisor` is how much coarser than the window it is; `serial` tells requests apart that are otherwise alike;
-    `refinement_seconds` is how long, at least, certificates may be made for it where nobody waits for the picture.  How
-    the picture comes about does not tell requests apart: `parts` of it, in sixteenths, around a `focus`.  A `quick`
-    request is not cut short before some of it has been shown, except by one that is `final`: nothing moves any more."""
-
-    time: float
-    camera: Camera
-    settings: Settings
-    divisor: int = 1
-    serial: int = 0
-    refinement_seconds: float = 0.0
-    samples: int = 1
-    second: str = ""
-    parts: tuple[float, ...] = field(default=(16,), compare=False)
-    quick: bool = field(default=False, compare=False)
-    final: bool = field(default=False, compare=False)
-    focus: tuple[float, float] | None = field(default=None, compare=False)
-
-    def supersedes(self, running: RenderRequest, shown: bool = False) -> bool:
-        """Whether a trace of `running`, part of which has been shown or not, is no longer worth going on with now that
-        this is wanted."""
-        if running == self:
-            return False
-        same_kind = replace(running.settings, width=1, height=1) == replace(self.settings, width=1, height=1)
-        return shown or not running.quick or not same_kind or (self.final and not running.final)
-
-
-@dataclass(frozen=True)
-class Traced:
-    """A frame and the request it answers, what the first part of this cost, and the same frame by a second method;
-    `fresh` says of a whole frame that all modes were forgotten before it, and none has become whole in between."""
-
-    request: RenderRequest
-    frame: Frame
-    first: FrameStatistics
-    second: Frame | None = None
-    fresh: bool = False
-
-    @property
-    def whole(self) -> bool:
-        """Whether all of its pixels have been shaded."""
-        return self.frame.statistics.part >= 1.0
-
-    @property
-    def full_size(self) -> tuple[int, int]:
-        """The size whose aspect it has: its own, or what it is a coarser version of."""
-        return self.frame.width * self.request.divisor, self.frame.height * self.request.divisor
-
-
-class Task(Protocol):
-    """Long work with the renderer's world.  It ends soon after `cancelled()` turns true, and raises nothing."""
-
-    def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None: ...
-
-
-class Question(Protocol):
-    """A moment's work with the renderer as the frame of this time left it."""
-
-    @property
-    def time(self) -> float: ...
-
-    def answer(self, renderer: Traces) -> None: ...
-
-
-class Pictures(Protocol):
-    """The part of `RenderThread` that decides what is seen."""
-
-    @property
-    def busy(self) -> bool: ...
-
-    def submit(self, request: RenderRequest) -> None: ...
-
-    def hurry(self, request: RenderRequest) -> None: ...
-
-    def take(self) -> Traced | None: ...
-
-    def reset_modes(self) -> None: ...
 
 
 class RenderThread:

@@ -12,7 +12,7 @@ import numpy as np
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Scene
-from viewer.services.render_thread import RenderRequest, Traced
+from viewer.services.render_request import RenderRequest, Traced
 from viewer.services.runs import Run
 from viewer.state.views import View
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from tracer.frame import Frame, Settings
 from tracer.method import Method
-from viewer.services.render_thread import RenderRequest
+from viewer.services.render_request import RenderRequest
 from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.session import Session
 

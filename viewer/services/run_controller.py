@@ -16,7 +16,7 @@ from tracer.scene.model import Camera
 from tracer.zoom import Step
 from viewer.output import exports
 from viewer.services.capture_service import CaptureService
-from viewer.services.render_thread import RenderRequest, Task, Traced
+from viewer.services.render_request import RenderRequest, Task, Traced
 from viewer.services.runs import Experiment, Run, ZoomTest, duration
 from viewer.services.selection import Selection
 from viewer.state.methods import BY_MODES, CERTIFIED

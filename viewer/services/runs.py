@@ -23,7 +23,7 @@ from tracer.scene.edits import Origin
 from tracer.scene.model import Cancelled, Scene
 from viewer.output import exports
 from viewer.output.film import Film
-from viewer.services.render_thread import Traces
+from viewer.services.render_request import Traces
 from viewer.state.methods import in_order
 from viewer.state.plans import ExperimentPlan, ZoomPlan, parse_factors
 from viewer.state.views import View
@@ -201,7 +201,7 @@ class Experiment(Run[experiment.Results]):
             depth=plan.depth,
             verify=plan.verify,
             samples=1,
-            accelerator="kdtree",  # whose steps are the paper's, as the command has it
+            accelerator=plan.accelerator,
             certificate_seconds=math.inf,  # a count of certificates is what repeats exactly
         ).validated()
         self.shown = self.methods[-1]

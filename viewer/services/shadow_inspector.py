@@ -21,7 +21,7 @@ from tracer.explanation import Explanation, explain, outline
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from viewer.services.frame_answers import NONE_WRONG, WrongAnswers, wrong_answers
-from viewer.services.render_thread import Question, Traces
+from viewer.services.render_request import Question, Traces
 from viewer.services.selection import Selection
 from viewer.state.picking import pixel_at, pixel_of
 from viewer.state.projection import Stroke, strokes

@@ -17,7 +17,7 @@ from tracer.explanation import explain
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from viewer.services.record import Record
-from viewer.services.render_thread import Question, Traced, Traces
+from viewer.services.render_request import Question, Traced, Traces
 from viewer.services.selection import Selection
 from viewer.state.moments import Moment
 from viewer.state.picking import Pick

@@ -12,7 +12,7 @@ from tracer.frame import Settings
 from tracer.method import Method
 from tracer.scene.model import Camera
 from viewer.services.record import Record
-from viewer.services.render_thread import Traced
+from viewer.services.render_request import Traced
 from viewer.services.replay import Past, Replay
 from viewer.services.run_controller import RunController
 from viewer.services.runs import Experiment

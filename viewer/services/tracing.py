@@ -17,7 +17,7 @@ from viewer.services import lamps, refinement
 from viewer.services.governor import AT_ONCE, Governor, Plan, divided
 from viewer.services.lamps import LampSteps
 from viewer.services.refinement import Refinement
-from viewer.services.render_thread import Pictures, RenderRequest, Traced
+from viewer.services.render_request import Pictures, RenderRequest, Traced
 from viewer.services.requests import as_asked, fulfils, lacks, settings_for, with_modes_of
 from viewer.services.runs import Run
 from viewer.state.learnt import Learnt

@@ -154,13 +154,17 @@ class Keymap:
         else:
             self._preferences.keys.pop(name, None)
 
-    def sharing(self, key: str, but: str = "") -> list[str]:
-        """What else has this key."""
-        return [name for name in self._defaults if name != but and key in self.of(name)]
-
-    def conflicts(self, name: str) -> list[str]:
-        """What has a key that this has too."""
-        return list(dict.fromkeys(other for key in self.of(name) for other in self.sharing(key, name)))
+    def conflicts(self) -> dict[str, list[str]]:
+        """All that share a key, each with what else has one of its keys."""
+        owners: dict[str, list[str]] = {}
+        for name in self._defaults:
+            for key in self.of(name):
+                owners.setdefault(key, []).append(name)
+        others = {
+            name: [other for other in dict.fromkeys(n for key in self.of(name) for n in owners[key]) if other != name]
+            for name in self._defaults
+        }
+        return {name: found for name, found in others.items() if found}
 
     def drag(self, button: str, modifiers: str) -> str:
         """What a drag does; a modifier that means nothing in a habit is as none."""

@@ -30,11 +30,6 @@ def groups() -> list[tuple[str, list[Kind]]]:
     return [("Exact: the picture is that of none", exact), ("With errors", other)]
 
 
-def of_all_lights(lights: int) -> str:
-    """The methods that cull rays to each of so many lights, or shade by all of them, in words."""
-    return ", ".join(kind.name for kind in bases() if kind.culls and kind.answers >= lights and kind.fits(lights))
-
-
 def with_additions(method: str, more: Iterable[str]) -> str:
     """The method with these additions besides its own."""
     parsed = Method.parse(method)

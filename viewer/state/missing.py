@@ -5,28 +5,36 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tracer.frame import Frame
+from tracer.geometry.accelerators import BVH8, LAZY
+from tracer.geometry.world import LARGE
 from tracer.method import Method
 from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY
-from viewer.state.readings import MOST_RECORDED, can_draw, can_record_lights
+from viewer.state.readings import MOST_RECORDED, TREE, TREE_IS_GONE, can_draw, can_record_lights
 from viewer.state.views import View
 from viewer.util.numbers import count
 
 CLUSTERED = SHOWN_BY[View.CUTS]
 """The method that shades by clusters of lights."""
 
-_LACKS = {
-    View.VOXELS: "has no voxels",
-    View.CELL_LIGHTS: "has no cells that know their lights",
+_MADE_BY = {
+    View.VOXELS: "Voxels are made by the method voxels",
+    View.CELL_LIGHTS: "Cells that know their lights are made by the methods lie-exact and lie",
 }
+
+
+_LAZY = (
+    f"{LAZY} builds it where they arrive, and so does {BVH8} with more than {count(LARGE)} primitives that never move."
+)
 
 
 @dataclass(frozen=True)
 class Missing:
-    """Why there is nothing to see, in a sentence or two, and what culls in a method that would show something; nothing
-    where none helps."""
+    """Why there is nothing to see, in a sentence or two, and what culls in a method, or which structure, would show
+    something; nothing where none helps."""
 
     text: str
     base: str
+    accelerator: str = ""
 
 
 def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) -> Missing | None:
@@ -41,8 +49,12 @@ def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) 
     if view is View.CUTS and not can_draw(frame, view):
         why = decision if method.clusters else f"The method {method.base} clusters no lights; {CLUSTERED} does."
         return Missing(why, "" if method.clusters else CLUSTERED)
-    if view in _LACKS and not can_draw(frame, view):
-        return Missing(f"The method {method} {_LACKS[view]}; {SHOWN_BY[view]} does.", SHOWN_BY[view])
+    if view in _MADE_BY and not can_draw(frame, view):
+        return Missing(f"{_MADE_BY[view]}, not by {method}.", SHOWN_BY[view])
+    if view is View.TREE and TREE in frame.structures and not can_draw(frame, view):
+        return Missing(f"There is nothing to see: {TREE_IS_GONE}.", "")
+    if view is View.TREE and not can_draw(frame, view):
+        return Missing(f"All of the tree was built before rays came ({frame.settings.accelerator}). {_LAZY}", "", LAZY)
     if view is View.SAVED or (view is View.COST and shares):
         return _nothing_saved(view, frame)
     if view.needs_verify and method.exact and not method.uses_modes:

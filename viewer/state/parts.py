@@ -13,8 +13,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.scene.edits import things
 from tracer.scene.model import CONE, Scene
+from tracer.scene.things import things
 
 KINDS = ("triangle", "sphere", "cone")
 _KEPT = 2  # scenes whose parts are remembered

@@ -9,13 +9,15 @@ MOST_FACTORS = 6  # that are compared in one zoom test
 
 @dataclass
 class ExperimentPlan:
-    """What to measure: `frames` over the whole path, by each of `methods`, the reference always among them."""
+    """What to measure: `frames` over the whole path, by each of `methods`, the reference always among them, through a
+    tree whose steps are the paper's unless another is chosen."""
 
     methods: set[str]
     frames: int = 100
     size: tuple[int, int] = (512, 512)
     depth: int = 10
     verify: bool = False
+    accelerator: str = "kdtree"
 
 
 @dataclass

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.voxels.tell import VoxelStates
 from tracer.frame import Frame
+from tracer.geometry.tree_parts import TreeParts
 from viewer.state.views import Arrival, View
 
 MOST_RECORDED = 1 << 28
@@ -19,10 +20,13 @@ soon and asks for no other frame."""
 CUT_NODES, CUT_BOUND = "cut nodes", "cut bound"  # layers of methods that shade by cuts of lights
 CELL_LIGHTS = "cell lights"  # that of methods whose cells know which lights they must look at
 VOXELS, LIGHT_CUBES = "voxels", "light cubes"  # structures of methods
+TREE = "tree"  # that rays have built
 
 _NO_CUTS = "the method of the frame shades by all lights, not by clusters of them"
 _NO_CELLS = "the method of the frame has no cells that know which lights they must look at"
 _NO_VOXELS = "the method of the frame has no voxels"
+_NO_TREE = "all of the frame's tree was built before its rays came"
+TREE_IS_GONE = "the frame's tree was let go of with its world"
 _NO_WORK = "the frame did not record the work at its pixels"
 _NO_LIGHTS = "the frame did not record which samples of its lights reach its pixels"
 
@@ -43,6 +47,8 @@ def can_draw(frame: Frame, view: View, light: int = 0) -> bool:
         return CELL_LIGHTS in frame.layers
     if view is View.VOXELS:
         return VOXELS in frame.structures
+    if view is View.TREE:
+        return TREE in frame.structures and frame.structures[TREE].alive
     return frame.settings.keeps_modes or not view.of_modes
 
 
@@ -157,6 +163,17 @@ def voxels_of(frame: Frame) -> VoxelStates:
     return found
 
 
+def tree_of(frame: Frame) -> TreeParts:
+    """The tree that the frame's rays were building; raises ValueError for a frame whose tree was there before, or is
+    no more."""
+    if TREE not in frame.structures:
+        raise ValueError(_NO_TREE)
+    found: TreeParts = frame.structures[TREE]
+    if not found.alive:
+        raise ValueError(TREE_IS_GONE)
+    return found
+
+
 def work_top(frame: Frame, view: View) -> float:
     """What has a heat map's last colour: the 99th percentile of pixels that hit something, 1 at least.
 
@@ -181,6 +198,8 @@ def span_of(frame: Frame, view: View) -> tuple[float, float]:
         return 0.0, float(lights_top(cut_nodes(frame)))
     if view is View.CELL_LIGHTS:
         return 0.0, float(lights_top(cell_lights(frame)))
+    if view is View.TREE:
+        return 0.0, float(tree_of(frame).levels)
     if not view.has_range:
         raise ValueError(f"the view {view.value} has no range")
     return 0.0, work_top(frame, view)

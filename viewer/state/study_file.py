@@ -3,7 +3,6 @@ the key, and what to do."""
 
 from __future__ import annotations
 
-import difflib
 import json
 import math
 import re
@@ -17,6 +16,7 @@ from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
 from tracer.scene.files import read_regular
 from tracer.settings import LIGHT_BUFFER_SIDES, MAX_NODES, Settings
+from tracer.similar import did_you_mean, similar
 from viewer.state.study import ASPECTS, Study
 from viewer.util import resources
 
@@ -38,6 +38,8 @@ def read_study(path: Path) -> Study:
         text = read_regular(path, MOST_BYTES).decode("utf-8")
         return _Reader(path, text, tomllib.loads(text)).study()
     except OSError as error:
+        if isinstance(error, FileNotFoundError):
+            raise OSError(f"{path}: no such file; check the path") from None
         raise OSError(f"{path}: no study can be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise StudyError(f"{path}: no study: it is not text in UTF-8") from None
@@ -159,8 +161,9 @@ class _Reader:
         """The file of a scene: of the program, or beside the study."""
         found = resources.embedded_scenes().get(name) or self._beside(name)
         if not found.is_file():
-            own = ", ".join(resources.embedded_scenes())
-            raise self._wrong("scenes", "", f"no file {found}, and no scene of the program ({own})", name)
+            own = resources.embedded_scenes()
+            hint = did_you_mean(name, own) or f" ({', '.join(own)})"
+            raise self._wrong("scenes", "", f"no file {found}, and no scene of the program{hint}", name)
         return found
 
     def _beside(self, name: str) -> Path:
@@ -215,8 +218,8 @@ class _Reader:
     def _check_keys(self, data: dict[str, Any], known: tuple[str, ...], table: str) -> None:
         for key in data:
             if key not in known:
-                close = difflib.get_close_matches(key, known, n=1)
-                hint = f"did you mean {close[0]}?" if close else f"there is {', '.join(known)}"
+                close = similar(key, known)
+                hint = f"did you mean {close}?" if close else f"there is {', '.join(known)}"
                 raise self._wrong(key, table, f"no such key; {hint}")
 
     def _wrong(self, name: str, table: str, message: str, value: Any = None) -> StudyError:

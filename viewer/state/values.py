@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode, ShadowMode, has_shadow_mode
 from tracer.frame import Frame
+from tracer.geometry.tree_parts import NOWHERE
 from viewer.state.readings import (
     CUT_BOUND,
     can_draw,
@@ -18,12 +19,14 @@ from viewer.state.readings import (
     cut_nodes,
     lights_due,
     samples_of,
+    tree_of,
     units_of,
     voxels_of,
     whole_of,
     work_of,
 )
 from viewer.state.slices import MIDDLE, Slice, slice_seen, voxel_words
+from viewer.state.tree_slice import part_seen, part_words, tree_seen
 from viewer.state.views import Certificate, View
 
 CHANNELS = ("red", "green", "blue")
@@ -82,6 +85,9 @@ def values_of(frame: Frame, view: View, light: int = 0, cut: Slice = MIDDLE) -> 
         numbers = slice_seen(frame, voxels.grid, cut).numbers
         states = voxels.states(light, np.maximum(numbers, 0).astype(np.int64))
         return _single(states, "state of the voxel", numbers >= 0, classes=True)
+    if view is View.TREE:
+        parts = tree_seen(frame, tree_of(frame), cut).parts
+        return _single(np.where(parts.built, parts.levels, -1), "level", parts.numbers != NOWHERE, classes=True)
     if view is View.PENUMBRA:
         asked, reached = samples_of(frame, light)
         known = hit if frame.shaded is None else hit & frame.shaded
@@ -106,6 +112,9 @@ def words_at(
         return (f"{100.0 * work / whole:.0f} %",) if whole else (f"{work}",)
     if view is View.VOXELS:
         return voxel_words(frame, voxels_of(frame), light, cut, x, y)
+    if view is View.TREE:
+        tree = tree_of(frame)
+        return part_words(part_seen(frame, tree, cut, x, y), tree.owner)
     if frame.primitive[y, x] < 0:
         return ("miss",)
     return _WORDS[view](frame, light, x, y)

@@ -26,7 +26,7 @@ SAID: dict[Verdict, str] = {
     Verdict.BUFFER_LIT: "light buffer: nothing in front",
     Verdict.BUFFER_FULL: "light buffer: behind what covers the cell",
     Verdict.BUFFER_TESTED: "light buffer: candidates only",
-    Verdict.VOXEL_LIT: "null voxel",
+    Verdict.VOXEL_LIT: "lit voxel",
     Verdict.VOXEL_FULL: "full voxel",
     Verdict.VOXEL_WALK: "walk through voxels",
     Verdict.CELL_LIT: "lit cell",

@@ -38,6 +38,7 @@ class View(StrEnum):
     CUTS = "cuts"
     VOXELS = "voxels"
     CELL_LIGHTS = "cell-lights"
+    TREE = "tree"
 
     @property
     def label(self) -> str:
@@ -75,17 +76,17 @@ class View(StrEnum):
     @property
     def has_range(self) -> bool:
         """Whether it shows a number on the colour map, whose range can be chosen."""
-        return self in (View.DEPTH, View.SAVED, View.COST, View.LIGHTS, View.CUTS, View.CELL_LIGHTS)
+        return self in (View.DEPTH, View.SAVED, View.COST, View.LIGHTS, View.CUTS, View.CELL_LIGHTS, View.TREE)
 
     @property
     def shows_picture(self) -> bool:
         """Whether it shows traced colours, by the tone that is chosen."""
-        return self in (View.COLOR, View.DIFFERENCE, View.WIPE, View.VOXELS)
+        return self in (View.COLOR, View.DIFFERENCE, View.WIPE, View.VOXELS, View.TREE)
 
     @property
     def has_slice(self) -> bool:
         """Whether it shows a slice through space, which can be chosen."""
-        return self is View.VOXELS
+        return self in (View.VOXELS, View.TREE)
 
     @property
     def shows_clipped(self) -> bool:
@@ -125,6 +126,7 @@ _TITLES = {
     View.CUTS: "Clusters of lights",
     View.VOXELS: "Voxels",
     View.CELL_LIGHTS: "Lights per cell",
+    View.TREE: "Tree built",
 }
 
 _KEYS = {
@@ -137,6 +139,7 @@ _KEYS = {
     View.CUTS: "Shift+N",
     View.VOXELS: "Shift+V",
     View.CELL_LIGHTS: "Shift+K",
+    View.TREE: "Shift+T",
 }
 
 _EXPLANATIONS = {
@@ -165,6 +168,9 @@ _EXPLANATIONS = {
     "which see all of it, and of which neither is known. Behind it the picture is dimmed.",
     View.CELL_LIGHTS: "How many lights the cell of each pixel must look at, with the methods lie and lie-exact: all "
     "but those that it knows to be hidden. Lines are the borders of cells.",
+    View.TREE: "A slice through a tree that is built where rays arrive: built parts by their level, and grey stripes "
+    "where no ray has been yet. Lines are the borders of parts, and white ones those of objects or pieces. The slice "
+    "goes through everything; what lies before it shows as light and shade.",
 }
 
 
@@ -248,6 +254,10 @@ VOXEL_MEANING = {
     int(ShadowMode.NON_SHADOW): "nothing static is between it and the light: rays that end in it, or come to it, are "
     "tested against dynamic objects only",
 }
+
+
+TREE_WAITS = _hex("4A4E57"), _hex("6B707B")
+"""Stripes of what of a tree is not built."""
 
 
 class Arrival(IntEnum):

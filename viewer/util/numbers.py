@@ -16,6 +16,33 @@ def percent(part: float, whole: float) -> str:
     return f"{share:.2g} %" if 0.0 < share < 0.05 else f"{share:.1f} %"
 
 
+MOST_PERCENT = 10.0
+"""Parts of a whole past which something is so many times as many, as nobody reads -119360 %."""
+
+
+def saved(part: float, spread: float | None = None) -> str:
+    """Which part of some work is saved, and how much that varies: 41.2%, 41.2% ± 1.2; where more than ten times as
+    much is done instead, how many times: 1,194 × as many."""
+    if part < -MOST_PERCENT:
+        varies = "" if spread is None else f" ± {_times(spread)}"
+        return f"{_times(1.0 - part)}{varies} × as many"
+    return f"{part:.1%}" + ("" if spread is None else f" ± {100.0 * spread:.1f}")
+
+
+def saved_in_words(part: float) -> str:
+    """The same where no heading says that it is about saving: 41.2% saved."""
+    return saved(part) if part < -MOST_PERCENT else f"{saved(part)} saved"
+
+
+def changed(part: float) -> str:
+    """By which part some work is more, or less, than other work: +3.1%, −41.2%, or 1,194 × as many."""
+    return saved(-part) if part > MOST_PERCENT else f"{part:+.1%}".replace("-", "−")
+
+
+def _times(number: float) -> str:
+    return f"{number:,.1f}" if number < 100.0 else f"{number:,.0f}"
+
+
 def several(number: int, name: str, names: str = "") -> str:
     """So many of something: 1 node, 2 nodes."""
     return f"{count(number)} {name if number == 1 else names or name + 's'}"

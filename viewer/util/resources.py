@@ -6,8 +6,11 @@ the same two folders inside the package, under `viewer/data/`.
 
 from __future__ import annotations
 
+import os
 from functools import cache
 from pathlib import Path
+
+from tracer.similar import did_you_mean
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -48,5 +51,14 @@ def default_scene() -> Path:
 
 
 def scene_path(name: str | None) -> Path:
-    """The file that a name means: a path, the name of a scene that comes with the program, or by default its room."""
-    return default_scene() if name is None else embedded_scenes().get(name) or Path(name)
+    """The file that a name means: a path, the name of a scene that comes with the program, or by default its room.
+
+    Raises OSError, in one line, for what is neither, but like the name of such a scene."""
+    if name is None:
+        return default_scene()
+    own, path = embedded_scenes(), Path(name)
+    if name not in own and not path.suffix and not os.path.lexists(path):
+        hint = did_you_mean(name, own)
+        if hint:
+            raise OSError(f"{name}: no such file, and no scene of the program{hint}")
+    return own.get(name) or path

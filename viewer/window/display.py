@@ -34,6 +34,7 @@ from viewer.state.views import (
     RING_DIMMING,
     SHADOW_COLORS,
     TOO_BRIGHT,
+    TREE_WAITS,
     VOXEL_COLORS,
     WIPE_LINE,
     WRONG,
@@ -210,6 +211,7 @@ class Display:
             View.CERTIFICATE: [*CERTIFICATE_COLORS.values(), dynamic],
             View.PENUMBRA: list(ARRIVAL_COLORS.values()),
             View.VOXELS: list(VOXEL_COLORS.values()),
+            View.TREE: list(TREE_WAITS),
         }
         values: dict[str, Any] = {
             "table_width": TABLE_WIDTH,
@@ -227,7 +229,7 @@ class Display:
             "clip_colors": [TOO_BRIGHT, BLACK],
             "shares": look.shares,
             "beneath": look.beneath,
-            "cell_line": FAINT_LINE if view is View.CELL_LIGHTS else CELL_LINE,
+            "cell_line": FAINT_LINE if view in (View.CELL_LIGHTS, View.TREE) else CELL_LINE,
             "zoom_factor": frame.settings.zoom_factor,
             "unknown": GREY,
             "wrong_color": WRONG,

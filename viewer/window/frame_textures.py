@@ -23,10 +23,12 @@ from viewer.state.readings import (
     lights_top,
     samples_of,
     span_of,
+    tree_of,
     units_of,
     voxels_of,
 )
 from viewer.state.slices import MIDDLE, Slice, slice_codes
+from viewer.state.tree_slice import tree_codes
 from viewer.state.views import View, color_map
 
 TABLE_WIDTH = 2048
@@ -34,7 +36,7 @@ NAMES = (
     "color_buffer", "primitive_buffer", "unit_buffer", "mode_table", "count_table", "depth_buffer", "normal_buffer",
     "color_map", "reference_buffer", "mark_buffer", "certificate_buffer", "cell_buffer", "saved_buffer", "cost_buffer",
     "due_rays_buffer", "penumbra_buffer", "lights_buffer", "cuts_buffer", "part_table",
-    "slice_buffer", "cell_lights_buffer",
+    "slice_buffer", "cell_lights_buffer", "tree_buffer",
 )  # fmt: skip
 """Of all textures, in the order of their units."""
 # What lies on the GPU as a frame holds it: components, their kind, and the frame's attribute.
@@ -144,6 +146,7 @@ class FrameTextures:
         frame = self.frame
         assert frame is not None
         of: dict[str, object] = {"penumbra_buffer": light, "mark_buffer": magnified, "slice_buffer": (light, cut)}
+        of["tree_buffer"] = cut
         wanted = self.serial, of.get(name, 0)
         if name == "part_table":  # it is the scene's, whatever the frame
             wanted = id(self.part_of), 0
@@ -165,6 +168,8 @@ class FrameTextures:
             self._write(name, self.size, 1, "i4", cut_nodes(frame))
         elif name == "slice_buffer":
             self._write(name, self.size, 1, "u1", slice_codes(frame, voxels_of(frame), light, cut))
+        elif name == "tree_buffer":
+            self._write(name, self.size, 1, "u2", tree_codes(frame, tree_of(frame), cut))
         elif name == "cell_lights_buffer":
             self._write(name, self.size, 1, "i4", cell_lights(frame))
         elif name == "unit_buffer":

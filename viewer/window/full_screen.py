@@ -11,7 +11,7 @@ from imgui_bundle import glfw_utils, hello_imgui
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
-from viewer.window.places import Place, Rect, is_normal, place_of, shared
+from viewer.window.window_place import Place, Rect, is_normal, place_of, shared
 
 _MAXIMISED = "maximised"  # Hello ImGui keeps words under names beside the layout
 

@@ -2,9 +2,32 @@
 
 from __future__ import annotations
 
-from viewer.state.readings import VOXELS, voxels_of
-from viewer.state.slices import AXES, Slice
+from typing import NamedTuple
+
+from viewer.state.readings import VOXELS, can_draw, tree_of, voxels_of
+from viewer.state.slices import AXES, Slice, middle_of
+from viewer.state.tree_slice import LAYERS, layer_of, place_of
+from viewer.state.views import View
 from viewer.window.ui import Ui
+
+
+class Layer(NamedTuple):
+    """The layer that is cut, of so many, and where its middle lies along the axis."""
+
+    number: int
+    many: int
+    place: float
+
+
+def layer_now(ui: Ui) -> Layer | None:
+    """That of the view's slice; None while there is nothing to cut."""
+    frame, cut, view = ui.controller.frame, ui.controller.session.cut, ui.controller.session.view
+    if frame is not None and view is View.VOXELS and VOXELS in frame.structures:
+        states = voxels_of(frame)
+        return Layer(cut.layer(states.shape), states.shape[cut.axis], middle_of(states.grid, cut))
+    if frame is not None and view is View.TREE and can_draw(frame, view):
+        return Layer(layer_of(cut), LAYERS, place_of(tree_of(frame), cut))
+    return None
 
 
 def go_to(cut: Slice, layer: int, many: int) -> Slice:
@@ -14,10 +37,9 @@ def go_to(cut: Slice, layer: int, many: int) -> Slice:
 
 def step(ui: Ui, layers: int) -> None:
     """Go on by so many layers."""
-    s, frame = ui.controller.session, ui.controller.frame
-    if frame is not None and VOXELS in frame.structures:
-        shape = voxels_of(frame).shape
-        s.cut = go_to(s.cut, s.cut.layer(shape) + layers, shape[s.cut.axis])
+    s, layer = ui.controller.session, layer_now(ui)
+    if layer is not None:
+        s.cut = go_to(s.cut, layer.number + layers, layer.many)
 
 
 def turn(ui: Ui) -> None:

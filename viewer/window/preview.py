@@ -113,20 +113,6 @@ class PreviewDisplay:
             self._coarse = min(2 * self._coarse, COARSEST)
         self._drawn = wanted
 
-    def read(self) -> NDArray[np.uint8]:
-        """What was drawn, (height, width, 3) uint8, row 0 at the top."""
-        width, height = self._target.size
-        return np.frombuffer(self._target.read(components=3, alignment=1), np.uint8).reshape(height, width, 3)
-
-    def read_depth(self) -> NDArray[np.float32]:
-        """(height, width) distances along the camera's view, in world units; infinite where nothing is seen."""
-        width, height = self._target.size
-        stored = np.frombuffer(self._target.depth_attachment.read(alignment=1), np.float32)
-        near, far = self._range
-        with np.errstate(divide="ignore"):
-            depth = 2.0 * far * near / (far + near - (2.0 * stored.astype(np.float64) - 1.0) * (far - near))
-        return np.where(stored < 1.0, depth, np.inf).astype(np.float32).reshape(height, width)
-
     def release(self) -> None:
         """Free everything on the GPU."""
         self._release_target()

@@ -153,7 +153,7 @@ def test_mistakes_are_one_line(wrong, said, capsys):
         (["--zoom-factor", "0"], "argument --zoom-factor: 0 is not in 1 to 1,000,000,000"),
         (["--method", "none"], "unrecognized arguments: --method none"),
         (["--methods", "telepathy"], "argument --methods: invalid choice: 'telepathy'; it is one of none"),
-        (["--methods", "all,telepathy"], "+cache and +rest and +lightbuffer; or all"),
+        (["--methods", "all,telepathy"], "+lightbuffer, +cache-directions, +cache-tile, +packets16, +packets1; or all"),
         (["--methods", ""], "argument --methods: invalid choice: ''"),
     ],
 )

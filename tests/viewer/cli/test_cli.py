@@ -252,10 +252,19 @@ def test_slices_and_cells_are_drawn_by_methods_that_have_them(
     assert code == 0 and "--view voxels:1" in out and "--slice x:0.7" in out
     code, out, errors = render(capfd, room, "-o", path, "--view", "cell-lights", "--range", "0:2")
     assert code == 0 and "method lie-exact" in out, errors
+    lazy = "--view", "tree", "--accelerator", "kdtree-lazy", "--method", "none"
+    drawn = []
+    for more in ((), (), ("--slice", "x:0.9")):
+        code, _, errors = render(capfd, room, "-o", path, *lazy, "--legend", *more)
+        assert code == 0, errors
+        with Image.open(path) as image:
+            drawn.append(np.asarray(image))
+    assert (drawn[0] == drawn[1]).all() and (drawn[0] != drawn[2]).any()
     for wrong, said in (
+        (("--view", "tree"), "bvh8 builds all of its tree before rays come; give --accelerator kdtree-lazy"),
         (("--view", "voxels", "--method", "none"), "not with the method none; give --method voxels"),
         (("--view", "cell-lights", "--method", "paper"), "give --method lie-exact"),
-        (("--slice", "x:0.1"), "--slice is for the view voxels, not color"),
+        (("--slice", "x:0.1"), "--slice is for the views voxels and tree, not color"),
         (("--view", "voxels", "--slice", "q:0.1"), "is no slice"),
     ):
         code, _, errors = render(capfd, room, "-o", path, *wrong)
@@ -362,7 +371,13 @@ def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None
         (["-o", "OUT/x.png", "--size", "999999x999999"], "more than"),
         (["-o", "OUT/x.png", "--samples", "0"], "0 is not in 1 to 4096"),
         (["-o", "OUT/x.png", "--method", "magic"], "invalid choice: 'magic'"),
+        (["-o", "OUT/x.png", "--method", "certfied"], "invalid choice: 'certfied': did you mean 'certified'?"),
         (["-o", "OUT/x.png", "--view", "heat"], "'heat' is not a view"),
+        (["-o", "OUT/x.png", "--view", "certificat"], "'certificat' is not a view: did you mean certificate:LIGHT?"),
+        (
+            ["-o", "OUT/x.png", "--view", "cuts", "--method", "auto"],
+            "auto makes no clusters of lights; give --method light",
+        ),
         (["-o", "OUT/x.png", "--view", "shadow:7"], "lights are 0 to 1"),
         (["-o", "OUT/x.png", "--view", "depth:1"], "is not a view"),
         (["-o", "OUT/x.png", "--view", "difference:1"], "is not a view"),
@@ -435,6 +450,7 @@ def test_an_output_that_cannot_be_written_is_known_before_tracing(
     [
         (["rendr", "x.aff"], "did you mean 'render'?"),
         (["inof"], "did you mean 'info'?"),
+        (["info", "figur4"], "figur4: no such file, and no scene of the program: did you mean 'figure4'?"),
         (["frobnicate"], "the commands are render, bench, zoom, explain, info"),
         (["--frame", "3"], "unrecognized arguments"),
     ],

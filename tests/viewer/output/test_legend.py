@@ -16,8 +16,11 @@ from tests.viewer.fakes import (
     with_certificates,
     with_cuts,
     with_lamps,
+    with_tree,
     with_voxels,
 )
+from tracer.culling.modes import ShadowMode
+from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.frame import Frame, Settings
 from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.legend import Chosen, Legend, Tone, legend_of, light_in_words
@@ -25,7 +28,7 @@ from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, QUIET, TEXT,
 from viewer.output.legend_picture import with_legend
 from viewer.state.readings import voxels_of
 from viewer.state.slices import Slice
-from viewer.state.views import OCCLUSION_COLORS, WRONG, View, color_map
+from viewer.state.views import OCCLUSION_COLORS, WRONG, Certificate, View, color_map
 from viewer.util.numbers import percent
 
 SETTINGS = Settings(width=160, height=96, verify=True, record_work=True)
@@ -38,7 +41,7 @@ def measure(text: str) -> float:
 
 @pytest.fixture
 def frame() -> Frame:
-    return with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(make_frame(SETTINGS))))))
+    return with_tree(with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(make_frame(SETTINGS)))))))
 
 
 def of(frame: Frame, view: View, **chosen) -> Legend:
@@ -68,6 +71,15 @@ def test_voxels_are_counted_in_the_slice_and_in_all(frame: Frame):
     lamp = of(frame, View.VOXELS, light=2)
     assert not lamp.entries and "Nothing is known of this light" in lamp.notes[0].text
     assert legend_of(make_frame(), View.VOXELS) is None
+
+
+def test_what_rays_have_built_is_counted(frame: Frame):
+    legend = of(frame, View.TREE, cut=Slice(0, 0.01))
+    said = {fact.name: fact.values for fact in legend.facts}
+    assert said["slice at x"] == ("-1.96",) and said["built of the slice"] == ("100.0 %",)
+    assert said["nodes built"] == ("123",) and said["primitives in them"] == ("25.0 % of 160",)
+    assert (legend.scale.low, legend.scale.high) == ("level 0", "8") and "kdtree-lazy" in legend.title
+    assert of(frame, View.TREE, span=(1.0, 2.5)).scale.high == "2.5" and legend_of(make_frame(), View.TREE) is None
 
 
 def test_the_lights_that_cells_ask_are_counted(frame: Frame):
@@ -270,3 +282,8 @@ def test_modes_say_what_the_papers_method_would_cull(frame: Frame):
     assert of_light[0].quiet and of_light[1].name == "culled"
     assert [fact.values for fact in of(frame, View.OCCLUSION).facts] == [("all lights",), ("10.0 %",), ("2.5 %",)]
     assert of(frame, View.OCCLUSION).facts[1].name == "culled"
+
+
+def test_what_voxels_and_certificates_say_of_a_light_has_the_same_words():
+    for state in (ShadowMode.FULL_SHADOW, ShadowMode.NON_SHADOW):
+        assert STATE_NAMES[int(state)] == Certificate(int(state)).name.lower()

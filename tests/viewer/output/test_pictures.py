@@ -14,6 +14,7 @@ from tests.viewer.fakes import (
     with_certificates,
     with_cuts,
     with_lamps,
+    with_tree,
     with_voxels,
 )
 from tracer.culling.modes import OcclusionMode, ShadowMode
@@ -22,9 +23,11 @@ from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from viewer.output.legend_counts import difference_legend
 from viewer.output.pictures import SHADING, picture
-from viewer.state.readings import voxels_of, work_top
+from viewer.state.readings import tree_of, voxels_of, work_top
 from viewer.state.slices import MIDDLE, Slice, slice_seen
 from viewer.state.tone import Curve, Tone
+from viewer.state.tree_slice import tree_seen
+from viewer.state.values import values_of
 from viewer.state.views import (
     ARRIVAL_COLORS,
     BACKGROUND,
@@ -85,7 +88,7 @@ def wrong_frame(frame: Frame) -> Frame:
 @pytest.fixture(scope="module")
 def certified_frame(wrong_frame: Frame) -> Frame:
     """The same with cells and their certificates, the work at each pixel, and lamps that reach it in part."""
-    return with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(wrong_frame)))))
+    return with_tree(with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(wrong_frame))))))
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +118,7 @@ def test_colours_are_clamped_and_otherwise_untouched(frame: Frame) -> None:
 def test_what_is_missed_has_the_background(certified_frame: Frame, view: View) -> None:
     missed = certified_frame.primitive < 0
     if view.has_slice:  # it is seen before the background, too
-        missed &= slice_seen(certified_frame, voxels_of(certified_frame).grid, MIDDLE).numbers < 0
+        missed &= ~values_of(certified_frame, view, cut=MIDDLE).known
     assert missed.any()
     assert (picture(certified_frame, view)[missed] == to_bytes(BACKGROUND)).all()
 
@@ -282,6 +285,26 @@ def test_a_slice_has_the_colours_of_its_voxels_over_the_dimmed_picture(
         seen.add(state)
     assert seen == {0, 1, 2}
     behind = (numbers < 0) & (f.primitive >= 0)
+    assert np.abs(drawn[behind] - BENEATH * picture(f)[behind].astype(float)).max() <= 1
+
+
+@pytest.mark.parametrize("cut", [Slice(0, 0.45), Slice(1, 0.5), Slice(2, 0.7)])
+def test_parts_of_a_tree_have_the_colours_of_their_levels_and_what_waits_has_stripes(
+    certified_frame: Frame, cut: Slice
+) -> None:
+    f, tree = certified_frame, tree_of(certified_frame)
+    drawn, seen = picture(f, View.TREE, cut=cut), tree_seen(f, tree, cut)
+    there, colors = seen.parts.numbers >= 0, color_map()
+    assert 0.005 < there.mean() < 0.98
+    for y, x in np.argwhere(there):
+        level, waits = int(seen.parts.levels[y, x]), not seen.parts.built[y, x]
+        stripe = (0.29, 0.306, 0.341) if (x + y) // 4 % 2 == 0 else (0.42, 0.439, 0.482)
+        color = np.asarray(stripe if waits else colors[round(level / 8 * (len(colors) - 1))], np.float32)
+        light = 0.25 + 0.95 * np.sqrt(np.clip(f.color[y, x], 0.0, 1.0) @ (0.2126, 0.7152, 0.0722))
+        shade = 1.0 + SHADING * (light - 1.0) if seen.hidden[y, x] else 1.0
+        expected = [255.0 * np.clip(shade * line * color, 0.0, 1.0) for line in (1.0, FAINT_LINE)] + [np.full(3, 255.0)]
+        assert min(np.abs(drawn[y, x] - one).max() for one in expected) <= 3.0, (x, y)
+    behind = ~there & (f.primitive >= 0)
     assert np.abs(drawn[behind] - BENEATH * picture(f)[behind].astype(float)).max() <= 1
 
 

@@ -15,6 +15,7 @@ from viewer.output.legend_counts import occlusion_legend
 from viewer.output.pictures import picture
 from viewer.services.shadow_inspector import Part
 from viewer.state.slices import slice_seen
+from viewer.state.tree_slice import layer_of
 from viewer.state.views import View
 from viewer.window.command import chord
 from viewer.window.panels import slicing
@@ -135,6 +136,7 @@ def _space(d: Driver) -> None:
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
         if view is View.VOXELS:
             _slice(d)
+    _tree(d)
     d.ui.show_panel("Light buffer")
     d.frames(3)
     d.context.item_click("//Light buffer/Use lightbuffer##instead")
@@ -145,6 +147,32 @@ def _space(d: Driver) -> None:
     assert cube is not None and panel.draw_list.vtx_buffer.size() > 0
     d.context.item_click("//Light buffer/**/full shadow##cube")
     assert d.ui.cube_shows == 1
+
+
+def _tree(d: Driver) -> None:
+    """What rays have had built of a tree, and more of it once the camera looks elsewhere; keys go through it."""
+    d.press(chord(View.TREE.key))
+    d.settle()
+    d.context.item_click("//Picture/**/Use kdtree-lazy##instead")
+    d.settle()
+    assert d.c.frame.settings.accelerator == "kdtree-lazy" and d.c.tracing.drawn_view is View.TREE
+    d.c.settings.change(method="none")
+    d.settle()
+    before, at = d.c.frame.statistics.built, d.c.session.cut
+    assert "all that has been seen" in d.c.recipes.now().history
+    expected = picture(d.c.frame, View.TREE, shading=d.c.preferences.shading, beneath=d.c.preferences.beneath, cut=at)
+    assert np.abs(d.shown().astype(int) - expected).max() <= 2
+    d.press(chord("Shift+RightBracket"))
+    assert layer_of(d.c.session.cut) == layer_of(at) + 1
+    d.press(chord("Shift+LeftBracket"))
+    home = d.c.session.camera
+    x, y, z = home.direction
+    d.c.motion.move(replace(home, direction=(-x, -y, -z)))
+    d.settle()
+    assert d.c.frame.statistics.built.nodes > before.nodes, "looking back has built nothing"
+    d.c.motion.move(home)
+    d.c.settings.change(accelerator="bvh8")
+    d.settle()
 
 
 def _slice(d: Driver) -> None:

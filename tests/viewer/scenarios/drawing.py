@@ -29,7 +29,7 @@ def views(d: Driver) -> None:
     traced = d.c.history.frames
     d.c.preferences.shading = 0.35
     for view in View:
-        if view in (View.CUTS, View.VOXELS, View.CELL_LIGHTS):  # of single methods (`culling`)
+        if view in (View.CUTS, View.VOXELS, View.CELL_LIGHTS, View.TREE):  # of some frames (`culling`)
             continue
         before = d.c.history.frames
         d.press(chord(view.key))

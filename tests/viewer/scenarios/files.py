@@ -101,8 +101,11 @@ def dropping(d: Driver) -> None:
     dark.write_text(
         "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 0.1\nresolution 8 8\nf 1 0 0 1 0 1 0 1\ns 0 0 0 1\n"
     )
+    d.c.settings.set_view(View.SHADOW)
     d.drop(dark)
     d.wait(lambda: d.c.session.scene.path.name == "dark.nff", "the scene without lights")
+    assert d.c.session.view is View.COLOR and d.c.preferences.view == View.COLOR.value
+    assert "The view is Colour, not Shadow mode, as there are no lights." in d.c.notices.message.text
     d.settle()
     d.press(KEY._3)
     assert d.c.frame.primitive.max() >= 0

@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 from tests.viewer.driver import Driver
 from viewer.output.thumbnail import from_text
 from viewer.state.pads import Kind, Pad
-from viewer.window import places
+from viewer.window import window_place
 
 KEY = imgui.Key
 SMALL = (1000, 640)  # still with docked panels, and soon drawn
@@ -129,7 +129,7 @@ def _keys(d: Driver) -> None:
     d.context.item_click("//Keyboard and mouse/**/Fly back/S##key")
     d.press(KEY.o)
     d.frames(2)
-    assert d.ui.keymap.conflicts("Fly back") == ["Orbit"] and "also Orbit" in d.c.notices.message.text
+    assert d.ui.keymap.conflicts()["Fly back"] == ["Orbit"] and "also Orbit" in d.c.notices.message.text
     assert d.c.preferences.navigation == "fly", "a key that was chosen did what it does"
     d.ui.keymap.reset("Fly back")
     d.press(KEY.f1)
@@ -148,12 +148,12 @@ def _pads(d: Driver) -> None:
     d.app.read_pads = lambda: there
     d.pause(0.2)
     assert (np.subtract(d.c.session.camera.position, before.position) @ before.basis()[2]) > 0.0
-    in_front, places.in_front = places.in_front, lambda _window: False
+    in_front, window_place.in_front = window_place.in_front, lambda _window: False
     d.pause(0.05)
     still = d.c.session.camera
     d.pause(0.1)
     assert d.c.session.camera == still, "another program is in front"
-    places.in_front = in_front
+    window_place.in_front = in_front
     there[0] = Pad("Test pad", Kind.GAMEPAD, (0.0, 0.0, 0.0, 0.0, -1.0, -1.0), frozenset({"pad down"}))
     d.frames(3)
     there.clear()

@@ -10,11 +10,14 @@ from unittest import mock
 
 import numpy as np
 from imgui_bundle import imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
+from tests.viewer.previews import colors_of
 from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.scene.model import Progress
 from viewer.services import scene_files, scene_loader
+from viewer.window import previewing as previewing_window
 from viewer.window.panels.preview import words
 
 KEY = imgui.Key
@@ -61,6 +64,8 @@ def previewing(d: Driver) -> None:
     d.frames(2)
     assert np.abs(_read(d).astype(int) - first).max() > 50, "another picture"
     assert "no shadows" in words(d.ui)[0] and "Compiling" in words(d.ui)[1]
+    _leaves_the_preview(d)
+    _tour_fits(d)
     _compiled.set()
     d.settle()
     assert d.ui.preview is None and d.c.preview.geometry is None and d.c.session.previewed is None
@@ -68,8 +73,36 @@ def previewing(d: Driver) -> None:
     assert d.context.item_exists("//Picture/picture") and not d.context.item_exists("//Picture/preview")
 
 
+def _leaves_the_preview(d: Driver) -> None:
+    """How far compiling is stands in one line along the lower edge of the picture."""
+    bar, picture = (imgui.internal.find_window_by_name(name) for name in ("##progress of the preview", "Picture"))
+    box = imgui.internal.find_window_by_name("##progress")
+    assert bar is not None and bar.active and (box is None or not box.active)
+    assert bar.size.y < 2.5 * imgui.get_font_size() and bar.pos.y > picture.pos.y + 0.85 * picture.size.y
+    assert d.context.item_exists(f"//##progress of the preview/{icons.ICON_FA_XMARK}  Cancel##load")
+
+
+def _tour_fits(d: Driver) -> None:
+    """Until there is a preview, all steps of the tour are listed, above the status bar; with what to do in each only
+    where there is room for that."""
+    made = d.ui.preview
+    with mock.patch.object(previewing_window, "draw"):
+        d.ui.tour.start()
+        d.ui.preview = None
+        heights = []
+        for height in (800, 1100):
+            d.resize(1280, height)
+            steps, viewport = imgui.internal.find_window_by_name("###steps"), imgui.get_main_viewport()
+            assert steps.pos.y + steps.size.y <= viewport.work_pos.y + viewport.work_size.y, "the tour is cut off"
+            heights.append(steps.size.y)
+        assert heights[1] > 1.5 * heights[0]
+        d.resize(1280, 800)
+        d.ui.preview = made
+        d.ui.tour.end()
+
+
 def _read(d: Driver) -> np.ndarray:
     got: list[np.ndarray] = []
-    d._in_frame.append(lambda: got.append(d.ui.preview.read()))
+    d._in_frame.append(lambda: got.append(colors_of(d.ui.preview)))
     d.wait(lambda: bool(got), "the preview to be read")
     return got[0]

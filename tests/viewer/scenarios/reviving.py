@@ -15,7 +15,7 @@ from tests.viewer.driver import Driver
 from tracer.frame import Frame
 from viewer.state.views import View
 from viewer.window import density
-from viewer.window.places import place_of
+from viewer.window.window_place import place_of
 
 KEY = imgui.Key
 SMALL = (1100, 700)

@@ -13,6 +13,7 @@ from tests.viewer.driver import Driver
 from tests.viewer.scenarios.steps import saved_results
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
+from viewer.window.panels import experiment_table
 
 KEY = imgui.Key
 
@@ -52,6 +53,22 @@ def experimenting(d: Driver) -> None:
     files = saved_results(d, "Experiment")
     assert len(json.loads(files[".json"].read_text())["frames"]) == 6
     assert files[".csv"].read_text().splitlines()[1].startswith("none,")
+
+    # What methods are compared by is seen at once, however many there are; the plot is behind a tab.
+    runs.experiment_plan.frames, runs.experiment_plan.accelerator = 2, "kdtree-lazy"
+    runs.experiment_plan.methods |= {"auto", "certified+cache"}
+    runs.start_experiment()
+    d.wait(lambda: runs.current is None, "the experiment to end")
+    d.settle()
+    assert runs.experiment.results.settings["accelerator"] == "kdtree-lazy"
+    for name in ("Table", "Plot", "Table"):
+        d.context.item_click(f"//Experiment/**/{name}")
+        d.frames(3)
+    (table,) = (w for w in imgui.get_current_context().windows if w.was_active and "table 1, lines" in w.name)
+    d._in_frame.append(lambda: widths.append(experiment_table.width_of(d.ui, runs.experiment, runs.experiment.results)))
+    widths: list[float] = []
+    d.frames(3)
+    assert widths[0] <= table.size.x, "columns that are compared are out of sight"
 
 
 def zooming(d: Driver) -> None:

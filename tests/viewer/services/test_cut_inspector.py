@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -40,3 +41,19 @@ def test_a_pixel_without_a_cut_does_not_keep_that_of_the_pixel_before(monkeypatc
     question.answer(None)
     follow()
     assert question.over and cuts.cut is None and len(asked) == 2
+
+
+def test_a_cut_is_asked_for_once_and_stays_while_samples_come(monkeypatch: pytest.MonkeyPatch):
+    frame, asked = make_frame(), []
+    monkeypatch.setattr(cut_inspector, "light_cut", lambda renderer, of, x, y: SimpleNamespace(frame=of, x=x, y=y))
+    cuts = CutInspector(SimpleNamespace(pixel=(1, 0), picked=object(), hovered=None), SimpleNamespace(ask=asked.append))
+    cuts.follow(frame, idle=True)
+    sampled = replace(frame, color=frame.color + 0.1)  # comes before the answer about the first
+    cuts.follow(sampled, idle=True)
+    asked[-1].answer(None)
+    for samples in range(3):
+        sampled = replace(sampled, color=sampled.color + samples)
+        cuts.follow(sampled, idle=True)
+        assert cuts.cut is not None and len(asked) == 1
+    cuts.follow(replace(frame, primitive=frame.primitive.copy()), idle=True)
+    assert cuts.cut is None and len(asked) == 2, "another picture"

@@ -14,7 +14,8 @@ from PIL import Image
 from tests.commands import run
 from tests.viewer.desk import Desk
 from tracer.renderer import Renderer
-from tracer.scene.edits import Edits, things
+from tracer.scene.edits import Edits
+from tracer.scene.things import things
 from viewer.services.before_edits import Lack
 
 SCENE = """

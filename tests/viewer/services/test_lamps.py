@@ -14,7 +14,7 @@ from tracer.statistics import FrameStatistics
 from viewer.services.governor import Governor
 from viewer.services.lamps import LampSamples, after, first
 from viewer.services.light_recorder import LightQuestion, LightRecorder
-from viewer.services.render_thread import RenderRequest, Traced
+from viewer.services.render_request import RenderRequest, Traced
 from viewer.services.tracing import Conditions, Tracing
 from viewer.state.preferences import Preferences
 from viewer.state.readings import MOST_RECORDED, MOST_TOGETHER

@@ -14,7 +14,8 @@ from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Camera
 from viewer.services.pair import Asked, Pair
-from viewer.services.render_thread import RenderRequest, RenderThread
+from viewer.services.render_request import RenderRequest
+from viewer.services.render_thread import RenderThread
 
 SCENE = """\
 v from 0 1 4 at 0 0 0 up 0 1 0 angle 50 hither 1 resolution 32 32

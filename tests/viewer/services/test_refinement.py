@@ -11,7 +11,7 @@ from tracer.frame import Settings
 from tracer.scene.model import Camera
 from tracer.statistics import FrameStatistics
 from viewer.services.refinement import MOST_FRAMES, Refinement
-from viewer.services.render_thread import RenderRequest, Traced
+from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.views import View
 
 CAMERA = Camera((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

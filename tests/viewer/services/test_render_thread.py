@@ -11,7 +11,8 @@ import pytest
 from tests.viewer.fakes import FakeRenderer
 from tracer.frame import Settings
 from tracer.scene.model import Camera
-from viewer.services.render_thread import RenderRequest, RenderThread, Traced
+from viewer.services.render_request import RenderRequest, Traced
+from viewer.services.render_thread import RenderThread
 
 CAMERA = Camera((0, 0, 5), (0, 0, -1))
 

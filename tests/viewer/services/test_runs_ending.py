@@ -20,7 +20,7 @@ from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, scene_info
 from tracer.scene.model import Camera, Cancelled
 from viewer.services.controller import Controller
-from viewer.services.render_thread import Traced
+from viewer.services.render_request import Traced
 from viewer.state.preferences import Preferences
 from viewer.util.resources import embedded_scenes
 

@@ -14,7 +14,7 @@ from tests.viewer.fakes import FakeRenderer, make_frame, make_scene
 from tracer.frame import Settings
 from tracer.scene.model import Camera, Cancelled
 from viewer.services.controller import Controller
-from viewer.services.render_thread import RenderRequest, Traced
+from viewer.services.render_request import RenderRequest, Traced
 from viewer.services.tracing import Conditions, Tracing
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session

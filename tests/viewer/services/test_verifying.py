@@ -13,7 +13,7 @@ from tests.viewer.fakes import FakeRenderer, make_frame, make_scene
 from tracer import experiment
 from tracer.scene.model import Camera
 from viewer.services.controller import Controller
-from viewer.services.render_thread import RenderRequest, Traced
+from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.preferences import Preferences
 from viewer.state.session import Snapshot
 from viewer.state.views import View

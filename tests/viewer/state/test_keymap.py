@@ -24,15 +24,15 @@ def test_keys_are_those_of_commands_then_of_habits_then_of_the_user():
 
 def test_conflicts_are_seen_from_both_sides_and_end():
     keymap = Keymap(Preferences(), DEFAULTS)
-    assert all(not keymap.conflicts(name) for name in keymap.names)
+    assert not keymap.conflicts()
     keymap.choose("Loop", ["W"])
-    assert keymap.conflicts("Loop") == ["Fly forward"] and keymap.conflicts("Fly forward") == ["Loop"]
+    assert keymap.conflicts() == {"Loop": ["Fly forward"], "Fly forward": ["Loop"]}
     keymap.choose("Fly forward", [])
-    assert not keymap.conflicts("Loop") and keymap.of("Fly forward") == ()
+    assert not keymap.conflicts() and keymap.of("Fly forward") == ()
     keymap.reset("Fly forward")
-    assert keymap.conflicts("Fly forward") == ["Loop"]
+    assert keymap.conflicts()["Fly forward"] == ["Loop"]
     keymap.reset()
-    assert keymap.of("Loop") == () and not keymap.conflicts("Fly forward")
+    assert keymap.of("Loop") == () and not keymap.conflicts()
 
 
 def test_drags_are_those_of_the_habits():

@@ -12,7 +12,6 @@ from viewer.state.methods import (
     groups,
     in_order,
     is_method,
-    of_all_lights,
     toggled,
     with_base,
 )
@@ -53,9 +52,3 @@ def test_the_list_of_methods_has_each_once_among_its_like():
     (_, exact), (_, wrong) = groups()
     assert {kind.exact for kind in exact} == {True} and {kind.exact for kind in wrong} == {False}
     assert all(kind.summary.endswith(".") for kind in (*listed, *additions()))
-
-
-def test_methods_of_all_lights_are_named():
-    named = of_all_lights(4096).split(", ")
-    assert {"certified", "auto", "lightcuts", "lightcuts-stochastic", "lightcuts-certified"} == set(named)
-    assert "paper" in of_all_lights(31).split(", ") and "lightcuts" not in of_all_lights(6)

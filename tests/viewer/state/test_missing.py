@@ -7,7 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import make_frame, with_cell_lights, with_certificates, with_cuts, with_lamps, with_voxels
+from tests.viewer.fakes import (
+    make_frame,
+    with_cell_lights,
+    with_certificates,
+    with_cuts,
+    with_lamps,
+    with_tree,
+    with_voxels,
+)
 from tracer.frame import Settings
 from tracer.method import bases
 from viewer.state.missing import missing
@@ -32,7 +40,10 @@ def test_a_view_that_a_method_has_nothing_for_names_a_method_that_has(view: View
     wrong = "paper", "cells", "lie", *cuts
     shows = {View.CERTIFICATE: ("certified",), View.DIFFERENCE: wrong, View.WIPE: wrong, View.CUTS: cuts}
     shows |= {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}
-    if view not in shows or method.split("+")[0] in shows[view]:
+    if view is View.TREE:
+        assert (found.base, found.accelerator) == ("", "kdtree-lazy") and "before rays came (bvh8)" in found.text
+        assert missing(view, with_tree(frame)) is None
+    elif view not in shows or method.split("+")[0] in shows[view]:
         assert found is None
     else:
         assert found is not None and found.base in shows[view] and method.split("+")[0] in found.text

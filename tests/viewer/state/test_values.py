@@ -14,6 +14,7 @@ from tests.viewer.fakes import (
     with_certificates,
     with_cuts,
     with_lamps,
+    with_tree,
     with_voxels,
 )
 from tracer.frame import Settings
@@ -25,7 +26,7 @@ from viewer.state.views import View
 FRAME = with_cuts(
     with_lamps(with_certificates(make_frame(Settings(width=16, height=8, verify=True, record_work=True))))
 )
-FRAME = with_cell_lights(with_voxels(FRAME))
+FRAME = with_tree(with_cell_lights(with_voxels(FRAME)))
 
 
 def test_pixels_are_put_into_words():

@@ -29,6 +29,7 @@ def _geometry(scene: Scene, time: float | None = None, **most: int) -> PreviewGe
 def test_the_preview_has_the_surfaces_of_the_traced_picture():
     """Also at another time, from the scene's own path, where things have moved; but for glass, which is dithered."""
     moderngl = pytest.importorskip("moderngl")
+    from tests.viewer.previews import colors_of, depths_of
     from viewer.window.preview import PreviewDisplay
 
     scene, (width, height) = loaded(default_scene()), SIZE
@@ -45,7 +46,7 @@ def test_the_preview_has_the_surfaces_of_the_traced_picture():
             assert display.whole and pieces > len(geometry.images) + 10 and not geometry.left_out
             camera = scene.camera_at(time)
             display.draw(camera, SIZE)
-            depth, drawn = display.read_depth(), display.read()
+            depth, drawn = depths_of(display), colors_of(display)
             display.release()
             frame = renderer.render(time, camera)
             traced = frame.depth * _cosines(camera, width, height)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,7 @@ def test_window(name: str, size: tuple[int, int], player: Player, tiny_scene_fil
     assert kept == {"settings.json", "layout.ini"}, "something was left half-written"
 
 
+@cache
 def _big_scene() -> str:
     """Enough triangles for loading to take a while."""
     lines = ["v", "from 0 0 50", "at 0 0 0", "up 0 1 0", "angle 40", "hither 0.1", "resolution 8 8", "l 1 9 30"]

@@ -16,15 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.certified.error_bounds import ONE, ZERO, cross, dot
-from tracer.culling.certified.occluders import BLOCK, BOXES, STACK, children_met, triangles_met
-from tracer.culling.counters import STEPS
-from tracer.geometry.wide_tree.topology import WIDTH
+from tracer.culling.certified.tree_walk import WALK, begin_walk, walk_on
 from tracer.kernels import inlined, subkernel
 from tracer.simd import (
-    address_of,
     f32x16,
     i32_at,
-    i64_at,
     largest,
     load_three,
     local_memory,
@@ -209,35 +205,9 @@ def primitives_met(o, number, beam, most, room, counts):
     -1 for more.
 
     o are the `Occluders`.  Their numbers, int32, go to the address `room`, with room for eight more."""
-    count, numbers, stack = np.int64(0), i32_at(room), i64_at(local_memory(STACK))
-    boxes, blocks, leaf_radii = address_of(o.boxes[number]), address_of(o.blocks), address_of(o.leaf_radii[number])
-    for root in o.roots:
-        stack[0], pending = np.int64(root), 1
-        while pending > 0:
-            pending -= 1
-            node = stack[pending]
-            counts[STEPS] += 1
-            met = np.int64(children_met(boxes + 4 * BOXES * node, beam))
-            while met != 0:
-                child = lowest_bit(met)
-                met &= met - 1
-                code = np.int64(o.children[node, child])
-                if code >= 0:
-                    stack[pending] = code
-                    pending += 1
-                    continue
-                counts[STEPS] += 1
-                leaf = ~code
-                those = np.int64(1)
-                if o.numbers[leaf, 0] < o.first_quadric:
-                    those = np.int64(triangles_met(blocks + 4 * BLOCK * leaf, leaf_radii + 4 * WIDTH * leaf, beam))
-                while those != 0:
-                    numbers[count] = o.numbers[leaf, lowest_bit(those)]
-                    those &= those - 1
-                    count += 1
-                if count > most:
-                    return np.int64(-1)
-    return count
+    walk = begin_walk(local_memory(WALK))
+    count = walk_on(walk, o, number, beam, i32_at(room), np.int64(0), most + 1, counts)
+    return np.int64(-1) if count > most else count
 
 
 @inlined

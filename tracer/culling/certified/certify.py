@@ -16,14 +16,13 @@ from tracer.culling.certified.cells import CANDIDATES, FULL, LIT, SETTLED, TOO_M
 from tracer.culling.certified.classify import FUNCTIONS, classify_occluders
 from tracer.culling.certified.error_bounds import LANES
 from tracer.culling.certified.fused import PIECES, VERTICES, fuse
-from tracer.culling.certified.occluders import BLOCK, BOXES, STACK, children_met, triangles_met
 from tracer.culling.certified.shaft import Shaft, make_shaft
+from tracer.culling.certified.tree_walk import WALK, begin_walk, walk_on
 from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.kernels import subkernel
 from tracer.simd import (
     address_of,
     i32_at,
-    i64_at,
     lanes_below,
     load_i32x16,
     local_memory,
@@ -109,46 +108,20 @@ def _from_list(s, o, light, given, given_count, counts):
 @subkernel
 def _from_tree(s, o, number, light, counts):
     """Find primitives in the tree of light `number`; how many, -1 as `_meet` says, or more than MOST for too many."""
-    count, stack, waiting = np.int64(0), i64_at(local_memory(STACK)), local_memory(WAITING)
-    numbers, n = i32_at(waiting), 0
+    count, n = np.int64(0), np.int64(0)
+    walk, waiting = begin_walk(local_memory(WALK)), local_memory(WAITING)
+    numbers = i32_at(waiting)
     for k in range(LANES + WIDTH):
         numbers[k] = 0
-    boxes, blocks, leaf_radii = address_of(o.boxes[number]), address_of(o.blocks), address_of(o.leaf_radii[number])
-    for root in o.roots:
-        stack[0], pending = np.int64(root), 1
-        while pending > 0:
-            pending -= 1
-            node = stack[pending]
-            counts[STEPS] += 1
-            met = np.int64(children_met(boxes + 4 * BOXES * node, s.shaft))
-            while met != 0:
-                child = lowest_bit(met)
-                met &= met - 1
-                code = np.int64(o.children[node, child])
-                if code >= 0:
-                    stack[pending] = code
-                    pending += 1
-                    continue
-
-                # Let a leaf's primitives wait until there are sixteen.
-                counts[STEPS] += 1
-                leaf = ~code
-                if o.numbers[leaf, 0] >= o.first_quadric:
-                    those = np.int64(1)
-                else:
-                    those = triangles_met(blocks + 4 * BLOCK * leaf, leaf_radii + 4 * WIDTH * leaf, s.shaft)
-                while those != 0:
-                    numbers[n] = o.numbers[leaf, lowest_bit(those)]
-                    those &= those - 1
-                    n += 1
-                if n >= LANES:
-                    count = _meet(s, o, light, waiting, LANES, count, counts)
-                    if count < 0 or count > MOST:
-                        return count
-                    n -= LANES
-                    for k in range(n):
-                        numbers[k] = numbers[LANES + k]
-    return _meet(s, o, light, waiting, n, count, counts) if n > 0 else count
+    while True:
+        n = walk_on(walk, o, number, s.shaft, numbers, n, LANES, counts)
+        if n > 0:
+            count = _meet(s, o, light, waiting, min(n, LANES), count, counts)
+        if n < LANES or count < 0 or count > MOST:
+            return count
+        n -= LANES
+        for k in range(n):
+            numbers[k] = numbers[LANES + k]
 
 
 @subkernel

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.certified.error_bounds import ROW, ZERO
 from tracer.culling.certified.light_space import FARTHEST, LIGHT_ROW, U, V
-from tracer.culling.certified.occluders import BLOCK, BOXES, STACK, children_met, triangles_met
+from tracer.culling.certified.tree_walk import WALK, begin_walk, walk_on
 from tracer.culling.modes import FULL_SHADOW, NON_SHADOW, add_shadow
 from tracer.culling.voxels import grid as voxel_grid
 from tracer.culling.voxels.box_judge import judge_box
@@ -164,48 +164,20 @@ def _from_list(o, light, room, center, half, given, given_count, found, counts):
 @subkernel
 def _from_tree(o, light, room, center, half, found, counts):
     """Find primitives in the tree: how many, more than MOST for too many, or HIDDEN as `_meet` says."""
-    count, stack, waiting = np.int64(0), i64_at(local_memory(STACK)), local_memory(WAITING)
-    numbers, n, shaft = i32_at(waiting), 0, room.shaft
+    count, n = np.int64(0), np.int64(0)
+    walk, waiting = begin_walk(local_memory(WALK)), local_memory(WAITING)
+    numbers = i32_at(waiting)
     for k in range(LANES + WIDTH):
         numbers[k] = 0
-    boxes, blocks, leaf_radii = (
-        address_of(o.boxes[light.slot]),
-        address_of(o.blocks),
-        address_of(o.leaf_radii[light.slot]),
-    )
-    for root in o.roots:
-        stack[0], pending = np.int64(root), 1
-        while pending > 0:
-            pending -= 1
-            node = stack[pending]
-            counts[STEPS] += 1
-            met = np.int64(children_met(boxes + 4 * BOXES * node, shaft))
-            while met != 0:
-                child = lowest_bit(met)
-                met &= met - 1
-                code = np.int64(o.children[node, child])
-                if code >= 0:
-                    stack[pending] = code
-                    pending += 1
-                    continue
-                counts[STEPS] += 1
-                leaf, those = ~code, np.int64(1)
-                if o.numbers[leaf, 0] < o.first_quadric:
-                    those = np.int64(triangles_met(blocks + 4 * BLOCK * leaf, leaf_radii + 4 * WIDTH * leaf, shaft))
-                while those != 0:
-                    numbers[n] = o.numbers[leaf, lowest_bit(those)]
-                    those &= those - 1
-                    n += 1
-                if n >= LANES:
-                    count = _meet(o, light, room, center, half, waiting, LANES, found, count, counts)
-                    if count < 0 or count > MOST:
-                        return count
-                    n -= LANES
-                    for k in range(n):
-                        numbers[k] = numbers[LANES + k]
-    if n > 0:
-        count = _meet(o, light, room, center, half, waiting, n, found, count, counts)
-    return count
+    while True:
+        n = walk_on(walk, o, light.slot, room.shaft, numbers, n, LANES, counts)
+        if n > 0:
+            count = _meet(o, light, room, center, half, waiting, min(n, LANES), found, count, counts)
+        if n < LANES or count < 0 or count > MOST:
+            return count
+        n -= LANES
+        for k in range(n):
+            numbers[k] = numbers[LANES + k]
 
 
 @subkernel

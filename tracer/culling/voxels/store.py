@@ -7,6 +7,7 @@ anew.  Objects that rest are not looked into; a ray that passes by their boxes h
 from __future__ import annotations
 
 import time
+import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -96,13 +97,12 @@ class VoxelStore:
         self.places = np.full((lights, 3), np.nan, np.float32)
         self._wanted = self.places.copy()
         self._resting = np.empty((0, 6), np.float32)
-        self._shown: VoxelStates | None = None  # what pictures hold, until anything changes
+        self._shown: weakref.ref[VoxelStates] | None = None  # what pictures hold of `words` as they are
 
     @property
     def bytes(self) -> int:
         """Memory that all of this takes, in bytes."""
-        shown = self._shown.words if self._shown is not None else np.empty(0)
-        kept = (self.words, self._light_space, self._starts, self._names, self._geometry.rows, shown)
+        kept = (self.words, self._light_space, self._starts, self._names, self._geometry.rows)
         o = self._geometry.occluders
         return sum(a.nbytes for a in (*kept, o.boxes, o.blocks, o.error_radii, o.leaf_radii, o.light_space))
 
@@ -130,7 +130,7 @@ class VoxelStore:
         wanted[self._held :] = np.nan
         moved = np.flatnonzero((wanted != self.places).any(1) & ~np.isnan(self.places[:, 0]))
         if len(moved):
-            self._shown = None
+            self._leave_words_to_pictures()
         forget_lights(self.words, moved.tolist())
         self.places[moved] = np.nan
         self._wanted = wanted
@@ -152,7 +152,7 @@ class VoxelStore:
 
     def _classify(self, light: int, threads: int, counts: NDArray[np.int64], cancel: Callable[[], bool] | None) -> None:
         geometry, grid, place = self._geometry, self.grid, self._wanted[light].copy()
-        self._shown = None
+        self._leave_words_to_pictures()
         forget_lights(self.words, [light])
         low = np.array([grid.x, grid.y, grid.z])
         high = low + np.array([grid.nx, grid.ny, grid.nz]) * grid.side
@@ -187,7 +187,7 @@ class VoxelStore:
 
     def _list_contents(self) -> None:
         """List what lies in each voxel."""
-        rows, self._listed, self._shown = self._geometry.rows, True, None
+        rows, self._listed = self._geometry.rows, True
         reach = np.where(self._reach > self.grid.side, np.float32(np.inf), self._reach)
         # Count what is in each, then put it there: starts[v + 1] goes from where v begins to where it ends.
         counts = np.zeros(self.grid.voxels + 1, np.int32)
@@ -198,6 +198,7 @@ class VoxelStore:
         names = np.zeros(int(counts.sum()) + LANES, np.int32)  # sixteen are read at a time
         list_contents(rows, reach, self._more, self.grid, starts, names)
         self._starts, self._names = starts, names
+        self._leave_words_to_pictures()
         self.words &= ~self.words.dtype.type(3)
         self.words[:-1] |= (counts[1:] > 0).astype(self.words.dtype)
 
@@ -225,9 +226,17 @@ class VoxelStore:
 
     def shown(self) -> VoxelStates:
         """The voxels and their states as they are now, for pictures to hold; the same until anything changes."""
-        if self._shown is None:
-            self._shown = VoxelStates(self.grid, self.words.copy(), ~np.isnan(self.places[:, 0]))
-        return self._shown
+        shown = None if self._shown is None else self._shown()
+        if shown is None:
+            shown = VoxelStates(self.grid, self.words, ~np.isnan(self.places[:, 0]))
+            self._shown = weakref.ref(shown)
+        return shown
+
+    def _leave_words_to_pictures(self) -> None:
+        """Go on with a copy of the words, which are about to change, if any picture holds them."""
+        if self._shown is not None and self._shown() is not None:
+            self.words = self.words.copy()
+        self._shown = None
 
     def walked(self, point: NDArray[np.float32], light: int) -> Walked | None:
         """How a shadow ray that ends at a point (3,) goes from voxel to voxel to a light; None where it does not."""

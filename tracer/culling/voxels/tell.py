@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
@@ -15,12 +16,13 @@ from tracer.culling.voxels.grid import BLOCK, VoxelGrid
 Index = tuple[int, int, int]
 
 
-class VoxelStates(NamedTuple):
+@dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
+class VoxelStates:
     """The voxels of a scene as a picture found them.
 
     `words` (voxels + 1,) are the packed words of all voxels, with one more for what lies outside; `known` (lights,)
     says of which lights they hold states.  A light's state is its shadow mode in a word: FULL_SHADOW for a voxel that
-    is full, NON_SHADOW for one that is null, 0 for one that is unknown."""
+    is full, NON_SHADOW for one that is lit, 0 for one that is unknown."""
 
     grid: VoxelGrid
     words: NDArray[np.unsignedinteger]
@@ -38,7 +40,7 @@ class VoxelStates(NamedTuple):
         return shadow_mode(self.words[numbers], light)
 
     def counts(self, light: int) -> tuple[int, int, int]:
-        """How many voxels are unknown, full and null."""
+        """How many voxels are unknown, full and lit."""
         found = np.bincount(self.states(light, np.arange(self.grid.voxels)), minlength=3)
         return int(found[0]), int(found[FULL_SHADOW]), int(found[NON_SHADOW])
 
@@ -96,8 +98,9 @@ class Walked(NamedTuple):
         return f"{way}{went}{self.stop.value}: nothing static is in its way."
 
 
-STATE_NAMES = {0: "unknown", FULL_SHADOW: "full", NON_SHADOW: "null"}
-"""What is known of a light in a voxel, in the words of Woo and Amanatides."""
+STATE_NAMES = {0: "unknown", FULL_SHADOW: "full", NON_SHADOW: "lit"}
+"""What is known of a light in a voxel, in the words that certificates have: lit voxels are the "null" ones of Woo and
+Amanatides."""
 
 
 def index_of(grid: VoxelGrid, number: int) -> Index:

@@ -23,10 +23,12 @@ from tracer.geometry.building import CANCELLED, DONE
 from tracer.geometry.bvh8.build import count_blocks
 from tracer.geometry.bvh8.crown import crown_over, write_crown
 from tracer.geometry.bvh8.layout import BLOCK_SIZE, NODE_SIZE, PIECE, Tree
-from tracer.geometry.bvh8.refit import fill_blocks, make_links, pad_blocks, pad_quadrics, unite_nodes
+from tracer.geometry.bvh8.refit import Links, fill_blocks, make_links, pad_blocks, pad_quadrics, unite_nodes
 from tracer.geometry.bvh8.write import Offsets, clear, write_topology
 from tracer.geometry.wide_tree.build import build_topology
+from tracer.geometry.wide_tree.topology import Topology
 from tracer.parallel import for_each_chunk
+from tracer.scene import room
 from tracer.scene.arrays import Float32
 from tracer.scene.model import Cancelled
 
@@ -38,19 +40,24 @@ _CALLED = ctypes.CFUNCTYPE(None, *[ctypes.c_int64] * 5)
 class PiecewiseTree:
     """The tree over triangles (t, 9), corner and edges, and boxes (q, 6) of quadrics: a crown, and pieces that wait.
 
-    `tree` has room for all of it, which takes memory only where something is; `table` is what rays read
-    (`placed.root_of_piece`), and is of use while this object lives.  control (2,) int64: the build ends with Cancelled
-    once control[CANCELLED] is set."""
+    `tree` has room for all that may come, which takes memory only where something is, but 640 addresses a triangle.
+    Where these are few, as `ulimit -v` makes them, pieces are built once before, to see what they need.  `table` is
+    what rays read (`placed.root_of_piece`), and is of use while this object lives; `boxes` (p, 6) lie around pieces of
+    so many triangles and quadrics, `sizes` (p,).  control (2,) int64: the build ends with Cancelled once
+    control[CANCELLED] is set.  Raises MemoryError."""
 
     def __init__(self, rows: Float32, boxes: Float32, control: NDArray[np.int64], threads: int) -> None:
         self._rows, self._boxes, self._padded = rows, boxes, boxes.copy()
         crown = crown_over(rows, boxes, PIECE_SIZE, control, threads)
         self._items, pieces = crown.items, len(crown.items)
-        self._sizes = np.array([len(items) for items in crown.items])
+        self.sizes = np.array([len(items) for items in crown.items])
+        self.boxes = crown.boxes
         self.padding = np.float32(PADDING * np.abs(crown.boxes).max(initial=0))
-        nodes, blocks = len(crown.children) + 1 + int(np.maximum(self._sizes, 1).sum()), 1 + len(rows)
-        self.tree = Tree(_reserved_rows(nodes, NODE_SIZE), _reserved_rows(blocks, BLOCK_SIZE))
-        self._links = make_links(nodes, blocks, len(boxes), pieces)
+        first = len(crown.children) + 1, 1
+        try:
+            self.tree, self._links = self._with_room(*first, int(np.maximum(self.sizes, 1).sum()), len(rows), True)
+        except MemoryError:  # of addresses: what is never used takes no memory
+            self.tree, self._links = self._with_room(*first, *self._needed(control, threads))
         write_crown(self.tree, crown, self.padding)
         nothing = len(crown.children)  # a node for pieces that cannot be built
         clear(Tree(self.tree.nodes[nothing : nothing + 1], self.tree.blocks[:1]))
@@ -72,6 +79,36 @@ class PiecewiseTree:
 
         self._called = _CALLED(called)
         self.table[0] = ctypes.cast(self._called, ctypes.c_void_p).value or 0
+
+    def _with_room(self, node: int, block: int, nodes: int, blocks: int, sparing: bool = False) -> tuple[Tree, Links]:
+        """A tree with room for `nodes` and `blocks` from these numbers on; raises MemoryError, where it is `sparing`
+        also if more than half of the addresses that this process may take were gone."""
+        nodes, blocks = node + nodes, block + blocks
+        left = room.of_limit()
+        if sparing and left is not None and 4 * (nodes * NODE_SIZE + blocks * BLOCK_SIZE) > left / 2:
+            raise MemoryError("few addresses")
+        tree = Tree(_reserved_rows(nodes, NODE_SIZE), _reserved_rows(blocks, BLOCK_SIZE))
+        return tree, make_links(nodes, blocks, len(self._boxes), len(self._items))
+
+    def _needed(self, control: NDArray[np.int64], threads: int) -> NDArray[np.int64]:
+        """How many nodes and blocks the pieces will have, (2,), and some for builds that are interrupted: found out by
+        building them, without room for them."""
+        found = np.zeros((len(self._items), 2), np.int64)
+
+        def one(piece: int, worker: int) -> None:
+            topology = self._topology(piece)
+            found[piece] = len(topology.children), count_blocks(topology, len(self._rows))
+
+        for_each_chunk(one, len(found), threads, lambda: bool(control[CANCELLED]))
+        return found.sum(0) + 2 * found.max(0, initial=0)
+
+    def _topology(self, piece: int) -> Topology:
+        """The topology of a piece, with the numbers of the whole tree's triangles and quadrics."""
+        items, triangles = self._items[piece], len(self._rows)
+        flat = int(np.searchsorted(items, triangles)) if len(self._boxes) else len(items)
+        boxes = self._boxes[items[flat:] - triangles]
+        topology = build_topology(self._rows[items[:flat]], boxes, np.zeros(2, np.int64))
+        return topology._replace(order=items[topology.order])
 
     def ask_for(self, piece: int) -> None:
         """Build a piece for a ray that waits; what goes wrong is raised by `check`, as nothing can be raised here."""
@@ -95,11 +132,11 @@ class PiecewiseTree:
         """Build what is not built yet; raises Cancelled once control[CANCELLED] is set, and counts what is done in
         control[DONE]."""
         control = np.zeros(2, np.int64) if control is None else control
-        waiting = [p for p in np.argsort(-self._sizes, kind="stable").tolist() if self.table[1 + p] < 0]
+        waiting = [p for p in np.argsort(-self.sizes, kind="stable").tolist() if self.table[1 + p] < 0]
 
         def one(chunk: int, worker: int) -> None:
             self._build(waiting[chunk], control)
-            control[DONE] += self._sizes[waiting[chunk]]
+            control[DONE] += self.sizes[waiting[chunk]]
 
         for_each_chunk(one, len(waiting), threads, lambda: bool(control[CANCELLED]))
 
@@ -107,18 +144,17 @@ class PiecewiseTree:
         with self._locks[piece]:
             if self.table[1 + piece] >= 0:
                 return
-            items, triangles = self._items[piece], len(self._rows)
-            flat = int(np.searchsorted(items, triangles)) if len(self._boxes) else len(items)
-            quadrics = items[flat:] - triangles
-            stop = np.zeros(2, np.int64)
             if control is not None and control[CANCELLED]:
                 raise Cancelled
-            topology = build_topology(self._rows[items[:flat]], self._boxes[quadrics], stop)
-            topology = topology._replace(order=items[topology.order])
+            items, triangles = self._items[piece], len(self._rows)
+            quadrics = items[items >= triangles] - triangles
+            topology = self._topology(piece)
             # Take room, and write it there.
             used, filled = len(topology.children), count_blocks(topology, triangles)
             with self._room:
                 node, block = self._nodes, self._blocks
+                if node + used > len(self.tree.nodes) or block + filled > len(self.tree.blocks):
+                    raise MemoryError("no room for a piece of the tree")
                 self._nodes, self._blocks = node + used, block + filled
             tree, links, end = self.tree, self._links, block + filled
             clear(Tree(tree.nodes[node : node + used], tree.blocks[block:end]))
@@ -152,7 +188,7 @@ class PiecewiseTree:
     @property
     def built(self) -> int:
         """How many primitives lie in pieces that are built."""
-        return int(self._sizes[self.table[1:] >= 0].sum())
+        return int(self.sizes[self.table[1:] >= 0].sum())
 
     @property
     def memory_bytes(self) -> int:
@@ -167,7 +203,7 @@ def _reserved_rows(rows: int, columns: int) -> Float32:
     try:
         memory = _reserved(size)
     except OSError as error:
-        raise MemoryError(f"no room for a tree of {size >> 20} MB") from error
+        raise MemoryError(f"no room for a tree of {size / 1e9:.1f} GB") from error
     return np.frombuffer(memory, np.float32, rows * columns).reshape(rows, columns)
 
 

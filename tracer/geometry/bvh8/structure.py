@@ -17,11 +17,13 @@ from tracer.geometry.bvh8 import pieces, traverse
 from tracer.geometry.bvh8.build import build_tree
 from tracer.geometry.bvh8.layout import BOX, CHILDREN, PRIMITIVES, Tree
 from tracer.geometry.bvh8.object_trees import blocks_of, build_object_trees, build_top_level, load_corners, move_objects
+from tracer.geometry.bvh8.parts import PieceParts
 from tracer.geometry.bvh8.pieces import PiecewiseTree
 from tracer.geometry.bvh8.placed import DYNAMIC_TREES, MOVING_TREE, RESTING_TREE, STATIC_TREE, STATIC_TREES
 from tracer.geometry.bvh8.walk import TreeAt, Walk
+from tracer.geometry.layout import triangle_rows
 from tracer.geometry.poses import Poses, products
-from tracer.geometry.primitives import Primitives, WorldTriangles, triangle_rows
+from tracer.geometry.primitives import Primitives, WorldTriangles
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, Placed
 from tracer.geometry.rays import Ray
 from tracer.geometry.structure import Built
@@ -74,7 +76,9 @@ class Bvh8:
     def make_ready() -> None:
         """Compile, or load, what only large trees need."""
         triangle, box = np.eye(1, 9, 3, np.float32), np.ones((1, 6), np.float32)
-        PiecewiseTree(triangle, box, np.zeros(2, np.int64), 1).build_all()
+        tree = PiecewiseTree(triangle, box, np.zeros(2, np.int64), 1)
+        tree.build_all()
+        PieceParts(tree, 1).at(box[:, :3].copy(), 0)
 
     def _topology(self, index: int, progress: Progress | None = None) -> Topology:
         """The topology of a dynamic object's tree; of one that deforms, that for the time it is nearest to."""
@@ -162,7 +166,7 @@ class Bvh8:
     def triangles_of(self, index: int, to_world: Float64) -> WorldTriangles:
         """The triangles of an object in the world, just as they are intersected, with the boxes of their blocks."""
         triangles = self._primitives.triangles_of(index)
-        blocks = self._all_static().blocks if index == 0 else blocks_of(self._object_trees, index)
+        blocks = self._static_blocks() if index == 0 else blocks_of(self._object_trees, index)
         numbers = blocks.view(np.int32)[:, PRIMITIVES : PRIMITIVES + WIDTH]
         block, lane = np.nonzero((numbers >= triangles.start) & (numbers < triangles.stop))
         where, count = numbers[block, lane] - triangles.start, triangles.stop - triangles.start
@@ -173,14 +177,13 @@ class Bvh8:
 
     def build(self) -> None:
         """Build the pieces that wait for rays, in all threads."""
-        self._all_static()
+        if self._pieces is not None:
+            self._pieces.build_all(threads=thread_count())
 
-    def _all_static(self) -> Tree:
-        """The tree of what never moves, of which all is built now."""
-        if self._pieces is None:
-            return self.static
-        self._pieces.build_all(threads=thread_count())
-        return self._pieces.used
+    def _static_blocks(self) -> Float32:
+        """The blocks of what never moves, all of which is built now."""
+        self.build()
+        return (self.static if self._pieces is None else self._pieces.used).blocks
 
     def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
         """The nodes that a ray itself enters, whatever its packet does."""
@@ -203,6 +206,12 @@ class Bvh8:
         starts = self._primitives.triangle_starts[1] + self._primitives.quadric_starts[1]
         size = large.memory_bytes + moving.nodes.nbytes + moving.blocks.nbytes
         return Built(len(large.used.nodes) + len(moving.nodes), large.built + total - int(starts), total, size)
+
+    def parts_built(self) -> PieceParts | None:
+        """Which pieces of what never moves are built, and how."""
+        if self._pieces is None or not self._lazy:
+            return None
+        return PieceParts(self._pieces, len(self._primitives.object_of))
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""

@@ -40,8 +40,15 @@ def split_cost(box, axis, plane, lower, upper):
 
 
 @subkernel
-def _best_binned_split(boxes, first, last, box):
-    """(cost, axis, plane) over evenly spaced planes; counts are exact, from where boxes start and end."""
+def best_binned_split(boxes, weights, first, last, box):
+    """(cost, axis, plane) over evenly spaced planes; counts are exact, from where boxes start and end.
+
+    weights (n,) int64 say how many each box counts for; None for one each."""
+    total = np.int64(last - first)
+    if weights is not None:
+        total = np.int64(0)
+        for i in range(first, last):
+            total += weights[i]
     best_cost, best_axis, best_plane = np.inf, -1, 0.0
     starts, ends = np.empty(BINS, np.int64), np.empty(BINS, np.int64)
     for axis in range(3):
@@ -52,9 +59,12 @@ def _best_binned_split(boxes, first, last, box):
             starts[b], ends[b] = 0, 0
         scale = BINS / extent
         for i in range(first, last):
-            starts[min(max(int((boxes[i, axis] - low) * scale), 0), BINS - 1)] += 1
-            ends[min(max(int((boxes[i, axis + 3] - low) * scale), 0), BINS - 1)] += 1
-        lower, upper = 0, last - first
+            weight = np.int64(1)
+            if weights is not None:
+                weight = weights[i]
+            starts[min(max(int((boxes[i, axis] - low) * scale), 0), BINS - 1)] += weight
+            ends[min(max(int((boxes[i, axis + 3] - low) * scale), 0), BINS - 1)] += weight
+        lower, upper = np.int64(0), total
         for b in range(1, BINS):
             lower += starts[b - 1]
             upper -= ends[b - 1]
@@ -207,7 +217,7 @@ def _partition(prims, boxes, first, last, box, axis, plane, triangles, side_prim
 @subkernel
 def _best_split(boxes, first, last, box):
     if last - first > SWEEP_BELOW:
-        return _best_binned_split(boxes, first, last, box)
+        return best_binned_split(boxes, None, first, last, box)
     return _best_swept_split(boxes, first, last, box)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.boxes import transform_boxes, triangle_boxes
-from tracer.geometry.building import watched
+from tracer.geometry.building import in_chunks, watched
 from tracer.geometry.kdtree import traverse
 from tracer.geometry.kdtree.build import bounds_of, build_tree
 from tracer.geometry.kdtree.object_space import InObjectSpace
@@ -48,16 +48,18 @@ class KdTree(InObjectSpace):
         """Build the tree of one object; its items are numbers of the object's own primitives."""
         primitives, quadrics = self._primitives, self._primitives.quadrics_of(index)
         rows = primitives.triangles[primitives.triangles_of(index)]
-        boxes = np.concatenate(
-            [triangle_boxes(rows), primitives.quadric_boxes(quadrics, primitives.to_object[quadrics])]
-        )
-        return watched(
-            lambda control: build_tree(boxes, rows, control),
-            "building the kd-tree",
-            len(boxes),
-            2.5 * len(boxes),
-            progress,
-        )
+        count = len(rows) + quadrics.stop - quadrics.start
+        boxes = np.empty((count, 6), np.float32)
+        boxes[len(rows) :] = primitives.quadric_boxes(quadrics, primitives.to_object[quadrics])
+
+        def bound(first: int, last: int) -> None:
+            boxes[first:last] = triangle_boxes(rows[first:last])
+
+        def build(control: NDArray[np.int64]) -> Tree:
+            in_chunks(bound, len(rows), control, 1)
+            return build_tree(boxes, rows, control)
+
+        return watched(build, "building the kd-tree", count, 2.5 * count, progress)
 
     def _side_by_side(self, indices: Iterable[int]) -> tuple[Trees, NDArray[np.int32]]:
         """Trees of several objects side by side, with the items of the whole scene; and the roots of all objects."""
@@ -137,6 +139,9 @@ class KdTree(InObjectSpace):
 
     def built(self) -> None:
         """All of it is built before rays come."""
+
+    def parts_built(self) -> None:
+        """None of it waits."""
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""

@@ -87,6 +87,16 @@ def push(stack, pending, node, enter, leave):
 
 
 @inlined
+def at_plane(ray, inverse_x, inverse_y, inverse_z, axis, plane):
+    """The t at which a ray meets a node's plane, and whether the lower child is the nearer one; inverse_x, y and z are
+    those of its direction."""
+    origin = ray.ox if axis == 0 else (ray.oy if axis == 1 else ray.oz)
+    direction = ray.dx if axis == 0 else (ray.dy if axis == 1 else ray.dz)
+    inverted = inverse_x if axis == 0 else (inverse_y if axis == 1 else inverse_z)
+    return (plane - origin) * inverted, origin < plane or (origin == plane and direction <= ZERO)
+
+
+@inlined
 def next_leaf(trees, ray, stack, pending):
     """Enter the newest of the pending nodes and walk down to a leaf, nearer child first."""
     # Take the newest pending node, with the ray's interval in it.
@@ -100,13 +110,7 @@ def next_leaf(trees, ray, stack, pending):
         axis = word & 3
         if axis == LEAF:
             return Leaf(trees.words[2 * node], word >> 2, enter, leave, steps, pending)
-        # Find where the ray meets the plane, and which child it is in before.
-        origin = ray.ox if axis == 0 else (ray.oy if axis == 1 else ray.oz)
-        direction = ray.dx if axis == 0 else (ray.dy if axis == 1 else ray.dz)
-        inverted = inverse_x if axis == 0 else (inverse_y if axis == 1 else inverse_z)
-        plane = trees.planes[2 * node]
-        t = (plane - origin) * inverted
-        lower_first = origin < plane or (origin == plane and direction <= ZERO)
+        t, lower_first = at_plane(ray, inverse_x, inverse_y, inverse_z, axis, trees.planes[2 * node])
         near = node + 1 if lower_first else word >> 2
         far = word >> 2 if lower_first else node + 1
         # Go on to the only child that the ray meets; or to the nearer one, with the other pending.

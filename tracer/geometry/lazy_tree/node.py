@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 from tracer.geometry.boxes import inverse
 from tracer.geometry.intersect import ZERO
+from tracer.geometry.kdtree.tree import at_plane, push
 from tracer.geometry.lazy_tree.shared_memory import read_shared
 from tracer.kernels import inlined
 from tracer.simd import call_entry, load_f32, load_i64
@@ -29,14 +30,6 @@ PLANE, FIRST, SECOND, NODE = 8, 16, 24, 32  # offsets in bytes, and the size of 
 AGAIN = 1  # added to the address of a node of OBJECTS on the stack: what never moves has been asked there
 DEPTH = 40  # levels of such nodes in a tree; a tree over objects has as many again
 STACK = 2 * DEPTH + 8
-
-
-class Nodes(NamedTuple):
-    """Nodes that one ray has still to enter, each with its interval of t: pointers to STACK entries."""
-
-    node: Any
-    enter: Any
-    leave: Any
 
 
 class Building(NamedTuple):
@@ -56,15 +49,6 @@ class Met(NamedTuple):
     leave: Any
     steps: Any
     pending: Any
-
-
-@inlined
-def push_node(stack, pending, node, enter, leave):
-    """Put a node and a ray's interval in it on the stack; how many are pending then."""
-    stack.node[pending] = node
-    stack.enter[pending] = enter
-    stack.leave[pending] = leave
-    return pending + 1
 
 
 @inlined
@@ -96,13 +80,7 @@ def next_node(ray, stack, pending, building, moving):
         if axis >= UNBUILT:
             return Met(node, axis, enter, leave, steps + (axis == OBJECTS), pending)
         steps += 1
-        # Find where the ray meets the plane, and which child it is in before.
-        origin = ray.ox if axis == 0 else (ray.oy if axis == 1 else ray.oz)
-        direction = ray.dx if axis == 0 else (ray.dy if axis == 1 else ray.dz)
-        inverted = inverse_x if axis == 0 else (inverse_y if axis == 1 else inverse_z)
-        plane = load_f32(node + PLANE)
-        t = (plane - origin) * inverted
-        lower_first = origin < plane or (origin == plane and direction <= ZERO)
+        t, lower_first = at_plane(ray, inverse_x, inverse_y, inverse_z, axis, load_f32(node + PLANE))
         near = load_i64(node + (FIRST if lower_first else SECOND))
         far = load_i64(node + (SECOND if lower_first else FIRST))
         near_asked = not moving or (word & (LOWER_MOVES if lower_first else UPPER_MOVES)) != 0
@@ -114,7 +92,7 @@ def next_node(ray, stack, pending, building, moving):
             near_asked = False
         else:
             if near_asked and far_asked:
-                pending = push_node(stack, pending, far, t, leave)
+                pending = push(stack, pending, far, t, leave)
                 far_asked = False
             if near_asked:
                 leave = t

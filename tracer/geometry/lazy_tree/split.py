@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.geometry.kdtree.build import BINS, split_cost
+from tracer.geometry.kdtree.build import best_binned_split, split_cost
 from tracer.kernels import subkernel
 
 FEW = 64  # references; each face of their boxes is tried
@@ -42,31 +42,8 @@ def _best_face(boxes, weights, n, box):
 
 @subkernel
 def _best_bin(boxes, weights, n, box):
-    """(cost, axis, plane) over evenly spaced planes."""
-    best_cost, best_axis, best_plane = np.inf, -1, 0.0
-    starts, ends = np.empty(BINS, np.int64), np.empty(BINS, np.int64)
-    total = np.int64(0)
-    for i in range(n):
-        total += weights[i]
-    for axis in range(3):
-        low, extent = box[axis], box[axis + 3] - box[axis]
-        if not extent > 0.0:
-            continue
-        for b in range(BINS):
-            starts[b], ends[b] = 0, 0
-        scale = BINS / extent
-        for i in range(n):
-            starts[min(max(int((boxes[i, axis] - low) * scale), 0), BINS - 1)] += weights[i]
-            ends[min(max(int((boxes[i, axis + 3] - low) * scale), 0), BINS - 1)] += weights[i]
-        lower, upper = np.int64(0), total
-        for b in range(1, BINS):
-            lower += starts[b - 1]
-            upper -= ends[b - 1]
-            plane = np.float64(np.float32(low + b * extent / BINS))
-            if low < plane < box[axis + 3]:
-                cost = split_cost(box, axis, plane, lower, upper)
-                if cost < best_cost:
-                    best_cost, best_axis, best_plane = cost, axis, plane
+    """(cost, axis, plane) over evenly spaced planes, and the faces next to the best."""
+    best_cost, best_axis, best_plane = best_binned_split(boxes, weights, 0, n, box)
     if best_axis < 0:
         return best_cost, best_axis, best_plane
     # Move the plane to the nearest face on either side, between which it cuts the same references.

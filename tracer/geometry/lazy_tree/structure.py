@@ -16,6 +16,7 @@ from tracer.geometry.kdtree.object_space import InObjectSpace
 from tracer.geometry.lazy_tree import traverse
 from tracer.geometry.lazy_tree.build import fell, open_node, plant
 from tracer.geometry.lazy_tree.hierarchy import bounds_of_roots, hierarchy_over
+from tracer.geometry.lazy_tree.parts import LazyParts
 from tracer.geometry.lazy_tree.references import BYTES, NODES
 from tracer.geometry.lazy_tree.upper import raise_over
 from tracer.geometry.lazy_tree.walk import Told, Walk
@@ -72,6 +73,12 @@ class LazyTree:
         fell.compile()  # now: when a tree goes, nothing may be compiled, as something may be being compiled just then
         weakref.finalize(self, fell.call, self.root, 0, 0, 0, 0).atexit = False
 
+    @property
+    def groups(self) -> tuple[Float32, NDArray[np.int64]]:
+        """Boxes (g, 6) around its primitives, some together, and how many are in each."""
+        lowest = self._held.first >= 0
+        return self._held.boxes[lowest], self._held.weights[lowest].astype(np.int64)
+
     def counted(self, what: int) -> int:
         """NODES that are built, or BYTES."""
         return int(self._table[what // 8])
@@ -104,10 +111,11 @@ class LazyKdTree(InObjectSpace):
             self._trees[index] = self._plant(index)
         present, moving = poses.present.copy(), poses.present & ~resting
         present[0] = moving[0] = False
-        objects = np.flatnonzero(present).astype(np.int32)
+        self._present = objects = np.flatnonzero(present).astype(np.int32)
         object_boxes = np.stack([tree.box for tree in self._trees])
         boxes = transform_boxes(object_boxes[objects].astype(np.float64), poses.to_world[objects])
         boxes = boxes.astype(np.float32)
+        self.world_boxes = boxes  # of those that are present
         moves = moving[objects]
         bounds = bounds_of(union_of(np.concatenate([object_boxes[:1], boxes]))[None])
         root = self._trees[0].root
@@ -145,6 +153,15 @@ class LazyKdTree(InObjectSpace):
         """What rays have had built of the trees that there are now."""
         nodes, size = (sum(tree.counted(what) for tree in self._trees) for what in (NODES, BYTES))
         return Built(nodes, int(np.count_nonzero(self._touched)), len(self._touched), size)
+
+    def parts_built(self) -> LazyParts:
+        """What has been built where."""
+        return LazyParts(self, self._present, len(self._touched))
+
+    @property
+    def trees(self) -> list[LazyTree]:
+        """The tree of each object, as it is now."""
+        return list(self._trees)
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""

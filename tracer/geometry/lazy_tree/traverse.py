@@ -25,9 +25,7 @@ from tracer.geometry.lazy_tree.node import (
     STACK,
     SUBTREE,
     Building,
-    Nodes,
     next_node,
-    push_node,
 )
 from tracer.geometry.memory import local_float32, local_int32
 from tracer.geometry.queries import (
@@ -74,8 +72,8 @@ class _Search(NamedTuple):
     to_object: Any
     rests: Any
     building: Building
-    upper: Nodes
-    lower: Nodes
+    upper: Stack
+    lower: Stack
     stack: Stack
     searched: Any
     counts: Any
@@ -120,7 +118,7 @@ def _in_object(s, o, ray, enter, leave, best, nearest):
     near, far = hit_box(between(ray, enter, leave), s.object_boxes, o)
     if near > far:
         return best
-    pending = push_node(s.lower, 0, s.object_roots[o], near, far)
+    pending = push(s.lower, 0, s.object_roots[o], near, far)
     while pending > 0 and (not nearest or s.lower.enter[pending - 1] <= best.t):
         met = next_node(ray, s.lower, pending, s.building, False)
         pending = met.pending
@@ -157,8 +155,8 @@ def _is_searched(s, o, count):
 @inlined
 def _put_off(s, met, pending):
     """Leave the objects of a node until what never moves has been asked there: how many nodes are pending then."""
-    pending = push_node(s.upper, pending, met.node | AGAIN, met.enter, met.leave)
-    return push_node(s.upper, pending, load_i64(met.node + FIRST), met.enter, met.leave)
+    pending = push(s.upper, pending, met.node | AGAIN, met.enter, met.leave)
+    return push(s.upper, pending, load_i64(met.node + FIRST), met.enter, met.leave)
 
 
 @inlined
@@ -166,7 +164,7 @@ def _closest(s, ray):
     """The nearest hit of a ray."""
     best, searched, moving = no_hit(ray.t_max), 0, _meets_what_moves(s, ray)
     near, far = hit_box(ray, s.bounds, 0)
-    pending = push_node(s.upper, 0, s.root, near, far) if near <= far else 0
+    pending = push(s.upper, 0, s.root, near, far) if near <= far else 0
     while pending > 0:
         if s.upper.enter[pending - 1] > best.t:  # but objects that were put off, further down, may be nearer
             pending -= 1
@@ -198,7 +196,7 @@ def _any(s, ray, which):
         which ^= DYNAMIC_OBJECTS
     found, moving, searched = 0, np.int32(MISS), 0
     near, far = hit_box(ray, s.bounds, 0)
-    pending = push_node(s.upper, 0, s.root, near, far) if near <= far and which else 0
+    pending = push(s.upper, 0, s.root, near, far) if near <= far and which else 0
     while pending > 0:
         met = next_node(ray, s.upper, pending, s.building, which == DYNAMIC_OBJECTS)
         pending = met.pending
@@ -233,10 +231,10 @@ def _any(s, ray, which):
 @entry
 def closest(data, batch, first, last, counts):
     """Nearest hits of rays first to last - 1; counts[STEPS] and counts[TESTS] grow."""
-    upper = Nodes(
+    upper = Stack(
         i64_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES))
     )
-    lower = Nodes(
+    lower = Stack(
         i64_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES))
     )
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
@@ -252,10 +250,10 @@ def closest(data, batch, first, last, counts):
 @entry
 def any_hit(data, batch, first, last, counts):
     """What of that which is asked for lies in the interval of rays first to last - 1."""
-    upper = Nodes(
+    upper = Stack(
         i64_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES))
     )
-    lower = Nodes(
+    lower = Stack(
         i64_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES))
     )
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))

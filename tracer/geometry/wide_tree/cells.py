@@ -7,17 +7,21 @@ several passes for each level of a tree.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.building import CHUNK, in_chunks
+from tracer.geometry.building import CANCELLED, CHUNK, in_chunks
 from tracer.kernels import kernel, subkernel
 from tracer.scene.arrays import Float32
+from tracer.scene.model import Cancelled
 
 IN_A_CELL, MOST_CELLS, FEWEST_CELLS = 64, 1 << 18, 8  # triangles, about; cells of one grid
 FINEST = 1024  # cells along an axis
+PART = 1 << 18  # triangles that are sorted before somebody may cancel
+UNBOUNDED = np.array([np.inf] * 3 + [-np.inf] * 3, np.float32)
 NO_EXTENT = np.float32(1e-30)  # centres closer together than this cannot be told apart
 
 
@@ -63,28 +67,23 @@ def find_cells(rows, order, first, last, low, scale, shape, cells):
 
 
 @kernel
-def sort_by_cell(rows, order, cells, first, last, starts, boxes, scratch):
-    """Sort order[first] to order[last - 1] by their cells, which keeps the order in each: where those of a cell begin,
-    counted from `first`, into starts (m + 1,), and the boxes around them into boxes (m, 6)."""
-    m = len(boxes)
-    starts[:] = 0
+def count_in_cells(cells, first, last, starts):
+    """Count triangles first to last - 1 in starts (m + 1,), each one behind its cell."""
     for i in range(first, last):
         starts[cells[i] + 1] += 1
-    for cell in range(m):
-        starts[cell + 1] += starts[cell]
-        for k in range(3):
-            boxes[cell, k], boxes[cell, k + 3] = np.inf, -np.inf
+
+
+@kernel
+def sort_by_cell(rows, order, cells, first, last, base, ends, boxes, sorted_):
+    """Put order[first] to order[last - 1] into `sorted_` by their cells, of which the next one of each goes to the
+    place that ends (m,) says, counted from `base`; boxes (m, 6) grow around them."""
     for i in range(first, last):
         cell, triangle = cells[i], order[i]
-        scratch[first + starts[cell]] = triangle
-        starts[cell] += 1
+        sorted_[base + ends[cell]] = triangle
+        ends[cell] += 1
         for k in range(3):
             low, high = _interval(rows, triangle, k)
             boxes[cell, k], boxes[cell, k + 3] = min(boxes[cell, k], low), max(boxes[cell, k + 3], high)
-    for cell in range(m, 0, -1):
-        starts[cell] = starts[cell - 1]
-    starts[0] = 0
-    order[first:last] = scratch[first:last]
 
 
 def _shape(extent: Float32, count: int) -> NDArray[np.int64]:
@@ -97,6 +96,13 @@ def _shape(extent: Float32, count: int) -> NDArray[np.int64]:
         if shape.prod() <= most:
             return np.maximum(shape, np.where(sides == sides.max(), 2, 1)).astype(np.int64)
         side *= 1.1
+
+
+def _parts(first: int, last: int, control: NDArray[np.int64]) -> Iterator[tuple[int, int]]:
+    for start in range(first, last, PART):
+        if control[CANCELLED]:
+            raise Cancelled
+        yield start, min(start + PART, last)
 
 
 def cells_over(rows: Float32, most: int, control: NDArray[np.int64], threads: int = 1) -> Cells:
@@ -131,8 +137,14 @@ def cells_over(rows: Float32, most: int, control: NDArray[np.int64], threads: in
 
         in_chunks(find, count, control, threads)
         # Sort them, and take cells that hold too many again.
-        starts, boxes = np.empty(shape.prod() + 1, np.int64), np.empty((shape.prod(), 6), np.float32)
-        sort_by_cell(rows, order, cells, first, last, starts, boxes, scratch)
+        starts = np.zeros(shape.prod() + 1, np.int64)
+        for a, b in _parts(first, last, control):
+            count_in_cells(cells, a, b, starts)
+        np.cumsum(starts, out=starts)
+        ends, boxes = starts[:-1].copy(), np.repeat(UNBOUNDED[None], shape.prod(), axis=0)
+        for a, b in _parts(first, last, control):
+            sort_by_cell(rows, order, cells, a, b, first, ends, boxes, scratch)
+        order[first:last] = scratch[first:last]
         counts = np.diff(starts)
         again = (counts > most) & (counts < count) & (not together)
         waiting += [(first + int(starts[c]), first + int(starts[c + 1])) for c in np.flatnonzero(again)]

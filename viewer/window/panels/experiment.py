@@ -8,19 +8,22 @@ import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 
 from tracer.experiment import REFERENCE, Results
-from tracer.method import Kind, additions, bases
+from tracer.geometry.accelerators import ACCELERATORS
+from tracer.method import Kind, additions
 from viewer.services.runs import LONGEST_SIDE, Experiment
-from viewer.state.methods import in_order
+from viewer.state.methods import groups, in_order
 from viewer.state.plans import ExperimentPlan
+from viewer.util.numbers import saved_in_words
 from viewer.window.panels import experiment_table, going_back
+from viewer.window.panels.method_choice import pale, said_of
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
-from viewer.window.panels.runs import export_buttons, side_by_side, start_or_progress
+from viewer.window.panels.runs import export_buttons, in_tabs, side_by_side, start_or_progress
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     ERROR,
     QUIET,
     checkbox,
-    em,
+    in_window_style,
     outlined,
     paragraph,
     properties,
@@ -37,14 +40,12 @@ def show(ui: Ui) -> None:
     """The panel: what to measure, the savings frame by frame, and the table."""
     run = ui.controller.runs.experiment
     results = run.results if run is not None else None
-    columns = len(run.methods) if run is not None else 2
-    side_by_side(
-        lambda: _controls(ui, run),
-        lambda size: _plot(ui, run, results, size),
-        lambda: experiment_table.show(ui, run, results),
-        em(experiment_table.width_for(columns)),
-        scrolls=True,
-    )
+    controls, plot = (lambda: _controls(ui, run)), (lambda size: _plot(ui, run, results, size))
+    if results is None:
+        side_by_side(controls, plot, None, 0.0)
+        return
+    width = experiment_table.width_of(ui, run, results)
+    in_tabs(controls, plot, lambda: experiment_table.show(ui, run, results), width)
 
 
 def _controls(ui: Ui, run: Experiment | None) -> None:
@@ -60,12 +61,19 @@ def _controls(ui: Ui, run: Experiment | None) -> None:
 
 
 def _plan(ui: Ui) -> None:
+    imgui.push_style_var(imgui.StyleVar_.cell_padding, ImVec2(imgui.get_style().cell_padding.x, 1.0))
+    _rows(ui)
+    imgui.pop_style_var()
+
+
+def _rows(ui: Ui) -> None:
     plan = ui.controller.runs.experiment_plan
     with properties("plan", 4.6) as shown:
         if not shown:
             return
         row("Methods", f"each is compared with {REFERENCE}, which traces every shadow ray")
-        _methods(plan)
+        scene = ui.controller.session.scene
+        _methods(plan, len(scene.lights) if scene is not None else 0)
         row("Frames", "over the whole path of the scene")
         changed, frames = imgui.input_int("##frames", plan.frames)
         if changed:
@@ -76,21 +84,25 @@ def _plan(ui: Ui) -> None:
         changed, depth = imgui.slider_int("##depth", plan.depth, 0, 20)
         if changed:
             plan.depth = min(max(depth, 0), 100)
+        row("Tree", "through which rays are traced: only the steps of kdtree are those of the paper")
+        changed, index = imgui.combo("##tree", ACCELERATORS.index(plan.accelerator), list(ACCELERATORS))
+        if changed:
+            plan.accelerator = ACCELERATORS[index]
         row("Verify", "trace every culled shadow ray as well, and count wrong answers; this takes longer")
         checkbox("##verify", plan.verify, lambda on: setattr(plan, "verify", on))
 
 
-def _methods(plan: ExperimentPlan) -> None:
+def _methods(plan: ExperimentPlan, lights: int) -> None:
     """A list to be opened: a line for each base, a tick for each way to add to it; the reference is always among
-    them."""
+    them, and what has nothing to say of so many lights is pale."""
     opened = imgui.begin_combo("##methods", ", ".join(in_order(plan.methods)), int(imgui.ComboFlags_.height_largest))
     tooltip(", ".join(in_order({REFERENCE, *plan.methods})))
     if opened:
-        _method_ticks(plan)
+        _method_ticks(plan, lights)
         imgui.end_combo()
 
 
-def _method_ticks(plan: ExperimentPlan) -> None:
+def _method_ticks(plan: ExperimentPlan, lights: int) -> None:
     small, whole = ([kind for kind in additions() if kind.alone is alone] for alone in (False, True))
     sets: list[tuple[Kind, ...]] = [added for n in range(len(small) + 1) for added in combinations(small, n)]
     sets += [(kind,) for kind in whole]  # methods in their own right: one of them at a time
@@ -99,26 +111,40 @@ def _method_ticks(plan: ExperimentPlan) -> None:
     imgui.table_next_column()
     for added in sets:
         imgui.table_next_column()
-        imgui.text_colored(QUIET, "".join(f"+{kind.name}" for kind in added) or "alone")
+        fits = all(kind.fits(lights) for kind in added)
+        imgui.text_colored(QUIET if fits else pale(), "".join(f"+{kind.name}" for kind in added) or "alone")
         if added:
-            tooltip("\n".join(f"+{kind.name}: {kind.summary}" for kind in added))
-    for base in bases():
+            tooltip("\n".join(f"+{kind.name}: {said_of(kind, lights)}" for kind in added))
+    for heading, kinds in groups():
+        imgui.table_next_row()
         imgui.table_next_column()
-        imgui.align_text_to_frame_padding()
-        imgui.text_unformatted(base.name)
-        tooltip(base.summary)
-        for added in sets:
-            imgui.table_next_column()
-            if base in added:
-                continue
-            method = "+".join(kind.name for kind in (base, *added))
-            imgui.begin_disabled(method == REFERENCE)
-            with outlined():
-                changed, _ = imgui.checkbox(f"##{method}", method == REFERENCE or method in plan.methods)
-            imgui.end_disabled()
-            if changed:
-                plan.methods ^= {method}
+        imgui.text_colored(QUIET, heading.partition(":")[0])
+        for base in kinds:
+            _ticks_of(plan, base, sets, lights)
     imgui.end_table()
+
+
+def _ticks_of(plan: ExperimentPlan, base: Kind, sets: list[tuple[Kind, ...]], lights: int) -> None:
+    """A line of the list."""
+    imgui.table_next_row()
+    imgui.table_next_column()
+    imgui.align_text_to_frame_padding()
+    if base.fits(lights):
+        imgui.text_unformatted(base.name)
+    else:
+        imgui.text_colored(pale(), base.name)
+    tooltip(said_of(base, lights))
+    for added in sets:
+        imgui.table_next_column()
+        if base in added:
+            continue
+        method = "+".join(kind.name for kind in (base, *added))
+        imgui.begin_disabled(method == REFERENCE)
+        with outlined():
+            changed, _ = imgui.checkbox(f"##{method}", method == REFERENCE or method in plan.methods)
+        imgui.end_disabled()
+        if changed:
+            plan.methods ^= {method}
 
 
 def _shown_method(run: Experiment) -> None:
@@ -168,7 +194,9 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
         implot.plot_line(name, frames, values, spec)
     place = going_back.pointed(0, len(results.frames) - 1, results.frames)
     implot.end_plot()
-    said = [f"{name}: {values[place]:.1f} % saved" for name, values in savings] if place is not None else []
+    said = []
+    if place is not None:
+        said = [f"{name}: {in_window_style(saved_in_words(values[place] / 100.0))}" for name, values in savings]
     going_back.of_experiment(ui, run, results, place, said)
 
 

@@ -39,6 +39,7 @@ _RESTS_ON = {  # and what is said where the blocker is among them
 }
 _UNSEEN = 0.6  # of the width of what is seen
 _FADED = 0.18  # opacity of other lights than the one that is pointed at
+_BESIDE = 0.2  # and of all of them where clusters of lights are drawn over them
 
 
 def rows(ui: Ui) -> None:
@@ -210,20 +211,20 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
 
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(corner, end, True)
-    lines = c.inspector.lines(frame)
+    lines, beside = c.inspector.lines(frame), _BESIDE if c.cuts.cut is not None else 1.0
     point = place(frame, answer.lights[0].point) if answer.lights else None
     centre = on_screen(point) if point is not None else None
     radius = marks.radius_around_pixel(width / frame.width, height / frame.height)
     for shade in (True, False):
         for part, light, strokes in lines:
-            alpha = _FADED if pointed not in (None, light) else 1.0
+            alpha = beside if pointed is None else 1.0 if pointed == light else _FADED
             color = imgui.get_color_u32(with_alpha(SHADE, alpha) if shade else ImVec4(*_COLORS[part], alpha))
             for stroke in strokes:
                 wide = em(_WIDTHS[part]) * (1.0 if stroke.seen else _UNSEEN) + (em(0.12) if shade else 0.0)
                 ends = on_screen(stroke.start), on_screen(stroke.end)
                 for start, stop in [ends] if centre is None else marks.outside(*ends, centre, radius):
                     draw.add_line(start, stop, color, max(1.0, wide))
-    _ends(answer, frame, pointed, on_screen, draw)
+    _ends(answer, frame, pointed, beside, on_screen, draw)
     if centre is not None:
         marks.ring(draw, centre, radius)
     draw.pop_clip_rect()
@@ -233,12 +234,13 @@ def _ends(
     answer: Answer,
     frame: Frame,
     pointed: int | None,
+    beside: float,
     on_screen: Callable[[tuple[float, float]], ImVec2],
     draw: imgui.ImDrawList,
 ) -> None:
     """A disc at each light that is drawn, and a cross where its way ends before the point."""
     for one in answer.drawn:
-        alpha = _FADED if pointed not in (None, one.light) else 1.0
+        alpha = beside if pointed is None else 1.0 if pointed == one.light else _FADED
         at = place(frame, one.light_position)
         if at is not None:
             draw.add_circle_filled(on_screen(at), em(0.42), imgui.get_color_u32(with_alpha(SHADE, alpha)))

@@ -46,7 +46,8 @@ def show(ui: Ui) -> None:
     ui.shortcuts_open = bool(open_)
     if shown:
         _capture(ui)
-        _head(ui)
+        conflicts = ui.keymap.conflicts()
+        _head(ui, len(conflicts))
         if imgui.begin_child("all keys"):
             wide = imgui.get_content_region_avail().x > em(40.0)
             if imgui.begin_table("keys", 2 if wide else 1, int(imgui.TableFlags_.sizing_stretch_same)):
@@ -55,14 +56,14 @@ def show(ui: Ui) -> None:
                 for number, (title, names) in enumerate(groups):
                     if number in (0, half):
                         imgui.table_next_column()
-                    _group(ui, title, names)
+                    _group(ui, title, names, conflicts)
                 imgui.end_table()
             _pointer(ui)
         imgui.end_child()
     imgui.end()
 
 
-def _head(ui: Ui) -> None:
+def _head(ui: Ui, at_odds: int) -> None:
     keymap = ui.keymap
     imgui.align_text_to_frame_padding()
     imgui.text_unformatted("Steer as in")
@@ -84,7 +85,6 @@ def _head(ui: Ui) -> None:
         keymap.reset()
     imgui.end_disabled()
     tooltip("back to the usual keys of these habits")
-    at_odds = sum(bool(keymap.conflicts(name)) for name in keymap.names)
     if at_odds:
         imgui.same_line(0.0, em(1.0))
         imgui.text_colored(ERROR, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {at_odds} share keys")
@@ -110,7 +110,7 @@ def _capture(ui: Ui) -> None:
     if name in HELD:
         key = key.split("+")[-1]  # it is held with any modifier: Shift flies faster
     ui.keymap.choose(name, [key, *ui.keymap.of(name)[1:]])
-    others = ui.keymap.conflicts(name)
+    others = ui.keymap.conflicts().get(name, [])
     label = ui.keyboard.label(key)
     also = f", and also {', '.join(others)}; give one of them another key" if others else ""
     ui.controller.notices.say(f"{label}: {name}{also}", error=bool(others))
@@ -139,17 +139,16 @@ def _half(groups: list[tuple[str, list[str]]]) -> int:
     return min(range(1, len(groups) + 1), key=lambda n: abs(sum(lines[:n]) - sum(lines[n:]))) if groups else 0
 
 
-def _group(ui: Ui, title: str, names: list[str]) -> None:
+def _group(ui: Ui, title: str, names: list[str], conflicts: dict[str, list[str]]) -> None:
     imgui.separator_text(title)
     for name in names:
         imgui.push_id(name)
-        _line(ui, name)
+        _line(ui, name, conflicts.get(name, []))
         imgui.pop_id()
 
 
-def _line(ui: Ui, name: str) -> None:
-    keymap = ui.keymap
-    conflicts, waiting = keymap.conflicts(name), ui.key_wanted == name
+def _line(ui: Ui, name: str, conflicts: list[str]) -> None:
+    keymap, waiting = ui.keymap, ui.key_wanted == name
     label = "press a key" if waiting else ui.keyboard.label(keymap.shown(name)) or "-"
     left = imgui.get_cursor_pos_x()
     color = ERROR if conflicts else imgui.get_style_color_vec4(imgui.Col_.text)
@@ -163,7 +162,7 @@ def _line(ui: Ui, name: str) -> None:
     elif others:
         tooltip(f"also {others}")
     if imgui.begin_popup_context_item("more"):
-        _more(ui, name)
+        _more(ui, name, conflicts)
         imgui.end_popup()
     imgui.same_line()
     imgui.set_cursor_pos_x(left + em(_KEY))
@@ -171,14 +170,14 @@ def _line(ui: Ui, name: str) -> None:
     clipped(f"{name}{'  (changed)' if changed else ''}", ERROR if conflicts else None if changed else QUIET)
 
 
-def _more(ui: Ui, name: str) -> None:
+def _more(ui: Ui, name: str, conflicts: list[str]) -> None:
     keymap = ui.keymap
     if imgui.menu_item("No key", "", False, bool(keymap.of(name)))[0]:
         keymap.choose(name, [])
     usual = ", ".join(ui.keyboard.label(key) for key in keymap.usual(name)) or "no key"
     if imgui.menu_item(f"The usual key: {usual}", "", False, keymap.changed(name))[0]:
         keymap.reset(name)
-    for other in keymap.conflicts(name):
+    for other in conflicts:
         if imgui.menu_item(f"Take it from {other}", "", False, True)[0]:
             keymap.choose(other, [key for key in keymap.of(other) if key not in keymap.of(name)])
 

@@ -10,7 +10,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from viewer.services.jobs import Job
 from viewer.window.panels import preview
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, centred, clipped, em, paragraph
+from viewer.window.widgets import QUIET, centred, clipped, em, paragraph, tooltip_above
 
 
 def show(ui: Ui) -> None:
@@ -21,9 +21,9 @@ def show(ui: Ui) -> None:
     if not jobs:
         return
     if ui.preview is not None:
-        preview.make_room(ui, em(26.0))
-    else:
-        centred(em(26.0), 1.0 if ui.tour.step is not None else 0.5)
+        _slim(ui, jobs[0])
+        return
+    centred(em(26.0), 1.0 if ui.tour.step is not None else 0.5)
     flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_docking
     flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_focus_on_appearing
     imgui.begin("##progress", None, int(flags))
@@ -40,6 +40,31 @@ def show(ui: Ui) -> None:
     imgui.end()
 
 
+def _slim(ui: Ui, job: Job) -> None:
+    """One line at the lower edge of the preview, which is to be seen."""
+    loader, style = ui.controller.loader, imgui.get_style()
+    preview.make_room(ui, imgui.get_frame_height() + 2.0 * _PAD * em(1.0))
+    flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_move
+    flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_focus_on_appearing
+    imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(em(0.6), em(_PAD)))
+    imgui.begin("##progress of the preview", None, int(flags))
+    imgui.pop_style_var()
+    cancel = f"{icons.ICON_FA_XMARK}  Cancel##load"
+    button = 0.0
+    if loader.load_job is not None:
+        button = imgui.calc_text_size(cancel, True).x + 2.0 * style.frame_padding.x + style.item_spacing.x
+    passed = time.monotonic() - job.started
+    text = f"{job.title}: {100.0 * job.fraction:.0f} %, {passed:.0f} s so far"
+    imgui.progress_bar(job.fraction, ImVec2(-button if button else -1.0, 0.0), text)
+    tooltip_above(_PREPARING[loader.compiles])
+    if loader.load_job is not None:
+        imgui.same_line()
+        if imgui.button(cancel):
+            loader.cancel()
+    imgui.end()
+
+
+_PAD = 0.25  # ems
 _PREPARING = {
     True: "Its kernels are compiled for this processor. They are kept, so that later starts only load them.",
     False: "Its kernels were compiled before, and are loaded.",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec4, imgui
 
 from tracer.fit import worth
 from tracer.method import Kind, Method, additions
@@ -23,7 +23,8 @@ def method_list(ui: Ui, name: str, method: str, choose: Callable[[str], None], c
     scene = ui.controller.session.scene
     lights = 0 if scene is None else len(scene.lights)
     parsed = Method.parse(method)
-    if not imgui.begin_combo(name, method, int(imgui.ComboFlags_.height_largest)):
+    room = imgui.calc_item_width() - imgui.get_frame_height() - 2.0 * imgui.get_style().frame_padding.x
+    if not imgui.begin_combo(name, fitted(method, room), int(imgui.ComboFlags_.height_largest)):
         tooltip(Method.parse(method).kind.summary if method == parsed.base else method)
         return
     for heading, kinds in groups():
@@ -45,10 +46,19 @@ def method_list(ui: Ui, name: str, method: str, choose: Callable[[str], None], c
 
 def _sentence(kind: Kind, lights: int) -> None:
     """What the method of the last item does, behind its name, or as far as the window is wide enough for it."""
-    tooltip(" ".join(filter(None, (kind.summary, worth(kind, lights)))))
+    tooltip(said_of(kind, lights))
     room = imgui.get_main_viewport().work_size.x - em(_NAMES + 3.0)
     if room < em(_SENTENCE):
         return
     imgui.same_line(em(_NAMES))
-    color = QUIET if kind.fits(lights) else imgui.get_style_color_vec4(imgui.Col_.text_disabled)
-    imgui.text_colored(color, fitted(kind.summary, room))
+    imgui.text_colored(QUIET if kind.fits(lights) else pale(), fitted(kind.summary, room))
+
+
+def said_of(kind: Kind, lights: int) -> str:
+    """What a method does, and why it has nothing to say of so many lights where it has not."""
+    return " ".join(filter(None, (kind.summary, worth(kind, lights))))
+
+
+def pale() -> ImVec4:
+    """The colour of methods that have nothing to say of the scene."""
+    return imgui.get_style_color_vec4(imgui.Col_.text_disabled)

@@ -35,6 +35,8 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
         imgui.pop_text_wrap_pos()
         if found.base and c.runs.current is None and imgui.button(f"Use {found.base}##instead"):
             c.settings.change(method=with_base(c.session.settings.method, found.base))
+        if found.accelerator and c.runs.current is None and imgui.button(f"Use {found.accelerator}##instead"):
+            c.settings.change(accelerator=found.accelerator)
     imgui.end_child()
     imgui.pop_style_var(2)
     imgui.pop_style_color()

@@ -34,14 +34,13 @@ def show(ui: Ui, room: ImVec2, drag: Callable[[Ui, int, float, float], None]) ->
     return True
 
 
-def make_room(ui: Ui, width: float) -> None:
-    """Put the next window, so wide, at the lower edge of the picture, which is to be seen."""
+def make_room(ui: Ui, height: float) -> None:
+    """Put the next window, so high, along the lower edge of the picture."""
     viewport = imgui.get_main_viewport()
     whole = viewport.work_pos.x, viewport.work_pos.y + viewport.work_size.y, viewport.work_size.x
     left, lower, across = ui.tour_place or whole
-    place = ImVec2(left + 0.5 * across, lower - em(0.8))
-    imgui.set_next_window_pos(place, int(imgui.Cond_.always), ImVec2(0.5, 1.0))
-    imgui.set_next_window_size(ImVec2(min(width, 0.95 * viewport.work_size.x), 0.0))
+    imgui.set_next_window_pos(ImVec2(left, lower - height))
+    imgui.set_next_window_size(ImVec2(across, height))
 
 
 def _pointer(ui: Ui, height: float, drag: Callable[[Ui, int, float, float], None]) -> None:

@@ -25,6 +25,7 @@ _COLORS: dict[Part, Color] = {
 _WIDTHS = {Part.PATH: 0.2, Part.ASKED: 0.15, Part.SAVED: 0.08, Part.DARK: 0.13}  # in ems
 _BEHIND = 0.4  # opacity of what lies behind something
 _FADED = 0.16  # of rays other than the one that is pointed at or selected
+_BESIDE = 0.2  # of all rays where clusters of lights are drawn over them
 _BLOCKED = ImVec4(0.84, 0.37, 0.0, 1.0)
 _PALE = ImVec4(0.8, 0.86, 1.0, 0.35)  # around what is dark
 BOX, HIT_BOX, WAY = (1.0, 0.62, 0.10), (1.0, 0.25, 0.30), (1.0, 1.0, 1.0)
@@ -48,12 +49,12 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     draw.push_clip_rect(corner, end, True)
     picked_out = [row for row in (rays.selected, rays.pointed) if row is not None]
     lines = rays.lines(frame)
-    thin = 0.55 if len(lines) > _MANY else 1.0
+    thin, beside = 0.55 if len(lines) > _MANY else 1.0, _BESIDE if ui.controller.cuts.cut is not None else 1.0
     clicked = place(frame, rays.tree.rays[0].end) if rays.tree.rays[0].shadows is not None else None
     radius = marks.radius_around_pixel(width / frame.width, height / frame.height)
     hole = (on_screen(clicked), radius) if clicked is not None else None
     for line in lines:
-        _line(draw, on_screen, line, hole, _FADED if picked_out else 1.0, thin)
+        _line(draw, on_screen, line, hole, _FADED if picked_out else beside, thin)
     for row in picked_out:
         for line in _of_row(rays, frame, lines, row):
             _line(draw, on_screen, line, hole, 1.0)

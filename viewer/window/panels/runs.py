@@ -25,17 +25,13 @@ def side_by_side(
     plot: Callable[[ImVec2], None],
     table: Callable[[], None] | None,
     table_width: float,
-    scrolls: bool = False,
 ) -> None:
     """Controls, plot and table in a row; one below the other where the panel is too narrow for that.
 
-    Without a table, the plot has its room.  A table that `scrolls` does so in half of what the controls leave, where it
-    is wider than that."""
+    Without a table, the plot has its room."""
     room = imgui.get_content_region_avail()
     spacing = imgui.get_style().item_spacing.x
     left = em(14.0)
-    if scrolls:
-        table_width = min(table_width, max(0.5 * (room.x - left), em(18.0)))
     if table is None:
         _two(controls, plot, left, spacing, room)
         return
@@ -58,6 +54,34 @@ def side_by_side(
     imgui.same_line()
     if imgui.begin_child("table", ImVec2(table_width, 0.0)):
         table()
+    imgui.end_child()
+
+
+def in_tabs(
+    controls: Callable[[], None], plot: Callable[[ImVec2], None], table: Callable[[], None], table_width: float
+) -> None:
+    """Controls, plot and table in a row.  Where a table of so many pixels leaves too little for a plot, both are tabs
+    beside the controls; in a panel that is too narrow for that, they lie below one another."""
+    room, spacing = imgui.get_content_region_avail(), imgui.get_style().item_spacing.x
+    left = em(14.0)
+    middle = room.x - left - spacing
+    if middle - table_width - spacing >= em(16.0) or middle < em(12.0):
+        side_by_side(controls, plot, table, max(table_width, 0.45 * middle))
+        return
+    if imgui.begin_child("controls", ImVec2(left, 0.0)):
+        controls()
+    imgui.end_child()
+    imgui.same_line()
+    if imgui.begin_child("results", ImVec2(middle, 0.0)):
+        if imgui.begin_tab_bar("results"):
+            if imgui.begin_tab_item_simple("Table"):
+                table()
+                imgui.end_tab_item()
+            if imgui.begin_tab_item_simple("Plot"):
+                area = imgui.get_content_region_avail()
+                plot(ImVec2(area.x, max(area.y, em(8.0))))
+                imgui.end_tab_item()
+            imgui.end_tab_bar()
     imgui.end_child()
 
 

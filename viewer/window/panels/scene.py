@@ -7,8 +7,7 @@ from pathlib import Path
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.culling.modes import MAX_CULLED_LIGHTS
-from viewer.state.methods import of_all_lights
+from tracer.fit import lamps_in, overview
 from viewer.util.resources import embedded_scenes
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
@@ -91,12 +90,14 @@ def _lights(ui: Ui) -> None:
     if not number:
         paragraph("No lights: only ambient light shows, and there are no shadows to cull.", WARNING)
         return
-    if number > MAX_CULLED_LIGHTS:
-        paragraph(
-            f"{icons.ICON_FA_TRIANGLE_EXCLAMATION} Only the first {MAX_CULLED_LIGHTS} lights have modes. Methods that "
-            f"take all of them into account: {of_all_lights(number)}.",
-            WARNING,
-        )
+    radius, samples = c.session.settings.lamp_radius, c.session.settings.lamp_samples
+
+    def look() -> str:
+        return overview(number, lamps_in(scene.lights, radius, samples)[0])
+
+    said = ui.cached("what methods do with the lights", scene, (radius, samples), look)
+    if said:
+        paragraph(f"{icons.ICON_FA_TRIANGLE_EXCLAMATION} {said}", WARNING)
     lights.table(ui)
 
 

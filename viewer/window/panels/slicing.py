@@ -9,10 +9,11 @@ from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.light_cut import LightCut
 from viewer.services.cut_inspector import MOST_DRAWN
 from viewer.state.picking import pixel_at
-from viewer.state.readings import cell_lights, voxels_of
-from viewer.state.slices import AXES, middle_of, slice_seen, voxel_seen
+from viewer.state.readings import cell_lights, tree_of, voxels_of
+from viewer.state.slices import AXES, slice_seen, voxel_seen
+from viewer.state.tree_slice import part_seen, part_words
 from viewer.state.views import View
-from viewer.window.layers_of_slice import go_to
+from viewer.window.layers_of_slice import go_to, layer_now
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
 from viewer.window.widgets import count, em, percent, row
@@ -22,25 +23,21 @@ _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.90), ImVec4(0.93, 0.94, 0.96, 1.0)
 
 def rows(ui: Ui) -> None:
     """Rows of the panel's table."""
-    s, frame = ui.controller.session, ui.controller.frame
+    s = ui.controller.session
     row("Slice", "across which axis space is cut")
     for axis, name in enumerate(AXES):
         if axis:
             imgui.same_line(0.0, em(0.6))
         if imgui.radio_button(f"{name}##slice", s.cut.axis == axis):
             s.cut = s.cut._replace(axis=axis)
-    states = voxels_of(frame) if frame is not None and "voxels" in frame.structures else None
-    if states is None:
+    layer = layer_now(ui)
+    if layer is None:
         return
-    row("Layer", "of voxels, along the axis; Ctrl+click to type one")
-    many, layer = states.shape[s.cut.axis], s.cut.layer(states.shape)
-    flags, words = (
-        int(imgui.SliderFlags_.always_clamp),
-        f"%d  ({AXES[s.cut.axis]} = {middle_of(states.grid, s.cut):.4g})",
-    )
-    changed, layer = imgui.slider_int("##layer", layer, 0, many - 1, words, flags)
+    row("Layer", "along the axis; Ctrl+click to type one")
+    flags, words = int(imgui.SliderFlags_.always_clamp), f"%d  ({AXES[s.cut.axis]} = {layer.place:.4g})"
+    changed, number = imgui.slider_int("##layer", layer.number, 0, layer.many - 1, words, flags)
     if changed:
-        s.cut = go_to(s.cut, layer, many)
+        s.cut = go_to(s.cut, number, layer.many)
 
 
 def lines_at(ui: Ui, x: int, y: int) -> list[str]:
@@ -60,6 +57,10 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
         inside = "something static lies in it" if found.occupied else "nothing static lies in it"
         named = "{}, {}, {}".format(*found.place)
         return [f"voxel {named}: {STATE_NAMES[found.state]}", *([block] if block else []), inside]
+    if view is View.TREE:
+        tree, cut = tree_of(frame), c.session.cut
+        part = part_seen(frame, tree, cut, x, y)
+        return [] if part is None else list(part_words(part, tree.owner))
     if view is View.CUTS and c.cuts.cut is not None and (c.cuts.cut.x, c.cuts.cut.y) == (x, y):
         return cut_lines(c.cuts.cut)
     if view is View.CELL_LIGHTS and frame.primitive[y, x] >= 0:

@@ -11,7 +11,6 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import GOOD, QUIET, clipped, em, paragraph, tooltip_above
 
 _WIDTH = 27.0  # ems of the window
-_HIGH = 48.0  # ems of a window that has room for the text of all steps
 _LEAST = 9.0  # ems of height that the picture keeps: with less room the strip lies over its lower edge
 _PADDING = ImVec2(0.6, 0.45)  # ems
 
@@ -104,16 +103,21 @@ def _all_steps(ui: Ui) -> None:
     tour, area = ui.tour, imgui.get_main_viewport()
     width = min(em(_WIDTH), 0.9 * area.work_size.x)
     centre = area.get_work_center()
+    room = area.work_pos.y + area.work_size.y - centre.y - em(1.0)
+    wrap = width - 2.0 * imgui.get_style().window_padding.x
+    texts = [tour.text(step) for step in STEPS]
+    told = sum(imgui.calc_text_size(text, False, wrap).y + imgui.get_style().item_spacing.y for text in texts)
+    others = imgui.get_frame_height() + (len(STEPS) + 2) * imgui.get_text_line_height_with_spacing()
     imgui.set_next_window_pos(ImVec2(centre.x - 0.5 * width, centre.y + em(0.5)))
     imgui.set_next_window_size(ImVec2(width, 0.0))
     flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_resize
     flags |= imgui.WindowFlags_.no_focus_on_appearing | imgui.WindowFlags_.no_move
     shown, stays = imgui.begin(f"A tour of {len(STEPS)} steps###steps", True, int(flags))
     if shown:
-        for number, step in enumerate(STEPS):
+        for number, (step, text) in enumerate(zip(STEPS, texts, strict=True)):
             paragraph(f"{number + 1}  {step.title}")
-            if area.work_size.y > em(_HIGH):
-                paragraph(tour.text(step), QUIET)
+            if told + others <= room:  # else only what the steps are called
+                paragraph(text, QUIET)
         paragraph("You can begin as soon as there is a picture.", QUIET)
     imgui.end()
     if not stays:

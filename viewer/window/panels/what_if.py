@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.scene.edits import Edited, Thing
+from tracer.scene.edits import Edited
 from tracer.scene.limits import LARGEST
+from tracer.scene.things import Thing
 from viewer.output.legend import light_in_words
 from viewer.services.before_edits import Lack
 from viewer.state import terms

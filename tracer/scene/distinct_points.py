@@ -14,7 +14,7 @@ from tracer.scene.mesh_kernels import number_places
 _FEWEST = 1 << 10
 
 
-class Places:
+class DistinctPoints:
     """Different places, in the order in which they were met.  Zeros of both signs are one."""
 
     def __init__(self, expected: int = 0) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 pytest.importorskip("imgui_bundle")
-from viewer.window.places import Rect, brought_back
+from viewer.window.window_place import Rect, brought_back
 
 LEFT, RIGHT, ABOVE = (0, 0, 1600, 1000), (1600, 0, 1920, 1080), (0, -1000, 1600, 1000)
 FRAME = (2, 20, 2, 3)

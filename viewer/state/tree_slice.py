@@ -1,0 +1,145 @@
+"""A slice through a tree that is built where rays arrive: which part of it each pixel sees, and whether it is built.
+
+The slice is drawn through everything.  Wherever a ray of the picture passes the tree is built; so what waits is what
+lies behind something, and would never be seen if that hid the slice.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.frame import Frame
+from tracer.geometry.camera import pinhole
+from tracer.geometry.tree_parts import NOWHERE, PartsAt, TreeParts, nothing_at
+from viewer.state.slices import FEWEST, Slice
+
+LEVEL, WAITS, LINE, BORDER, HIDDEN = 0xFF, 0x100, 0x200, 0x400, 0x800  # of a code: a mask, and flags
+NOTHING = 0xFFFF  # the code of no part
+LAYERS = 100  # steps from one side of what most primitives are in to the other
+SAMPLES = 128  # along each side of a slice, of which parts are counted
+STRIPE = 4  # pixels: the width of the stripes of what waits
+
+
+def layer_of(cut: Slice) -> int:
+    """Which of the LAYERS a slice lies in."""
+    return min(int(cut.at * LAYERS), LAYERS - 1)
+
+
+def place_of(parts: TreeParts, cut: Slice) -> float:
+    """Where the plane of a slice lies along its axis, in units of the scene."""
+    low, high = float(parts.extent[cut.axis]), float(parts.extent[cut.axis + 3])
+    return low + cut.at * (high - low)
+
+
+class TreeSeen(NamedTuple):
+    """Of each pixel (h, w), the part of the tree that it sees in a slice; whether something lies before it; and how
+    many pixels wide the part is there."""
+
+    parts: PartsAt
+    hidden: NDArray[np.bool_]
+    wide: NDArray[np.float32]
+
+
+def tree_seen(frame: Frame, parts: TreeParts, cut: Slice) -> TreeSeen:
+    """Which part of the tree each pixel sees in a slice; none once the tree is no more."""
+    return _seen(frame, parts, cut, slice(0, frame.width), slice(0, frame.height))
+
+
+def _seen(frame: Frame, parts: TreeParts, cut: Slice, columns: slice, rows: slice) -> TreeSeen:
+    """The same of some pixels."""
+    rays, depth = pinhole(frame.camera, frame.width, frame.height), frame.depth[rows, columns]
+    x, y = (np.arange(side.start, side.stop, dtype=np.float32) for side in (columns, rows))
+    points = np.empty((*depth.shape, 3), np.float32)
+    with np.errstate(all="ignore"):
+        ways = [rays.corner[k] + x * rays.column[k] + y[:, None] * rays.row[k] for k in range(3)]
+        place = np.float32(place_of(parts, cut))
+        t = np.where(ways[cut.axis] != 0.0, (place - np.float32(rays.origin[cut.axis])) / ways[cut.axis], np.nan)
+        t = np.where(t > 0.0, t, np.nan).astype(np.float32)
+        for k in range(3):
+            points[..., k] = place + 0.0 * t if k == cut.axis else rays.origin[k] + t * ways[k]
+        distance = t * np.sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2])
+        found = parts.at(points.reshape(-1, 3), cut.axis) or nothing_at(t.size)
+        shaped = PartsAt._make(column.reshape(depth.shape) for column in found)
+        wide = np.where(shaped.numbers != NOWHERE, shaped.widths / (distance * rays.spread), np.float32(0.0))
+        return TreeSeen(shaped, distance > depth, wide)
+
+
+def tree_codes(frame: Frame, parts: TreeParts, cut: Slice) -> NDArray[np.uint16]:
+    """(h, w) for each pixel the level of the part that it sees in a slice, with flags: that it WAITS, that a LINE
+    between parts, or the BORDER of an object or a piece, is there, and that something lies before it, so that it would
+    be HIDDEN; else NOTHING."""
+    seen = tree_seen(frame, parts, cut)
+    found, there = seen.parts, seen.parts.numbers != NOWHERE
+    codes = found.levels.astype(np.uint16)
+    codes[found.built == 0] |= WAITS
+    codes[_apart(found.numbers) & (_least(seen.wide) >= FEWEST)] |= LINE
+    codes[_in_company(_apart(found.owners))] |= BORDER
+    codes[seen.hidden] |= HIDDEN
+    return np.where(there, codes, np.uint16(NOTHING))
+
+
+def _apart(of: NDArray) -> NDArray[np.bool_]:
+    """Pixels whose neighbour to the right, or below, has another of these (h, w)."""
+    line = np.zeros(of.shape, np.bool_)
+    line[:, :-1] |= of[:, 1:] != of[:, :-1]
+    line[:-1] |= of[1:] != of[:-1]
+    return line
+
+
+def _in_company(line: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Pixels of lines with two neighbours of lines at least: others are dots, as of a flat box that is far away."""
+    padded = np.pad(line, 1)
+    height, width = line.shape
+    near = [padded[y : y + height, x : x + width] for y in range(3) for x in range(3) if (y, x) != (1, 1)]
+    return line & (np.sum(near, axis=0, dtype=np.uint8) >= 2)
+
+
+def _least(wide: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The least of a pixel and of its neighbours to the right and below: lines belong to both sides."""
+    least = wide.copy()
+    least[:, :-1] = np.minimum(least[:, :-1], wide[:, 1:])
+    least[:-1] = np.minimum(least[:-1], wide[1:])
+    return least
+
+
+def share_built(parts: TreeParts, cut: Slice) -> float | None:
+    """Which share of what a slice has of the tree is built, by SAMPLES x SAMPLES points; None where it has none."""
+    steps = (np.arange(SAMPLES, dtype=np.float32) + np.float32(0.5)) / np.float32(SAMPLES)
+    low, high = parts.extent[:3], parts.extent[3:]
+    points = np.empty((SAMPLES, SAMPLES, 3), np.float32)
+    one, other = (k for k in range(3) if k != cut.axis)
+    points[..., cut.axis] = place_of(parts, cut)
+    points[..., one] = low[one] + steps[:, None] * (high[one] - low[one])
+    points[..., other] = low[other] + steps * (high[other] - low[other])
+    found = parts.at(points.reshape(-1, 3), cut.axis)
+    there = found.numbers != NOWHERE if found is not None else np.zeros(0, np.bool_)
+    return float(found.built[there].mean()) if found is not None and there.any() else None
+
+
+class PartSeen(NamedTuple):
+    """What one pixel sees in a slice."""
+
+    level: int
+    built: bool
+    held: int
+    owner: int
+
+
+def part_seen(frame: Frame, parts: TreeParts, cut: Slice, x: int, y: int) -> PartSeen | None:
+    """The part that a pixel sees; None where it sees none."""
+    found = _seen(frame, parts, cut, slice(x, x + 1), slice(y, y + 1)).parts
+    if found.numbers[0, 0] == NOWHERE:
+        return None
+    return PartSeen(int(found.levels[0, 0]), bool(found.built[0, 0]), int(found.held[0, 0]), int(found.owners[0, 0]))
+
+
+def part_words(part: PartSeen | None, owner: str) -> tuple[str, ...]:
+    """That in a few short lines, with the word for what owners are; a dash for no part."""
+    if part is None:
+        return ("-",)
+    leaf = f"leaf of {part.held} primitive{'s' * (part.held != 1)}" if part.held else "empty leaf"
+    what = "not built yet" if not part.built else "inner node" if part.held < 0 else leaf
+    return (what, f"level {part.level}", *((f"{owner} {part.owner}",) if part.owner >= 0 else ()))
