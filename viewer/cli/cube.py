@@ -15,7 +15,7 @@ from tracer.scene.load import check_scene_file, load_visible_scene
 from viewer.cli.console import print_table, working
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
-from viewer.output.legend import named_light
+from viewer.output.legend_parts import named_light
 from viewer.output.light_cube import EMPTY, FEW, MANY, ONE, described, picture_of, seen
 from viewer.output.pictures import lights_in_words
 from viewer.util.messages import printable

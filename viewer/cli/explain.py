@@ -21,7 +21,7 @@ from viewer.cli.edit_options import edited_scene, light_index
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.render import times_before
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
-from viewer.output.legend import named_light
+from viewer.output.legend_parts import named_light
 from viewer.output.ray_json import ray_data
 from viewer.output.ray_rows import RayRows, Row, totals
 from viewer.state.earlier import Earlier

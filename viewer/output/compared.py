@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from viewer.output.legend import Entry, Legend, Note, Scale, Tone
+from viewer.output.legend_parts import Entry, Legend, Note, Scale, Tone
 from viewer.state.comparison import Apart, Way, fitted
 from viewer.state.marks import wipe_column
 from viewer.state.values import AXES, CHANNELS, Values

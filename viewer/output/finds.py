@@ -9,7 +9,7 @@ from typing import Any
 
 from tracer.scene.model import Camera, Scene
 from viewer.output.comparison_figure import Crop
-from viewer.output.legend import named_light
+from viewer.output.legend_parts import named_light
 from viewer.output.recipe import scene_word
 from viewer.state import earlier
 from viewer.state.earlier import Earlier

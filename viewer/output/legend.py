@@ -1,136 +1,47 @@
 """What the legend of a view says: its colours, what each stands for, and how much of the frame has it.
 
-The window draws it into the picture, or beside it, and a saved picture may carry it; `legend_layout` says where its
-parts lie.  Nothing here needs GL.
+The window draws it into the picture, or beside it, and a saved picture may carry it; `legend_parts` says what it
+consists of, and `legend_layout` where that lies.  Nothing here needs GL.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from enum import Enum
+from collections.abc import Callable
 
 import numpy as np
 
-from tracer.culling.voxels.tell import STATE_NAMES
-from tracer.fit import too_few
 from tracer.frame import Frame
 from tracer.method import Method
-from tracer.scene.lights import Light, number_of
 from tracer.statistics import CutErrors
 from viewer.output.legend_counts import (
     LegendRow,
-    cell_lights_legend,
     certificate_legend,
-    cuts_legend,
     difference_legend,
     lights_legend,
     occlusion_legend,
     penumbra_legend,
     shadow_legend,
-    voxels_legend,
     work_legend,
 )
+from viewer.output.legend_of_space import of_cell_lights, of_cuts, of_tree, of_voxels
+from viewer.output.legend_parts import ARRIVAL_NAMES, AS_USUAL, Chosen, Entry, Legend, Note, Scale, Tone, light_in_words
 from viewer.state import terms
-from viewer.state.readings import can_draw, has_modes_of_cells, span_of, tree_of, voxels_of
-from viewer.state.slices import AXES, MIDDLE, Slice, middle_of
-from viewer.state.tone import NEUTRAL, clipped
-from viewer.state.tone import Tone as DisplayTone
-from viewer.state.tree_slice import SAMPLES, place_of, share_built
+from viewer.state.readings import can_draw, has_modes_of_cells, span_of
+from viewer.state.tone import clipped
 from viewer.state.views import (
     ARRIVAL_COLORS,
     ARRIVAL_MEANING,
     BLACK,
     GREY,
     TOO_BRIGHT,
-    TREE_WAITS,
-    VOXEL_COLORS,
-    VOXEL_MEANING,
     WRONG,
     Arrival,
-    Color,
     View,
 )
 from viewer.util.numbers import count, percent
 
-NEARLY_ALL = 0.9  # of the lights: cuts of more clusters show nothing
 
-
-class Tone(Enum):
-    """How a note is meant."""
-
-    PLAIN = "a fact"
-    GOOD = "all is well"
-    WARNING = "take care"
-
-
-@dataclass(frozen=True)
-class Entry:
-    """A line: a colour, or none, what it stands for, a value for each of the legend's columns, and more in words.
-
-    Where it is `quiet`, its values name what is below them."""
-
-    name: str
-    color: Color | None = None
-    values: tuple[str, ...] = ()
-    meaning: str = ""
-    quiet: bool = False
-
-
-@dataclass(frozen=True)
-class Scale:
-    """The colour map as a bar, and what its ends and its middle stand for; `reverse` begins with its last colour, and
-    `signed` is that of a signed difference."""
-
-    low: str
-    high: str
-    middle: str = ""
-    reverse: bool = False
-    signed: bool = False
-
-
-@dataclass(frozen=True)
-class Note:
-    """A sentence below the rest."""
-
-    text: str
-    tone: Tone = Tone.PLAIN
-
-
-@dataclass(frozen=True)
-class Legend:
-    """A title, names of the columns of values, and the rest as far as there is any; `facts` come after the colours."""
-
-    title: str
-    columns: tuple[str, ...] = ()
-    entries: tuple[Entry, ...] = ()
-    scale: Scale | None = None
-    facts: tuple[Entry, ...] = ()
-    notes: tuple[Note, ...] = ()
-
-
-@dataclass(frozen=True)
-class Chosen:
-    """What else is chosen of a view: its light, with its name and number, whether wrong pixels are marked,
-    shares of rays, the range of its numbers, the tone of its picture, whether what this clips is marked, and the slice
-    through space."""
-
-    light: int = 0
-    light_name: str = ""
-    marked: bool = True
-    shares: bool = False
-    span: tuple[float, float] | None = None
-    tone: DisplayTone = NEUTRAL
-    clipping: bool = False
-    light_number: int | None = None
-    cut: Slice = MIDDLE
-
-    @property
-    def number(self) -> int:
-        return self.light if self.light_number is None else self.light_number
-
-
-def legend_of(frame: Frame, view: View, chosen: Chosen = Chosen()) -> Legend | None:
+def legend_of(frame: Frame, view: View, chosen: Chosen = AS_USUAL) -> Legend | None:
     """The legend of a frame in a view that can be drawn of it; None for colours that speak for themselves."""
     if view is View.COLOR and chosen.clipping:
         return _clipped(frame, chosen)
@@ -148,23 +59,12 @@ def legend_of(frame: Frame, view: View, chosen: Chosen = Chosen()) -> Legend | N
         View.COST: _work,
         View.PENUMBRA: _penumbra,
         View.LIGHTS: _lights,
-        View.CUTS: _cuts,
-        View.VOXELS: _voxels,
-        View.CELL_LIGHTS: _cell_lights,
-        View.TREE: _tree,
+        View.CUTS: of_cuts,
+        View.VOXELS: of_voxels,
+        View.CELL_LIGHTS: of_cell_lights,
+        View.TREE: of_tree,
     }
     return makers[view](frame, view, chosen) if view in makers and can_draw(frame, view, chosen.light) else None
-
-
-def light_in_words(number: int, name: str) -> str:
-    """A light by its number, and its name where that says more: light 2 (lamp)."""
-    said = f"light {number}"
-    return said if name in ("", said) else f"{said} ({name})"
-
-
-def named_light(lights: Sequence[Light], light: int) -> str:
-    """The same of one of a scene's lights; its number is that in the scene as it was read, whichever are off now."""
-    return light_in_words(number_of(lights, light), lights[light].name if light < len(lights) else "")
 
 
 def _classes(rows: list[LegendRow], units: str) -> tuple[Entry, ...]:
@@ -287,7 +187,7 @@ def _penumbra(frame: Frame, view: View, chosen: Chosen) -> Legend:
     title = f"{view.label}, {light_in_words(chosen.number, chosen.light_name)}"
     found = penumbra_legend(frame, chosen.light)
     entries = tuple(
-        Entry(_ARRIVALS[one], ARRIVAL_COLORS[one], (percent(pixels, found.seen),), f"{ARRIVAL_MEANING[one]}. "
+        Entry(ARRIVAL_NAMES[one], ARRIVAL_COLORS[one], (percent(pixels, found.seen),), f"{ARRIVAL_MEANING[one]}. "
               f"{count(pixels)} pixels")
         for one, pixels in reversed(found.pixels.items())
         if pixels or one is not Arrival.UNKNOWN
@@ -301,88 +201,12 @@ def _penumbra(frame: Frame, view: View, chosen: Chosen) -> Legend:
 def _lights(frame: Frame, view: View, chosen: Chosen) -> Legend:
     found = lights_legend(frame)
     facts = (Entry("per pixel", values=(f"{found.per_pixel:.4g} of {count(frame.lights)} lights",)),)
-    entries = (Entry(_ARRIVALS[Arrival.UNKNOWN], GREY),) if frame.shaded is not None else ()
+    entries = (Entry(ARRIVAL_NAMES[Arrival.UNKNOWN], GREY),) if frame.shaded is not None else ()
     middle = count(found.most // 2) if found.most % 2 == 0 else ""
     scale = Scale("0", count(found.most), middle)
     if chosen.span is not None:
         scale = Scale(f"{chosen.span[0]:.4g}", f"{chosen.span[1]:.4g}")
     return Legend("Lights that each pixel has to look at", (), entries, scale, facts)
-
-
-def _cuts(frame: Frame, view: View, chosen: Chosen) -> Legend:
-    found = cuts_legend(frame)
-    facts = (
-        Entry("per pixel", values=(f"{found.per_pixel:.4g} for {count(found.lights)} lights",)),
-        Entry("each may be wrong by", None, (f"{percent(frame.settings.lightcuts_error, 1.0)} of the light",), _EACH),
-        Entry("all of them together", None, (f"{percent(found.bound, 1.0)} at most",), _BOUND),
-    )
-    entries = (Entry(_ARRIVALS[Arrival.UNKNOWN], GREY),) if found.unknown else ()
-    scale = Scale("0", count(found.most), count(found.most // 2) if found.most % 2 == 0 else "")
-    if chosen.span is not None:
-        scale = Scale(f"{chosen.span[0]:.4g}", f"{chosen.span[1]:.4g}")
-    cuts = frame.statistics.cuts
-    notes: tuple[Note, ...] = ()
-    if cuts is not None and cuts.blocks and cuts.mean > NEARLY_ALL * cuts.lights:
-        few = too_few(Method.parse(frame.settings.method), cuts.lights)
-        notes = (Note(f"Nearly every light is a cluster of its own{f': {few}' if few else ''}.", Tone.WARNING),)
-    return Legend("Clusters of lights that each pixel is shaded by", (), entries, scale, facts, notes)
-
-
-def _voxels(frame: Frame, view: View, chosen: Chosen) -> Legend:
-    states, found = voxels_of(frame), voxels_legend(frame, chosen.light, chosen.cut)
-    axis, grid = AXES[chosen.cut.axis], states.grid
-    title = f"{view.label}, {light_in_words(chosen.number, chosen.light_name)}"
-    if not states.known[chosen.light]:
-        why = "Nothing is known of this light: it is a lamp, or past those that there is room for; its rays are traced."
-        return Legend(title, notes=(Note(why, Tone.WARNING),))
-    entries = tuple(
-        Entry(
-            STATE_NAMES[state],
-            VOXEL_COLORS[state],
-            (percent(found.in_slice[state], sum(found.in_slice)), percent(found.in_all[state], grid.voxels)),
-            f"{VOXEL_MEANING[state]}. {count(found.in_all[state])} voxels in all",
-        )
-        for state in (1, 2, 0)
-    )
-    layer = chosen.cut.layer(states.shape)
-    facts = (
-        Entry(f"slice at {axis}", None, (f"{middle_of(grid, chosen.cut):.4g}",), "the middles of a layer of voxels"),
-        Entry("layer", None, (f"{count(layer)} of {count(states.shape[chosen.cut.axis])}",), "counted from 0"),
-        Entry("grid", None, (" x ".join(str(n) for n in states.shape),), f"of voxels that are {grid.side:.3g} wide"),
-    )
-    return Legend(title, ("slice", "all"), entries, facts=facts)
-
-
-def _cell_lights(frame: Frame, view: View, chosen: Chosen) -> Legend:
-    found = cell_lights_legend(frame)
-    facts = (
-        Entry("per pixel", values=(f"{found.per_pixel:.4g} of {count(frame.lights)} lights",), meaning=_PER_CELL),
-        Entry("cells in view", values=(count(found.cells),)),
-    )
-    entries = (Entry(_ARRIVALS[Arrival.UNKNOWN], GREY),) if found.unknown else ()
-    scale = Scale("0", count(found.most), count(found.most // 2) if found.most % 2 == 0 else "")
-    if chosen.span is not None:
-        scale = Scale(f"{chosen.span[0]:.4g}", f"{chosen.span[1]:.4g}")
-    return Legend("Lights that the cell must look at", (), entries, scale, facts)
-
-
-def _tree(frame: Frame, view: View, chosen: Chosen) -> Legend:
-    parts, built = tree_of(frame), frame.statistics.built
-    share = share_built(parts, chosen.cut)
-    low, high = chosen.span or span_of(frame, view)
-    facts = [Entry(f"slice at {AXES[chosen.cut.axis]}", None, (f"{place_of(parts, chosen.cut):.4g}",))]
-    if share is not None:
-        facts.append(Entry("built of the slice", None, (percent(share, 1.0),), _OF_SLICE))
-    if built is not None:
-        in_nodes = f"{percent(built.primitives, built.of)} of {count(built.of)}"
-        facts.append(Entry("nodes built", None, (count(built.nodes),)))
-        facts.append(Entry("primitives in them", None, (in_nodes,), "of all; the others wait for a ray to come near"))
-    entries = (
-        Entry("not built: no ray has come", TREE_WAITS[1]),
-        Entry(f"border of {'an object' if parts.owner == 'object' else 'a piece'}", (1.0, 1.0, 1.0)),
-    )
-    scale = Scale(f"level {low:.4g}", f"{high:.4g}")
-    return Legend(f"{view.label}: levels of its parts, {parts.name}", (), entries, scale, tuple(facts))
 
 
 def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
@@ -416,15 +240,6 @@ def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
     return Legend(view.label, (), entries, notes=(note,))
 
 
-_ARRIVALS = {
-    Arrival.AWAY: "faces away",
-    Arrival.DARK: "fully dark",
-    Arrival.FEW: "penumbra, at most half",
-    Arrival.MOST: "penumbra, more than half",
-    Arrival.LIT: "fully lit",
-    Arrival.UNKNOWN: "not known yet",
-}
-_OF_SLICE = f"its area, by {SAMPLES} x {SAMPLES} points; what lies outside of all boxes counts for neither"
 _TOO_BRIGHT = "red, green or blue is brighter than the screen's"
 _BLACK = "no channel is brighter than nothing"
 
@@ -437,15 +252,6 @@ def _cut_errors(errors: CutErrors) -> tuple[Entry, ...]:
 
 _ERRORS = (
     "by what part of its light a pixel differs from the picture by all lights; darker ones than 1/64 as if that bright"
-)
-_EACH = "the chosen error: clusters are parted until each alone is wrong by no more than this part of a pixel's light"
-_BOUND = (
-    "the sum over the clusters of a pixel, each within its own error: by what part of its light the pixel would be "
-    "wrong if every cluster were as wrong as it can be, all in the same direction; the middle of all pixels. What is "
-    "wrong in fact, as Verify tells, is a small part of that."
-)
-_PER_CELL = (
-    "those that are not known to be hidden from all of the cell: they light all of it, or something may block them"
 )
 _SHARE = "of the samples that pixels in the penumbra face, those that reach them"
 _BY_MODES = "of this frame, at all bounces, by the modes after the frame before: what the paper's method saves"

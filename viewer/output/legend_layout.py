@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from viewer.output.legend import Entry, Legend, Tone
+from viewer.output.legend_parts import Entry, Legend, Tone
 from viewer.state.views import Color
 
 Measure = Callable[[str], float]

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from viewer.output.legend import Legend
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, Layout, Swatch, fitting
+from viewer.output.legend_parts import Legend
 from viewer.state.views import Color, color_map, signed_map
 
 SMALLEST, LINES = 11, 42

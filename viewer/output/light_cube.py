@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.lightbuffer.cubes import Cube
 from tracer.culling.lightbuffer.tell import full_depths, list_lengths
-from viewer.output.legend import Entry, Legend, Scale
+from viewer.output.legend_parts import Entry, Legend, Scale
 from viewer.output.legend_picture import with_legend
 from viewer.state.views import BACKGROUND, GREY, SHADOW_COLORS, Color, ShadowMode, color_map
 from viewer.util.numbers import count, percent

@@ -17,7 +17,7 @@ from tracer.scene.edits import NO_EDITS
 from tracer.scene.model import Progress
 from viewer.output import capture
 from viewer.output.annotations import annotated
-from viewer.output.legend import Legend
+from viewer.output.legend_parts import Legend
 from viewer.output.legend_picture import with_legend
 from viewer.output.recipe import Recipe
 from viewer.services import stills

@@ -16,7 +16,7 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from viewer.output import clipboard, exr, png, tev
-from viewer.output.legend import Legend
+from viewer.output.legend_parts import Legend
 from viewer.output.legend_picture import with_legend
 from viewer.output.recipe import Recipe, by_chance
 from viewer.services import stills

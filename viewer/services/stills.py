@@ -20,7 +20,8 @@ from tracer.scene.model import Scene
 from viewer.output import capture, fingerprint
 from viewer.output.annotations import annotated
 from viewer.output.caption import with_caption
-from viewer.output.legend import Chosen, legend_of
+from viewer.output.legend import legend_of
+from viewer.output.legend_parts import Chosen
 from viewer.output.legend_picture import with_legend
 from viewer.output.pictures import lights_in_words, picture
 from viewer.output.recipe import Recipe

@@ -14,7 +14,7 @@ from tracer.frame import Frame
 from viewer.output.annotations import annotated
 from viewer.output.compared import composed as composed_of
 from viewer.output.compared import difference_legend
-from viewer.output.legend import Legend
+from viewer.output.legend_parts import Legend
 from viewer.services.comparing import Difference
 from viewer.state.comparison import Side, Way, difference_words
 from viewer.state.marks import wipe_column

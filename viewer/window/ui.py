@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from viewer.output.capture import FIELDS
-from viewer.output.legend import named_light
+from viewer.output.legend_parts import named_light
 from viewer.services.controller import Controller
 from viewer.services.file_browser import Browser
 from viewer.services.tour import Tour

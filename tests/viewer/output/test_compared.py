@@ -7,7 +7,7 @@ import pytest
 
 from tests.viewer.fakes import make_frame
 from viewer.output.compared import GAP, composed, difference_legend, signed_picture
-from viewer.output.legend import Tone
+from viewer.output.legend_parts import Tone
 from viewer.state.comparison import Way, apart
 from viewer.state.values import values_of
 from viewer.state.views import LESS, MORE, SAME, WIPE_LINE, View, signed_map

@@ -23,8 +23,9 @@ from tracer.culling.modes import ShadowMode
 from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.frame import Frame, Settings
 from tracer.statistics import CutErrors, SaidByModes
-from viewer.output.legend import Chosen, Legend, Tone, legend_of, light_in_words
+from viewer.output.legend import legend_of
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, QUIET, TEXT, TONES, fitting, lay_out, wrapped
+from viewer.output.legend_parts import Chosen, Legend, Tone, light_in_words
 from viewer.output.legend_picture import with_legend
 from viewer.state.readings import voxels_of
 from viewer.state.slices import Slice

@@ -5,8 +5,9 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.scene.lights import number_of
-from viewer.output.legend import Chosen, Legend, legend_of
+from viewer.output.legend import legend_of
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, Layout, Swatch, fitting, lay_out
+from viewer.output.legend_parts import Chosen, Legend
 from viewer.state.views import Color, color_map, signed_map
 from viewer.window import comparing
 from viewer.window.ui import Ui

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from tracer.culling.lightbuffer.tell import LightCube, listed
 from tracer.frame import Frame
 from tracer.method import Method
-from viewer.output.legend import Legend
 from viewer.output.legend_layout import Layout, fitting
+from viewer.output.legend_parts import Legend
 from viewer.output.light_cube import CubeSeen, cell_at, cross_of, depths_legend, lists_legend, seen
 from viewer.state.methods import with_additions
 from viewer.state.picking import primitive_in_words

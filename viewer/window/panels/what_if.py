@@ -10,7 +10,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tracer.scene.edits import Edited
 from tracer.scene.limits import LARGEST
 from tracer.scene.things import Thing
-from viewer.output.legend import light_in_words
+from viewer.output.legend_parts import light_in_words
 from viewer.services.before_edits import Lack
 from viewer.state import terms
 from viewer.state.edit_effects import Effects, Transitions
