@@ -41,10 +41,10 @@ class PiecewiseTree:
     """The tree over triangles (t, 9), corner and edges, and boxes (q, 6) of quadrics: a crown, and pieces that wait.
 
     `tree` has room for all that may come, which takes memory only where something is, but 640 addresses a triangle.
-    Where these are few, as `ulimit -v` makes them, pieces are built once before, to see what they need.  `table` is what
-    rays read (`placed.root_of_piece`), and is of use while this object lives; `boxes` (p, 6) lie around pieces of so many
-    triangles and quadrics, `sizes` (p,).  control (2,) int64: the build ends with Cancelled once control[CANCELLED] is
-    set.  Raises MemoryError."""
+    Where these are few, as `ulimit -v` makes them, pieces are built once before, to see what they need.  `table` is
+    what rays read (`placed.root_of_piece`), and is of use while this object lives; `boxes` (p, 6) lie around pieces of
+    so many triangles and quadrics, `sizes` (p,).  control (2,) int64: the build ends with Cancelled once
+    control[CANCELLED] is set.  Raises MemoryError."""
 
     def __init__(self, rows: Float32, boxes: Float32, control: NDArray[np.int64], threads: int) -> None:
         self._rows, self._boxes, self._padded = rows, boxes, boxes.copy()
@@ -81,8 +81,8 @@ class PiecewiseTree:
         self.table[0] = ctypes.cast(self._called, ctypes.c_void_p).value or 0
 
     def _with_room(self, node: int, block: int, nodes: int, blocks: int, sparing: bool = False) -> tuple[Tree, Links]:
-        """A tree with room for `nodes` and `blocks` from these numbers on; raises MemoryError, where it is `sparing` also
-        if more than half of the addresses that this process may take were gone."""
+        """A tree with room for `nodes` and `blocks` from these numbers on; raises MemoryError, where it is `sparing`
+        also if more than half of the addresses that this process may take were gone."""
         nodes, blocks = node + nodes, block + blocks
         left = room.of_limit()
         if sparing and left is not None and 4 * (nodes * NODE_SIZE + blocks * BLOCK_SIZE) > left / 2:
