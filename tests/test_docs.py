@@ -21,6 +21,7 @@ import tracer
 from tracer import experiment
 from tracer.scene.load import load_scene
 from viewer.__main__ import main
+from viewer.cli.sweep import RESULTS
 from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
 from viewer.state.study_file import read_study
@@ -163,6 +164,11 @@ def test_studies_are_read(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(shown)
     study = read_study(tmp_path / "study.toml")
     assert len(study.settings) == 4 and study.seeds == (1, 2, 3) and study.shake == 0.01
+
+
+def test_results_of_studies_do_not_dirty_a_clone() -> None:
+    ignored = (ROOT / ".gitignore").read_text().splitlines()
+    assert f"*{RESULTS}/" in ignored
 
 
 @each_page

@@ -31,13 +31,13 @@ ALL = "all"  # methods that are worth comparing in the scene
 MOST_COLUMNS = 5  # of methods
 # What columns are called where methods have lines; the other figures are left to the files.
 _COLUMNS = {
-    "traversal steps saved, average": "steps saved",
-    "intersection tests saved, average": "tests saved",
+    "traversal steps saved, average": "steps\nsaved",
+    "intersection tests saved, average": "tests\nsaved",
     WRONG: "wrong",
     "time of a frame, median": "a frame",
-    "time of all frames": "all frames",
+    "time of all frames": "all\nframes",
     "  of it preparing": "preparing",
-    "speed-up over none, all frames": "speed-up",
+    "speed-up over none, all frames": "speed-\nup",
     "memory of the method": "memory",
 }
 

@@ -13,7 +13,6 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,22 +24,17 @@ from tracer.frame import Frame
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Scene
 from viewer.services.controller import Controller
-from viewer.state.parts import parts_of
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, comparing, glfw_pads, menus, palette, previewing, style, window_place
-from viewer.window.compared import Compared
-from viewer.window.display import Display, Look
+from viewer.window import commands, comparing, glfw_pads, graphics, menus, palette, previewing, style, window_place
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout
 from viewer.window.layout_file import LayoutFile
 from viewer.window.losses import Losses
-from viewer.window.magnifier import Magnifier
 from viewer.window.opening import PATIENCE, open_window
-from viewer.window.panels import dialogs, faults, legend, loading, picture, status, strip, tour
-from viewer.window.shots import Shots
+from viewer.window.panels import dialogs, faults, loading, picture, status, strip, tour
 from viewer.window.signals import closing_by_signals
 from viewer.window.ui import CaptureKind, Ui
 from viewer.window.widgets import tell_keys
@@ -161,7 +155,7 @@ class App:
         step("Opening dropped files", self._open_dropped)
         step("Following the scene", lambda: self.controller.tick(self._room_for_picture()))
         step("The script's function", self._tell)
-        self._draws("Drawing the picture", self._draw)
+        self._draws("Drawing the picture", lambda: graphics.draw(self.ui))
         self._draws("Drawing the preview", lambda: previewing.draw(self.ui))
         self._draws("Drawing recorded pictures", self._bring_shots)
         self._draws("Saving the picture", self._capture_picture)
@@ -230,21 +224,6 @@ class App:
 
         self.ui.guard.step(name, unless_lost)
 
-    def _draw(self) -> None:
-        """Bring a new frame to the GPU, and draw the view if anything about it has changed."""
-        display, c = self.ui.display, self.controller
-        if display is None:
-            return
-        display.show(c.frame)
-        picked, part, now = c.selection.picked, c.selection.part, c.session.edited
-        if part is not None and now is not None:
-            display.know_parts(self.ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives]))
-        look = self._look(picked.primitive if picked is not None else -1)
-        look = look if part is None else replace(look, selected_part=part)
-        display.draw(look)
-        comparing.draw(self.ui, look)
-        comparing.magnify(self.ui, look)
-
     def _tell(self) -> None:
         """Hand a whole picture to the script that opened the window, once; it closes the window by returning False."""
         traced = self.controller.traced
@@ -258,47 +237,8 @@ class App:
         if self.ui.shots is not None:
             self.ui.shots.bring()
 
-    def _look(self, selected: int) -> Look:
-        """How the view is to be drawn, with an outline around a primitive unless it is -1."""
-        c, p = self.controller, self.controller.preferences
-        return Look(
-            view=c.tracing.drawn_view,
-            light=c.session.light,
-            shading=p.shading,
-            outlines=p.outlines,
-            selected=selected,
-            smooth=p.smooth_upscaling and c.session.zoom.fits,
-            marked=p.mark_wrong,
-            magnified=c.tracing.magnified,
-            wipe=c.session.wipe,
-            line=not c.tracing.becoming_finer,
-            shares=p.work_shares,
-            beneath=p.beneath,
-            tone=c.session.tone,
-            clipping=c.session.clipping,
-            span=c.comparing.span(c.tracing.drawn_view),
-            cut=c.session.cut,
-        )
-
     def _capture_picture(self) -> None:
-        c = self.controller
-        shown = c.tracing.drawn_view is c.session.view
-        ready = shown and not c.tracing.becoming_finer  # else the picture is saved when it has come
-        wanted = self.ui.capture_wanted
-        if wanted in (CaptureKind.PICTURE, CaptureKind.CLIPBOARD) and self.ui.display is not None and ready:
-            self.ui.capture_wanted = None
-            look = self._look(selected=-1)  # the mark is for the user, not for the picture
-            self.ui.display.draw(look)
-            pixels = self.ui.display.read() if self.ui.display.drawn(look) else None
-            compared = pixels is not None and comparing.shown(self.ui) is not None
-            if pixels is not None and compared:
-                pixels = comparing.composed(self.ui, pixels)
-            described = legend.of_picture(self.ui) if c.preferences.legend_in_pictures else None
-            recipe = c.recipes.of(c.frame, look.view) if c.frame is not None and not compared else None
-            if wanted is CaptureKind.CLIPBOARD:
-                c.pictures.copy(pixels, c.frame, described, recipe)
-            else:
-                c.captures.capture(c.frame, pixels, described, recipe)
+        graphics.capture(self.ui)
         if self.ui.capture_wanted is CaptureKind.WINDOW:
             self.ui.capture_wanted = None
             self._capture_this_frame = True  # when it is drawn, from here on, with all that was asked for before
@@ -359,11 +299,7 @@ class App:
         """The window and its GL context exist."""
         self.was_open, self.iconified = True, False
         self.losses.watch()
-        self.ui.display = Display()
-        self.ui.shots = Shots(self.ui.display.context)
-        self.ui.compared = Compared(self.ui.display.passes)
-        self.ui.magnifier = Magnifier(self.ui.display.passes)
-        self.ui.renderer_name = self.ui.display.context.info["GL_RENDERER"]
+        graphics.make(self.ui)
         self.drawn_by_processor = any(name in self.ui.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
         if self.drawn_by_processor:
             self.params.fps_idling.fps_max = FASTEST_BY_PROCESSOR
@@ -403,19 +339,7 @@ class App:
     def _release(self) -> None:
         self._place = self.ui.full_screen.end()
         self.controller.wake = lambda: None  # threads may still be at work when the window is gone
-        if self.ui.compared is not None:
-            self.ui.compared.release()
-            self.ui.compared = None
-        if self.ui.magnifier is not None:
-            self.ui.magnifier.release()
-            self.ui.magnifier = None
-        previewing.release(self.ui)
-        if self.ui.display is not None:
-            self.ui.display.release()
-            self.ui.display = None
-        if self.ui.shots is not None:
-            self.ui.shots.release()
-            self.ui.shots = None
+        graphics.release(self.ui)
 
     def _exit(self) -> None:
         self._ended = True

@@ -12,7 +12,7 @@ from tracer.culling.lightbuffer.tell import LightCube, listed
 from tracer.frame import Frame
 from tracer.method import Method
 from viewer.output.legend import Legend
-from viewer.output.legend_layout import fitting
+from viewer.output.legend_layout import Layout, fitting
 from viewer.output.light_cube import CubeSeen, cell_at, cross_of, depths_legend, lists_legend, seen
 from viewer.state.methods import with_additions
 from viewer.state.picking import primitive_in_words
@@ -26,6 +26,7 @@ LISTS, DEPTHS = range(2)
 _MOST_NAMED = 8
 _MARK, _DARK = ImVec4(1.0, 1.0, 1.0, 0.9), ImVec4(0.0, 0.0, 0.0, 0.8)
 _LEGEND = 15.0  # ems of width beside the cross
+_CHOICES = 11.0  # ems beside the legend that choices need
 
 
 @dataclass(eq=False)
@@ -77,7 +78,7 @@ def _choose(ui: Ui) -> None:
             lights.combo(ui)
             row("Shown", "what is known of each cell, or how far from the light all is in shadow")
             for number, name in enumerate(("lists", "full shadow")):
-                if number:
+                if number and imgui.get_content_region_avail().x > em(10.0):
                     imgui.same_line(0.0, em(0.6))
                 if imgui.radio_button(f"{name}##cube", ui.cube_shows == number):
                     ui.cube_shows = number
@@ -108,22 +109,30 @@ def _show(ui: Ui, found: LightCube, drawn: CubeSeen, picture: _Picture, describe
     if beside:
         imgui.same_line(0.0, em(1.0))
     if imgui.begin_child("told"):
+        line, most = imgui.get_text_line_height(), imgui.get_content_region_avail().x
+        layout = fitting(described, lambda text: float(imgui.calc_text_size(text).x), line, most, 1e6)
+        apart = beside and layout is not None and most - layout.width > em(_CHOICES)
+        if apart and layout is not None:  # there is little room below
+            _legend(layout)
+            imgui.same_line(0.0, em(0.8))
+            imgui.begin_child("choices")
         if beside:
             _choose(ui)
-        draw, line, most = (
-            imgui.get_window_draw_list(),
-            imgui.get_text_line_height(),
-            imgui.get_content_region_avail().x,
-        )
-        layout = fitting(described, lambda text: float(imgui.calc_text_size(text).x), line, most, 1e6)
         if cell is not None:  # what is asked for comes first, where there is little room
             _tell(ui, found, drawn, cell)
-        if layout is not None:
-            legend.draw_layout(draw, layout, imgui.get_cursor_screen_pos())
-            imgui.dummy(ImVec2(layout.width, layout.height))
+        if layout is not None and not apart:
+            _legend(layout)
         if cell is None:
             paragraph("Point at a cell: what its list holds is said here.", QUIET)
+        if apart:
+            imgui.end_child()
     imgui.end_child()
+
+
+def _legend(layout: Layout) -> None:
+    """The legend at the cursor."""
+    legend.draw_layout(imgui.get_window_draw_list(), layout, imgui.get_cursor_screen_pos())
+    imgui.dummy(ImVec2(layout.width, layout.height))
 
 
 def _cross(ui: Ui, picture: _Picture, side: int, scale: float) -> tuple[int, int, int] | None:

@@ -23,7 +23,8 @@ def method_list(ui: Ui, name: str, method: str, choose: Callable[[str], None], c
     scene = ui.controller.session.scene
     lights = 0 if scene is None else len(scene.lights)
     parsed = Method.parse(method)
-    if not imgui.begin_combo(name, method, int(imgui.ComboFlags_.height_largest)):
+    room = imgui.calc_item_width() - imgui.get_frame_height() - 2.0 * imgui.get_style().frame_padding.x
+    if not imgui.begin_combo(name, fitted(method, room), int(imgui.ComboFlags_.height_largest)):
         tooltip(Method.parse(method).kind.summary if method == parsed.base else method)
         return
     for heading, kinds in groups():

@@ -32,7 +32,7 @@ _OF_LIGHTS = (
 _BUILT = "Tree built, %"
 _OF_TREE = (_BUILT, ((terms.BUILT, "built", BLUE),))
 _SHARES = {
-    5: (0.25, 0.22, 0.22, 0.16, 0.15), 4: (0.30, 0.26, 0.26, 0.18), 3: (0.44, 0.31, 0.25), 2: (0.5, 0.5), 1: (1.0,)
+    5: (0.25, 0.22, 0.22, 0.16, 0.15), 4: (0.30, 0.26, 0.26, 0.18), 3: (0.46, 0.30, 0.24), 2: (0.5, 0.5), 1: (1.0,)
 }  # fmt: skip
 """Of the panel's width, for so many plots beside each other: by the length of their legends."""
 _ROOM = {5: 80.0, 4: 64.0, 3: 45.0, 2: 30.0}
@@ -104,7 +104,11 @@ def show(ui: Ui) -> None:
 def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size: ImVec2) -> None:
     history = ui.controller.history
     per_pixel = ui.per_pixel and title not in (_LOGARITHMIC, _BUILT)
-    if not implot.begin_plot(f"{title}{' per pixel' if per_pixel else ''}##{title}", size, FLAGS):
+    implot.push_style_var(implot.StyleVar_.legend_inner_padding, ImVec2(em(0.15), em(0.3)))
+    implot.push_style_var(implot.StyleVar_.legend_spacing, ImVec2(em(0.2), 0.0))
+    shown = implot.begin_plot(f"{title}{' per pixel' if per_pixel else ''}##{title}", size, FLAGS)
+    implot.pop_style_var(2)
+    if not shown:
         return
     curves = [(label, _values(ui, name, per_pixel), color) for label, name, color in series]
     last = history.first + max(len(history) - 1, 10)

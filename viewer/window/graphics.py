@@ -1,0 +1,101 @@
+"""What lives as long as the window's GL context: the picture on the GPU, and what is drawn of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from viewer.state.parts import parts_of
+from viewer.window import comparing, previewing
+from viewer.window.compared import Compared
+from viewer.window.display import Display, Look
+from viewer.window.magnifier import Magnifier
+from viewer.window.panels import legend
+from viewer.window.shots import Shots
+from viewer.window.ui import CaptureKind, Ui
+
+
+def make(ui: Ui) -> None:
+    """Make all that a new context needs."""
+    ui.display = Display()
+    ui.shots = Shots(ui.display.context)
+    ui.compared = Compared(ui.display.passes)
+    ui.magnifier = Magnifier(ui.display.passes)
+    ui.renderer_name = ui.display.context.info["GL_RENDERER"]
+
+
+def release(ui: Ui) -> None:
+    """Free all of it, before the context goes."""
+    if ui.compared is not None:
+        ui.compared.release()
+        ui.compared = None
+    if ui.magnifier is not None:
+        ui.magnifier.release()
+        ui.magnifier = None
+    previewing.release(ui)
+    if ui.display is not None:
+        ui.display.release()
+        ui.display = None
+    if ui.shots is not None:
+        ui.shots.release()
+        ui.shots = None
+
+
+def draw(ui: Ui) -> None:
+    """Bring a new frame to the GPU, and draw the view if anything about it has changed."""
+    display, c = ui.display, ui.controller
+    if display is None:
+        return
+    display.show(c.frame)
+    picked, part, now = c.selection.picked, c.selection.part, c.session.edited
+    if part is not None and now is not None:
+        display.know_parts(ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives]))
+    look = look_of(ui, picked.primitive if picked is not None else -1)
+    look = look if part is None else replace(look, selected_part=part)
+    display.draw(look)
+    comparing.draw(ui, look)
+    comparing.magnify(ui, look)
+
+
+def look_of(ui: Ui, selected: int = -1) -> Look:
+    """How the view is to be drawn, with an outline around a primitive unless it is -1."""
+    c, p = ui.controller, ui.controller.preferences
+    return Look(
+        view=c.tracing.drawn_view,
+        light=c.session.light,
+        shading=p.shading,
+        outlines=p.outlines,
+        selected=selected,
+        smooth=p.smooth_upscaling and c.session.zoom.fits,
+        marked=p.mark_wrong,
+        magnified=c.tracing.magnified,
+        wipe=c.session.wipe,
+        line=not c.tracing.becoming_finer,
+        shares=p.work_shares,
+        beneath=p.beneath,
+        tone=c.session.tone,
+        clipping=c.session.clipping,
+        span=c.comparing.span(c.tracing.drawn_view),
+        cut=c.session.cut,
+    )
+
+
+def capture(ui: Ui) -> None:
+    """Save the picture, or copy it, if that was asked for and it has come."""
+    c = ui.controller
+    shown = c.tracing.drawn_view is c.session.view
+    ready = shown and not c.tracing.becoming_finer  # else the picture is saved when it has come
+    wanted = ui.capture_wanted
+    if wanted in (CaptureKind.PICTURE, CaptureKind.CLIPBOARD) and ui.display is not None and ready:
+        ui.capture_wanted = None
+        look = look_of(ui, selected=-1)  # the mark is for the user, not for the picture
+        ui.display.draw(look)
+        pixels = ui.display.read() if ui.display.drawn(look) else None
+        compared = pixels is not None and comparing.shown(ui) is not None
+        if pixels is not None and compared:
+            pixels = comparing.composed(ui, pixels)
+        described = legend.of_picture(ui) if c.preferences.legend_in_pictures else None
+        recipe = c.recipes.of(c.frame, look.view) if c.frame is not None and not compared else None
+        if wanted is CaptureKind.CLIPBOARD:
+            c.pictures.copy(pixels, c.frame, described, recipe)
+        else:
+            c.captures.capture(c.frame, pixels, described, recipe)
