@@ -155,6 +155,22 @@ def test_nearly_all_rays_of_lamps_are_answered_untraced(accelerator: str, kind: 
 
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
+def test_rays_of_a_lamp_that_moves_are_answered_as_well(accelerator: str):
+    """Beside one that rests, flies and rests again, which beams must find in every frame."""
+    flying = Animation(
+        {"kite": going([(0, -1.5), (1, -1.5), (2, 1.5), (4, 1.5)]), "lamp": going([(0, -2.0), (4, 2.0)])}
+    )
+    lamp = replace(LAMP, position=(0.3, 0.2, 12.0), radius=0.5, samples=64, track="lamp")
+    made = replace(room(lamp, POINT, kites=True), animation=flying)
+    settings = replace(SETTINGS, method="certified", accelerator=accelerator, verify=True, record_lights=False)
+    renderer = Renderer(made, settings)
+    for time in (0.0, 0.4, 0.8, 1.2, 1.6, 2.4, 2.8, 3.2):
+        shadow = renderer.render(time).statistics.shadow
+        assert shadow.wrong == 0, time
+        assert shadow.culled + shadow.dynamic_only > 0.95 * 64 / 65 * shadow.due, time
+
+
+@pytest.mark.parametrize("accelerator", ACCELERATORS)
 def test_points_that_lie_far_apart_are_answered_each_by_its_own_beam(accelerator: str):
     """Neighbours in a cloud of small triangles see the lamp by other ways, with too much between them for one beam."""
     rng = np.random.default_rng(5)

@@ -99,6 +99,7 @@ class CertificateStore:
         self.radii = np.zeros(self.count, np.float32)
         self._samples = np.ones(self.count, np.int32)
         self.stationary = np.zeros(self.count, np.bool_)
+        self._fitted = np.zeros(self.count, np.bool_)  # lights that boxes are fitted to, where they are now
         self.cells: Cells = make_cells(len(self._world.object_of), self.count)
         self._seen = np.zeros(len(self.cells.waiting), np.int32)  # the frame that last saw each root
         self._frame = 0
@@ -131,6 +132,11 @@ class CertificateStore:
         return self.stationary & (self.radii == 0.0)
 
     @property
+    def _are_lamps(self) -> NDArray[np.bool_]:
+        """(count,) bool: lights whose rays beams answer."""
+        return (self.radii > 0.0) & (self._samples >= self.cost_model.least_samples)
+
+    @property
     def occluders(self) -> Occluders:
         """All that is static."""
         return self._static.occluders
@@ -145,7 +151,8 @@ class CertificateStore:
     def follow(self, lamps: Lamps, resting: Resting, threads: int) -> None:
         """Drop what no longer holds, with lights and objects where they are now, and nothing else.
 
-        A light is certified once it has not moved for a frame.  From now on work is done by so many threads."""
+        A point light is certified once it has not moved for a frame.  What is known of a lamp's rays serves one frame,
+        so that lamps may move.  From now on work is done by so many threads."""
         self.threads, self._journal = threads, None
         self._scratch += [make_scratch() for _ in range(len(self._scratch), threads)]
         if self._world.extent > self._static.allowed:  # boxes may have grown beyond those that are known
@@ -158,12 +165,13 @@ class CertificateStore:
             words &= ~words.dtype.type(3 << (2 + 2 * int(number)))
             self.cells.lists[: len(words), number] = NOBODY
         new = np.isnan(self.lights).any(axis=1)
-        stationary = ~moved | new
-        settled = stationary & ~self.stationary
         self.lights[:], self.radii[:] = lights, radii
         self._samples[:] = np.diff(lamps.first)[: self.count]
-        self.stationary[:] = stationary
-        self._static.update_lights(np.flatnonzero(settled).tolist(), lights, radii, self.scale.max_height)
+        self.stationary[:] = ~moved | new
+        self._fitted &= ~moved
+        fit = ~self._fitted & (self.stationary | self._are_lamps)
+        self._static.update_lights(np.flatnonzero(fit).tolist(), lights, radii, self.scale.max_height)
+        self._fitted |= fit
 
     def _follow_rest(self, resting: Resting) -> None:
         """Drop what depends on objects that have started or stopped."""
@@ -191,7 +199,7 @@ class CertificateStore:
         near = all_marked(len(gone), self.cells.words.dtype.type)
         near[self.cells.rooted[: len(near)] == 0] = 0  # of what has no cells nothing need be known
         lights = np.nan_to_num(self.lights)
-        known = np.flatnonzero(self.stationary).tolist()
+        known = np.flatnonzero(self._fitted).tolist()
         self._static.update_lights(known, lights, self.radii, self.scale.max_height)
         boxes = np.zeros((self.count, len(stopped.which), 6))  # by light, of which the others have no certificates
         for k, index in enumerate(stopped.which):
@@ -320,7 +328,7 @@ class CertificateStore:
     def _lamps(self) -> LampsView:
         room, placed = self.scale.max_height * OUTWARDS, self._world.placed
         return LampsView(
-            known=self.stationary & (self.radii > 0.0) & (self._samples >= self.cost_model.least_samples),
+            known=self._fitted & self._are_lamps,
             places=self.lights,
             radii=self.radii,
             samples=self._samples,

@@ -23,7 +23,7 @@ class LampsView(NamedTuple):
     """The lamps whose rays are answered by beams.
 
     Attributes:
-        known: (lights,) bool, which lights are such lamps and have not moved.
+        known: (lights,) bool, which lights are such lamps.
         places, radii: (lights, 3) and (lights,) float32, the ball in which a lamp's samples lie.
         samples: (lights,) int32, how many.
         within: (6,) float32, a box outside of which nothing is known of where rays end.
