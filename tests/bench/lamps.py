@@ -34,12 +34,16 @@ from tracer.state import open_world
 from viewer.cli.console import say
 
 
-def measure(path: Path, settings: Settings, methods: list[str], frames: int, step: int) -> dict[str, Any]:
-    """Seconds of every frame by `none`, by the methods and by `free`; what was known; and the frames that differ."""
+def measure(path: Path, settings: Settings, methods: list[str], frames: int, step: int | None) -> dict[str, Any]:
+    """Seconds of every frame by `none`, by the methods and by `free`; what was known; and the frames that differ.
+
+    Frames are so many steps apart, or spread evenly over the whole path."""
     scene = load_scene(path)
     world = open_world(scene, settings)
     Renderer(scene, settings, world=world).render(scene.frame_time(0))  # untimed: loads kernels
-    times = [scene.frame_time(k * step % max(1, scene.frames)) for k in range(frames)]
+    path_frames = max(1, scene.frames)
+    numbers = [k * step % path_frames if step else k * path_frames // frames for k in range(frames)]
+    times = [scene.frame_time(number) for number in numbers]
     truth, differ = b"", []
 
     def compare(number: int, method: str, frame: Frame) -> None:
@@ -47,7 +51,7 @@ def measure(path: Path, settings: Settings, methods: list[str], frames: int, ste
         if method == REFERENCE:
             truth = frame.color.tobytes()
         elif Method.parse(method).exact and frame.color.tobytes() != truth:
-            differ.append((method, number * step % max(1, scene.frames)))
+            differ.append((method, numbers[number]))
 
     kinds = [(settings.lamp_radius, settings.lamp_samples)]
     *_, results = run_lamps(scene, settings, methods, kinds, times, world=world, on_frame=compare)
@@ -63,7 +67,7 @@ def measure(path: Path, settings: Settings, methods: list[str], frames: int, ste
         "lamp_samples": settings.lamp_samples,
         "lights": len(scene.lights),
         "shadow_rays": int(sum(measured.methods[REFERENCE]["shadow_rays_due"])),
-        "frames": [k * step % max(1, scene.frames) for k in range(frames)],
+        "frames": numbers,
         "seconds": seconds,
         "known": {name: rows[name].known for name in methods},
         "speed_up": {
@@ -98,7 +102,7 @@ def table(results: list[dict[str, Any]]) -> Table:
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="make lamps", description=__doc__.splitlines()[0])
-    add_options(parser, 100, "out/lamps.json")
+    add_options(parser, 100, "out/lamps.json", step=None)
     parser.add_argument("--methods", nargs="+", default=["certified"], help="to hold against none (default: certified)")
     parser.add_argument("--radius", nargs="+", type=float, default=[0.03, 0.1], help="of lamps (default: 0.03 0.1)")
     parser.add_argument("--samples", nargs="+", type=int, default=[64], help="of each lamp (default: 64)")

@@ -20,12 +20,14 @@ BART = Path(__file__).resolve().parents[3] / "shared" / "bart"
 SCENES = tuple(BART / name for name in ("kitchen/kitchen.aff", "robot/Robot.aff", "museum/museum5.aff"))
 
 
-def add_options(parser: argparse.ArgumentParser, frames: int, json_file: str) -> None:
-    """Scenes, frames, size, threads, structure, and the file that gets all figures."""
+def add_options(parser: argparse.ArgumentParser, frames: int, json_file: str, step: int | None = 1) -> None:
+    """Scenes, frames, size, threads, structure, and the file that gets all figures.
+
+    Without a step, frames are spread evenly over the whole path."""
     add = parser.add_argument
     add("scenes", nargs="*", metavar="SCENE", help="default: the default scene, and BART's if there")
     add("--frames", type=int, default=frames, help=f"of each run (default: {frames})")
-    add("--step", type=int, default=1, help="of the path, from one frame to the next (default: 1)")
+    add("--step", type=int, default=step, help=f"of the path, from one frame to the next (default: {step or 'evenly'})")
     add("--size", type=int, default=512, help="width and height in pixels (default: 512)")
     add("--threads", type=int, default=0, help="0, the default: one per core")
     add("--accelerator", choices=ACCELERATORS, default="bvh8", help="(default: bvh8)")

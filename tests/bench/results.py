@@ -58,7 +58,7 @@ COMMANDS: dict[str, list[str]] = {
     "robot-one-tree": _bench(ROBOT, "--accelerator", "kdtree-lazy", *TABLE_1),
     "embree": ["tests.bench.against_embree"],
     **TIMES,
-    "lamps": ["tests.bench.lamps", "--frames", "4", "--step", "3"],
+    "lamps": ["tests.bench.lamps", "--frames", "20"],
     "motion": ["tests.bench.motion"],
 }
 WINDOWS = ("tests.bench.motion",)  # they need a screen
