@@ -5,14 +5,17 @@ from __future__ import annotations
 import base64
 import json
 import struct
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from tracer.scene import punctual_lights
+from tracer.scene.lights import Light
 from tracer.scene.load import load_scene
-from tracer.scene.model import Scene
+from tracer.scene.model import Scene, SceneObject, empty_quadrics, empty_triangles
 
 EXTENSION = "KHR_lights_punctual"
 SIDE = 2.0
@@ -203,3 +206,14 @@ def test_an_extension_without_lights_leaves_ours(tmp_path, extensions):
     (tmp_path / "a.gltf").write_text(json.dumps(file))
     scene = load_scene(tmp_path / "a.gltf")
     assert [light.name for light in scene.lights] == ["key", "fill"] and scene.warnings == ()
+
+
+def test_of_many_triangles_every_nth_of_all_objects_judges_the_exposure(monkeypatch):
+    rng = np.random.default_rng(4)
+    corners = [rng.random((count, 3, 3)).astype(np.float32) for count in (7, 0, 11, 1)]
+    objects = [SceneObject("", replace(empty_triangles(), corners=c), empty_quadrics()) for c in corners]
+    monkeypatch.setattr(punctual_lights, "_MOST_TRIANGLES", 5)
+    (light,) = punctual_lights._exposed([Light("a", (9, 9, 9), (2, 2, 2), falloff="inverse square")], objects)
+    seen = np.concatenate(corners).mean(axis=1)[::3]
+    usual = np.median(2 / np.sum((seen - 9.0) ** 2, axis=1))
+    assert light.color == pytest.approx((2 / usual,) * 3)

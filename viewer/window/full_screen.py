@@ -87,7 +87,9 @@ class FullScreen:
 
 def _fill(window: Any, monitor: Any) -> None:
     """Give a window all of a screen, whose size may have changed since it had."""
-    mode = glfw.get_video_mode(monitor)
+    mode = _mode_of(monitor)
+    if mode is None:
+        return
     there = glfw.get_window_monitor(window) and tuple(glfw.get_window_size(window)) == tuple(mode.size)
     if not there:
         glfw.set_window_monitor(window, monitor, 0, 0, mode.size.width, mode.size.height, mode.refresh_rate)
@@ -97,6 +99,14 @@ def _monitor_of(place: Rect) -> Any:
     """The screen that shows most of a window, None where there is none."""
 
     def shown(monitor: Any) -> int:
-        return shared(place, (*glfw.get_monitor_pos(monitor), *glfw.get_video_mode(monitor).size))
+        return shared(place, (*glfw.get_monitor_pos(monitor), *_mode_of(monitor).size))
 
-    return max(glfw.get_monitors(), key=shown, default=None)
+    return max(filter(_mode_of, glfw.get_monitors()), key=shown, default=None)
+
+
+def _mode_of(monitor: Any) -> Any:
+    """Size and rate of a screen, None where it is just going."""
+    try:
+        return glfw.get_video_mode(monitor)
+    except ValueError:
+        return None
