@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import numpy as np
-from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import imgui
 
 from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.light_cut import LightCut
+from viewer.services.controller import Controller
 from viewer.services.cut_inspector import MOST_DRAWN
 from viewer.state.picking import pixel_at
-from viewer.state.placing import beside
 from viewer.state.readings import cell_lights, tree_of, voxels_of
 from viewer.state.slices import AXES, slice_seen, voxel_seen
 from viewer.state.tree_slice import part_seen, part_words
 from viewer.state.views import View
 from viewer.util.numbers import several
 from viewer.window.layers_of_slice import go_to, layer_now
+from viewer.window.panels import words
 from viewer.window.panels.area import Area
 from viewer.window.panels.coming import after
 from viewer.window.ui import Ui
 from viewer.window.widgets import count, em, percent, row
-
-_BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.90), ImVec4(0.93, 0.94, 0.96, 1.0)
 
 
 def rows(ui: Ui) -> None:
@@ -37,8 +36,8 @@ def rows(ui: Ui) -> None:
     if layer is None:
         return
     row("Layer", "along the axis; Ctrl+click to type one")
-    flags, words = int(imgui.SliderFlags_.always_clamp), f"%d  ({AXES[s.cut.axis]} = {layer.place:.4g})"
-    changed, number = imgui.slider_int("##layer", layer.number, 0, layer.many - 1, words, flags)
+    flags, shown = int(imgui.SliderFlags_.always_clamp), f"%d  ({AXES[s.cut.axis]} = {layer.place:.4g})"
+    changed, number = imgui.slider_int("##layer", layer.number, 0, layer.many - 1, shown, flags)
     if changed:
         s.cut = go_to(s.cut, number, layer.many)
 
@@ -66,12 +65,17 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
         return [] if part is None else list(part_words(part, tree.owner))
     if view is View.CUTS and c.cuts.cut is not None and (c.cuts.cut.x, c.cuts.cut.y) == (x, y):
         return cut_lines(c.cuts.cut)
-    if view is View.CUTS and c.cuts.waits_for == (x, y) and after(c):
-        return [f"its clusters are drawn after {after(c)}"]
+    if view is View.CUTS and c.selection.picked is None and c.cuts.waits_for == (x, y):
+        return awaited(c)
     if view is View.CELL_LIGHTS and frame.primitive[y, x] >= 0:
         asked = int(cell_lights(frame)[y, x])
         return ["not known yet"] if asked < 0 else [f"its cell asks {count(asked)} of {count(frame.lights)} lights"]
     return []
+
+
+def awaited(c: Controller) -> list[str]:
+    """That the clusters of a pixel are to come, where they do not come at once."""
+    return [f"its clusters are drawn after {after(c)}"] if after(c) else []
 
 
 def cut_lines(cut: LightCut) -> list[str]:
@@ -99,12 +103,5 @@ def show(ui: Ui, area: Area) -> None:
     lines = lines_at(ui, *pixel_at(frame, *at))
     if not lines:
         return
-    pad, line = em(0.4), imgui.get_text_line_height()
-    width, height = max(imgui.calc_text_size(text).x for text in lines) + 2.0 * pad, line * len(lines) + 2.0 * pad
-    mouse, room = imgui.get_io().mouse_pos, (area.corner.x, area.corner.y, area.end.x, area.end.y)
-    left, top = beside((mouse.x, mouse.y), (width, height), (em(1.2), em(0.6)), room, ui.legend_place)
-    draw = imgui.get_window_draw_list()
-    back, front = imgui.get_color_u32(_BACK), imgui.get_color_u32(_FRONT)
-    draw.add_rect_filled(ImVec2(left, top), ImVec2(left + width, top + height), back, em(0.3))
-    for number, text in enumerate(lines):
-        draw.add_text(ImVec2(left + pad, top + pad + number * line), front, text)
+    room = area.corner.x, area.corner.y, area.end.x, area.end.y
+    words.write(lines, imgui.get_io().mouse_pos, room, ui.legend_place)
