@@ -145,6 +145,6 @@ def export_buttons(ui: Ui, run: Run | None) -> None:
     for ending in ENDINGS:
         if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK} {_KINDS[ending]}"):
             ui.controller.runs.export(run, ending)
-        tooltip_above(_TIPS[ending])
+        tooltip_above(f"{_TIPS[ending]} ({run.scene_path.name})")
         imgui.same_line(0.0, em(0.25))
     imgui.new_line()
