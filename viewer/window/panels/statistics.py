@@ -185,7 +185,7 @@ def _work_table(rows: list[tuple[str, tuple[int, ...]]], meaning: str) -> None:
         tooltip(meaning)
     for name, numbers in rows:
         imgui.table_next_column()
-        clipped(name, QUIET)
+        paragraph(name, QUIET)
         for number in numbers:
             imgui.table_next_column()
             right(short(number))
