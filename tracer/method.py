@@ -8,6 +8,7 @@ help texts made, before any kernel is loaded.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
@@ -135,6 +136,14 @@ def meant(name: str) -> str:
     return whole if all(found) and whole != name and found[0] not in found[1:] else ""
 
 
+def unknown(names: Sequence[str]) -> str:
+    """What is said of names that are no methods: "'papper': did you mean 'paper'?", and what there is to choose from
+    only where a name is like none."""
+    asked = [f"{name!r}: did you mean '{close}'?" for name in names if (close := meant(name))]
+    strange = " and ".join(repr(name) for name in names if not meant(name))
+    return " ".join([*asked, f"{strange}; it is {choice()}"] if strange else asked)
+
+
 def line_up(lights: int) -> list[str]:
     """The methods that are worth comparing in a scene of so many lights: all bases, and what goes well together."""
     names = [kind.name for kind in bases(measures=True)] + [name for name in TOGETHER if _is_known(name)]
@@ -160,8 +169,7 @@ class Method:
         kind, added = _KINDS.get(base), tuple(_KINDS.get(extra) for extra in extras)
         repeated = len({base, *extras}) <= len(extras)
         if not _can_be_base(kind) or repeated or not all(extra and extra.addition for extra in added):
-            close = meant(name)
-            raise ValueError(f"method is {choice()}, not {name!r}" + (f": did you mean '{close}'?" if close else ""))
+            raise ValueError(f"no method {unknown([name])}")
         return Method(_KINDS[base], tuple(_KINDS[extra] for extra in extras))
 
     def __str__(self) -> str:

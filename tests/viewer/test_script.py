@@ -35,7 +35,7 @@ def test_a_frame_shows_itself() -> None:
 
 
 def test_what_is_wrong_is_said_before_a_window_opens(monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(ValueError, match="method is one of"):
+    with pytest.raises(ValueError, match="no method 'magic'; it is one of"):
         viewer.show("default", method="magic")
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)

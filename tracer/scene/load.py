@@ -16,6 +16,7 @@ from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.meshes import MESH_EXTENSIONS, load_mesh
 from tracer.scene.model import CONE, SPHERE, Progress, Scene, SceneError
 from tracer.scene.room import check_reading, check_showing
+from tracer.similar import did_you_mean_file
 
 AFF_EXTENSIONS = (".aff", ".nff")
 SCENE_EXTENSIONS = (*AFF_EXTENSIONS, *MESH_EXTENSIONS)
@@ -72,7 +73,7 @@ def check_scene_file(path: Path) -> None:
         if path.is_dir():
             raise SceneError(f"{path}: it is a folder; give a file in it")
         if not path.exists():
-            raise SceneError(f"{path}: no such file; check the path")
+            raise SceneError(f"{path}: no such file{did_you_mean_file(path)}")
         if not path.is_file():
             raise SceneError(f"{path}: cannot be read: it is not a regular file; check the path")
         if not os.access(path, os.R_OK):

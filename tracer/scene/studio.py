@@ -22,6 +22,7 @@ from tracer.scene.model import Camera, Material, Scene, SceneObject, Triangles
 
 FLOOR = "studio floor"
 """The name of the floor's part and of its material."""
+FLOOR_TRIANGLES = 2
 FLOOR_REACH = 40.0
 """Radii of the model from its middle to the floor's edges."""
 ANGLE = 40.0
@@ -36,6 +37,7 @@ _LAMPS = {
     "fill": ((1.05, 0.60, 0.60), 1.00, (0.28, 0.30, 0.34), 16),
     "rim": ((0.55, 1.00, -0.85), 0.90, (0.40, 0.40, 0.41), 16),
 }
+LAMPS = len(_LAMPS)
 _FLOOR_COLOR = np.array([0.44, 0.45, 0.465])
 _FLOOR_AMBIENT = np.array([0.25, 0.26, 0.275])
 
@@ -172,8 +174,9 @@ def _two_triangles(quad: Float32, up: Float64, material: int) -> Triangles:
     """Four corners, counter-clockwise from above."""
     corners = quad[np.array([[0, 1, 2], [0, 2, 3]])]
     normals = np.broadcast_to(up.astype(np.float32), corners.shape).copy()
-    uvs = np.zeros((2, 3, 2), np.float32)
-    return Triangles(corners, normals, uvs, np.full(2, material, np.int32), np.full(2, -1, np.int32))
+    n = FLOOR_TRIANGLES
+    uvs = np.zeros((n, 3, 2), np.float32)
+    return Triangles(corners, normals, uvs, np.full(n, material, np.int32), np.full(n, -1, np.int32))
 
 
 def _floor_material() -> Material:

@@ -7,7 +7,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
@@ -243,24 +243,37 @@ def lamp_samples(text: str) -> int:
 
 def method(text: str) -> str:
     """The name of a method."""
-    from tracer.method import Method, choice, meant
+    return _methods([text])[0]
 
-    try:
-        return str(Method.parse(text))
-    except ValueError:
-        close = meant(text)
-        hint = f": did you mean '{close}'?" if close else f"; it is {choice()}"
-        raise argparse.ArgumentTypeError(f"invalid choice: {text!r}{hint}") from None
+
+def methods(text: str) -> list[str]:
+    """Names of methods; all that are none are named together."""
+    return _methods([part.strip() for part in text.split(",")])
 
 
 def methods_or_all(text: str) -> list[str]:
     """Names of methods, among them "all"."""
     names = [part.strip() for part in text.split(",")]
     try:
-        return [name if name == "all" else method(name) for name in names]
+        found = iter(_methods([name for name in names if name != "all"]))
     except argparse.ArgumentTypeError as error:
         known = str(error).endswith("?")
         raise argparse.ArgumentTypeError(f"{error}" if known else f"{error}; or all") from None
+    return [name if name == "all" else next(found) for name in names]
+
+
+def _methods(names: Sequence[str]) -> list[str]:
+    from tracer.method import Method, unknown
+
+    wrong, found = [], []
+    for name in names:
+        try:
+            found.append(str(Method.parse(name)))
+        except ValueError:
+            wrong.append(name)
+    if wrong:
+        raise argparse.ArgumentTypeError(f"invalid choice: {unknown(wrong)}")
+    return found
 
 
 class BeyondMemory(argparse.Action):

@@ -9,8 +9,6 @@ from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.table import Table
-
 from tracer import experiment
 from tracer.experiment import REFERENCE, Results
 from tracer.frame import Frame, Settings
@@ -20,26 +18,14 @@ from tracer.method import line_up
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli import lamp_bench
-from viewer.cli.console import Work, print_table, working
+from viewer.cli.bench_table import bench_table
+from viewer.cli.console import Work, print_table, terminal_width, working
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import exports
-from viewer.output.reports import LINES, WRONG, frames_in_words, leaders
-from viewer.util.messages import printable
+from viewer.output.reports import leaders
 
 ALL = "all"  # methods that are worth comparing in the scene
-MOST_COLUMNS = 5  # of methods
-# What columns are called where methods have lines; the other figures are left to the files.
-_COLUMNS = {
-    "traversal steps saved, average": "steps\nsaved",
-    "intersection tests saved, average": "tests\nsaved",
-    WRONG: "wrong",
-    "time of a frame, median": "a frame",
-    "time of all frames": "all\nframes",
-    "  of it preparing": "preparing",
-    "speed-up over none, all frames": "speed-\nup",
-    "memory of the method": "memory",
-}
 
 
 def bench(path: Path, options: Namespace) -> bool:
@@ -74,7 +60,7 @@ def bench(path: Path, options: Namespace) -> bool:
         if not finished:
             work.note(f"cancelled after {len(results.frames)} of {len(numbers)} frames; the table is of these")
         failures = exports.write_files(exports.experiment_writers(options.verify), results, wanted)
-    print_table(_table(results, options.verify))
+    print_table(bench_table(results, options.verify, terminal_width()))
     for line in leaders(experiment.table(results)):
         print(line)
     if failures:
@@ -99,7 +85,7 @@ def _bench_lamps(
     if not finished:
         work.note(f"cancelled in lamps {len(results.runs)} of {len(kinds)}; the table is of the frames that are done")
     failures = exports.write_files(exports.LAMP_WRITERS, results, wanted)
-    print_table(lamp_bench.lamp_table(results))
+    print_table(lamp_bench.lamp_table(results, terminal_width()))
     if failures:
         raise OSError("; ".join(failures))
     return finished
@@ -113,8 +99,8 @@ def _run(
     total, done = len(numbers) * len(methods), 0
 
     def show() -> None:
-        frame = min(done // len(methods), len(numbers) - 1) + 1
-        work.count(f"frame {frame} of {len(numbers)}, {', '.join(methods)}", done, total)
+        frame, method = divmod(min(done, total - 1), len(methods))
+        work.count(f"frame {frame + 1} of {len(numbers)}, {methods[method]}", done, total)
 
     def on_frame(number: int, method: str, frame: Frame) -> None:
         nonlocal done
@@ -144,29 +130,3 @@ def frame_range(text: str | None, count: int) -> range:
     if not colon or not numbers or not 0 <= numbers.start < numbers.stop <= count:
         raise ValueError(f"--frames {text}: give A:B, the frames A to B - 1 of the {count} there are")
     return numbers
-
-
-def _table(results: Results, verified: bool) -> Table:
-    """A column for each of a few methods, which fits terminals of 80 columns, or else a line for each."""
-    width, height = results.size
-    title = (
-        f"Work of shadow rays\n{printable(Path(results.scene).name)}, {width} × {height}, {frames_in_words(results)}"
-    )
-    table = Table(title=title, title_justify="left", title_style="bold", caption_justify="left")
-    rows = experiment.table(results)
-    lines = [line for line in LINES if verified or line[0] != WRONG]
-    if len(rows) <= MOST_COLUMNS:
-        table.add_column("")
-        for row in rows:
-            table.add_column(row.method.replace("+", "\n+"), justify="right")
-        for heading, cell in lines:
-            table.add_row(heading, *(cell(row) for row in rows))
-    else:
-        table.add_column("method", no_wrap=True)
-        shown = [(_COLUMNS[heading], cell) for heading, cell in lines if heading in _COLUMNS]
-        for heading, _ in shown:
-            table.add_column(heading, justify="right")
-        for row in rows:
-            table.add_row(row.method, *(cell(row) for _, cell in shown))
-    table.caption = "times include verifying" if verified else "--verify counts wrong answers"
-    return table

@@ -101,7 +101,8 @@ def working() -> Iterator[Work]:
 def print_table(table: Table) -> None:
     """A table on standard output; where that is no terminal as wide as it is, and 100 columns at least.
 
-    Its title may be wider than itself, such as a path, which must not be broken."""
+    Its title may be wider than itself, such as a path, which must not be broken; nor must figures be cut: where a
+    terminal is too narrow for these, its own lines are."""
     console = Console()
     title, table.title = table.title, None
     if not console.is_terminal:
@@ -109,7 +110,12 @@ def print_table(table: Table) -> None:
     if title is not None:
         for line in str(title).split("\n"):
             console.print(Text(printable(line), str(table.title_style or "")), soft_wrap=True)
-    console.print(table)
+    for column in table.columns:
+        if column.justify == "right" or column.no_wrap:
+            heading = console.measure(column.header)
+            needed = [console.measure(cell).maximum for cell in column.cells]
+            column.min_width = max([heading.maximum if column.no_wrap else heading.minimum, *needed])
+    console.print(table, crop=False)
 
 
 def width_of(table: Table) -> int:

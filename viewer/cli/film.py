@@ -19,7 +19,7 @@ from viewer.cli import film_elsewhere
 from viewer.cli.console import Work, working
 from viewer.cli.edit_options import edited_scene
 from viewer.cli.mesh_arguments import mesh_options
-from viewer.cli.render import check_certificates, check_display, recipe_of
+from viewer.cli.render import check_display, check_tree, check_view, recipe_of
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import capture, movie
 from viewer.services import filming, stills
@@ -40,7 +40,7 @@ def film(path: Path, options: Namespace) -> bool:
     check_scene_file(path)
     method = options.method or default_for(options.view.view)
     settings = replace(tracing_settings(options), method=method, samples=options.samples)
-    check_certificates(settings, options.view.view)
+    check_view(settings, options.view.view)
     check_display(options)
     if options.output is None:
         raise ValueError("film: nothing to write; give -o FOLDER, or -o film.mp4")
@@ -57,6 +57,7 @@ def film(path: Path, options: Namespace) -> bool:
         recipe = replace(recipe_of(path, scene, settings, options), before=())  # modes are learnt from the film alone
         stills.check_light(recipe, scene)
         stills.with_caption_filled(recipe, scene)  # or say now what is wrong with it
+        check_tree(settings, recipe.view, scene)
         if not stills.lights_fit(recipe, scene):
             raise ValueError(f"--view {recipe.view.value}: too many lights for pictures of this size")
         takes = _takes(scene, stops, options)
@@ -90,7 +91,7 @@ def _shoot(scene: Scene, script: Script, options: Namespace, work: Work) -> int:
 
     work.count(f"frame 1 of {count}", 0, count)
     with suppress(Cancelled):
-        for _ in filming.shoot(renderer, script, work.cancelled, on_frame):
+        for _ in filming.shoot(renderer, script, work.cancelled, on_frame, work.note):
             if work.stopped and done < count:
                 break
     return done

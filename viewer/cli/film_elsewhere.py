@@ -49,7 +49,7 @@ def shoot(scene: Scene, script: Script, options: Namespace, work: Work) -> int:
 
         on_progress(done)
         try:
-            for _ in films_elsewhere.shoot(cluster, scene, script, kept, work.cancelled, on_progress):
+            for _ in films_elsewhere.shoot(cluster, scene, script, kept, work.cancelled, on_progress, work.note):
                 pass
         except Cancelled:
             pass

@@ -6,11 +6,12 @@ from pathlib import Path
 
 from viewer.cli import examples, parsers
 from viewer.cli.argument_types import count, method, number, size, span
+from viewer.cli.parser import Parser
 
 
-def hunt() -> parsers.Parser:
+def hunt() -> Parser:
     """Of `hunt`."""
-    parser = parsers.Parser(
+    parser = Parser(
         prog="shadowcull hunt",
         description="Search a path of frames, and pictures beside it, for the worst wrong pixels of a method.",
         epilog=examples.HUNT + examples.methods(),

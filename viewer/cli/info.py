@@ -1,4 +1,4 @@
-"""The command `info`: what a scene holds."""
+"""The command `info`: what a scene's file holds, and what a studio adds to it."""
 
 from __future__ import annotations
 
@@ -9,8 +9,13 @@ from typing import Any
 
 from rich.table import Table
 
+from tracer.scene.framing import bounds, framing_camera, framing_lights
 from tracer.scene.load import load_scene, scene_info
-from viewer.cli.console import print_table, working
+from tracer.scene.mesh_options import IN_STUDIO
+from tracer.scene.meshes import MESH_EXTENSIONS
+from tracer.scene.model import Scene
+from tracer.scene.studio import FLOOR_TRIANGLES, LAMPS, up_in_studio
+from viewer.cli.console import Work, print_table, working
 from viewer.util.messages import say
 
 
@@ -18,8 +23,30 @@ def info(path: Path, as_json: bool, folders: Sequence[Path] = ()) -> None:
     """Print what a scene holds; raises SceneError."""
     with working() as work:
         scene = load_scene(path, work.progress, folders)
-    facts = scene_info(scene)
-    print(json.dumps(facts, indent=2)) if as_json else print_table(_facts_table(path, facts))
+        studio = {"triangles": FLOOR_TRIANGLES, "lights": LAMPS} if _gets_studio(scene, work, folders) else None
+    facts = scene_info(scene) | {"studio": studio}
+    if as_json:
+        print(json.dumps(facts, indent=2))
+        return
+    print_table(_facts_table(path, facts))
+    if studio is not None:
+        print(
+            f"in the window and in pictures, a studio adds {FLOOR_TRIANGLES} triangles, and {LAMPS} lamps in place of "
+            "these lights; --no-studio leaves it out"
+        )
+
+
+def _gets_studio(scene: Scene, work: Work, folders: Sequence[Path]) -> bool:
+    """Whether the window, and what traces, set this scene in a studio."""
+    ending = scene.path.suffix.lower()
+    if ending not in MESH_EXTENSIONS or not scene.triangle_count:
+        return False
+    if ending not in (".gltf", ".glb"):
+        return True  # the others know neither cameras nor lights
+    box = bounds(scene.objects, scene.animation, 0.0)
+    if scene.camera != framing_camera(box) or scene.lights != framing_lights(box, scene.camera):
+        return False  # it has its own
+    return up_in_studio(load_scene(scene.path, work.progress, folders, IN_STUDIO)) is not None
 
 
 def _facts_table(path: Path, facts: dict[str, Any]) -> Table:
@@ -27,7 +54,7 @@ def _facts_table(path: Path, facts: dict[str, Any]) -> Table:
     table.add_column()
     table.add_column(justify="right")
     for name, value in facts.items():
-        if name in ("bounds", "time", "warnings", "light_kinds"):
+        if name in ("bounds", "time", "warnings", "light_kinds", "studio"):
             continue
         table.add_row(name.replace("_", " "), f"{value:,}")
         if name == "lights":

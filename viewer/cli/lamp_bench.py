@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from rich.table import Table
@@ -12,6 +13,7 @@ from tracer.geometry.world import World
 from tracer.lamp_experiment import CEILING, LampResults, LampRow, run_lamps, table
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli.console import Work
+from viewer.cli.narrow_tables import left_out, named
 from viewer.output.reports import frames_in_words
 
 
@@ -29,14 +31,20 @@ def run(
     names = list(dict.fromkeys([*methods, CEILING]))
     world = World(scene, times[0], settings.accelerator, work.progress)
     each = len(numbers) * len(names)
-    done = 0
+    total, done = len(kinds) * each, 0
+
+    def show() -> None:
+        lamps, place = divmod(min(done, total - 1), each)
+        frame, method = divmod(place, len(names))
+        label = f"lamps {lamps + 1} of {len(kinds)}, frame {frame + 1} of {len(numbers)}, {names[method]}"
+        work.count(label, done, total)
 
     def on_frame(number: int, method: str, frame: Frame) -> None:
         nonlocal done
         done += 1
-        lamps = min(done // each, len(kinds) - 1) + 1
-        work.count(f"lamps {lamps} of {len(kinds)}, {', '.join(names)}", done, len(kinds) * each)
+        show()
 
+    show()
     results = None
     for grown in run_lamps(scene, settings, methods, kinds, times, numbers, work.cancelled, world, on_frame):
         results = grown
@@ -45,24 +53,32 @@ def run(
     return results
 
 
-def lamp_table(results: LampResults) -> Table:
-    """A row for each method under each kind of lamp."""
+def lamp_table(results: LampResults, width: int | None) -> Table:
+    """A row for each method under each kind of lamp, in so many columns; None for as many as it takes."""
+    return _table(results, left_out(LEAST_WANTED, lambda left: [_table(results, left)], width))
+
+
+def _table(results: LampResults, left: Sequence[str]) -> Table:
     first = results.runs[0]
     width, height = first.size
     title = f"What culling is worth under lamps\n{Path(first.scene).name}, {width} × {height}, {frames_in_words(first)}"
     made = Table(title=title, title_justify="left", title_style="bold", caption_justify="left")
-    for name in ("radius", "samples", "method", "frame, median", "shadow rays", "known", "speed-up", "of free"):
-        made.add_column(name, justify="left" if name == "method" else "right")
+    for name in ("radius", "samples", "method"):
+        made.add_column(name, justify="left" if name == "method" else "right", no_wrap=True)
+    shown = [(name, cell) for name, cell in _FIGURES.items() if name not in left]
+    for name, _ in shown:
+        made.add_column(name, justify="right", no_wrap=True)
     before: tuple[float | None, int | None] | None = None
     for row in table(results):
         kind = row.lamp_radius, row.lamp_samples
         if before is not None and kind != before:
             made.add_section()
-        made.add_row(*(_kind(row) if kind != before else ("", "")), *_figures(row))
+        made.add_row(*(_kind(row) if kind != before else ("", "")), row.method, *(cell(row) for _, cell in shown))
         before = kind
+    wider = f"\na wider terminal shows {named(left)}, too; --csv FILE has all figures" if left else ""
     made.caption = (
         f"shadow rays: due per frame; speed-up: over {REFERENCE}, all frames; {CEILING}: shadow rays cost nothing\n"
-        "known: shadow rays that are culled, or tested against dynamic objects only"
+        f"known: shadow rays that are culled, or tested against dynamic objects only{wider}"
     )
     return made
 
@@ -72,7 +88,12 @@ def _kind(row: LampRow) -> tuple[str, str]:
     return radius, "scene's" if row.lamp_samples is None else str(row.lamp_samples)
 
 
-def _figures(row: LampRow) -> tuple[str, ...]:
-    measured = "" if row.method in (REFERENCE, CEILING) else f"{row.known:.1%}"
-    milliseconds, rays = f"{1000.0 * row.frame_seconds:,.1f} ms", f"{row.shadow_rays:,.0f}"
-    return row.method, milliseconds, rays, measured, f"{row.speed_up:.2f}", f"{row.share_of_free:.1%}"
+_FIGURES: dict[str, Callable[[LampRow], str]] = {
+    "frame,\nmedian": lambda row: f"{1000.0 * row.frame_seconds:,.1f} ms",
+    "shadow\nrays": lambda row: f"{row.shadow_rays:,.0f}",
+    "known": lambda row: "" if row.method in (REFERENCE, CEILING) else f"{row.known:.1%}",
+    "speed-\nup": lambda row: f"{row.speed_up:.2f}",
+    "of free": lambda row: f"{row.share_of_free:.1%}",
+}
+LEAST_WANTED = ("shadow\nrays", "known", "of free")
+"""Columns that are left out, one after another, where there is no room for all."""

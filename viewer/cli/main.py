@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING, Any
 from tracer.similar import did_you_mean
 from viewer.cli import hunt_parser, parsers, picture_parsers, sweep_parser
 from viewer.cli.mesh_arguments import as_arguments, mesh_options
-from viewer.cli.parsers import MISUSED
+from viewer.cli.parser import MISUSED, Parser
 from viewer.util import resources
 from viewer.util.messages import ERROR, say
 from viewer.util.screen import has_display, no_display_reason
@@ -113,7 +113,7 @@ def _view(arguments: list[str], commands: list[str], open_window: OpenWindow) ->
     return open_window(scene, settings, options.folder, mesh_options(options))
 
 
-def _check_is_scene(parser: parsers.Parser, name: str, commands: list[str]) -> None:
+def _check_is_scene(parser: Parser, name: str, commands: list[str]) -> None:
     """A word that is no file may be a command mistyped: better said now than as an error about a missing file."""
     if name in resources.embedded_scenes() or Path(name).exists() or Path(name).suffix:
         return
@@ -172,7 +172,7 @@ def _figure(arguments: list[str]) -> int:
     return 0
 
 
-def _with_saved(parser: parsers.Parser, arguments: list[str]) -> tuple[Path, Namespace]:
+def _with_saved(parser: Parser, arguments: list[str]) -> tuple[Path, Namespace]:
     """The scene and the options, which begin with those of a saved picture if that stands for a scene."""
     options = parser.parse_args(arguments)
 

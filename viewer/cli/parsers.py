@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn
 
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.settings import MAX_NODES
@@ -26,35 +24,13 @@ from viewer.cli.argument_types import (
     size,
 )
 from viewer.cli.edit_options import add_edits
-from viewer.cli.mesh_arguments import add_mesh_options, joined
+from viewer.cli.mesh_arguments import add_mesh_options
+from viewer.cli.parser import Parser
 from viewer.util import resources
-from viewer.util.messages import ERROR, say
 from viewer.util.version import program_version
 
-MISUSED = 2
-"""Exit code where a command line is wrong."""
 WARMUP = "first trace the N frames before it"
 CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
-
-
-class Parser(argparse.ArgumentParser):
-    """Options by their whole names; errors in one line, which names where help is."""
-
-    def __init__(self, prog: str, description: str, epilog: str) -> None:
-        super().__init__(
-            prog=prog,
-            description=description,
-            epilog=epilog,
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-            allow_abbrev=False,
-        )
-
-    def parse_known_args(self, args: Sequence[str] | None = None, namespace: Any = None) -> Any:  # type: ignore[override]
-        return super().parse_known_args(joined(sys.argv[1:] if args is None else args), namespace)
-
-    def error(self, message: str) -> NoReturn:
-        say(f"{message} (see '{self.prog} --help')", ERROR)
-        sys.exit(MISUSED)
 
 
 def viewer() -> Parser:
@@ -190,7 +166,8 @@ def info() -> Parser:
     parser = Parser(
         prog="shadowcull info",
         description="Say what a scene, or that of a saved picture, holds: primitives, lights, materials, frames, "
-        "bounds, and warnings.",
+        "bounds, and warnings. Of a model without camera and lights it counts what is in the file, lit by two lights, "
+        "and says what the studio adds in which the window and the commands that trace set it.",
         epilog=examples.INFO,
     )
     add_scene(parser)

@@ -11,9 +11,9 @@ from viewer.cli.argument_types import (
     crops,
     curve,
     method,
+    methods,
     number,
     place,
-    several,
     size,
     slice_,
     span,
@@ -22,13 +22,13 @@ from viewer.cli.argument_types import (
     view,
 )
 from viewer.cli.edit_options import add_edits
-from viewer.cli.parsers import Parser
+from viewer.cli.parser import Parser
 from viewer.cli.sweep_parser import add_processes
 
 
 def render() -> Parser:
     """Of `render`."""
-    parser = parsers.Parser(
+    parser = Parser(
         prog="shadowcull render",
         description="Trace one frame of a scene, print its statistics, and write a picture, its buffers, or both.",
         epilog=examples.RENDER + examples.methods(),
@@ -83,7 +83,7 @@ def _add_picture(parser: Parser) -> None:
 
 def film() -> Parser:
     """Of `film`."""
-    parser = parsers.Parser(
+    parser = Parser(
         prog="shadowcull film",
         description="Trace the frames of a scene's path, or of a flight through bookmarks, into numbered pictures, and "
         "into a video.",
@@ -111,7 +111,7 @@ def film() -> Parser:
 
 def figure() -> Parser:
     """Of `figure`."""
-    parser = parsers.Parser(
+    parser = Parser(
         prog="shadowcull figure",
         description="Draw one frame by several methods side by side: crops, what differs from none, and counts.",
         epilog=examples.FIGURE + examples.methods(),
@@ -121,7 +121,7 @@ def figure() -> Parser:
     add("-o", "--output", type=Path, metavar="FILE", help="the figure, a .png or .pdf, which says how it was made")
     add(
         "--methods",
-        type=several(method),
+        type=methods,
         default=["none", "paper", "certified"],
         metavar="M,...",
         help="which methods, in the order of the columns (default: none,paper,certified)",
@@ -138,7 +138,7 @@ def figure() -> Parser:
 
 def check() -> Parser:
     """Of `check`."""
-    parser = parsers.Parser(
+    parser = Parser(
         prog="shadowcull check",
         description="Render saved pictures and figures again, and say of each whether it is still true.",
         epilog=examples.CHECK,

@@ -65,7 +65,6 @@ def render(path: Path, options: Namespace) -> None:
         exr.check()
     if not options.print_command:
         _check_outputs(options.output, options.buffers, options.to_tev is not None)
-    check_certificates(settings, view)
     check_view(settings, view)
     check_display(options)
     with working() as work:
@@ -102,14 +101,6 @@ def render(path: Path, options: Namespace) -> None:
     for written in (options.output, options.buffers):
         if written is not None:
             print(printable(written))
-
-
-def check_certificates(settings: Settings, view: View) -> None:
-    """Raise ValueError, in one line, where a view shows certificates, and the method makes none."""
-    method = Method.parse(settings.method)
-    if view is View.CERTIFICATE and (method.adaptive or not method.has_certificates):
-        may = "may make" if method.adaptive else "makes"
-        raise ValueError(f"--view certificate: the method {settings.method} {may} none; give --method {CERTIFIED}")
 
 
 def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) -> Recipe:
@@ -212,15 +203,19 @@ def check_display(options: Namespace) -> None:
         raise ValueError(f"--range is for views of numbers: {names}{' as counts' if shares else ''}")
 
 
-def check_view(settings: Settings, view: View) -> None:
-    """Raise ValueError, in one line, where the method has nothing for a view of what single methods have."""
+def check_view(settings: Settings, view: View, option: str = "--method") -> None:
+    """Raise ValueError, in one line, where the method has nothing for a view of what single methods have; `option` is
+    the one that names methods."""
     method = Method.parse(settings.method)
+    if view is View.CERTIFICATE and (method.adaptive or not method.has_certificates):
+        may = "may make" if method.adaptive else "makes"
+        raise ValueError(f"--view certificate: the method {settings.method} {may} none; give {option} {CERTIFIED}")
     if view is View.CUTS and not method.clusters:
         why = f"the method {settings.method} makes no clusters of lights"
-        raise ValueError(f"--view {view.value}: {why}; give --method {SHOWN_BY[view]}")
+        raise ValueError(f"--view {view.value}: {why}; give {option} {SHOWN_BY[view]}")
     shows = {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}.get(view)
     if shows is not None and not any(name == method.base or method.has(name) for name in shows):
-        raise ValueError(f"--view {view.value}: not with the method {settings.method}; give --method {shows[0]}")
+        raise ValueError(f"--view {view.value}: not with the method {settings.method}; give {option} {shows[0]}")
 
 
 def check_tree(settings: Settings, view: View, scene: Scene) -> None:

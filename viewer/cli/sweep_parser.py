@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from viewer.cli import parsers
 from viewer.cli.argument_types import count
-from viewer.cli.parsers import Parser
+from viewer.cli.parser import Parser
 
 EPILOG = """\
 examples:
@@ -48,7 +47,7 @@ scenes are sent to them. Needs Dask and PyArrow: install shadowcull[sweep].
 
 def sweep() -> Parser:
     """Of `sweep`."""
-    parser = parsers.Parser(
+    parser = Parser(
         prog="shadowcull sweep",
         description="Trace a study, scenes by methods by settings by seeds, by several processes, and keep every frame "
         "as a row.",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
 from typing import TYPE_CHECKING
@@ -11,6 +11,7 @@ from rich.table import Table
 
 from tracer.experiment import REFERENCE
 from viewer.cli.console import width_of
+from viewer.cli.narrow_tables import left_out, named
 from viewer.state.study import Study
 from viewer.util.messages import printable
 
@@ -30,11 +31,7 @@ def tables(study: Study, lines: list[Line], width: int | None) -> Iterator[Table
     parts = [
         list(part) for _, part in groupby(lines, lambda line: (line.scene, line.width, line.height, line.settings))
     ]
-    left: tuple[str, ...] = ()
-    for count in range(len(LEAST_WANTED) + 1):
-        left = LEAST_WANTED[:count]
-        if all(width_of(_of_part(part, lines, left)) <= width for part in parts):
-            break
+    left = left_out(LEAST_WANTED, lambda left: [_of_part(part, lines, left) for part in parts], width)
     for number, part in enumerate(parts):
         table = _of_part(part, lines, left)
         first, last = number == 0, number == len(parts) - 1
@@ -42,8 +39,7 @@ def tables(study: Study, lines: list[Line], width: int | None) -> Iterator[Table
         if not last:
             table.caption = None
         elif left:
-            names = ", ".join(" ".join(heading.split()) for heading in left)
-            table.caption = f"{table.caption}; a wider terminal shows {names}, too"
+            table.caption = f"{table.caption}; a wider terminal shows {named(left)}, too"
         yield table
 
 
@@ -51,12 +47,12 @@ def _where(line: Line) -> str:
     return ", ".join(filter(None, (printable(line.scene), f"{line.width}×{line.height}", line.settings)))
 
 
-def _of_part(part: list[Line], lines: list[Line], left: tuple[str, ...]) -> Table:
+def _of_part(part: list[Line], lines: list[Line], left: Sequence[str]) -> Table:
     """The methods of one scene, size and combination of settings, without the columns that are left out."""
     return _table("", [replace(line, settings="") for line in part], lines, left, where=False)
 
 
-def _table(title: str, shown: list[Line], lines: list[Line], left: tuple[str, ...] = (), where: bool = True) -> Table:
+def _table(title: str, shown: list[Line], lines: list[Line], left: Sequence[str] = (), where: bool = True) -> Table:
     """A section for each scene, size and combination of settings, a row for each method."""
     from viewer.output.sweep_summary import COLUMNS, KNOWN
 

@@ -78,18 +78,23 @@ def shoot(
     script: Script,
     cancelled: Callable[[], bool] = lambda: False,
     on_frame: Callable[[int, Frame], None] = lambda number, frame: None,
+    note: Callable[[str], object] = lambda line: None,
 ) -> Iterator[Path]:
     """Trace and write frame after frame; yields each picture's path.
 
-    `on_frame` gets a frame's number, from 0, and the frame.  Raises Cancelled, with the pictures so far written and the
-    video as long as these, and OSError, in one line, as when the disk is full."""
+    `on_frame` gets a frame's number, from 0, and the frame; `note` is told, once, why a picture has no legend where one
+    was wanted.  Raises Cancelled, with the pictures so far written and the video as long as these, and OSError, in one
+    line, as when the disk is full."""
     scene, numbers = renderer.scene, picture_numbers(script.takes)
     with ExitStack() as stack:
         film: Video | None = None
+        told = ""
         for number, take in enumerate(script.takes):
             recipe = stills.with_caption_filled(recipe_of(script.recipe, take), scene)
             frame = stills.trace(renderer, replace(recipe, warmup=0), cancelled=cancelled)
-            pixels, _ = stills.draw(frame, scene, recipe)
+            pixels, missing = stills.draw(frame, scene, recipe)
+            if missing and not told:
+                note(told := missing)
             if film is None and script.video is not None:
                 height, width = pixels.shape[:2]  # with a caption, these are more than the frame's
                 film = stack.enter_context(video(script.video, (width, height), script.fps))

@@ -44,12 +44,13 @@ def shoot(
     kept: set[int],
     cancelled: Callable[[], bool] = lambda: False,
     on_progress: Callable[[int], None] = lambda done: None,
+    note: Callable[[str], object] = lambda line: None,
 ) -> Iterator[Path]:
     """Trace all pictures but those `kept`, and write each as soon as it comes; yields their paths.
 
-    The video gets them in their order.  `on_progress` is told how many pictures there are.  Raises Cancelled, with what
-    is done written and the video as long as its beginning, OSError, in one line, and RuntimeError where a picture could
-    not be traced."""
+    The video gets them in their order.  `on_progress` is told how many pictures there are, and `note`, once, why one
+    has no legend where one was wanted.  Raises Cancelled, with what is done written and the video as long as its
+    beginning, OSError, in one line, and RuntimeError where a picture could not be traced."""
     paths, recipes = _paths(script), _recipes(script, scene)
     wanted = [number for number in range(len(paths)) if number not in kept]
     there, code = set(kept), fingerprint.code_of(scene)
@@ -58,7 +59,11 @@ def shoot(
         reel.wind(there)
         jobs = [Job(_SCENE, (recipes[number], code)) for number in wanted]
         outcomes = do(cluster, picture, {_SCENE: scene}, jobs, cancelled, lambda: on_progress(len(there)))
+        told = ""
         for outcome in outcomes:
+            if outcome.parts and not told:
+                told = outcome.parts[0][1]
+                note(told)
             for job, data in outcome.results:
                 number = wanted[job]
                 write_bytes(paths[number], data)
@@ -156,5 +161,7 @@ def picture(given: tuple[Recipe, str], scene: Scene, emit: Emit, cancelled: Call
     prepare(len(scene.lights), settings.accelerator, settings.method)
     renderer = Renderer(scene, settings, world=world_of(scene, code, settings.accelerator, scene.time_range[0]))
     frame = stills.trace(renderer, replace(recipe, warmup=0), cancelled=cancelled)
-    pixels, _ = stills.draw(frame, scene, recipe)
+    pixels, missing = stills.draw(frame, scene, recipe)
+    if missing:
+        emit(missing)
     return png.encoded(pixels, stills.text(pixels, frame, scene, recipe))

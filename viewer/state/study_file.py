@@ -16,7 +16,7 @@ from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
 from tracer.scene.files import read_regular
 from tracer.settings import LIGHT_BUFFER_SIDES, MAX_NODES, Settings
-from tracer.similar import did_you_mean, similar
+from tracer.similar import did_you_mean, did_you_mean_file, similar
 from viewer.state.study import ASPECTS, Study
 from viewer.util import resources
 
@@ -39,7 +39,7 @@ def read_study(path: Path) -> Study:
         return _Reader(path, text, tomllib.loads(text)).study()
     except OSError as error:
         if isinstance(error, FileNotFoundError):
-            raise OSError(f"{path}: no such file; check the path") from None
+            raise OSError(f"{path}: no such file{did_you_mean_file(path)}") from None
         raise OSError(f"{path}: no study can be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise StudyError(f"{path}: no study: it is not text in UTF-8") from None
@@ -253,9 +253,12 @@ def _truth(value: Any) -> bool:
 
 
 def _accelerator(value: Any) -> str:
-    if value not in ACCELERATORS:
-        raise TypeError
-    return str(value)
+    if value in ACCELERATORS:
+        return str(value)
+    hint = did_you_mean(value, ACCELERATORS) if isinstance(value, str) else ""
+    if hint:
+        raise ValueError(f"{_toml(value)} will not do{hint}")
+    raise TypeError
 
 
 def _listed(values: tuple[int, ...]) -> str:

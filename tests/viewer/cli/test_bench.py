@@ -13,7 +13,7 @@ from tests.terminal import Terminal
 from viewer.__main__ import main
 from viewer.cli.bench import frame_range
 from viewer.cli.console import Work
-from viewer.cli.parsers import MISUSED
+from viewer.cli.parser import MISUSED
 from viewer.output import figures
 from viewer.util.version import program_version
 
@@ -155,6 +155,15 @@ def test_mistakes_are_one_line(wrong, said, capsys):
         (["--methods", "telepathy"], "argument --methods: invalid choice: 'telepathy'; it is one of none"),
         (["--methods", "all,telepathy"], "+lightbuffer, +cache-directions, +cache-tile, +packets16, +packets1; or all"),
         (["--methods", ""], "argument --methods: invalid choice: ''"),
+        (
+            ["--methods", "papr,paper,certifed"],
+            "invalid choice: 'papr': did you mean 'paper'? 'certifed': did you mean 'certified'? (see",
+        ),
+        (["--methods", "papr,all,telepathy"], "'papr': did you mean 'paper'? 'telepathy'; it is one of none"),
+        (["--accelerator", "kdtree-lasy"], "--accelerator: invalid choice: 'kdtree-lasy': did you mean 'kdtree-lazy'?"),
+        (["--accelerator", "grid"], "invalid choice: 'grid' (choose from"),
+        (["--methd", "paper"], "unrecognized arguments: --methd paper: did you mean '--methods'?"),
+        (["--lamp-sample=4"], "unrecognized arguments: --lamp-sample=4: did you mean '--lamp-samples'?"),
     ],
 )
 def test_options_that_are_none_end_as_misuse(wrong, said, capsys):
@@ -232,12 +241,13 @@ def test_cancelled_before_any_frame_is_done_there_is_nothing_to_keep(tmp_path: P
 # --- on a terminal ---------------------------------------------------------------------------------
 
 
-def test_progress_shows_frame_methods_time_gone_and_time_left():
+def test_progress_shows_frame_method_time_gone_and_time_left():
     terminal = Terminal("bench", "default", "--frames", "0:8", "--size", "96x96")
     *_, said = terminal.lines()
     assert terminal.end() == 0
-    shown = re.findall(r"frame (\d) of 8, none, paper \S+ (\d:\d\d:\d\d) (\d:\d\d:\d\d) left", said)
+    shown = re.findall(r"frame (\d) of 8, (?:none|paper) \S+ (\d:\d\d:\d\d) (\d:\d\d:\d\d) left", said)
     assert len({frame for frame, _, _ in shown}) > 2
+    assert "of 8, none " in said and "of 8, paper " in said, "the one that is being traced"
     assert [frame for frame, _, _ in shown] == sorted(frame for frame, _, _ in shown)
     assert shown[-1][1] > "0:00:00"
     assert "average" in said[said.rindex(" left") :]

@@ -153,6 +153,9 @@ def test_figures_that_cannot_be_drawn(capfd: pytest.CaptureFixture[str]) -> None
         (("-o", "f.png", "--methods", "none,none"), "each once"),
         (("-o", "f.png", "--view", "certificate:0"), "one method alone"),
         (("-o", "f.png", "--view", "shadow:9"), "lights are 0 to 1"),
+        (("-o", "f.png", "--view", "voxels"), "not with the method none; give --methods voxels"),
+        (("-o", "f.png", "--view", "cuts", "--methods", "lightcuts,paper"), "paper makes no clusters of lights"),
+        (("-o", "f.png", "--view", "tree"), "builds all of its tree before rays come"),
     ]
     for options, said in cases:
         assert said in complaint(run(capfd, "figure", "room.aff", *options, *SIZE))

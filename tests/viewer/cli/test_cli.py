@@ -12,10 +12,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from PIL import Image
 
 from tests.commands import CAMERA, ROOM, complaint, render, run
 from tests.terminal import Terminal
+from tracer.scene.load import load_scene
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from viewer.cli import main as command_line
 from viewer.output import capture
@@ -40,11 +42,12 @@ def test_info_json_holds_the_promised_keys(capfd: pytest.CaptureFixture[str], ro
     assert code == 0
     assert list(facts) == [
         "triangles", "static_triangles", "dynamic_triangles", "spheres", "cones", "lights", "materials",
-        "textures", "frames", "time", "bounds", "warnings", "light_kinds",
+        "textures", "frames", "time", "bounds", "warnings", "light_kinds", "studio",
     ]  # fmt: skip
     assert facts["light_kinds"] == [{"kind": "point", "samples": 1, "falloff": "none", "lights": 2}]
     assert (facts["triangles"], facts["dynamic_triangles"], facts["spheres"]) == (3, 1, 1)
     assert (facts["lights"], facts["frames"], facts["time"]) == (2, 10, [0.0, 9.0])
+    assert facts["studio"] is None
 
 
 def test_info_as_a_table(capfd: pytest.CaptureFixture[str], room: Path) -> None:
@@ -67,6 +70,24 @@ def test_info_groups_lights_that_are_alike(capfd: pytest.CaptureFixture[str], ro
         ("sphere", 4, "none", 5),
         ("dome", 1, "inverse square", 1),
     ]
+
+
+@pytest.mark.parametrize("ending", [".obj", ".stl", ".glb"])
+def test_info_says_what_a_studio_adds(capfd: pytest.CaptureFixture[str], tmp_path: Path, ending: str) -> None:
+    path = tmp_path / f"ball{ending}"
+    trimesh.creation.icosphere(subdivisions=1).export(path)
+    facts = json.loads(run(capfd, "info", path, "--json")[1])
+    shown = load_scene(path, meshes=IN_STUDIO)
+    assert facts["triangles"] + facts["studio"]["triangles"] == shown.triangle_count
+    assert facts["studio"]["lights"] == len(shown.lights) != facts["lights"]
+    code, out, _ = run(capfd, "info", path)
+    assert code == 0 and "a studio adds 2 triangles, and 3 lamps in place of these lights" in out
+    if ending == ".glb":  # which may have a camera
+        model = trimesh.Scene(trimesh.creation.icosphere(subdivisions=1))
+        model.camera_transform = trimesh.transformations.translation_matrix((0, 0, 5))
+        model.export(path)
+        code, out, _ = run(capfd, "info", path)
+        assert code == 0 and "studio" not in out
 
 
 @pytest.mark.parametrize("command", [["render", "-o", "x.png"], ["bench"], ["zoom", "--primitive", "0"], []])
@@ -230,7 +251,7 @@ def test_cuts_of_lights_take_an_error_and_tell_it(
     lamps = ("--lamp-radius", 0.5, "--lamp-samples", 64, "--method", "lightcuts")
     code, out, errors = render(capfd, room, "-o", tmp_path / "a.png", *lamps, "--lightcuts-error", 0.3, "--verify")
     said = " ".join(out.split())
-    assert code == 0 and "stand for 128 lights" in said and "by 30 % of the light" in said, errors
+    assert code == 0 and "stand for 128 samples of 2 lights" in said and "by 30 % of the light" in said, errors
     assert "Half of the pixels are wrong by less than" in said
     few = (*lamps, "--lightcuts-nodes", 3, "--view", "cuts")
     code, out, errors = render(capfd, room, "-o", tmp_path / "b.png", *few)
@@ -392,7 +413,8 @@ def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None
         (["-o", "OUT/x.png", "--zoom-factor", "much"], "argument --zoom-factor: 'much' is not a number"),
         (["-o", "OUT/x.png", "--warm", "3"], "unrecognized arguments"),
         (["-o", "OUT/x.png", "--warmup", "-3"], "-3 is not in"),
-        (["-o", "OUT/x.png", "--wurmup", "3"], "unrecognized arguments"),
+        (["-o", "OUT/x.png", "--wurmup", "3"], "unrecognized arguments: --wurmup 3: did you mean '--warmup'?"),
+        (["-o", "OUT/x.png", "--telepathy"], "unrecognized arguments: --telepathy (see"),
     ],
 )
 def test_mistakes_end_in_one_line(
@@ -415,6 +437,12 @@ def test_a_missing_file_is_missed_first(capfd: pytest.CaptureFixture[str], tmp_p
     """Before what else is not given, such as -o."""
     assert "no.aff: no such file" in complaint(run(capfd, command, tmp_path / "no.aff"))
     assert "unknown kind of scene" in complaint(run(capfd, command, ROOT / "README.md"))
+
+
+def test_a_file_like_it_is_asked_about(capfd: pytest.CaptureFixture[str], room: Path) -> None:
+    (room.parent / "rooom.txt").write_text("")
+    wrong = room.with_name("rooom.aff")
+    assert f"{wrong}: no such file: did you mean '{room}'?" in complaint(run(capfd, "info", wrong))
 
 
 def test_a_long_name_is_not_broken(capfd: pytest.CaptureFixture[str], room: Path) -> None:

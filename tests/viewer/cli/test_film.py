@@ -70,6 +70,12 @@ def test_a_flight_goes_through_saved_pictures_or_bookmarks(
         assert np.array_equal(pixels(picture), pixels(Path("marks") / picture.name))
 
 
+def test_why_there_is_no_legend_is_said_once(capfd: pytest.CaptureFixture[str]) -> None:
+    view = ("--view", "depth", "--legend", "--method", "none")
+    code, _, said = run(capfd, "film", "room.aff", "-o", "small", "--frames", "2-4", *view, *SIZE)
+    assert code == 0 and said.count("no legend: the picture is too small for it") == said.count("\n") == 1
+
+
 def test_what_is_done_is_kept(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     av = pytest.importorskip("av")
     count: Callable = Work.count
@@ -105,6 +111,9 @@ def test_mistakes_are_one_line(capfd: pytest.CaptureFixture[str], monkeypatch: p
         (("-o", "d", "--caption", "{sceen}"), "the caption has no field {sceen}"),
         (("-o", "d", "--view", "shadow:7"), "the scene's lights are 0 to 1"),
         (("-o", "d", "--view", "certificate:0", "--method", "paper"), "give --method certified"),
+        (("-o", "d", "--view", "voxels", "--method", "paper"), "not with the method paper; give --method voxels"),
+        (("-o", "d", "--view", "cuts", "--method", "none"), "give --method lightcuts"),
+        (("-o", "d", "--view", "tree"), "bvh8 builds all of its tree before rays come"),
     ]
     for options, said in cases:
         assert said in complaint(run(capfd, "film", "room.aff", *options, *SIZE))

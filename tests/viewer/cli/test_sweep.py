@@ -195,6 +195,9 @@ def test_a_film_by_two_processes_is_that_of_one(shared: Cluster, capfd: pytest.C
     assert "0001.png: a picture of another film (another settings)" in line
     code, _, err = run(capfd, "film", *wanted, "-o", "three", "--workers", 2, "--method", "paper")
     assert code == 0 and "one process traces them all" in err
+    legend = ("--view", "depth", "--legend", "--workers", 2)
+    code, _, err = run(capfd, "film", *wanted, "-o", "four", *legend)
+    assert code == 0 and err.count("no legend: the picture is too small for it") == 1, err
 
 
 def test_another_version_does_not_take_part(

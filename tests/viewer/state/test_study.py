@@ -73,8 +73,10 @@ def test_changes_are_said(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ('"paper"', '"papper"', "line 5: methods: method is one of"),
-        ('"paper"', '"papper"', "not 'papper': did you mean 'paper'?"),
+        ('"paper"', '"papper"', "line 5: methods: no method 'papper': did you mean 'paper'?"),
+        ('"paper"', '"telepathy"', "line 5: methods: no method 'telepathy'; it is one of none"),
+        ("depth = [2, 10]", 'accelerator = "kdtree-lasy"', 'accelerator: "kdtree-lasy" will not do: did you mean'),
+        ("depth = [2, 10]", 'accelerator = "grid"', 'settings.accelerator: "grid" will not do; give "'),
         ("methods = [\n", "method = [\n", "line 3: method: no such key; did you mean methods?"),
         ('"64x48"', '"64*48"', 'line 8: sizes: "64*48" will not do; give sizes, such as "640x480"'),
         ("frames = 8", 'frames = "8"', 'line 12: path.frames: "8" will not do; give a whole number from 1'),
@@ -124,8 +126,10 @@ def test_what_is_wrong_is_said_with_its_line(tmp_path: Path, old: str, new: str,
 def test_missing_keys_and_frames(tmp_path: Path) -> None:
     with pytest.raises(StudyError, match="no scenes; give a list"):
         read(tmp_path, 'methods = ["none"]\n')
-    with pytest.raises(OSError, match=r"no-study\.toml: no such file; check the path"):
-        read_study(tmp_path / "no-study.toml")
+    with pytest.raises(OSError, match=r"elsewhere\.toml: no such file; check the path"):
+        read_study(tmp_path / "elsewhere.toml")
+    with pytest.raises(OSError, match=r"studdy\.toml: no such file: did you mean '.*study\.toml'\?"):
+        read_study(tmp_path / "studdy.toml")
     study = read(tmp_path, GOOD.replace("last = 5", "last = 8"))
     with pytest.raises(ValueError, match="the frames 0 to 8 are not all of room.aff, whose path has 8"):
         study.tasks("room.aff", load_scene(tmp_path / "room.aff"), "code")
