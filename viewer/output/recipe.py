@@ -37,6 +37,8 @@ from viewer.util import resources
 from viewer.util.json_numbers import number, whole
 
 MOST_BEFORE = 100_000  # frames
+CHANCE = "what is certified depends on time and threads"
+BUILT = "what rays have had built depends on all that has been seen"
 
 
 @dataclass(frozen=True)
@@ -141,6 +143,13 @@ def by_chance(settings: Settings, view: View) -> bool:
     method = Method.parse(settings.method)
     limited = method.has_certificates and (math.isfinite(settings.certificate_seconds) or settings.threads != 1)
     return needs_history(settings.method, view) and method.exact and not view.of_modes and (limited or method.adaptive)
+
+
+def cannot_come_back(settings: Settings, view: View) -> str:
+    """Why no frames before it bring a picture of the window back, in words; nothing where some do, or none count."""
+    if view is View.TREE:
+        return BUILT
+    return CHANCE if by_chance(settings, view) else ""
 
 
 def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Recipe:

@@ -13,11 +13,11 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from viewer.output import movie
 from viewer.output.movie import VIDEO
-from viewer.output.recipe import Recipe, by_chance
+from viewer.output.recipe import Recipe, cannot_come_back
 from viewer.services import filming
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.filming import Script
-from viewer.services.recipes import CHANCE, Recipes
+from viewer.services.recipes import Recipes
 from viewer.services.run_controller import RunController
 from viewer.services.runs import LONGEST_SIDE, Run
 from viewer.state import flight
@@ -132,9 +132,8 @@ class FilmController:
         style = replace(
             recipe.style, magnified=1, caption=plan.caption, legend=(p.legend_x, p.legend_y) if plan.legend else None
         )
-        recipe = replace(recipe, settings=settings, style=style, repeats=0, history="", by_gpu=False)
-        if by_chance(settings, recipe.view):
-            recipe = replace(recipe, history=CHANCE)
+        history = cannot_come_back(settings, recipe.view)
+        recipe = replace(recipe, settings=settings, style=style, repeats=0, history=history, by_gpu=False)
         name = f"{scene.path.stem}-film-{datetime.now():%Y-%m-%d-%H-%M-%S}"
         folder = p.picture_folder / name
         video = p.picture_folder / (name + VIDEO) if plan.video else None

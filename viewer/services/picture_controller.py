@@ -18,10 +18,10 @@ from tracer.scene.model import Scene
 from viewer.output import clipboard, exr, png, tev
 from viewer.output.legend_parts import Legend
 from viewer.output.legend_picture import with_legend
-from viewer.output.recipe import Recipe, by_chance
+from viewer.output.recipe import Recipe, cannot_come_back
 from viewer.services import stills
 from viewer.services.jobs import Job
-from viewer.services.recipes import CHANCE, Recipes
+from viewer.services.recipes import Recipes
 from viewer.services.run_controller import RunController
 from viewer.services.runs import Run
 from viewer.state.notices import Notices
@@ -134,7 +134,7 @@ class PictureController:
         style = replace(recipe.style, magnified=1, legend=place, caption=plan.caption)
         settings = replace(recipe.settings, width=width, height=height, samples=plan.samples).validated()
         # Modes are those of a resolution, and begin anew in another; once more, and they show what they are.
-        history = CHANCE if by_chance(settings, recipe.view) else ""
+        history = cannot_come_back(settings, recipe.view)
         wanted = replace(
             recipe, settings=settings, style=style, repeats=1 if recipe.needs_history else 0, history=history,
             by_gpu=False,

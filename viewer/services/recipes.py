@@ -9,7 +9,7 @@ from pathlib import Path
 from tracer.frame import Frame, Settings
 from tracer.scene.edits import NO_EDITS
 from viewer.output import recipe
-from viewer.output.recipe import Recipe, Style
+from viewer.output.recipe import BUILT, Recipe, Style
 from viewer.services.scene_loader import SceneLoader
 from viewer.services.tracing import Tracing
 from viewer.state.notices import Notices
@@ -20,8 +20,6 @@ from viewer.state.tone import NEUTRAL
 from viewer.state.views import View
 
 UNKNOWN = "its modes were learnt from other frames as well"
-CHANCE = "what is certified depends on time and threads"
-BUILT = "what rays have had built depends on all that has been seen"
 
 
 class Recipes:
@@ -80,10 +78,9 @@ class Recipes:
     def _with_history(self, found: Recipe, frame: Frame) -> Recipe:
         if not found.needs_history:
             return found
-        if recipe.by_chance(frame.settings, found.view):
-            return replace(found, history=CHANCE)
-        if found.view is View.TREE:
-            return replace(found, history=BUILT)
+        why = recipe.cannot_come_back(frame.settings, found.view)
+        if why:
+            return replace(found, history=why)
         repeats = self._tracing.learnt.repeats(frame)
         return replace(found, history=UNKNOWN) if repeats is None else replace(found, repeats=repeats)
 

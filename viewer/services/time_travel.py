@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from tracer.frame import Settings
 from tracer.method import Method
 from tracer.scene.model import Camera
+from viewer.output.recipe import BUILT
 from viewer.services.record import Record
 from viewer.services.render_request import Traced
 from viewer.services.replay import Past, Replay
@@ -23,6 +24,7 @@ from viewer.state.moments import Moment
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session, Snapshot, settings_to_json
+from viewer.state.views import View
 from viewer.state.zooming import Zoom
 
 MOST_REPLAYED = 2000
@@ -130,6 +132,8 @@ class TimeTravel:
         if moment.size != self._tracing.full_size:
             width, height = moment.size
             return f", though its picture had {width} x {height} pixels"
+        if moment.view is View.TREE:
+            return f", though {BUILT}"
         method = Method.parse(str(moment.chosen.get("method")))
         if method.exact and not moment.view.of_modes:
             return ": the same picture, bit for bit"
