@@ -29,6 +29,7 @@ from viewer.state.methods import BY_MODES, NO_CULLING
 from viewer.state.notices import Notices
 from viewer.state.readings import can_draw, span_of
 from viewer.state.session import Session
+from viewer.state.slices import Slice
 from viewer.state.values import Values, values_of
 from viewer.state.views import View
 from viewer.state.worst import Spot, worst_spots
@@ -56,7 +57,7 @@ class Comparing:
     def __init__(self, session: Session, tracing: Tracing, settings: SettingsController, notices: Notices) -> None:
         self._session, self._tracing, self._settings, self._notices = session, tracing, settings, notices
         self.state = session.comparison
-        self._difference: tuple[Side, Side, Difference | None] | None = None
+        self._difference: tuple[Side, Side, Slice, Difference | None] | None = None
         self._span: tuple[Frame, Frame, dict[View, tuple[float, float]]] | None = None
 
     # --- what is compared ------------------------------------------------------------------------
@@ -117,16 +118,16 @@ class Comparing:
 
     def difference(self, a: Side, b: Side) -> Difference | None:
         """B - A in the view of B; None where A has nothing for it."""
-        known = self._difference
+        known, cut = self._difference, self._session.cut
         same = known is not None and known[0].frame is a.frame and known[1].frame is b.frame
-        if known is not None and same and (known[1].view, known[1].light) == (b.view, b.light):
-            return known[2]
+        if known is not None and same and (known[1].view, known[1].light, known[2]) == (b.view, b.light, cut):
+            return known[3]
         found = None
         if can_draw(a.frame, b.view, b.light) and can_draw(b.frame, b.view, b.light):
-            values = values_of(b.frame, b.view, b.light)
-            pixels = signed_difference(values_of(a.frame, b.view, b.light), values)
+            values = values_of(b.frame, b.view, b.light, cut=cut)
+            pixels = signed_difference(values_of(a.frame, b.view, b.light, cut=cut), values)
             found = Difference(pixels, values, apart(pixels), worst_spots(pixels, values.classes))
-        self._difference = a, b, found
+        self._difference = a, b, cut, found
         return found
 
     def limit(self, found: Difference) -> float:

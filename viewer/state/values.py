@@ -47,7 +47,7 @@ class Values:
     classes: bool = False
 
 
-def values_of(frame: Frame, view: View, light: int = 0, cut: Slice = MIDDLE) -> Values:
+def values_of(frame: Frame, view: View, light: int = 0, *, cut: Slice) -> Values:
     """The values of a frame that the view can be drawn of, in the slice `cut` where it shows one; raises ValueError for
     another."""
     if not can_draw(frame, view, light):

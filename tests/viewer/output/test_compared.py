@@ -9,6 +9,7 @@ from tests.viewer.fakes import make_frame
 from viewer.output.compared import GAP, composed, difference_legend, signed_picture
 from viewer.output.legend_parts import Tone
 from viewer.state.comparison import Way, apart
+from viewer.state.slices import MIDDLE
 from viewer.state.values import values_of
 from viewer.state.views import LESS, MORE, SAME, WIPE_LINE, View, signed_map
 from viewer.state.zooming import Zoom
@@ -44,7 +45,7 @@ def test_a_composed_picture_shows_what_the_window_does():
 
 
 def test_the_legend_of_a_difference():
-    values = values_of(make_frame(), View.COLOR)
+    values = values_of(make_frame(), View.COLOR, cut=MIDDLE)
     none = difference_legend(apart(np.zeros((8, 16), np.float32)), values, 1.0)
     assert none.notes[0].tone is Tone.GOOD and "bit for bit" in none.notes[0].text
     difference = np.zeros((8, 16), np.float32)
@@ -54,7 +55,7 @@ def test_the_legend_of_a_difference():
     assert {fact.name: fact.values[0] for fact in legend.facts} == {
         "pixels that differ": "4 (3.1 %)", "least and largest": "-0.25   +0.5", "mean": "+0.006836",
     }  # fmt: skip
-    classes = difference_legend(apart(difference), values_of(make_frame(), View.OCCLUSION), 1.0)
+    classes = difference_legend(apart(difference), values_of(make_frame(), View.OCCLUSION, cut=MIDDLE), 1.0)
     assert [entry.color for entry in classes.entries] == [MORE, SAME]
 
 

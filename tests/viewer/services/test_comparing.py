@@ -5,7 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from tests.viewer.desk import ELSEWHERE, Desk
-from viewer.state.comparison import Source, Way
+from tests.viewer.fakes import make_frame, with_tree
+from tracer.frame import Settings
+from viewer.state.comparison import Side, Source, Way
+from viewer.state.slices import Slice
+from viewer.state.values import values_of
 from viewer.state.views import View
 
 
@@ -137,3 +141,17 @@ def test_a_run_shows_its_frames_beside_what_was_kept(desk: Desk) -> None:
     assert comparing.sides is not None and comparing.sides[1].frame.width == 32
     assert "A is shown in B's size" in comparing.remark
     desk.run_to_its_end()
+
+
+def test_a_difference_is_that_of_the_chosen_slice(desk: Desk) -> None:
+    comparing = desk.c.comparing
+    a, b = (
+        Side(with_tree(make_frame(settings)), View.TREE, 0, "", 0) for settings in (Settings(), Settings(samples=2))
+    )
+    for cut in (Slice(1, 0.25), Slice(0, 0.6)):
+        desk.c.session.cut = cut
+        found = comparing.difference(a, b)
+        assert found is not None and comparing.difference(a, b) is found
+        expected = values_of(b.frame, View.TREE, cut=cut)
+        assert np.array_equal(found.values.numbers, expected.numbers)
+    assert not np.array_equal(expected.numbers, values_of(b.frame, View.TREE, cut=Slice(1, 0.25)).numbers)

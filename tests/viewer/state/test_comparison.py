@@ -22,6 +22,7 @@ from viewer.state.comparison import (
     signed_difference,
     sizes_in_words,
 )
+from viewer.state.slices import MIDDLE
 from viewer.state.values import values_of
 from viewer.state.views import View
 
@@ -36,7 +37,7 @@ def test_a_difference_has_the_sign_of_b_and_the_strongest_channel():
     color[1, 2] += (0.1, -0.3, 0.2)
     color[4, 5] += (0.4, 0.1, 0.0)
     b = replace(a, color=color)
-    found = signed_difference(values_of(a, View.COLOR), values_of(b, View.COLOR))
+    found = signed_difference(values_of(a, View.COLOR, cut=MIDDLE), values_of(b, View.COLOR, cut=MIDDLE))
     assert found.shape == a.primitive.shape and found.dtype == np.float32
     assert found[1, 2] == pytest.approx(-0.3) and found[4, 5] == pytest.approx(0.4)
     assert np.count_nonzero(found) == 2
@@ -51,11 +52,11 @@ def test_modes_differ_or_do_not_and_what_hits_nothing_differs_without_end():
     words = a.modes.copy()
     words[2] ^= words.dtype.type(3)  # another occlusion mode of one primitive
     b = replace(a, modes=words)
-    found = signed_difference(values_of(a, View.OCCLUSION), values_of(b, View.OCCLUSION))
+    found = signed_difference(values_of(a, View.OCCLUSION, cut=MIDDLE), values_of(b, View.OCCLUSION, cut=MIDDLE))
     assert np.array_equal(found == 1.0, a.primitive == 2) and set(np.unique(found)) == {0.0, 1.0}
     gone = a.primitive == 1
     b = replace(a, primitive=np.where(gone, -1, a.primitive), depth=np.where(gone, np.inf, a.depth).astype(np.float32))
-    found = signed_difference(values_of(a, View.DEPTH), values_of(b, View.DEPTH))
+    found = signed_difference(values_of(a, View.DEPTH, cut=MIDDLE), values_of(b, View.DEPTH, cut=MIDDLE))
     assert np.array_equal(found > 1e29, gone) and not found[~gone].any(), "both miss: no difference"
     summed = apart(found)
     assert (summed.pixels, summed.largest, summed.limit) == (gone.sum(), 0.0, 1.0)
@@ -71,7 +72,7 @@ def test_sizes_that_differ_are_told_and_the_nearest_pixel_counts():
     numbers = np.arange(6).reshape(2, 3)
     assert fitted(numbers, (6, 4)).tolist() == np.repeat(np.repeat(numbers, 2, 0), 2, 1).tolist()
     assert fitted(numbers, (1, 1)).tolist() == [[4]] and fitted(numbers, (3, 2)) is numbers
-    found = signed_difference(values_of(a, View.PRIMITIVE), values_of(b, View.PRIMITIVE))
+    found = signed_difference(values_of(a, View.PRIMITIVE, cut=MIDDLE), values_of(b, View.PRIMITIVE, cut=MIDDLE))
     assert found.shape == (16, 32) and not found.any()
 
 
@@ -125,17 +126,21 @@ def test_columns_say_what_is_shaded_so_far():
 def test_certificates_and_work_are_compared_where_both_have_them():
     a = with_certificates(make_frame(Settings(width=160, height=80)))
     b = replace(a, certificates=a.certificates ^ a.certificates.dtype.type(1 << 4), cost=a.cost + 2)
-    assert (signed_difference(values_of(a, View.COST), values_of(b, View.COST)) == 2.0).all()
-    found = signed_difference(values_of(a, View.CERTIFICATE, 1), values_of(b, View.CERTIFICATE, 1))
-    assert (found == 1.0).all() and not signed_difference(*[values_of(f, View.CERTIFICATE, 0) for f in (a, b)]).any()
+    assert (signed_difference(values_of(a, View.COST, cut=MIDDLE), values_of(b, View.COST, cut=MIDDLE)) == 2.0).all()
+    found = signed_difference(
+        values_of(a, View.CERTIFICATE, 1, cut=MIDDLE), values_of(b, View.CERTIFICATE, 1, cut=MIDDLE)
+    )
+    assert (found == 1.0).all() and not signed_difference(
+        *[values_of(f, View.CERTIFICATE, 0, cut=MIDDLE) for f in (a, b)]
+    ).any()
     with pytest.raises(ValueError, match="nothing for the view Rays traced"):
-        values_of(make_frame(), View.COST)
+        values_of(make_frame(), View.COST, cut=MIDDLE)
 
 
 def test_a_difference_is_put_into_words():
-    values = values_of(make_frame(), View.DEPTH)
+    values = values_of(make_frame(), View.DEPTH, cut=MIDDLE)
     difference = np.array([[0.0, 0.25, -1.5, 1e30, -1e30]], np.float32)
     said = [difference_words(difference, values, x, 0) for x in range(5)]
     assert said == [("0",), ("+0.25",), ("-1.5",), ("miss", "in B"), ("miss", "in A")]
-    classes = values_of(make_frame(), View.OCCLUSION)
+    classes = values_of(make_frame(), View.OCCLUSION, cut=MIDDLE)
     assert [difference_words(difference, classes, x, 0) for x in (0, 1)] == [("same",), ("other",)]

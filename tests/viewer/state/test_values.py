@@ -20,6 +20,7 @@ from tests.viewer.fakes import (
 from tracer.frame import Settings
 from viewer.state.pixels import ALL, MOST_WATCHED, Pixels, Region, histogram, region_between
 from viewer.state.readings import can_draw
+from viewer.state.slices import MIDDLE
 from viewer.state.values import values_of, words_at
 from viewer.state.views import View
 
@@ -61,7 +62,7 @@ def test_pixels_are_put_into_words():
 
 @pytest.mark.parametrize("view", list(View))
 def test_every_view_has_values_and_words_for_every_pixel(view):
-    values = values_of(FRAME, view, 1)
+    values = values_of(FRAME, view, 1, cut=MIDDLE)
     assert values.numbers.shape == (8, 16, len(values.names)) and values.numbers.dtype == np.float32
     assert values.known.shape == (8, 16) and np.isfinite(values.numbers[values.known]).all()
     assert all(words_at(FRAME, view, 1, x, y) for x in range(16) for y in range(8))
@@ -69,7 +70,7 @@ def test_every_view_has_values_and_words_for_every_pixel(view):
     if not can_draw(bare, view, 1):
         assert words_at(bare, view, 1, 0, 0) == ()
         with pytest.raises(ValueError, match="nothing"):
-            values_of(bare, view, 1)
+            values_of(bare, view, 1, cut=MIDDLE)
 
 
 def test_a_region_is_of_whole_pixels():
@@ -84,7 +85,7 @@ def test_a_histogram_counts_the_region_and_nothing_else():
     color = np.random.default_rng(3).random((8, 16, 3)).astype(np.float32)
     frame = replace(FRAME, color=color)
     rows, columns = slice(2, 5), slice(4, 12)
-    found = histogram(values_of(frame, View.COLOR), rows, columns)
+    found = histogram(values_of(frame, View.COLOR, cut=MIDDLE), rows, columns)
     part = color[rows, columns].reshape(-1, 3)
     assert found.counts.sum(axis=1).tolist() == [24, 24, 24] and (found.pixels, found.of) == (24, 24)
     for figures, expected in (
@@ -98,12 +99,12 @@ def test_a_histogram_counts_the_region_and_nothing_else():
 
 
 def test_whole_numbers_have_a_bin_each_and_misses_none():
-    found = histogram(values_of(FRAME, View.COST), slice(0, 8), slice(0, 16))
+    found = histogram(values_of(FRAME, View.COST, cut=MIDDLE), slice(0, 8), slice(0, 16))
     assert found.counts.shape[1] == FRAME.cost.max() - FRAME.cost.min() + 1
     assert np.array_equal(found.counts[0], np.bincount(FRAME.cost.reshape(-1))[FRAME.cost.min() :])
-    depth = histogram(values_of(FRAME, View.DEPTH), slice(0, 8), slice(10, 16))
+    depth = histogram(values_of(FRAME, View.DEPTH, cut=MIDDLE), slice(0, 8), slice(10, 16))
     assert (depth.pixels, depth.of) == (32, 48) and depth.largest == (2.0,)
-    assert histogram(values_of(FRAME, View.DEPTH), slice(0, 8), slice(14, 16)) is None
+    assert histogram(values_of(FRAME, View.DEPTH, cut=MIDDLE), slice(0, 8), slice(14, 16)) is None
 
 
 def test_pixels_are_pinned_once_and_let_go():

@@ -112,7 +112,8 @@ def _value(ui: Ui, frame: Frame, view: View, light: int, x: int, y: int) -> str:
 def _histogram(ui: Ui) -> None:
     """How the values of the region lie, and the range of the colour map from them."""
     c, frame, region = ui.controller, ui.controller.frame, ui.pixels.region
-    view, light, difference = c.tracing.drawn_view, c.session.light, comparing.difference(ui)
+    view, light, cut = c.tracing.drawn_view, c.session.light, c.session.cut
+    difference = comparing.difference(ui)
     if frame is None or not can_draw(frame, view, light):
         return
     if difference is not None and difference.pixels.shape != frame.primitive.shape:
@@ -130,7 +131,7 @@ def _histogram(ui: Ui) -> None:
     if difference is not None:
         values = ui.cached("differing", difference, None, difference.differing)
     else:
-        values = ui.cached("values", frame, (view, light), lambda: values_of(frame, view, light))
+        values = ui.cached("values", frame, (view, light, cut), lambda: values_of(frame, view, light, cut=cut))
     if values.classes:
         paragraph("Modes and numbers of primitives have no histogram; the legend counts them.", QUIET)
         return
