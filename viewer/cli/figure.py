@@ -13,7 +13,7 @@ from tracer.scene.load import check_scene_file, load_visible_scene
 from viewer.cli.console import print_table, working
 from viewer.cli.edit_options import edited_scene
 from viewer.cli.mesh_arguments import mesh_options
-from viewer.cli.render import check_display, check_tree, check_view, recipe_of, times_before
+from viewer.cli.render import check_display, check_view, recipe_of, times_before
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import comparison_figure
 from viewer.output.comparison_figure import ENDINGS, Crop, Shown
@@ -33,6 +33,8 @@ def figure(path: Path, options: Namespace) -> None:
     check_writable(options.output)
     if view is View.CERTIFICATE:
         raise ValueError("figure: certificates are of one method alone; give another --view")
+    if view is View.TREE:
+        raise ValueError("figure: all methods share one tree; give another --view, or `render --view tree`")
     check_display(options)
     settings = replace(tracing_settings(options), samples=options.samples)
     for method in options.methods:
@@ -46,7 +48,6 @@ def figure(path: Path, options: Namespace) -> None:
         crops = tuple(Crop(*crop) for crop in options.crops)
         wanted = Comparison(recipe, tuple(options.methods), crops).checked()
         stills.check_light(recipe, scene)
-        check_tree(settings, view, scene)
         if not stills.lights_fit(recipe, scene):
             raise ValueError(f"--view {view.value}: too many lights for pictures of this size")
         times_before(scene, recipe.time, recipe.warmup, work)

@@ -220,7 +220,8 @@ def check_view(settings: Settings, view: View, option: str = "--method") -> None
 
 def check_tree(settings: Settings, view: View, scene: Scene) -> None:
     """Raise ValueError, in one line, where a view of what rays have had built meets a tree that is built before."""
-    waits = settings.accelerator == LAZY or (settings.accelerator == BVH8 and scene.primitive_count > LARGE)
+    static = len(scene.objects[0].triangles) + len(scene.objects[0].quadrics)
+    waits = settings.accelerator == LAZY or (settings.accelerator == BVH8 and static > LARGE)
     if view is View.TREE and not waits:
         why = f"{settings.accelerator} builds all of its tree before rays come; give --accelerator {LAZY}"
         raise ValueError(f"--view {view.value}: {why}")

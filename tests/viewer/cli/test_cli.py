@@ -17,11 +17,13 @@ from PIL import Image
 
 from tests.commands import CAMERA, ROOM, complaint, render, run
 from tests.terminal import Terminal
+from tracer.frame import Settings
 from tracer.scene.load import load_scene
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from viewer.cli import main as command_line
+from viewer.cli import render as rendering
 from viewer.output import capture
-from viewer.state.views import BENEATH, TOO_BRIGHT
+from viewer.state.views import BENEATH, TOO_BRIGHT, View
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -290,6 +292,19 @@ def test_slices_and_cells_are_drawn_by_methods_that_have_them(
     ):
         code, _, errors = render(capfd, room, "-o", path, *wrong)
         assert code != 0 and said in errors, errors
+
+
+def test_what_moves_makes_no_tree_wait(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "room.aff"
+    path.write_text(ROOM)
+    scene = load_scene(path)
+    static = len(scene.objects[0].triangles) + len(scene.objects[0].quadrics)
+    assert static < scene.primitive_count
+    monkeypatch.setattr(rendering, "LARGE", static - 1)
+    rendering.check_tree(Settings(), View.TREE, scene)
+    monkeypatch.setattr(rendering, "LARGE", static)
+    with pytest.raises(ValueError, match="before rays come"):
+        rendering.check_tree(Settings(), View.TREE, scene)
 
 
 def test_views_of_what_is_wrong_verify_by_themselves(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
