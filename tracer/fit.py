@@ -15,11 +15,19 @@ def lamps_in(lights: tuple[Light, ...], radius: float | None, samples: int | Non
     return sum(count > 1 for count in each), sum(each)
 
 
-def too_few(method: Method, samples: int) -> str:
-    """Why clusters of lights gain nothing where lights have so few samples together; nothing where they may."""
+def lights_in_words(lights: int, samples: int) -> str:
+    """So many lights, and how many samples they have together where any is a lamp of several: 4,096 samples of 256
+    lights."""
+    said = f"{lights:,} light{'s' * (lights != 1)}"
+    return said if samples == lights else f"{samples:,} samples of {said}"
+
+
+def too_few(method: Method, lights: int, samples: int) -> str:
+    """Why clusters gain nothing where lights have so few samples together; nothing where they may."""
     if not method.clusters or samples >= MANY:
         return ""
-    return f"{method.base} is for {MANY} lights or more, and there {'is' if samples == 1 else 'are'} {samples} here"
+    what = "lights" if samples == lights else "light samples"
+    return f"{method.base} is for {MANY} {what} or more, and there {'is' if samples == 1 else 'are'} {samples} here"
 
 
 def says_nothing(method: Method, lights: int, lamps: int) -> bool:

@@ -10,7 +10,7 @@ import pytest
 import tracer
 from tests.tracing.shades import shadow_scene
 from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.fit import remark, worth
+from tracer.fit import lights_in_words, remark, worth
 from tracer.method import HELD, Method, bases
 from tracer.scene.model import Scene
 
@@ -67,6 +67,12 @@ SENTENCES = {
 @pytest.mark.parametrize(("method", "lights", "lamps"), SENTENCES)
 def test_sentences_say_which_rays_are_traced(method: str, lights: int, lamps: int):
     assert remark(Method.parse(method), lights, lamps) == SENTENCES[method, lights, lamps]
+
+
+def test_samples_of_lamps_are_not_called_lights():
+    assert lights_in_words(256, 256) == "256 lights" and lights_in_words(1, 1) == "1 light"
+    assert lights_in_words(256, 4096) == "4,096 samples of 256 lights"
+    assert lights_in_words(1, 16) == "16 samples of 1 light"
 
 
 def test_where_all_fits_nothing_is_said():

@@ -129,7 +129,7 @@ def with_certificates(frame: Frame) -> Frame:
     known, cells = np.unique(np.where(none, -1, place), return_inverse=True)
     cells = cells.reshape(none.shape).astype(np.int32) - int(known[0] == -1)
     lots = np.random.default_rng(1)
-    words = np.zeros(int(cells.max()) + 1, frame.modes.dtype)
+    words = np.zeros(max(1, int(cells.max()) + 1), frame.modes.dtype)  # one where nothing is seen, too
     for light in range(frame.lights):
         words |= lots.integers(0, 4, len(words)).astype(words.dtype) << words.dtype.type(2 + 2 * light)
     certificates = np.where(none, words.dtype.type(0), words[np.maximum(cells, 0)])

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from tracer.culling.counters import SHADOW_COUNTERS
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.stages import call_at, vectors
+from tracer.fit import lights_in_words
 from tracer.geometry.memory import aligned_rows
 from tracer.kernels import entry
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
@@ -161,16 +162,19 @@ class Lightcuts(ShadowMethod):
 
     def _decided(self, cuts: CutCounts) -> str:
         """What the method does in this scene, in words."""
+        lights = lights_in_words(0 if self._lamps is None else len(self._lamps.places), cuts.lights)
         if self._tree is None:
-            return f"{cuts.lights} light{'s' * (cuts.lights != 1)}: too few for clusters. Every shadow ray is traced."
+            return f"{lights}: too few for clusters. Every shadow ray is traced."
         if self._asked == 0.0:
             return "No error is allowed: every shadow ray is traced."
+        mean = f"{cuts.mean:,.0f}"
         said = (
-            f"Cuts of {cuts.mean:,.0f} clusters on average, {cuts.most:,} at most, stand for {cuts.lights:,} lights; "
+            f"Cuts of {mean} cluster{'s' * (mean != '1')} on average, {cuts.most:,} at most, stand for {lights}; "
             f"a cluster may be wrong by {100 * self._asked:.3g} % of the light at a point."
         )
         if cuts.limited:
-            said += f" {cuts.limited:,} of {cuts.blocks:,} cuts are as large as they may be."
+            larger = "is as large as it may be" if cuts.limited == 1 else "are as large as they may be"
+            said += f" {cuts.limited:,} of {cuts.blocks:,} cuts {larger}."
         elif cuts.mean > FEW_LEFT * cuts.lights:
             said += " There are too few lights to gain from it."
         if cuts.errors is not None:

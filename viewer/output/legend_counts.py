@@ -185,8 +185,8 @@ def lights_legend(frame: Frame) -> LightsLegend:
 
 @dataclass(frozen=True)
 class CutsLegend:
-    """How many clusters of so many `lights` primary pixels are shaded by, on average and at most; the median of the
-    part of its light that a pixel can be wrong by; and whether of some this is not known yet."""
+    """How many clusters of so many `lights`, each sample of a lamp one, primary pixels are shaded by, on average and at
+    most; the median of the part of its light that a pixel can be wrong by; and whether of some this is not known."""
 
     lights: int
     per_pixel: float

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tracer.culling.voxels.tell import STATE_NAMES
-from tracer.fit import too_few
+from tracer.fit import lights_in_words, too_few
 from tracer.frame import Frame
 from tracer.method import Method
 from viewer.output.legend_counts import cell_lights_legend, cuts_legend, voxels_legend
@@ -30,7 +30,7 @@ _OF_SLICE = f"its area, by {SAMPLES} x {SAMPLES} points; what lies outside of al
 def of_cuts(frame: Frame, view: View, chosen: Chosen) -> Legend:
     found = cuts_legend(frame)
     facts = (
-        Entry("per pixel", values=(f"{found.per_pixel:.4g} for {count(found.lights)} lights",)),
+        Entry("per pixel", values=(f"{found.per_pixel:.4g} for {lights_in_words(frame.lights, found.lights)}",)),
         Entry("each may be wrong by", None, (f"{percent(frame.settings.lightcuts_error, 1.0)} of the light",), _EACH),
         Entry("all of them together", None, (f"{percent(found.bound, 1.0)} at most",), _BOUND),
     )
@@ -41,8 +41,9 @@ def of_cuts(frame: Frame, view: View, chosen: Chosen) -> Legend:
     cuts = frame.statistics.cuts
     notes: tuple[Note, ...] = ()
     if cuts is not None and cuts.blocks and cuts.mean > NEARLY_ALL * cuts.lights:
-        few = too_few(Method.parse(frame.settings.method), cuts.lights)
-        notes = (Note(f"Nearly every light is a cluster of its own{f': {few}' if few else ''}.", Tone.WARNING),)
+        few = too_few(Method.parse(frame.settings.method), frame.lights, cuts.lights)
+        one = "light" if cuts.lights == frame.lights else "sample of a light"
+        notes = (Note(f"Nearly every {one} is a cluster of its own{f': {few}' if few else ''}.", Tone.WARNING),)
     return Legend("Clusters of lights that each pixel is shaded by", (), entries, scale, facts, notes)
 
 

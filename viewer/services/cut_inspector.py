@@ -90,6 +90,12 @@ class CutInspector:
         ):
             self.cut = None
 
+    @property
+    def waits_for(self) -> tuple[int, int] | None:
+        """The pixel whose cut has been asked for and is not known yet; None where nothing is awaited."""
+        asked = self._asked
+        return (asked.x, asked.y) if asked is not None and not asked.over else None
+
     def drawn(self) -> list[DrawnNode]:
         """The nodes of the cut on its frame, those that send least first."""
         cut = self.cut

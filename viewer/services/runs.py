@@ -13,6 +13,7 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 from typing import Generic, TypeVar, cast
 
@@ -36,6 +37,9 @@ LONGEST_SIDE = 4096
 SEEN_WITHIN = 1.0
 """Seconds that a frame of a zoom test waits, at most, to be drawn before the next is traced."""
 
+STARTING = "starting"
+"""The label of a run before its first frame."""
+
 Results = TypeVar("Results")
 
 
@@ -44,7 +48,8 @@ class Run(ABC, Generic[Results]):
 
     `results` is a copy that nothing changes any more, None before the first whole frame; `frames` is
     how many there are to trace, `traced` how many have been; `label` says which was the last of them,
-    `label_shown` which is shown; `failure` is why it ended early.  The scene is let go at the end; `scene_path` stays.
+    `label_shown` which is shown; `failure` is why it ended early; `began` is the time of day.  The scene is let go
+    at the end; `scene_path` stays.
     """
 
     name = "run"
@@ -55,9 +60,10 @@ class Run(ABC, Generic[Results]):
         self.scene_path = scene.path
         self._scene: Scene | None = scene
         self._origin = Origin(scene)
+        self.began = datetime.now()
         self.frames = frames
         self.traced = 0
-        self.label = self.label_shown = "starting"
+        self.label = self.label_shown = STARTING
         self.results: Results | None = None
         self.failure: Failure | None = None
         self.seconds = 0.0
@@ -77,6 +83,11 @@ class Run(ABC, Generic[Results]):
     def whole(self) -> bool:
         """Whether it went on to its end."""
         return self.done and self.failure is None and self.traced == self.frames
+
+    @property
+    def showing(self) -> str:
+        """Which of its frames is the picture, in words, or that none has been yet."""
+        return f"showing {self.label_shown}" if self.label_shown != STARTING else f"the {self.name} is starting"
 
     @property
     def verifies(self) -> bool:

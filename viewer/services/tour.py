@@ -32,12 +32,14 @@ Key = Callable[[str], str]
 
 @dataclass(frozen=True)
 class Step:
-    """`watch` ends when the step is done, `show` does it; `text` says what to do as things are."""
+    """`watch` ends when the step is done, `show` does it; `text` says what to do as things are, and `shown` what is to
+    be seen while it is done for the user, where that is something else."""
 
     title: str
     text: Callable[[Controller, Key], str]
     watch: Callable[[Controller], Iterator[None]]
     show: Callable[[Controller, Callable[[str], None]], Iterator[float]]
+    shown: str = ""
 
 
 class Tour:
@@ -58,7 +60,9 @@ class Tour:
         return STEPS[self.at] if self.at is not None else None
 
     def text(self, step: Step) -> str:
-        """What to do in a step, as things are, with the keys that do it now."""
+        """What to do in a step, as things are, with the keys that do it now, or what is being done."""
+        if self.showing and step is self.step and step.shown:
+            return step.shown
         return step.text(self._c, self._key)
 
     @property
@@ -186,6 +190,8 @@ def _how_to_toggle(c: Controller, key: Key) -> str:
         )
     if not method.culls:
         return f"Press {toggle} once more to cull again. {seen}"
+    if c.frame is not None and not _culls(c) and (c.active or c.tracing.awaits):
+        return f"The method {method.base} has culled nothing in this picture, but another one is on its way."
     if c.frame is not None and not _culls(c):
         again = key("Trace again")
         return f"The method {method.base} has culled nothing here yet. Press {again} to trace the picture once more."
@@ -259,7 +265,14 @@ STEPS = (
         _has_flown,
         _fly,
     ),
-    Step("Turn culling off and on", _how_to_toggle, _has_toggled_culling, _toggle_culling),
+    Step(
+        "Turn culling off and on",
+        _how_to_toggle,
+        _has_toggled_culling,
+        _toggle_culling,
+        "Culling is on, then off, so that every shadow ray is traced, and then on again: compare the row Traced in the "
+        "Statistics panel. The picture looks the same.",
+    ),
     Step(
         "See the modes",
         lambda c, key: (

@@ -410,7 +410,7 @@ class Tracing:
         wanted = self._session.view
         if run is not None:
             lacks = wanted is not view and run.lacks(wanted)
-            return f"showing {run.label_shown}   {title}{f' (this run {lacks})' if lacks else ''}"
+            return f"{run.showing}   {title}{f' (this run {lacks})' if lacks else ''}"
         if wanted is view:
             return title
         if not wanted.needs_more or (wanted is View.LIGHTS and not self._records_lights):  # the picture says why

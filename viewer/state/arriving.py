@@ -17,7 +17,7 @@ def fitting_view(view: View, settings: Settings, lights: tuple[Light, ...]) -> t
     is to be said of it, or of what the method leaves to tracing, in a sentence."""
     method = Method.parse(settings.method)
     lamps, samples = lamps_in(lights, settings.lamp_radius, settings.lamp_samples)
-    few = too_few(method, samples)
+    few = too_few(method, len(lights), samples)
     if not lights and view in _OF_LIGHTS:
         return View.COLOR, f"{_instead(view)}, as there are no lights."
     if few and view is View.CUTS:

@@ -6,6 +6,7 @@ JSON and CSV have names of their own, which do not change.
 from __future__ import annotations
 
 from tracer.frame import Frame
+from tracer.geometry.accelerators import BVH8, KD_TREE, LAZY
 from tracer.method import Method
 from tracer.statistics import FrameStatistics
 
@@ -62,6 +63,14 @@ PHASES = {
     "mode setting": ("modes", "setting the modes of primitives by what this frame has found"),
 }
 """The phases of a frame, in their order: the name of each, and what happens in it."""
+
+
+TREES = {
+    BVH8: "the fast one",
+    KD_TREE: "the paper's, whose steps are those that it counts",
+    LAZY: "a kd-tree that is built where rays arrive",
+}
+"""What rays are traced through, and what it is."""
 
 
 def made(method: str) -> tuple[str, str]:

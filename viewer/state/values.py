@@ -121,7 +121,7 @@ def words_at(
 
 
 def _normal(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
-    return tuple(f"{axis:+.3f}" for axis in frame.normal[y, x])
+    return tuple(f"{axis:+z.3f}" for axis in frame.normal[y, x])
 
 
 def _depth(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from tracer.scene.lights import MAX_SAMPLES
 from tracer.settings import MAX_NODES
 from viewer.state.preferences import LONGEST_SIDE, MOST_CERTIFYING, Preferences
+from viewer.state.terms import TREES
 from viewer.window.finder import Item, Kind
 from viewer.window.ui import Ui
 
@@ -62,6 +64,7 @@ def items(ui: Ui) -> Iterator[Item]:
         yield _number(ui, number, refused)
     for number in _of_window(ui):
         yield _number(ui, number, "")
+    yield from _trees(ui, refused)
     p = ui.controller.preferences
     for name, (label, panel) in _SWITCHES.items():
         on = bool(getattr(p, name))
@@ -94,6 +97,24 @@ def _number(ui: Ui, number: Number, refused: str) -> Item:
         take=number.take,
         hint=number.hint,
     )
+
+
+def _trees(ui: Ui, refused: str) -> Iterator[Item]:
+    """What rays may be traced through, an item each."""
+    c = ui.controller
+    for name, meaning in TREES.items():
+        yield Item(
+            f"setting Tree {name}",
+            f"Tree: {name}",
+            Kind.SETTING,
+            partial(c.settings.change, accelerator=name),
+            "Rendering",
+            checked=c.session.settings.accelerator == name,
+            enabled=not refused,
+            why_not=refused,
+            also="acceleration structure",
+            hint=meaning,
+        )
 
 
 def _traced(ui: Ui) -> Iterator[Number]:

@@ -20,6 +20,7 @@ from viewer.services.tour import Tour
 from viewer.state.annotations import Annotation, Kind
 from viewer.state.keymap import Keymap
 from viewer.state.pixels import Pixels, Point
+from viewer.state.placing import Rect
 from viewer.state.preferences import default_screenshot_folder
 from viewer.state.preview_geometry import PreviewGeometry
 from viewer.window.command import Command, is_key, key_label
@@ -64,14 +65,14 @@ class Ui:
     """See the module. `picture_area` is the size, in framebuffer pixels, that the picture may fill, `picture_size` the
     one that it fills; `wiping` says that the pointer holds the line of the wipe, `tool` what it draws, `drawn` what is
     being drawn, and `drawn_text` the words that are typed there, `pointed_light` which light it is on in the inspector;
-    `light_filters` is what is typed above each list of lights; `screening` is the recorded picture that is shown in
-    the picture's place; `legend_shown` says whether the picture shows its legend, `legend_held` where the pointer holds
-    that; `key_wanted` names the command that waits for a key to be pressed; `editing` is the list and the place in it
-    of a name that is being edited, `edited` that name; `tour_height` is what the picture leaves free below it for the
-    tour, `tour_place` where that is: left, top and width. `gesture` is what a drag does that moves no camera, from
-    `gesture_at` on, a point of the picture; `menu_at` is the point that the menu over the picture is about, and
-    `plot_frame` the frame that the menu of a plot is about, `plot_named` its name; `plot_pointed` is the one that the
-    pointer was on last.
+    `light_filters` is what is typed above each list of lights; `screening` is the recorded picture that is shown in the
+    picture's place; `legend_shown` says whether the picture shows its legend, `legend_place` where that is on the
+    screen, `legend_held` where the pointer holds it; `key_wanted` names the command that waits for a key to be pressed;
+    `editing` is the list and the place in it of a name that is being edited, `edited` that name; `tour_height` is what
+    the picture leaves free below it for the tour, `tour_place` where that is: left, top and width. `gesture` is what a
+    drag does that moves no camera, from `gesture_at` on, a point of the picture; `menu_at` is the point that the menu
+    over the picture is about, and `plot_frame` the frame that the menu of a plot is about, `plot_named` its name;
+    `plot_pointed` is the one that the pointer was on last.
     `what_if_drawn` is the frame of ImGui's in which the panel What if was drawn last, `what_if_below` how high all is
     below its list of lights, `held_light` the light that the pointer drags, and `changed_shown` says that changed
     pixels are to be seen. `find_focus` asks for the keyboard above the table of what is in the scene, of which
@@ -153,6 +154,7 @@ class Ui:
     gesture_at: Point = (0.0, 0.0)
     menu_at: Point = (0.0, 0.0)
     legend_shown: bool = False
+    legend_place: Rect | None = None
     legend_held: tuple[float, float] = (0.0, 0.0)
     tour_height: float = 0.0
     tour_place: tuple[float, float, float] | None = None

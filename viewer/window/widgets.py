@@ -56,9 +56,9 @@ def row(name: str, tip: str = "") -> None:
     imgui.set_next_item_width(-1.0)
 
 
-def _name(name: str, tip: str) -> None:
+def _name(name: str, tip: str, write: Callable[[str, ImVec4], None] | None = None) -> None:
     """A row's name in the first column, to go on in the second."""
-    clipped(name, QUIET)
+    (write or clipped)(name, QUIET)
     if tip:
         tooltip(tip)
     imgui.table_next_column()
@@ -83,11 +83,12 @@ def fact(name: str, text: str, tip: str = "") -> None:
     paragraph(text)
 
 
-def amount(name: str, text: str, tip: str = "") -> None:
-    """A row of a table whose numbers stand at the right edge, below each other."""
+def amount(name: str, text: str, tip: str = "", wraps: bool = False) -> None:
+    """A row of a table whose numbers stand at the right edge, below each other; a name that is too long ends in an
+    ellipsis, or wraps."""
     imgui.table_next_row()
     imgui.table_next_column()
-    _name(name, tip)
+    _name(name, tip, paragraph if wraps else clipped)
     right(text)
 
 

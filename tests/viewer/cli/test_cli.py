@@ -251,7 +251,7 @@ def test_cuts_of_lights_take_an_error_and_tell_it(
     lamps = ("--lamp-radius", 0.5, "--lamp-samples", 64, "--method", "lightcuts")
     code, out, errors = render(capfd, room, "-o", tmp_path / "a.png", *lamps, "--lightcuts-error", 0.3, "--verify")
     said = " ".join(out.split())
-    assert code == 0 and "stand for 128 lights" in said and "by 30 % of the light" in said, errors
+    assert code == 0 and "stand for 128 samples of 2 lights" in said and "by 30 % of the light" in said, errors
     assert "Half of the pixels are wrong by less than" in said
     few = (*lamps, "--lightcuts-nodes", 3, "--view", "cuts")
     code, out, errors = render(capfd, room, "-o", tmp_path / "b.png", *few)

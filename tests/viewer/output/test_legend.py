@@ -144,7 +144,7 @@ def test_clusters_of_lights_per_pixel_with_the_bound_of_their_error(frame: Frame
     nodes, bound = frame.layers["cut nodes"], frame.layers["cut bound"]
     seen, legend = (frame.primitive >= 0) & (nodes >= 0), of(frame, View.CUTS)
     assert [fact.values for fact in legend.facts] == [
-        (f"{nodes[seen].mean():.4g} for 100 lights",),
+        (f"{nodes[seen].mean():.4g} for 100 samples of 3 lights",),
         ("2.0 % of the light",),
         (f"{percent(float(np.median(bound[seen])), 1.0)} at most",),
     ]

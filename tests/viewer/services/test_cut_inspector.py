@@ -50,7 +50,9 @@ def test_a_cut_is_asked_for_once_and_stays_while_samples_come(monkeypatch: pytes
     cuts.follow(frame, idle=True)
     sampled = replace(frame, color=frame.color + 0.1)  # comes before the answer about the first
     cuts.follow(sampled, idle=True)
+    assert cuts.waits_for == (1, 0)
     asked[-1].answer(None)
+    assert cuts.waits_for is None
     for samples in range(3):
         sampled = replace(sampled, color=sampled.color + samples)
         cuts.follow(sampled, idle=True)

@@ -28,7 +28,9 @@ def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(des
     desk.came.clear()
     desk.runs.start_experiment()
     run = desk.runs.experiment
+    assert run.showing == "the experiment is starting"
     desk.run_to_its_end()
+    assert run.showing.startswith("showing frame ")
     assert run.whole and run.results is not None and desk.said.startswith("experiment done: 5 frames in ")
 
     scene = desk.c.session.scene

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 from tests.viewer.fakes import make_frame
 from tracer.frame import Settings
-from viewer.services.tour import STEPS
+from viewer.services.tour import STEPS, Tour
 
 CULLING = next(step for step in STEPS if step.title == "Turn culling off and on")
 
@@ -19,6 +19,7 @@ def test_the_way_to_see_culling_can_be_gone_in_order_from_every_method():
     """With `auto`, which may cull nothing, `paper` comes first, whether there is a picture already or not."""
     for frame in (None, make_frame(Settings(16, 8, method="auto"))):
         c = SimpleNamespace(frame=frame, session=SimpleNamespace(settings=Settings(16, 8, method="auto")))
+        c.active, c.tracing = False, SimpleNamespace(awaits=False)
         text = CULLING.text(c, KEYS.__getitem__)
         assert text.index("Choose paper") < text.index("press Q twice")
         for method, said in (("paper", "Press Q twice."), ("none", "Press Q once more")):
@@ -27,7 +28,19 @@ def test_the_way_to_see_culling_can_be_gone_in_order_from_every_method():
     shadow = c.frame.statistics.shadow
     shadow.culled = shadow.candidates_only = shadow.dynamic_only = shadow.cache_hits = 0
     c.session.settings = Settings(16, 8, method="paper")
+    for c.active, c.tracing.awaits in ((True, False), (False, True)):
+        assert "is on its way" in CULLING.text(c, KEYS.__getitem__)
+    c.tracing.awaits = False
     assert "has culled nothing here yet. Press T" in CULLING.text(c, KEYS.__getitem__)
+
+
+def test_while_a_step_is_shown_nobody_is_told_to_do_it():
+    c = SimpleNamespace(frame=make_frame(), session=SimpleNamespace(settings=Settings(16, 8, method="auto")))
+    tour = Tour(c, lambda panel: None, KEYS.__getitem__)
+    tour.at = STEPS.index(CULLING)
+    assert "Choose paper" in tour.text(CULLING)
+    tour.show()
+    assert tour.text(CULLING) == CULLING.shown and "Press" not in CULLING.shown
 
 
 def test_the_readme_takes_the_same_way():

@@ -15,6 +15,7 @@ from viewer.state.arriving import fitting_view
 from viewer.state.views import View
 
 FEW = "lightcuts is for 16 lights or more, and there are 6 here."
+FEW_SAMPLES = "lightcuts is for 16 light samples or more, and there are 6 here."
 LAMPS = {"lamp_radius": 0.1, "lamp_samples": 16}
 
 
@@ -41,12 +42,14 @@ def test_a_map_of_clusters_in_which_each_light_is_one_says_so():
     frame = with_cuts(make_frame(Settings(16, 8, method="lightcuts")))
     assert legend_of(frame, View.CUTS).notes == ()
     for cuts, said in (
-        (CutCounts(6, 7, 40, 0, 6), f"Nearly every light is a cluster of its own: {FEW}"),
-        (CutCounts(100, 7, 700, 0, 100), "Nearly every light is a cluster of its own."),
+        (CutCounts(3, 7, 20, 0, 3), f"Nearly every light is a cluster of its own: {FEW.replace('are 6', 'are 3')}"),
+        (CutCounts(6, 7, 40, 0, 6), f"Nearly every sample of a light is a cluster of its own: {FEW_SAMPLES}"),
+        (CutCounts(100, 7, 700, 0, 100), "Nearly every sample of a light is a cluster of its own."),
     ):
         frame.statistics.cuts = cuts
         (note,) = legend_of(frame, View.CUTS).notes
         assert note.text == said
+    assert legend_of(frame, View.CUTS).facts[0].values[0].endswith(" for 100 samples of 3 lights")
 
 
 def test_the_overview_names_every_method_that_leaves_lights_to_tracing():

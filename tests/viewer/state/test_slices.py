@@ -89,7 +89,7 @@ def test_the_largest_block_of_one_state_is_found(frame: Frame) -> None:
     grid[8:12, 4:8, 0:4] = 1
     grid[0, 0, 0] = 2
     words[:-1] = grid.reshape(-1) << np.uint32(2)
-    made = states._replace(words=words)
+    made = replace(states, words=words)
     levels = {(9, 5, 1): 4, (0, 0, 0): 1, (1, 1, 1): 1, (2, 2, 2): 2, (6, 6, 6): 4, (13, 1, 6): 4}
     for index, level in levels.items():
         assert made.level(0, index) == level, index

@@ -29,6 +29,11 @@ FRAME = with_cuts(
 FRAME = with_tree(with_cell_lights(with_voxels(FRAME)))
 
 
+def test_no_axis_is_minus_nothing():
+    frame = replace(FRAME, normal=np.full_like(FRAME.normal, -1e-4))
+    assert words_at(frame, View.NORMAL, 0, 3, 2) == ("+0.000",) * 3
+
+
 def test_pixels_are_put_into_words():
     def said(view: View, x: int, light: int = 0) -> tuple[str, ...]:
         return words_at(FRAME, view, light, x, 2)

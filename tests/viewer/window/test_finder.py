@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tracer.geometry.accelerators import ACCELERATORS
 from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
 from viewer.window import commands, findable
@@ -36,7 +37,7 @@ def test_every_item_has_a_name_of_its_own(ui):
         ("undo", "Undo"), ("nl", "Next light"), ("occl", "Occlusion mode"), ("bounces", "setting Bounces"),
         ("paper as", "preset As in the paper"), ("figure4", None), ("reload", "Reload"),
         ("embree", "Copy camera for Embree"), ("occulsion", "Occlusion mode"),
-        ("theme", "Light theme"), ("dead zone", "setting Dead zone of sticks"),
+        ("lazy", "setting Tree kdtree-lazy"), ("theme", "Light theme"), ("dead zone", "setting Dead zone of sticks"),
     ],
 )  # fmt: skip
 def test_what_is_meant_is_found_first(ui, typed: str, meant: str | None):
@@ -77,6 +78,16 @@ def test_a_setting_is_typed(ui):
         assert finder.enter(None) is None and "0 to 100" in finder.problem and c.session.settings.depth == 10
     finder.type("3")
     assert finder.enter(None) is not None and c.session.settings.depth == 3
+
+
+def test_each_tree_is_found_and_chosen(ui):
+    trees = [item for item in look_for(ui, "tree") if item.name.startswith("setting Tree ")]
+    assert {item.label for item in trees} == {f"Tree: {name}" for name in ACCELERATORS}
+    (lazy,) = (item for item in trees if item.label == "Tree: kdtree-lazy")
+    assert not lazy.checked and lazy.path == "Rendering"
+    Finder().enter(lazy)()
+    assert ui.controller.session.settings.accelerator == "kdtree-lazy"
+    assert next(item for item in look_for(ui, "kdtree-lazy") if item.name == lazy.name).checked
 
 
 def test_lines_are_stepped_through_around_the_end(ui):

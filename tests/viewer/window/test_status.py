@@ -6,6 +6,8 @@ from types import SimpleNamespace
 
 from tests.viewer.fakes import make_frame, with_certificates
 from viewer.state import terms
+from viewer.window.panels.coming import first_picture
+from viewer.window.panels.explanation import unanswered
 from viewer.window.panels.status import doing
 
 
@@ -31,3 +33,61 @@ def test_beams_are_named_where_they_ask() -> None:
     assert terms.asks_by_beams(certified, lamps=True)
     assert certified.statistics.shadow.culled > 0
     assert not terms.asks_by_beams(certified, lamps=False) and not terms.asks_by_beams(frame, lamps=True)
+
+
+def _idle(**changes: object) -> SimpleNamespace:
+    """A controller with a scene and nothing to do, but for what is given."""
+    tracing = SimpleNamespace(
+        refines_lamps=False,
+        certifies=False,
+        awaits=False,
+        adds_samples=False,
+        becoming_finer=False,
+        samples_shown=1,
+        samples_wanted=4,
+    )
+    c = SimpleNamespace(
+        loader=SimpleNamespace(warm_up_job=None, load_job=None, method_job=None, compiles=False),
+        frame=None, runs=SimpleNamespace(current=None), tracing=tracing, renderer=SimpleNamespace(busy=False),
+        motion=SimpleNamespace(under_way=False, lively=False),
+        session=SimpleNamespace(scene=object(), playing=False, settings=SimpleNamespace(method="lie", samples=1)),
+        selection=SimpleNamespace(picked=None, pixel=None),
+    )  # fmt: skip
+    for name, value in changes.items():
+        setattr(tracing if hasattr(tracing, name) else c, name, value)
+    return c
+
+
+def test_without_a_picture_it_is_said_what_goes_on() -> None:
+    assert first_picture(_idle()) == "No picture has been traced yet."
+    assert first_picture(_idle(renderer=SimpleNamespace(busy=True))) == "Tracing the first picture ..."
+    assert first_picture(_idle(session=SimpleNamespace(scene=None))) == "No scene is open"
+    job = SimpleNamespace(title="Opening office.aff", label="reading", fraction=0.5)
+    loader = SimpleNamespace(warm_up_job=None, load_job=job, method_job=None)
+    assert first_picture(_idle(loader=loader)) == "Opening office.aff: reading"
+
+
+def test_what_was_asked_says_what_it_waits_for() -> None:
+    """Nothing moves while samples are added, and an answer comes all the same only after one."""
+    for changes, said in (
+        ({}, "being traced ..."),
+        ({"adds_samples": True}, "traced after this sample"),
+        ({"refines_lamps": True}, "traced after the samples of lamps"),
+        ({"renderer": SimpleNamespace(busy=True)}, "traced after this picture"),
+        ({"motion": SimpleNamespace(lively=True)}, "traced when nothing moves"),
+    ):
+        assert unanswered(SimpleNamespace(controller=_idle(**changes))) == said
+
+
+def test_one_of_what_was_made_is_no_plural() -> None:
+    frame = make_frame()
+    frame.statistics.certificates = 1
+    assert doing(_idle(certifies=True, frame=frame)) == "preparing (cells settled in the last picture: 1)"
+
+
+def test_a_run_before_its_first_frame_shows_none() -> None:
+    run = SimpleNamespace(name="experiment", label="starting", traced=0)
+    c = _idle(runs=SimpleNamespace(current=run))
+    assert doing(c).startswith("experiment is starting")
+    run.traced, run.label = 1, "frame 1 of 5, none"
+    assert doing(c).startswith("experiment, traced: frame 1 of 5, none")

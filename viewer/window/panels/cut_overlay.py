@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer.state.views import color_map
-from viewer.window.panels import marks
+from viewer.window.panels import marks, slicing, words
 from viewer.window.panels.marks import SHADE, with_alpha
 from viewer.window.ui import Ui
 from viewer.window.widgets import em
@@ -19,6 +19,8 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """Draw on the picture that fills the rectangle from a corner to its end."""
     c = ui.controller
     cut = c.cuts.cut
+    if cut is None:
+        _awaited(ui, corner, end)
     if cut is None or c.frame is None or cut.frame.camera != c.frame.camera:
         return
     width, height = end.x - corner.x, end.y - corner.y
@@ -39,3 +41,15 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     radius = marks.radius_around_pixel(width / cut.frame.width, height / cut.frame.height)
     marks.ring(draw, ImVec2(corner.x + middle[0] * width, corner.y + middle[1] * height), radius)
     draw.pop_clip_rect()
+
+
+def _awaited(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
+    """At the clicked pixel: that its clusters are to come."""
+    c = ui.controller
+    at, lines = c.cuts.waits_for, slicing.awaited(c)
+    if at is None or c.frame is None or c.selection.picked is None or not lines:
+        return
+    across, down = (end.x - corner.x) / c.frame.width, (end.y - corner.y) / c.frame.height
+    middle = ImVec2(corner.x + (at[0] + 0.5) * across, corner.y + (at[1] + 0.5) * down)
+    marks.ring(imgui.get_window_draw_list(), middle, marks.radius_around_pixel(across, down))
+    words.write(lines, middle, (corner.x, corner.y, end.x, end.y), ui.legend_place)

@@ -17,7 +17,7 @@ from viewer.util.numbers import saved_in_words
 from viewer.window.panels import experiment_table, going_back
 from viewer.window.panels.method_choice import pale, said_of
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
-from viewer.window.panels.runs import export_buttons, in_tabs, side_by_side, start_or_progress
+from viewer.window.panels.runs import export_buttons, in_tabs, side_by_side, start_or_progress, whose
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     ERROR,
@@ -41,11 +41,11 @@ def show(ui: Ui) -> None:
     run = ui.controller.runs.experiment
     results = run.results if run is not None else None
     controls, plot = (lambda: _controls(ui, run)), (lambda size: _plot(ui, run, results, size))
-    if results is None:
+    if run is None or results is None:
         side_by_side(controls, plot, None, 0.0)
         return
     width = experiment_table.width_of(ui, run, results)
-    in_tabs(controls, plot, lambda: experiment_table.show(ui, run, results), width)
+    in_tabs(controls, plot, lambda: experiment_table.show(ui, run, results), width, lambda: whose(ui, run))
 
 
 def _controls(ui: Ui, run: Experiment | None) -> None:
@@ -172,7 +172,7 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
     wrong = run.settings.verify and any(any(figures["wrong"]) for figures in results.methods.values())
     savings = ui.cached("savings", results, 0, lambda: _savings(results))
     thin = " (thin: tests)" if len(savings) > len(_WORKS) else ""
-    if not implot.begin_plot(f"{run.scene_path.name}: saved{thin}##{id(run)}", size, FLAGS):
+    if not implot.begin_plot(f"saved{thin}##{id(run)}", size, FLAGS):
         return
     frames = np.array(results.frames, np.float64)
     top = max([float(values.max()) for _, values in savings] or [0.0])

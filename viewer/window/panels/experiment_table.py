@@ -43,10 +43,6 @@ def show(ui: Ui, run: Experiment | None, results: Results | None) -> None:
     if run is None or results is None:
         return
     rows, figures = _rows(ui, results), _figures(run)
-    whole = len(results.frames) == len(run.times)
-    plural = "s" * (len(run.times) != 1)
-    done = f"{len(results.frames)} frame{plural}" if whole else f"{len(results.frames)} of {len(run.times)} frames"
-    clipped(f"{done}, {run.settings.width} x {run.settings.height}, {run.settings.accelerator}", QUIET)
     widths = [max(_text_width(r.method), *(_text_width(_figure_cell(f, r)[0]) for f in figures)) for r in rows]
     gaps = (len(rows) + 1) * 2.0 * imgui.get_style().cell_padding.x + imgui.get_style().scrollbar_size
     if len(rows) <= _MOST_COLUMNS and em(_HEADING) + sum(widths) + gaps <= imgui.get_content_region_avail().x:

@@ -25,6 +25,7 @@ from viewer.state.views import (
     ShadowMode,
 )
 from viewer.window.panels import lights, marks
+from viewer.window.panels.coming import after
 from viewer.window.panels.marks import SHADE, with_alpha
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, checkbox, count, em, heading, paragraph, swatch, tooltip
@@ -87,12 +88,15 @@ def summary(lights: Sequence[Explanation]) -> str:
 
 def unanswered(ui: Ui) -> str:
     """Why nothing is said of the shadow rays."""
-    selection, run = ui.controller.selection, ui.controller.runs.current
+    c = ui.controller
+    selection, run = c.selection, c.runs.current
     if run is not None:
         return f"traced when the {run.name} has ended"
     if selection.picked is not None and selection.pixel is None:
         return "The clicked point is not visible from here. Its shadow rays are traced when it is in view again."
-    return "traced when nothing moves"
+    if c.motion.lively:
+        return "traced when nothing moves"
+    return f"traced after {after(c)}" if after(c) else "being traced ..."
 
 
 @contextmanager

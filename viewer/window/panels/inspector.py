@@ -71,7 +71,7 @@ def _details(ui: Ui, pick: Pick) -> None:
             if pick.point is not None:
                 fact("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
             if pick.normal is not None:
-                fact("Normal", "{:.2f}, {:.2f}, {:.2f}".format(*pick.normal))
+                fact("Normal", ", ".join(f"{along:z.2f}" for along in pick.normal))
 
 
 def _cell_asks(frame: Frame | None, pick: Pick) -> str:

@@ -57,7 +57,7 @@ def in_panel(ui: Ui) -> None:
 
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """Over the picture from `corner` to `end`: where it was put, and always inside."""
-    ui.legend_shown = False
+    ui.legend_shown, ui.legend_place = False, None
     legend, p = of_picture(ui), ui.controller.preferences
     if legend is None or not p.legend:
         return
@@ -74,6 +74,7 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     imgui.set_cursor_screen_pos(at)
     imgui.invisible_button("legend", ImVec2(layout.width, layout.height))
     _drag(ui, at, least, room)
+    ui.legend_place = at.x, at.y, at.x + layout.width, at.y + layout.height
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(corner, end, True)
     draw_layout(draw, layout, at)

@@ -92,7 +92,7 @@ def _offer(ui: Ui, frame: Frame) -> None:
         ui.controller.settings.change(method="lightbuffer")
     if method.kind.name != "none":
         imgui.same_line()
-        if wide_button("Add lightbuffer##add", f"keep {method}, and ask light buffers what it leaves", 2):
+        if wide_button("Add lightbuffer##add", f"keep {method}, and ask light buffers what it leaves"):
             ui.controller.settings.change(method=with_additions(str(method), ["lightbuffer"]))
 
 

@@ -8,7 +8,7 @@ from viewer.state.methods import with_base
 from viewer.state.missing import missing
 from viewer.state.views import View
 from viewer.window.ui import Ui
-from viewer.window.widgets import em
+from viewer.window.widgets import em, tooltip_above
 
 _WIDTH, _LEAST = 26.0, 8.0  # in ems: of the note, and of a picture that has room for one
 _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.86), ImVec4(0.93, 0.94, 0.96, 1.0)
@@ -33,13 +33,24 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
         imgui.push_text_wrap_pos(0.0)
         imgui.text_colored(_FRONT, found.text)
         imgui.pop_text_wrap_pos()
-        if found.base and c.runs.current is None and imgui.button(f"Use {found.base}##instead"):
+        if found.base and _button(ui, found.base):
             c.settings.change(method=with_base(c.session.settings.method, found.base))
-        if found.accelerator and c.runs.current is None and imgui.button(f"Use {found.accelerator}##instead"):
+        if found.accelerator and _button(ui, found.accelerator):
             c.settings.change(accelerator=found.accelerator)
     imgui.end_child()
     imgui.pop_style_var(2)
     imgui.pop_style_color()
+
+
+def _button(ui: Ui, what: str) -> bool:
+    """The button that takes up a method or a structure: pale while a run goes on, and it says why."""
+    run = ui.controller.runs.current
+    imgui.begin_disabled(run is not None)
+    clicked = imgui.button(f"Use {what}##instead")
+    imgui.end_disabled()
+    if run is not None:
+        tooltip_above(f"not while the {run.name} is under way: Escape stops it")
+    return clicked
 
 
 def _free(ui: Ui, left: float, right: float) -> tuple[float, float]:

@@ -22,6 +22,7 @@ from viewer.window.palette import ON_PICTURE_ERROR
 from viewer.window.panels import (
     annotating,
     closeup,
+    coming,
     cut_overlay,
     edited_picture,
     explanation,
@@ -167,9 +168,11 @@ def _last_picture(ui: Ui, room: ImVec2, texture: int) -> None:
 def _placeholder(ui: Ui, room: ImVec2) -> None:
     """What stands there before the first picture."""
     c = ui.controller
-    if c.loader.load_job is not None or c.loader.warm_up_job is not None or c.renderer.busy:
+    if c.loader.load_job is not None or c.loader.warm_up_job is not None:
         return  # the progress window speaks
-    text = ui.with_keys("Open a scene (Ctrl+O), or drop one on this window")
+    text = coming.first_picture(c)
+    if c.session.scene is None:
+        text = ui.with_keys("Open a scene (Ctrl+O), or drop one on this window")
     width = imgui.calc_text_size(text).x
     at = imgui.get_cursor_pos()
     imgui.set_cursor_pos(ImVec2(at.x + max(0.0, (room.x - width) / 2.0), at.y + room.y / 2.0))

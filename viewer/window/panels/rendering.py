@@ -8,13 +8,14 @@ from imgui_bundle import imgui
 
 from tracer.geometry.accelerators import ACCELERATORS
 from viewer.state.preferences import LONGEST_SIDE
+from viewer.state.terms import TREES
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
 from viewer.window.widgets import checkbox, properties, row, size_field
 
-_TREES = (
-    "bvh8: the fast one; kdtree: the paper's; kdtree-lazy: a kd-tree that is built where rays arrive; another one is "
-    "built, and the first time compiled, before the next picture, and modes and certificates are learnt anew"
+_TREES = "; ".join(f"{name}: {meaning}" for name, meaning in TREES.items()) + (
+    "; another one is built, and the first time compiled, before the next picture, and modes and certificates are "
+    "learnt anew"
 )
 SAMPLES = (1, 2, 4, 8, 16, 32, 64)
 

@@ -8,9 +8,10 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.output.exports import ENDINGS
-from viewer.services.runs import Run, duration
+from viewer.services.results_of import results_of
+from viewer.services.runs import Experiment, Run, ZoomTest, duration
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, clipped, em, tooltip_above, wide_button
+from viewer.window.widgets import QUIET, WARNING, clipped, em, tooltip_above, wide_button
 
 _KINDS = {".json": "JSON", ".csv": "CSV", ".png": "Plot"}
 _TIPS = {
@@ -25,8 +26,10 @@ def side_by_side(
     plot: Callable[[ImVec2], None],
     table: Callable[[], None] | None,
     table_width: float,
+    heading: Callable[[], None] = lambda: None,
 ) -> None:
-    """Controls, plot and table in a row; one below the other where the panel is too narrow for that.
+    """Controls, plot and table in a row; one below the other where the panel is too narrow for that.  A heading of one
+    line stands above plot and table.
 
     Without a table, the plot has its room."""
     room = imgui.get_content_region_avail()
@@ -41,6 +44,7 @@ def side_by_side(
         middle = room.x - left - table_width - 2.0 * spacing
     if middle < em(12.0):
         controls()
+        heading()
         plot(ImVec2(room.x, em(14.0)))
         if imgui.begin_child("table", ImVec2(0.0, em(14.0))):
             table()
@@ -50,29 +54,38 @@ def side_by_side(
         controls()
     imgui.end_child()
     imgui.same_line()
-    plot(ImVec2(middle, max(room.y, em(8.0))))
+    imgui.begin_group()
+    heading()
+    plot(ImVec2(middle, max(imgui.get_content_region_avail().y, em(8.0))))
     imgui.same_line()
     if imgui.begin_child("table", ImVec2(table_width, 0.0)):
         table()
     imgui.end_child()
+    imgui.end_group()
 
 
 def in_tabs(
-    controls: Callable[[], None], plot: Callable[[ImVec2], None], table: Callable[[], None], table_width: float
+    controls: Callable[[], None],
+    plot: Callable[[ImVec2], None],
+    table: Callable[[], None],
+    table_width: float,
+    heading: Callable[[], None] = lambda: None,
 ) -> None:
-    """Controls, plot and table in a row.  Where a table of so many pixels leaves too little for a plot, both are tabs
-    beside the controls; in a panel that is too narrow for that, they lie below one another."""
+    """Controls, plot and table in a row, and a heading above the last two.  Where a table of so many pixels leaves too
+    little for a plot, both are tabs beside the controls; in a panel that is too narrow for that, they lie below one
+    another."""
     room, spacing = imgui.get_content_region_avail(), imgui.get_style().item_spacing.x
     left = em(14.0)
     middle = room.x - left - spacing
     if middle - table_width - spacing >= em(16.0) or middle < em(12.0):
-        side_by_side(controls, plot, table, max(table_width, 0.45 * middle))
+        side_by_side(controls, plot, table, max(table_width, 0.45 * middle), heading)
         return
     if imgui.begin_child("controls", ImVec2(left, 0.0)):
         controls()
     imgui.end_child()
     imgui.same_line()
     if imgui.begin_child("results", ImVec2(middle, 0.0)):
+        heading()
         if imgui.begin_tab_bar("results"):
             if imgui.begin_tab_item_simple("Table"):
                 table()
@@ -101,6 +114,12 @@ def _two(
     plot(ImVec2(middle, max(room.y, em(8.0))))
 
 
+def whose(ui: Ui, run: Experiment | ZoomTest) -> None:
+    """A line that says of which scene the results are, and stands out where that is not the one that is open."""
+    text, elsewhere = results_of(run, ui.controller.session.scene)
+    clipped(f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {text}" if elsewhere else text, WARNING if elsewhere else QUIET)
+
+
 def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: str) -> None:
     """The button that starts, or, while the run is under way, how far it is and the button that stops it."""
     runner = ui.controller.runs
@@ -112,7 +131,7 @@ def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: s
         return
     left = run.seconds_left
     imgui.progress_bar(run.fraction, ImVec2(-1.0, 0.0), "" if left is None else f"{duration(left)} left")
-    clipped(f"now {run.label}", QUIET)
+    clipped(f"now {run.label}" if run.traced else "starting ...", QUIET)
     if run.stopping:
         imgui.text_colored(QUIET, "stopping ...")
     elif wide_button(f"{icons.ICON_FA_STOP}  Stop", "keeps what is done (Escape)", explain=tooltip_above):
@@ -126,6 +145,6 @@ def export_buttons(ui: Ui, run: Run | None) -> None:
     for ending in ENDINGS:
         if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK} {_KINDS[ending]}"):
             ui.controller.runs.export(run, ending)
-        tooltip_above(_TIPS[ending])
+        tooltip_above(f"{_TIPS[ending]} ({run.scene_path.name})")
         imgui.same_line(0.0, em(0.25))
     imgui.new_line()

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import numpy as np
-from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import imgui
 
 from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.light_cut import LightCut
+from viewer.services.controller import Controller
 from viewer.services.cut_inspector import MOST_DRAWN
 from viewer.state.picking import pixel_at
 from viewer.state.readings import cell_lights, tree_of, voxels_of
 from viewer.state.slices import AXES, slice_seen, voxel_seen
 from viewer.state.tree_slice import part_seen, part_words
 from viewer.state.views import View
+from viewer.util.numbers import several
 from viewer.window.layers_of_slice import go_to, layer_now
+from viewer.window.panels import words
 from viewer.window.panels.area import Area
+from viewer.window.panels.coming import after
 from viewer.window.ui import Ui
 from viewer.window.widgets import count, em, percent, row
-
-_BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.90), ImVec4(0.93, 0.94, 0.96, 1.0)
 
 
 def rows(ui: Ui) -> None:
@@ -34,8 +36,8 @@ def rows(ui: Ui) -> None:
     if layer is None:
         return
     row("Layer", "along the axis; Ctrl+click to type one")
-    flags, words = int(imgui.SliderFlags_.always_clamp), f"%d  ({AXES[s.cut.axis]} = {layer.place:.4g})"
-    changed, number = imgui.slider_int("##layer", layer.number, 0, layer.many - 1, words, flags)
+    flags, shown = int(imgui.SliderFlags_.always_clamp), f"%d  ({AXES[s.cut.axis]} = {layer.place:.4g})"
+    changed, number = imgui.slider_int("##layer", layer.number, 0, layer.many - 1, shown, flags)
     if changed:
         s.cut = go_to(s.cut, number, layer.many)
 
@@ -63,16 +65,26 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
         return [] if part is None else list(part_words(part, tree.owner))
     if view is View.CUTS and c.cuts.cut is not None and (c.cuts.cut.x, c.cuts.cut.y) == (x, y):
         return cut_lines(c.cuts.cut)
+    if view is View.CUTS and c.selection.picked is None and c.cuts.waits_for == (x, y):
+        return awaited(c)
     if view is View.CELL_LIGHTS and frame.primitive[y, x] >= 0:
         asked = int(cell_lights(frame)[y, x])
         return ["not known yet"] if asked < 0 else [f"its cell asks {count(asked)} of {count(frame.lights)} lights"]
     return []
 
 
+def awaited(c: Controller) -> list[str]:
+    """That the clusters of a pixel are to come, where they do not come at once."""
+    return [f"its clusters are drawn after {after(c)}"] if after(c) else []
+
+
 def cut_lines(cut: LightCut) -> list[str]:
     """What shades a pixel, in a few lines."""
-    many, single = len(cut.nodes), int((cut.lights == 1).sum())
-    lines = [f"{count(many)} clusters shade it, {count(single)} of them single lights"]
+    many, single, frame = len(cut.nodes), int((cut.lights == 1).sum()), cut.frame
+    shade = f"{several(many, 'cluster')} {'shades' if many == 1 else 'shade'} it"
+    cuts = frame.statistics.cuts
+    alone = several(single, "single light" if cuts is None or cuts.lights == frame.lights else "single sample")
+    lines = [f"{shade}, {alone} among them"]
     total = float(cut.sent.sum())
     if total > 0.0:
         top = np.sort(cut.sent)[::-1]
@@ -91,16 +103,5 @@ def show(ui: Ui, area: Area) -> None:
     lines = lines_at(ui, *pixel_at(frame, *at))
     if not lines:
         return
-    pad, line = em(0.4), imgui.get_text_line_height()
-    width, height = max(imgui.calc_text_size(text).x for text in lines) + 2.0 * pad, line * len(lines) + 2.0 * pad
-    mouse = imgui.get_io().mouse_pos
-    left, top = mouse.x + em(1.2), mouse.y + em(1.2)
-    if left + width > area.end.x:
-        left = mouse.x - em(0.6) - width
-    if top + height > area.end.y:
-        top = mouse.y - em(0.6) - height
-    draw = imgui.get_window_draw_list()
-    back, front = imgui.get_color_u32(_BACK), imgui.get_color_u32(_FRONT)
-    draw.add_rect_filled(ImVec2(left, top), ImVec2(left + width, top + height), back, em(0.3))
-    for number, text in enumerate(lines):
-        draw.add_text(ImVec2(left + pad, top + pad + number * line), front, text)
+    room = area.corner.x, area.corner.y, area.end.x, area.end.y
+    words.write(lines, imgui.get_io().mouse_pos, room, ui.legend_place)

@@ -12,6 +12,7 @@ from tracer.geometry.accelerators import BVH8
 from tracer.method import Method
 from viewer.state import terms
 from viewer.state.history import fully_traced
+from viewer.window.panels import coming
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,
@@ -37,14 +38,15 @@ def show(ui: Ui) -> None:
     c = ui.controller
     frame = c.frame
     if frame is None or c.traced is None:
-        paragraph("No frame has been traced yet.", QUIET)
+        paragraph(coming.first_picture(c), QUIET)
         return
     s = frame.statistics
     pixels = max(round(s.part * frame.width * frame.height), 1)  # that have been shaded
     divisor = c.traced.request.divisor
     coarse = f" (1/{divisor} of the window)" if divisor > 1 else ""
     part = f"{s.part:.0%} of " if s.part < 1.0 else ""
-    clipped(f"for {part}{frame.width} x {frame.height} pixels{coarse}, method {frame.settings.method}")
+    clipped(f"for {part}{frame.width} x {frame.height} pixels{coarse}")
+    clipped(f"method {frame.settings.method}")
     if c.tracing.outdated:
         paragraph("These are for the previous settings; a new frame is being traced.", QUIET)
     if s.decision:
@@ -119,7 +121,7 @@ def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
             amount("Occlusion tests per pixel", f"{s.occlusion_tests / pixels:.3f}", tip)
         made, meaning = terms.made(frame.settings.method)
         if made:
-            amount(made.capitalize(), count(s.certificates), meaning)
+            amount(made.capitalize(), count(s.certificates), meaning, wraps=True)
 
 
 @contextmanager
@@ -183,7 +185,7 @@ def _work_table(rows: list[tuple[str, tuple[int, ...]]], meaning: str) -> None:
         tooltip(meaning)
     for name, numbers in rows:
         imgui.table_next_column()
-        clipped(name, QUIET)
+        paragraph(name, QUIET)
         for number in numbers:
             imgui.table_next_column()
             right(short(number))

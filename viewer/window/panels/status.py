@@ -11,7 +11,7 @@ from viewer.state.log import Level
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, tooltip
 
-IDLE = "idle"
+IDLE, TRACING = "idle", "tracing"
 
 
 def show(ui: Ui) -> None:
@@ -71,7 +71,8 @@ def doing(c: Controller) -> str:
     if loading is not None:
         return f"{loading.title}: {loading.label}" if loading.label else loading.title
     if c.runs.current is not None:
-        return f"{c.runs.current.name}, traced: {c.runs.current.label}   (Escape stops it)"
+        run = c.runs.current
+        return f"{run.name}{f', traced: {run.label}' if run.traced else ' is starting'}   (Escape stops it)"
     if preparing is not None:
         what = "compiling what makes certificates (first start only)"
         return f"{what if c.loader.compiles else 'loading what makes certificates'}: {100.0 * preparing.fraction:.0f} %"
@@ -80,16 +81,16 @@ def doing(c: Controller) -> str:
     if c.session.scene is None:
         return "no scene is open"
     if c.motion.under_way or c.session.playing:
-        return "tracing"
+        return TRACING
     if c.tracing.refines_lamps:
         return f"lamp samples: {c.tracing.lamp_samples_shown} of {c.tracing.lamps.wanted}"
     if c.tracing.certifies:
         made = c.frame.statistics.certificates if c.frame is not None else 0
         before = ", before more samples" if c.session.settings.samples > 1 else ""
         makes, _ = terms.made(c.session.settings.method)
-        return f"preparing{before}{f': {count(made)} {makes} in the last picture' if made else ''}"
+        return f"preparing{before}{f' ({makes} in the last picture: {count(made)})' if made else ''}"
     if c.renderer.busy or c.tracing.awaits:
-        return "refining the picture" if c.tracing.becoming_finer or _learns(c) else "tracing"
+        return "refining the picture" if c.tracing.becoming_finer or _learns(c) else TRACING
     if c.tracing.adds_samples:
         return f"adding samples: {c.tracing.samples_shown} of {c.tracing.samples_wanted}"
     return IDLE

@@ -12,7 +12,7 @@ from viewer.services.runs import LONGEST_SIDE, ZoomTest
 from viewer.window.palette import MARK
 from viewer.window.panels import film
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
-from viewer.window.panels.runs import export_buttons, side_by_side, start_or_progress
+from viewer.window.panels.runs import export_buttons, side_by_side, start_or_progress, whose
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     ERROR,
@@ -31,6 +31,7 @@ from viewer.window.widgets import (
     tooltip_above,
 )
 
+_TABLE = 20.0  # ems of the table
 _NARROWEST = 15.0  # ems of a plot that stands beside another
 _LOW = 9.0  # ems of height below which a plot has no legend
 _FILM, _LEAST_FILM, _MOST_FILM = 0.4, 3.6, 9.0  # the pictures' part of the height, and its limits in ems
@@ -40,8 +41,13 @@ def show(ui: Ui) -> None:
     """The panel: how to go, the counts on the way, and what happened at which step."""
     test = ui.controller.runs.zoom_test
     results = test.results if test is not None else None
-    side_by_side(lambda: _controls(ui, test), lambda size: _plots(ui, test, results, size),
-                 lambda: _table(ui, test, results), em(18.0))  # fmt: skip
+    side_by_side(
+        lambda: _controls(ui, test),
+        lambda size: _plots(ui, test, results, size),
+        lambda: _table(ui, test, results),
+        em(_TABLE),
+        lambda: whose(ui, test) if test is not None and results is not None else None,
+    )
 
 
 def _controls(ui: Ui, test: ZoomTest | None) -> None:
