@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from tracer.frame import Frame, Settings
+from tracer.geometry.accelerators import LAZY
 from tracer.geometry.world import World
 from tracer.method import Method
 from tracer.renderer import Renderer
@@ -255,6 +256,9 @@ def run(
     names = with_reference(methods)
     world = world or World(scene, times[0] if times else 0.0, settings.accelerator, progress)
     world.build()  # no frame that is measured has to
+    builder = (
+        Renderer(scene, replace(settings, method=REFERENCE), world=world) if settings.accelerator == LAZY else None
+    )
     renderers = {name: Renderer(scene, replace(settings, method=name), world=world) for name in names}
     results = Results(
         str(scene.path),
@@ -267,6 +271,8 @@ def run(
     for number in numbers:
         frames = {}
         try:
+            if builder is not None:  # or the first method would build for all of them
+                builder.render(times[number], cancel=cancel)
             for name, renderer in renderers.items():
                 frames[name] = renderer.render(times[number], cancel=cancel)
                 if on_frame is not None:

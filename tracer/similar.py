@@ -10,12 +10,12 @@ from pathlib import Path
 _MOST_FILES = 10_000  # of a folder that are looked at
 
 
-def similar(word: str, known: Iterable[str]) -> str:
-    """The one of the known names that a word is most like; "" where it is like none."""
+def similar(word: str, known: Iterable[str], least: float = 0.6) -> str:
+    """The one of the known names that a word is most like; "" where it is like none, of 1 by less than `least`."""
     import difflib  # only where something is wrong
 
     names = {name.lower(): name for name in known}
-    close = difflib.get_close_matches(word.lower(), list(names), n=1)
+    close = difflib.get_close_matches(word.lower(), list(names), n=1, cutoff=least)
     return names[close[0]] if close else ""
 
 

@@ -61,7 +61,7 @@ def bench(path: Path, options: Namespace) -> bool:
             work.note(f"cancelled after {len(results.frames)} of {len(numbers)} frames; the table is of these")
         failures = exports.write_files(exports.experiment_writers(options.verify), results, wanted)
     print_table(bench_table(results, options.verify, terminal_width()))
-    for line in leaders(experiment.table(results)):
+    for line in leaders(experiment.table(results), timed=not options.verify):
         print(line)
     if failures:
         raise OSError("; ".join(failures))

@@ -40,7 +40,7 @@ class Parser(argparse.ArgumentParser):
         told = [name for name, what in self._option_string_actions.items() if what.help is not argparse.SUPPRESS]
         known = [name[2:] for name in told if name.startswith("--")]
         words = (word[2:].partition("=")[0] for word in self._unknown if word.startswith("--"))
-        found = next(filter(None, (similar(word, known) for word in words)), "")
+        found = next(filter(None, (similar(word, known, 0.7) for word in words)), "")
         return f": did you mean '--{found}'?" if found else ""
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:

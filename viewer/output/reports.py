@@ -45,19 +45,21 @@ QUICKER = 1.03
 SAVING = 0.0005  # part of the work that is worth a word: less is shown as 0.0%
 
 
-def leaders(rows: Sequence[Row]) -> list[str]:
+def leaders(rows: Sequence[Row], timed: bool = True) -> list[str]:
     """Which exact method is the best of several in each respect, a line for each, or that none is better than the
-    reference; no lines where there is nothing to choose from."""
+    reference; no lines where there is nothing to choose from.
+
+    Nothing is said of time unless frames were `timed` for what they are: one that is verified traces all rays."""
     others = [row for row in rows if Method.parse(row.method).exact and not _measures_only(row.method)]
     others = [row for row in others if row.method != REFERENCE]
     if len(others) < 2:
         return []
-    culling = [row for row in others if max(row.most_steps, row.most_tests) > 0.0]  # else it is only chance
+    culling = [row for row in others if row.average_steps or row.average_tests]  # else it is only chance
     steps = _best(others, lambda row: row.average_steps, SAVING)
     tests = _best(others, lambda row: row.average_tests, SAVING)
     time = _best(culling, lambda row: row.speed_up, QUICKER)
     none = f"{REFERENCE}; no other"
-    return [
+    lines = [
         "fewest steps, of exact methods: "
         + (f"{steps.method} ({saved(steps.average_steps)} saved)" if steps else f"{none} saves any"),
         "fewest tests, of exact methods: "
@@ -65,6 +67,7 @@ def leaders(rows: Sequence[Row]) -> list[str]:
         "least time, of exact methods: "
         + (f"{time.method} ({time.speed_up:.2f} times as fast as {REFERENCE})" if time else f"{none} is quicker"),
     ]
+    return lines if timed else lines[:2]
 
 
 def _best(rows: Sequence[Row], figure: Callable[[Row], float], least: float) -> Row | None:

@@ -82,6 +82,8 @@ class Comparing:
         if kept is not None and state.same_view and can_draw(kept.frame, session.view, session.light):
             view, light = self._tracing.drawn_view, session.light
             return replace(kept, view=view, light=light, light_number=session.light_number)
+        if kept is not None and not can_draw(kept.frame, kept.view, kept.light):
+            return replace(kept, view=View.COLOR)  # what it showed is gone, as a tree is with its world
         return kept
 
     def _side(self, frame: Frame, view: View) -> Side:

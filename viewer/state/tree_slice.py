@@ -29,9 +29,9 @@ def layer_of(cut: Slice) -> int:
 
 
 def place_of(parts: TreeParts, cut: Slice) -> float:
-    """Where the plane of a slice lies along its axis, in units of the scene."""
+    """Where the plane of a slice lies along its axis, in units of the scene: in the middle of its layer."""
     low, high = float(parts.extent[cut.axis]), float(parts.extent[cut.axis + 3])
-    return low + cut.at * (high - low)
+    return low + (layer_of(cut) + 0.5) / LAYERS * (high - low)
 
 
 class TreeSeen(NamedTuple):

@@ -23,6 +23,7 @@ except ImportError:  # on Windows
 
 _PART = re.compile(r"\..+\.[0-9a-f]{16}\.part", re.DOTALL)
 _LONGEST = 200  # bytes of a name that are kept; most systems allow 255 in all
+_TRIES = 8  # to claim a name that others remove, or that a network says is there and is not
 _POLL = 0.02  # seconds from one look at a lock to the next
 
 _cleared: set[str] = set()
@@ -79,17 +80,18 @@ def _created(target: Path) -> tuple[Path, BinaryIO]:
 
 def _claim(path: Path) -> BinaryIO | None:
     """The file that claims a name, locked; None if somebody at work has it."""
-    while True:
+    for _ in range(_TRIES):
         try:
             file = path.open("xb")
         except FileExistsError:
             with suppress(OSError):
                 _remove_if_dead(path)
-            if path.exists():
+            if os.path.lexists(path):
                 return None
         else:
             if _is_kept(path, file):
                 return file
+    return None
 
 
 def _clear(folder: Path) -> None:

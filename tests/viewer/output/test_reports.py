@@ -44,3 +44,8 @@ def test_savings_and_speed_up_are_in_the_table():
     assert cells["speed-up over none, all frames"] == "1.50"
     none = {heading.strip(): cell(replace(row("none"))) for heading, cell in LINES}
     assert none["speed-up over none, all frames"] == none["traversal steps saved, average"] == ""
+
+
+def test_nothing_is_said_of_time_where_frames_were_verified() -> None:
+    rows = [row("none"), row("certified", 0.5), row("paper", 0.5), row("certified+cache", 0.6)]
+    assert leaders(rows, timed=False) == leaders(rows)[:2]

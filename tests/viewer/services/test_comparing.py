@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import gc
+
 import numpy as np
 
 from tests.viewer.desk import ELSEWHERE, Desk
 from tests.viewer.fakes import make_frame, with_tree
 from tracer.frame import Settings
+from tracer.geometry.accelerators import BVH8, LAZY
 from viewer.state.comparison import Side, Source, Way
 from viewer.state.slices import Slice
 from viewer.state.values import values_of
@@ -75,6 +78,22 @@ def test_maps_of_both_have_one_range(desk: Desk) -> None:
     spans[View.DEPTH] = (1.0, 2.0)
     assert comparing.span(View.DEPTH) == (1.0, 2.0), "a range that was chosen is kept"
     assert comparing.span(View.COLOR) is None
+
+
+def test_a_whose_tree_is_gone_is_shown_as_a_picture(desk: Desk) -> None:
+    comparing = desk.c.comparing
+    desk.c.settings.change(accelerator=LAZY)
+    desk.c.settings.set_view(View.TREE)
+    keep(desk)
+    comparing.start(Way.SIDE)
+    assert comparing.a.view is View.TREE and comparing.span(View.TREE) is not None
+    desk.c.settings.change(accelerator=BVH8)
+    desk.rest()
+    desk.c.settings.change(accelerator=LAZY)
+    desk.rest()
+    gc.collect()
+    assert comparing.b.view is View.TREE and comparing.a.view is View.COLOR
+    assert comparing.span(View.TREE) is None
 
 
 def test_one_wipe_at_a_time(desk: Desk) -> None:
