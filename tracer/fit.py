@@ -87,9 +87,10 @@ def _of(kind: Kind, lights: int, lamps: int, alone: bool) -> str:
     return ""
 
 
-def worth(kind: Kind, lights: int) -> str:
-    """Why a method has nothing to say of a scene with so many lights; nothing where it has."""
+def worth(kind: Kind, lights: int, samples: int | None = None) -> str:
+    """Why a method has nothing to say of a scene with so many lights and samples of them (`Kind.fits`); nothing where
+    it has."""
     least, most = kind.lights
-    if lights < least:
-        return f"It is for {least} lights or more."
+    if (lights if samples is None else samples) < least:
+        return f"It is for {least} {'lights' if samples in (None, lights) else 'light samples'} or more."
     return f"It is for {most} lights or fewer." if lights > most else ""

@@ -37,16 +37,16 @@ class Kind:
     capabilities.
 
     `implementation` is a subclass of `tracer.methods.interface.ShadowMethod`, or where one is: "module:Class".
-    `culls`: it answers shadow rays without tracing them.  `exact`: its pictures are those of "none", bit for bit.
-    `uses_modes`: it culls by the modes of the paper, and keeps
-    them in any case.  `uses_cells`: its modes belong to cells of large primitives.  `has_certificates`: it makes
-    certificates, or may make some.  `adaptive`: it chooses by itself whether to cull.  `measures`: it serves
-    measurements only and is not offered in the window.  `addition`: it can be added to a base; `alone`: and be the base
-    itself, with nothing below it.  `lights`: of scenes with so many it has something to say, from least to most; it
-    is right for others, too.  `answers`: it answers rays to so many lights, the first ones, and leaves others to
-    tracing.  `lamps`: it answers rays to lamps of several samples.  `in_part`: of lights past `answers`, and of lamps,
-    it knows in part which are hidden.  `clusters`: it shades by clusters of lights.  `makes`: what it makes before
-    shading, and how, as in "voxels classified"; `FrameStatistics.certificates` is their number.
+    `culls`: it answers shadow rays without tracing them. `exact`: its pictures are those of "none", bit for bit.
+    `uses_modes`: it culls by the modes of the paper, and keeps them in any case. `uses_cells`: its modes belong to
+    cells of large primitives. `has_certificates`: it makes certificates, or may make some. `adaptive`: it chooses by
+    itself whether to cull. `measures`: it serves measurements only and is not offered in the window. `addition`: it
+    can be added to a base; `alone`: and be the base itself, with nothing below it. `lights`: of scenes with so many it
+    has something to say, from least, of all samples of lamps, to most; it is right for others, too. `answers`: it
+    answers rays to so many lights, the first ones, and leaves others to tracing. `lamps`: it answers rays to lamps of
+    several samples. `in_part`: of lights past `answers`, and of lamps, it knows in part which are hidden. `clusters`:
+    it shades by clusters of lights. `makes`: what it makes before shading, and how, as in "voxels classified";
+    `FrameStatistics.certificates` is their number.
     """
 
     name: str
@@ -68,9 +68,9 @@ class Kind:
     clusters: bool = False
     makes: str = ""
 
-    def fits(self, lights: int) -> bool:
-        """Whether it has anything to say of a scene with so many lights."""
-        return self.lights[0] <= lights <= self.lights[1]
+    def fits(self, lights: int, samples: int | None = None) -> bool:
+        """Whether it has anything to say of a scene with so many lights and, unless one each, samples of them."""
+        return self.lights[0] <= (lights if samples is None else samples) and lights <= self.lights[1]
 
     def load(self) -> Any:
         """The class that implements it."""
@@ -144,10 +144,11 @@ def unknown(names: Sequence[str]) -> str:
     return " ".join([*asked, f"{strange}; it is {choice()}"] if strange else asked)
 
 
-def line_up(lights: int) -> list[str]:
-    """The methods that are worth comparing in a scene of so many lights: all bases, and what goes well together."""
+def line_up(lights: int, samples: int | None = None) -> list[str]:
+    """The methods that are worth comparing in a scene of so many lights and samples of them (`Kind.fits`): all
+    bases, and what goes well together."""
     names = [kind.name for kind in bases(measures=True)] + [name for name in TOGETHER if _is_known(name)]
-    return [name for name in names if Method.parse(name).fits(lights)]
+    return [name for name in names if Method.parse(name).fits(lights, samples)]
 
 
 def _is_known(name: str) -> bool:
@@ -194,9 +195,9 @@ class Method:
         """Whether an addition is part of the method."""
         return addition in self.additions
 
-    def fits(self, lights: int) -> bool:
-        """Whether it has anything to say of a scene with so many lights."""
-        return all(kind.fits(lights) for kind in self.kinds)
+    def fits(self, lights: int, samples: int | None = None) -> bool:
+        """Whether it has anything to say of a scene with so many lights and samples of them, as `Kind.fits`."""
+        return all(kind.fits(lights, samples) for kind in self.kinds)
 
     @property
     def exact(self) -> bool:

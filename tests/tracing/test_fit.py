@@ -10,8 +10,8 @@ import pytest
 import tracer
 from tests.tracing.shades import shadow_scene
 from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.fit import lights_in_words, remark, worth
-from tracer.method import HELD, Method, bases
+from tracer.fit import lights_in_words, overview, remark, too_few, worth
+from tracer.method import HELD, Method, bases, line_up
 from tracer.scene.model import Scene
 
 SETTINGS = tracer.Settings(width=24, height=18, depth=1, threads=1)
@@ -79,7 +79,18 @@ def test_where_all_fits_nothing_is_said():
     for kind in bases():
         assert remark(Method.parse(kind.name), 20, 0) == "" and worth(kind, 20) == ""
     assert worth(Method.parse("lightcuts").kind, 6) == "It is for 16 lights or more."
+    assert worth(Method.parse("lightcuts").kind, 6, 8) == "It is for 16 light samples or more."
+    assert worth(Method.parse("lightcuts").kind, 6, 96) == "" and worth(Method.parse("voxels").kind, 6, 96) == ""
     assert worth(Method.parse("voxels").kind, 4096) == "It is for 31 lights or fewer."
+
+
+def test_clusters_are_worth_it_by_the_samples_of_all_lights():
+    method = Method.parse("lightcuts")
+    for lights, samples in ((6, 6), (2, 8), (6, 96), (16, 16), (1, 16)):
+        few = too_few(method, lights, samples)
+        assert bool(few) == bool(worth(method.kind, lights, samples)) == (not method.fits(lights, samples)), few
+        assert ("lightcuts" in line_up(lights, samples)) == (not few)
+    assert "lightcuts" in overview(40, 40) and "voxels" not in line_up(40, 640)
 
 
 def test_what_a_base_and_an_addition_make_is_counted_together():

@@ -8,7 +8,10 @@ from tracer.scene.lights import Light
 from tracer.settings import Settings
 from viewer.state.views import View
 
-_OF_LIGHTS = (View.SHADOW, View.CERTIFICATE, View.PENUMBRA, View.LIGHTS, View.CUTS, View.VOXELS, View.CELL_LIGHTS)
+_OF_LIGHTS = (
+    *(View.SHADOW, View.CERTIFICATE, View.PENUMBRA, View.LIGHTS, View.CUTS, View.VOXELS, View.CELL_LIGHTS),
+    *(View.SAVED, View.DIFFERENCE),
+)
 _OF_METHODS = (View.CERTIFICATE, View.VOXELS)  # views of what a method knows of single lights
 
 

@@ -15,7 +15,7 @@ from viewer.state.methods import groups, in_order
 from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
 from viewer.window.panels import experiment_table, going_back
-from viewer.window.panels.method_choice import pale, said_of
+from viewer.window.panels.method_choice import lights_to_fit, pale, said_of
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
 from viewer.window.panels.runs import export_buttons, in_tabs, side_by_side, start_or_progress, whose
 from viewer.window.ui import Ui
@@ -72,8 +72,7 @@ def _rows(ui: Ui) -> None:
         if not shown:
             return
         row("Methods", f"each is compared with {REFERENCE}, which traces every shadow ray")
-        scene = ui.controller.session.scene
-        _methods(plan, len(scene.lights) if scene is not None else 0)
+        _methods(plan, lights_to_fit(ui))
         row("Frames", "over the whole path of the scene")
         changed, frames = imgui.input_int("##frames", plan.frames)
         if changed:
@@ -92,7 +91,7 @@ def _rows(ui: Ui) -> None:
         checkbox("##verify", plan.verify, lambda on: setattr(plan, "verify", on))
 
 
-def _methods(plan: ExperimentPlan, lights: int) -> None:
+def _methods(plan: ExperimentPlan, lights: tuple[int, int]) -> None:
     """A list to be opened: a line for each base, a tick for each way to add to it; the reference is always among
     them, and what has nothing to say of so many lights is pale."""
     opened = imgui.begin_combo("##methods", ", ".join(in_order(plan.methods)), int(imgui.ComboFlags_.height_largest))
@@ -102,7 +101,7 @@ def _methods(plan: ExperimentPlan, lights: int) -> None:
         imgui.end_combo()
 
 
-def _method_ticks(plan: ExperimentPlan, lights: int) -> None:
+def _method_ticks(plan: ExperimentPlan, lights: tuple[int, int]) -> None:
     small, whole = ([kind for kind in additions() if kind.alone is alone] for alone in (False, True))
     sets: list[tuple[Kind, ...]] = [added for n in range(len(small) + 1) for added in combinations(small, n)]
     sets += [(kind,) for kind in whole]  # methods in their own right: one of them at a time
@@ -111,7 +110,7 @@ def _method_ticks(plan: ExperimentPlan, lights: int) -> None:
     imgui.table_next_column()
     for added in sets:
         imgui.table_next_column()
-        fits = all(kind.fits(lights) for kind in added)
+        fits = all(kind.fits(*lights) for kind in added)
         imgui.text_colored(QUIET if fits else pale(), "".join(f"+{kind.name}" for kind in added) or "alone")
         if added:
             tooltip("\n".join(f"+{kind.name}: {said_of(kind, lights)}" for kind in added))
@@ -124,12 +123,12 @@ def _method_ticks(plan: ExperimentPlan, lights: int) -> None:
     imgui.end_table()
 
 
-def _ticks_of(plan: ExperimentPlan, base: Kind, sets: list[tuple[Kind, ...]], lights: int) -> None:
+def _ticks_of(plan: ExperimentPlan, base: Kind, sets: list[tuple[Kind, ...]], lights: tuple[int, int]) -> None:
     """A line of the list."""
     imgui.table_next_row()
     imgui.table_next_column()
     imgui.align_text_to_frame_padding()
-    if base.fits(lights):
+    if base.fits(*lights):
         imgui.text_unformatted(base.name)
     else:
         imgui.text_colored(pale(), base.name)

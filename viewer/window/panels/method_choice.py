@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from imgui_bundle import ImVec4, imgui
 
-from tracer.fit import worth
+from tracer.fit import lamps_in, worth
 from tracer.method import Kind, Method, additions
 from viewer.state.methods import groups, toggled, with_base
 from viewer.window.ui import Ui
@@ -20,8 +20,7 @@ def method_list(ui: Ui, name: str, method: str, choose: Callable[[str], None], c
     """A list to be opened, as wide as there is room for; `choose` is given the name of what is chosen.
 
     Methods that have nothing to say of the scene are pale.  `combined`: additions are in it."""
-    scene = ui.controller.session.scene
-    lights = 0 if scene is None else len(scene.lights)
+    lights = lights_to_fit(ui)
     parsed = Method.parse(method)
     room = imgui.calc_item_width() - imgui.get_frame_height() - 2.0 * imgui.get_style().frame_padding.x
     if not imgui.begin_combo(name, fitted(method, room), int(imgui.ComboFlags_.height_largest)):
@@ -44,19 +43,33 @@ def method_list(ui: Ui, name: str, method: str, choose: Callable[[str], None], c
     imgui.end_combo()
 
 
-def _sentence(kind: Kind, lights: int) -> None:
+def _sentence(kind: Kind, lights: tuple[int, int]) -> None:
     """What the method of the last item does, behind its name, or as far as the window is wide enough for it."""
     tooltip(said_of(kind, lights))
     room = imgui.get_main_viewport().work_size.x - em(_NAMES + 3.0)
     if room < em(_SENTENCE):
         return
     imgui.same_line(em(_NAMES))
-    imgui.text_colored(QUIET if kind.fits(lights) else pale(), fitted(kind.summary, room))
+    imgui.text_colored(QUIET if kind.fits(*lights) else pale(), fitted(kind.summary, room))
 
 
-def said_of(kind: Kind, lights: int) -> str:
-    """What a method does, and why it has nothing to say of so many lights where it has not."""
-    return " ".join(filter(None, (kind.summary, worth(kind, lights))))
+def said_of(kind: Kind, lights: tuple[int, int]) -> str:
+    """What a method does, and why it has nothing to say of so many lights and samples of them where it has not."""
+    return " ".join(filter(None, (kind.summary, worth(kind, *lights))))
+
+
+def lights_to_fit(ui: Ui) -> tuple[int, int]:
+    """How many lights the scene has, and how many samples these have together as they are set."""
+    session = ui.controller.session
+    scene = session.scene
+    if scene is None:
+        return 0, 0
+    radius, samples = session.settings.lamp_radius, session.settings.lamp_samples
+
+    def look() -> int:
+        return lamps_in(scene.lights, radius, samples)[1]
+
+    return len(scene.lights), ui.cached("samples of the lights", scene, (radius, samples), look)
 
 
 def pale() -> ImVec4:
