@@ -77,7 +77,7 @@ def test_voxels_are_counted_in_the_slice_and_in_all(frame: Frame):
 def test_what_rays_have_built_is_counted(frame: Frame):
     legend = of(frame, View.TREE, cut=Slice(0, 0.01))
     said = {fact.name: fact.values for fact in legend.facts}
-    assert said["slice at x"] == ("-1.96",) and said["built of the slice"] == ("100.0 %",)
+    assert said["slice at x"] == ("-1.94",) and said["built of the slice"] == ("100.0 %",)
     assert said["nodes built"] == ("123",) and said["primitives in them"] == ("25.0 % of 160",)
     assert (legend.scale.low, legend.scale.high) == ("level 0", "8") and "kdtree-lazy" in legend.title
     assert of(frame, View.TREE, span=(1.0, 2.5)).scale.high == "2.5" and legend_of(make_frame(), View.TREE) is None
