@@ -2,37 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol
+from typing import Protocol
 
 from tracer.renderer import Frame, Settings
 from tracer.scene.model import Camera
 from tracer.statistics import FrameStatistics
+from viewer.services.pair import Paired
 
 
-class Traces(Protocol):
+class Traces(Paired, Protocol):
     """The part of `tracer.Renderer` that is used here."""
-
-    settings: Settings
-
-    def refine(
-        self,
-        time: float,
-        camera: Camera | None = None,
-        cancel: Callable[[], bool] | None = None,
-        parts: Sequence[float] = ...,
-        samples: int = ...,
-        focus: tuple[float, float] | None = None,
-    ) -> Generator[Frame, None, None]: ...
 
     def reset_modes(self) -> None: ...
 
     def beside(self) -> Traces: ...
-
-    def follow(self, other: Any) -> None: ...
-
-    def take_turn(self, time: float) -> None: ...
 
 
 @dataclass(frozen=True)
