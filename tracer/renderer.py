@@ -289,6 +289,16 @@ class Renderer:
         """
         self.scene, self._turn = other.scene, other._turn
 
+    def take_modes(self, other: Renderer) -> None:
+        """Begin the next frame with the modes that another renderer of the same world knows now.
+
+        Parameters
+        ----------
+        other : Renderer
+            A renderer none of whose frames is under way. It is left as it is.
+        """
+        self.state.take_modes(other.state)
+
     def take_turn(self, time: float) -> None:
         """Place the world once more as the frame that this renderer has begun needs it.
 
