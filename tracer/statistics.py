@@ -68,6 +68,17 @@ class ShadowCounts(RayCounts):
     wrong: int = 0
     passed_over: int = 0
 
+    @property
+    def saved(self) -> int:
+        """Those that the static scene was not asked about: culled, or tested against dynamic objects only."""
+        return self.culled + self.dynamic_only
+
+    @property
+    def traced(self) -> int:
+        """Those of which nothing was known: all that are due but were neither saved, nor tested against candidates
+        only, nor blocked by a cached occluder."""
+        return self.due - self.saved - self.candidates_only - self.cache_hits
+
 
 @dataclass
 class SaidByModes:

@@ -21,7 +21,6 @@ from rich.text import Text
 from tracer.scene.model import Cancelled
 from tracer.statistics import FrameStatistics
 from viewer.state import terms
-from viewer.state.history import fully_traced
 from viewer.util.messages import in_one_line, printable, say
 from viewer.util.time_left import TimeLeft
 
@@ -155,7 +154,7 @@ def statistics_table(
         )
     if shadow.cache_hits:
         table.add_row(f"  {terms.CACHE_HITS}", f"{shadow.cache_hits / due:.1%}", "", f"{shadow.cache_hits:,}")
-    table.add_row(f"  {terms.TRACED}", f"{fully_traced(shadow) / due:.1%}", "", f"{fully_traced(shadow):,}")
+    table.add_row(f"  {terms.TRACED}", f"{shadow.traced / due:.1%}", "", f"{shadow.traced:,}")
     if verified:
         of = f"{shadow.wrong / due:.3%}" if statistics.cuts is None else ""  # it counts pixels, not rays
         table.add_row(f"  {terms.wrong_of(statistics)}", of, "", f"{shadow.wrong:,}")

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from tracer.frame import Frame
 from viewer.state import terms
-from viewer.state.history import fully_traced
 from viewer.util.numbers import count
 
 
@@ -74,7 +73,7 @@ def _rows(a: Frame, b: Frame) -> Iterator[Row]:
     for term in (terms.DUE, terms.CULLED, terms.DYNAMIC_ONLY, terms.CANDIDATES_ONLY, terms.CACHE_HITS):
         field = {terms.CANDIDATES_ONLY: "candidates_only"}.get(term, term.replace(" ", "_"))
         yield Row(term.capitalize(), terms.MEANINGS[term], getattr(s.shadow, field), getattr(t.shadow, field))
-    traced = fully_traced(s.shadow), fully_traced(t.shadow)
+    traced = s.shadow.traced, t.shadow.traced
     yield Row(terms.TRACED.capitalize(), terms.MEANINGS[terms.TRACED], *traced)
     wrong = [f.statistics.shadow.wrong if f.settings.verify else None for f in (a, b)]
     yield Row(terms.WRONG.capitalize(), terms.MEANINGS[terms.WRONG], wrong[0], wrong[1])

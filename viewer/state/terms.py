@@ -92,4 +92,4 @@ def wrong_of(statistics: FrameStatistics) -> str:
 def asks_by_beams(frame: Frame, lamps: bool) -> bool:
     """Whether beams have asked some of what is counted as tests of shadow rays; `lamps`: not all lights are points."""
     shadow = frame.statistics.shadow
-    return lamps and frame.certificates is not None and shadow.culled + shadow.dynamic_only > 0
+    return lamps and frame.certificates is not None and shadow.saved > 0

@@ -11,7 +11,6 @@ from tracer.frame import Frame
 from tracer.geometry.accelerators import BVH8
 from tracer.method import Method
 from viewer.state import terms
-from viewer.state.history import fully_traced
 from viewer.window.panels import coming
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -103,7 +102,7 @@ def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
             fate(terms.CANDIDATES_ONLY, shadow.candidates_only)
         if Method.parse(frame.settings.method).has("cache") or shadow.cache_hits:
             fate(terms.CACHE_HITS, shadow.cache_hits)
-        fate(terms.TRACED, fully_traced(shadow))
+        fate(terms.TRACED, shadow.traced)
         if frame.settings.verify:
             if s.cuts is None:
                 fate(terms.WRONG, shadow.wrong)
