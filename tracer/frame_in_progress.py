@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.cells import units_of
 from tracer.culling.counters import COUNTERS
+from tracer.culling.mode_changes import mode_changes
 from tracer.culling.occlusion import count_pixels, occlusion_testing
 from tracer.fit import remark
 from tracer.frame import Frame
@@ -378,6 +379,8 @@ class FrameInProgress:
         shape, lights = buffers.primitive.shape, len(self._state.scene.lights)
         statistics = gather(self._counts, int(self._occlusion_tests.sum()), lights if settings.keeps_modes else 0)
         statistics.part = 1.0 if self._parts is None else self._parts.share
+        if settings.keeps_modes:
+            statistics.mode_changes = mode_changes(self.words, history.words, self.workers)
         if settings.record_lights:
             statistics.samples = sample_counts(buffers.asked, buffers.reached)
         built = self._state.world.built()
