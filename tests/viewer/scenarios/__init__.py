@@ -31,8 +31,8 @@ from tests.viewer.scenarios.what_if import what_if
 SCENARIOS = {
     scenario.__name__: scenario
     for scenario in (
-        views, difference, wiping, comparing, closeup, legends, lamps, trees, culling, savings, certifying, explaining, rays,
-        flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting,
+        views, difference, wiping, comparing, closeup, legends, lamps, trees, culling, savings, certifying, explaining,
+        rays, flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting,
         zooming, asking, finding, filmstrip, filming, hunting, taking, failing,
         reviving, panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if,
         previewing,

@@ -19,7 +19,7 @@ def said(d: Driver) -> str:
 
 
 def savings(d: Driver) -> None:
-    """In the scene that the program opens, at rest: the sentence comes to tell what the counters say, and how the paper's
+    """In the scene that the program opens, at rest: the sentence tells what the counters say, and how the paper's
     method compares with none; the picture stays where it is, whatever is said above it."""
     d.settle()
     d.c.settings.change(method="paper")
