@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.cells import units_of
 from tracer.culling.counters import COUNTERS, SHADOW, SHADOW_COUNTERS
+from tracer.culling.mode_changes import mode_changes
 from tracer.culling.occlusion import count_pixels, occlusion_testing
 from tracer.fit import remark
 from tracer.frame import Frame
@@ -391,6 +392,8 @@ class FrameInProgress:
         tests = int(self._occlusion_tests.sum()) if self._culls_by_modes else 0
         statistics = gather(self._counts, tests, lights if settings.keeps_modes else 0)
         statistics.part = 1.0 if self._parts is None else self._parts.share
+        if settings.keeps_modes:
+            statistics.mode_changes = mode_changes(self.words, history.words, self.workers)
         if settings.record_lights:
             statistics.samples = sample_counts(buffers.asked, buffers.reached)
         built = self._state.world.built()

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.counters import BY_LIGHT, PRIMARY, RAYS, SECONDARY, SHADOW, STEPS, TESTS, ShadowCounter
+from tracer.culling.mode_changes import ModeChanges
 
 if TYPE_CHECKING:
     from tracer.culling.certified.scheduler import Counts
@@ -274,6 +275,8 @@ class FrameStatistics:
         Time of the whole frame, without that of modes that are only looked at.
     by_modes : list of SaidByModes
         For each light that has modes; empty if none are kept.
+    mode_changes : ModeChanges or None
+        How modes changed in this frame; None if none are kept.
     phases : dict of str to float
         Seconds of each phase of Figure 1.
     """
@@ -294,6 +297,7 @@ class FrameStatistics:
     wrong: WrongCounts | None = None
     seconds: float = 0.0
     by_modes: list[SaidByModes] = field(default_factory=list)
+    mode_changes: ModeChanges | None = None
     phases: dict[str, float] = field(default_factory=dict)
 
     def add_made(self, made: Counts) -> None:
