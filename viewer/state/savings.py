@@ -16,7 +16,7 @@ from tracer.frame import Frame
 from tracer.geometry.accelerators import BVH8
 from tracer.method import Method
 from tracer.statistics import ShadowCounts
-from viewer.state import terms
+from viewer.state import terms, verified
 from viewer.state.in_turn import InTurn, Spread
 from viewer.state.methods import BY_MODES, NO_CULLING
 from viewer.state.views import FATE_MEANING, FATE_NAMES
@@ -195,13 +195,12 @@ def _steps(measured: InTurn, frame: Frame) -> Iterator[Clause]:
 
 def _wrong(frame: Frame, method: Method) -> Clause:
     s = frame.statistics
-    if frame.settings.verify:
-        if s.cuts is not None:
-            text = f"{count(s.shadow.wrong)} {terms.BEYOND}"
-            return Clause(text, terms.MEANINGS[terms.BEYOND], Tone.WRONG if s.shadow.wrong else Tone.PLAIN)
-        text = f"{percent(s.shadow.wrong, s.shadow.due)} wrong" if s.shadow.wrong else "none wrong"
-        tip = f"{count(s.shadow.wrong)} {terms.WRONG}: {terms.MEANINGS[terms.WRONG]}"
-        return Clause(text, tip, Tone.WRONG if s.shadow.wrong else Tone.PLAIN)
+    if s.wrong is not None:
+        tone = Tone.WRONG if verified.is_wrong(s) else Tone.PLAIN
+        share = f"{percent(s.wrong.answers, s.wrong.due)} wrong" if s.wrong.answers else "none wrong"
+        return Clause(
+            share if s.cuts is None else verified.in_short(s) or "not verified yet", verified.in_words(s), tone
+        )
     if method.exact:
         return Clause("exact", "its pictures are those of none, bit for bit: V traces every culled ray to check (V)")
     return Clause("not verified", "trace every culled ray as well, to count wrong answers (V)", Tone.QUIET)

@@ -9,7 +9,7 @@ import pytest
 from tests.viewer.fakes import make_frame, with_cuts
 from tracer.culling.fate import Fate
 from tracer.frame import Frame, Settings
-from tracer.statistics import FrameStatistics, RayCounts, SaidByModes, ShadowCounts
+from tracer.statistics import CutErrors, FrameStatistics, RayCounts, SaidByModes, ShadowCounts, WrongCounts
 from viewer.state.in_turn import LEAST, InTurn
 from viewer.state.savings import Standing, Tone, bar_of, in_words, sentence
 
@@ -17,7 +17,8 @@ from viewer.state.savings import Standing, Tone, bar_of, in_words, sentence
 def frame_by(method: str, verify: bool = False, part: float = 1.0, **counts: int) -> Frame:
     frame = make_frame(Settings(width=16, height=8, method=method, verify=verify))
     shadow = ShadowCounts(**({"due": 1000} | counts))
-    return replace(frame, statistics=FrameStatistics(shadow=shadow, part=part))
+    found = WrongCounts(shadow.wrong, shadow.due, shadow.due - shadow.traced, shadow.wrong, frame.width * frame.height)
+    return replace(frame, statistics=FrameStatistics(shadow=shadow, part=part, wrong=found if verify else None))
 
 
 def in_turn(method: str, speed: float, steps: tuple[int, int] = (850, 1000), noise: float = 0.0) -> InTurn:
@@ -117,5 +118,6 @@ def test_wrong_answers_stand_out_and_clusters_have_their_own_words():
     right = sentence(frame_by("paper", verify=True, culled=10), Standing())
     assert "none wrong" in in_words(right) and all(clause.tone is not Tone.WRONG for clause in right)
     frame = with_cuts(frame_by("lightcuts", verify=True, wrong=7))
+    frame.statistics.cuts.errors = CutErrors(beyond=7)
     assert said(frame).startswith("lightcuts: 10 clusters for 100 lights, 7 pixels beyond the error")
     assert bar_of(frame).parts == ()
