@@ -1,9 +1,8 @@
 """Why is a pixel's shadow ray culled, or traced?  One reason for each light, and one sentence that names the rule.
 
-A reason is found in what the frame really did with the ray (`tracer.ray_tree`): in the modes as shadow testing read
-them, as the frame before had left them, and not in those that this frame leaves.  Of a picture in motion whose pixel has
-not been shaded yet it is what those modes say.  A sentence is a list of words and of links, so that a window can lead
-to what is named, and `plain` is the same without.
+A reason is found in what the frame really did with the ray (`tracer.ray_tree`), and in the modes as shadow testing read
+them: as the frame before had left them, not as this frame leaves them.  Where a picture is shaded in part so far, it is
+what these modes say.  `tracer.why_in_words` makes sentences of reasons.
 """
 
 from __future__ import annotations
@@ -25,6 +24,7 @@ from tracer.culling.modes import (
     shadow_mode,
 )
 from tracer.culling.verdicts import Verdict
+from tracer.explanation import Explanation, explain
 from tracer.method import Method
 from tracer.occluded_by import OccludedBy, Pixel, Reference, Seen, occluded_by, references
 from tracer.ray_reasons import unused
@@ -63,13 +63,14 @@ class Rule(Enum):
 
 
 SECTIONS = {
-    "2.2": "Each primitive has an occlusion mode, and a shadow mode for each light. Those of dynamic objects are DYNAMIC.",
+    "2.2": "Each primitive has an occlusion mode, and a shadow mode for each light. The occlusion mode of a "
+    "dynamic object is DYNAMIC for good.",
     "2.3": "Occlusion testing: the ray of a pixel is tested against what its left and its upper neighbour see. What it "
     "meets there is hidden by something nearer, and so partly occluded; so is what the screen's edge cuts off.",
-    "2.4": "Shadow testing: of a fully rendered primitive in FULL_SHADOW no ray is traced, of one in NON_SHADOW dynamic "
-    "objects alone are asked, and every other ray is traced.",
-    "2.5": "Shadow-mode setting: a blocked ray adds FULL_SHADOW to the mode of its primitive and light, one that reaches "
-    "the light NON_SHADOW. Both together are PARTIAL_SHADOW, which stays.",
+    "2.4": "Shadow testing: no ray of a fully rendered primitive in FULL_SHADOW is traced, those of one in NON_SHADOW "
+    "ask dynamic objects alone, and every other ray is traced.",
+    "2.5": "Shadow-mode setting: a blocked ray adds FULL_SHADOW to the mode of its primitive and light, one that "
+    "reaches the light NON_SHADOW. Both together are PARTIAL_SHADOW, which stays.",
     "2.6": "Occlusion-mode setting: what no test finds occluded is FULLY_RENDERED, until it covers so many times the "
     "pixels that it covered then. After that it is examined anew.",
 }
@@ -129,6 +130,7 @@ _FATES = {
     Verdict.CERTIFIED_LIT: Fate.DYNAMIC_ONLY,
     Verdict.VOXEL_LIT: Fate.DYNAMIC_ONLY,
     Verdict.CELL_LIT: Fate.DYNAMIC_ONLY,
+    Verdict.VOXEL_WALK: Fate.CANDIDATES,
     Verdict.CANDIDATES: Fate.CANDIDATES,
     Verdict.BUFFER_TESTED: Fate.CANDIDATES,
     Verdict.CELL_TESTED: Fate.CANDIDATES,
@@ -144,19 +146,21 @@ _RULE_FATES = {
     Rule.PARTIAL_SHADOW: Fate.PARTIAL_SHADOW,
     Rule.NO_SHADOW_MODE: Fate.NOT_SEEN_WHOLE,
     Rule.FACES_AWAY: Fate.FACES_AWAY,
-    Rule.NOT_SHADED: Fate.NONE,
 }
 
 
 @dataclass(frozen=True)
-class Taught:
-    """The frame that gave a primitive its mode: its number, what it is called, and a pixel of it that met the answer,
-    None where only reflected or refracted rays did; `lit` says which answer, or that the frame saw it whole (None)."""
+class TaughtBy:
+    """The frame that gave a primitive its mode: its number, and what it is called.
+
+    `lit` says which answer was met, None where the frame saw the primitive whole.  `pixel` is one that met it, None
+    where only reflected or refracted rays did, or where that is not `known`."""
 
     frame: int
     name: str
     pixel: Pixel | None = None
     lit: bool | None = None
+    known: bool = True
 
 
 @dataclass(frozen=True)
@@ -198,8 +202,8 @@ class Reason:
     method : str
         The method.
     instead : Reason or None
-        What the paper's method would have done, where it is not the one that decided.
-    taught : tuple of Taught
+        What the paper's method makes of the modes, where culling is off, or the pixel may not have been shaded yet.
+    taught : tuple of TaughtBy
         Who set the shadow mode, where that is known.
     """
 
@@ -222,7 +226,7 @@ class Reason:
     told: str = ""
     method: str = "paper"
     instead: Reason | None = None
-    taught: tuple[Taught, ...] = ()
+    taught: tuple[TaughtBy, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -238,7 +242,7 @@ class Coverage:
     zoom_factor: float
     in_cells: bool
     occluded: OccludedBy | None = None
-    taught: Taught | None = None
+    taught: TaughtBy | None = None
 
 
 @dataclass(frozen=True)
@@ -283,15 +287,18 @@ def why(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel = No
     Cancelled
         Once `cancelled()` is true.
     """
-    work = renderer.work_on(frame)
-    tree = ray_tree(renderer, frame, x, y, cancelled)
+    in_part = frame.statistics.part < 1.0
+    work = renderer.work_on(frame, in_part)
+    tree = None if in_part else ray_tree(renderer, frame, x, y, cancelled)
     primitive = int(frame.primitive[y, x])
     if primitive < 0:
         return Why(x, y, -1, (), tree=tree)
     pixel = _Pixel(renderer, work, frame, x, y)
-    shadows = tree.rays[0].shadows
-    assert shadows is not None
-    reasons = tuple(pixel.reason(shadows, light) for light in range(frame.lights))
+    shadows = None if tree is None else tree.rays[0].shadows
+    if shadows is None:
+        reasons = tuple(pixel.not_shaded(one) for one in explain(renderer, frame, x, y))
+    else:
+        reasons = tuple(pixel.reason(shadows, light) for light in range(frame.lights))
     compared = references(pixel.seen, (x, y)) if frame.settings.keeps_modes else ()
     return Why(x, y, primitive, reasons, pixel.coverage, compared, tree)
 
@@ -328,10 +335,13 @@ class _Pixel:
         places = np.arange(len(s.light))[s.of_light(light)]
         verdict, known, those = _most(s, places)
         place = int(those[0])
+        fate = _FATES.get(verdict, Fate.CULLED)
+        if verdict is Verdict.BUFFER_LIT and s.asked_moving[place]:  # else their depth is known, too
+            fate = Fate.DYNAMIC_ONLY
         told = Reason(
             light=light,
             rule=Rule.KNOWN,
-            fate=_FATES.get(verdict, Fate.CULLED),
+            fate=fate,
             verdict=verdict,
             rays=len(those),
             samples=len(places),
@@ -352,6 +362,22 @@ class _Pixel:
             Verdict.NON_SHADOW: Rule.NON_SHADOW,
         }
         return replace(told, rule=rules.get(verdict, Rule.KNOWN))
+
+    def not_shaded(self, one: Explanation) -> Reason:
+        """What is truly in a light's way, and what the modes say, where a picture is shaded in part so far."""
+        told = Reason(
+            light=one.light,
+            rule=Rule.NOT_SHADED if one.due else Rule.FACES_AWAY,
+            fate=Fate.NONE if one.due else Fate.FACES_AWAY,
+            rays=one.samples,
+            samples=one.samples,
+            lit=one.reached,
+            blocker=-1 if one.blocker is None else one.blocker,
+            dynamic_objects=self._dynamic_objects,
+            method=self._frame.settings.method,
+            **self._modes(one.light),
+        )
+        return replace(told, instead=self._by_paper(told)) if one.due and self._method.uses_modes else told
 
     def _modes(self, light: int) -> dict:
         if not self._by_modes:

@@ -10,7 +10,7 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.method import Method
 from tracer.occluded_by import OccludedBy, Pixel, Reference
 from tracer.scene.model import CONE, Scene
-from tracer.why import MEANING, WHY_TRACED, Coverage, Reason, Rule, Taught
+from tracer.why import MEANING, WHY_TRACED, Coverage, Reason, Rule, TaughtBy, Why
 
 MOST_NAMED = 3  # primitives of an answer that are named
 
@@ -52,10 +52,10 @@ def named(scene: Scene, primitive: int) -> str:
 
 
 class Words:
-    """Writes the sentences about a pixel of a scene, (x, y); a neighbour of it is called so."""
+    """Writes the sentences about a pixel of a scene."""
 
-    def __init__(self, scene: Scene, x: int, y: int) -> None:
-        self._scene, self._x, self._y = scene, x, y
+    def __init__(self, scene: Scene, found: Why) -> None:
+        self._scene, self._found = scene, found
 
     def reason(self, reason: Reason) -> Sentence:
         """Say in one sentence why the shadow rays to a light were culled or traced."""
@@ -70,7 +70,11 @@ class Words:
             return ()
         blocked = reason.lit < reason.rays
         if reason.wrong:
-            truth = (self.primitive(reason.blocker), " is in its way") if reason.blocker >= 0 else ("nothing is in its way",)
+            truth = (
+                (self.primitive(reason.blocker), " is in its way")
+                if reason.blocker >= 0
+                else ("nothing is in its way",)
+            )
             return (f"{'In shadow' if blocked else 'Lit'} in the picture, which is wrong: ", *truth, ".")
         if not blocked:
             return ("Lit.",)
@@ -78,6 +82,8 @@ class Words:
             return (f"In the penumbra: {reason.lit} of {reason.rays} samples reach it.",)
         if reason.blocker < 0:
             return ("In shadow.",)
+        if reason.blocker == self._found.primitive:
+            return ("In shadow: its own surface is in the way, as the light grazes it.",)
         return ("In shadow: blocked by ", self.primitive(reason.blocker), ".")
 
     def coverage(self, unit: Coverage) -> Sentence:
@@ -97,10 +103,9 @@ class Words:
         since: Sentence = (" since ", _frame(unit.taught)) if unit.taught is not None else ()
         if unit.before is not OcclusionMode.FULLY_RENDERED:
             return (covers, ". Fully rendered from this frame on: nothing hides any of it ", *_section("2.6"), ".")
-        return (
-            f"{covers}, {unit.highest:,} when it was last examined: {unit.pixels / max(unit.highest, 1):.2g} of the "
-            f"{unit.zoom_factor:g} times at which it is examined anew ", *_section("2.6"), ". Fully rendered", *since, ".",
-        )  # fmt: skip
+        times = f"{unit.pixels / max(unit.highest, 1):.2g} of the {unit.zoom_factor:g} times"
+        examined = f"{covers}, {unit.highest:,} when it was last examined: {times} at which it is examined anew "
+        return (examined, *_section("2.6"), ". Fully rendered", *since, ".")
 
     def reference(self, one: Reference) -> Sentence:
         """Say what became of the occlusion test against a reference pixel (Figure 3)."""
@@ -124,11 +129,11 @@ class Words:
             (1, 0): "pixel on its right",
             (0, -1): "pixel above it",
             (0, 1): "pixel below it",
-        }.get((pixel[0] - self._x, pixel[1] - self._y), "")
+        }.get((pixel[0] - self._found.x, pixel[1] - self._found.y), "")
 
     def _at(self, pixel: Pixel) -> Sentence:
         beside = self._beside(pixel)
-        if pixel == (self._x, self._y):
+        if pixel == (self._found.x, self._found.y):
             return (" at ", Link("this pixel", pixel=pixel))
         return (" at ", Link(f"the {beside}" if beside else f"pixel ({pixel[0]}, {pixel[1]})", pixel=pixel))
 
@@ -180,6 +185,9 @@ class Words:
             return ("PARTIAL_SHADOW, as some of its shadow rays were blocked and others were not ", *section)
         newest = max(one.frame for one in reason.taught)
         last = [one for one in reason.taught if one.frame == newest]
+        if not all(one.known for one in last):
+            did = "saw the light" if last[-1].lit else "was in shadow"
+            return ("PARTIAL_SHADOW since ", _frame(last[0]), f", in which some of it {did} ", *section)
         said: list[str | Link] = ["PARTIAL_SHADOW since ", _frame(last[0]), ": "]
         for number, one in enumerate(last):
             said += [" and "] * (number > 0) + [*_met(one)]
@@ -188,7 +196,8 @@ class Words:
     def _known(self, reason: Reason) -> Sentence:
         assert reason.verdict is not None
         meaning = MEANING[reason.verdict]
-        said: list[str | Link] = [f"{_DONE.get(reason.fate, 'Culled')}: {meaning[0].lower()}{meaning[1:]}"]
+        culled = reason.fate is Fate.CULLED
+        said: list[str | Link] = [f"Culled: {meaning[0].lower()}{meaning[1:]}" if culled else meaning]
         if reason.told:
             said.append(f" {reason.told}")
         if reason.named:
@@ -202,14 +211,19 @@ class Words:
     def _off(self, reason: Reason) -> Sentence:
         if reason.instead is None:
             return ("Traced: culling is off.",)
-        return ("Traced: culling is off. The paper's method would have ", *self._would(reason.instead), ".")
+        return ("Traced: culling is off. The paper's method would have ", *self._instead(reason.instead, " it: "), ".")
 
-    def _would(self, reason: Reason) -> Sentence:
-        """What the paper's method does by these modes, after "would have"."""
+    def _not_shaded(self, reason: Reason) -> Sentence:
+        if reason.instead is None:
+            return ("This picture is shaded in part so far: what became of the ray is said of whole pictures.",)
+        return ("This picture is shaded in part so far. A ray from here is ", *self._instead(reason.instead, ": "), ".")
+
+    def _instead(self, reason: Reason, then: str) -> Sentence:
+        """What the paper's method makes of the modes, after "would have" or "is"."""
         if reason.rule is Rule.FULL_SHADOW:
-            return ("culled it: ", *_dark())
+            return (f"culled{then}", *_dark())
         if reason.rule is Rule.NON_SHADOW:
-            return (f"asked {_movers(reason.dynamic_objects)} only: ", *_never_blocked())
+            return (f"tested{then.rstrip(': ')} against dynamic objects only: ", *_never_blocked())
         clauses: dict[Rule, Callable[[Reason], Sentence]] = {
             Rule.PARTLY_OCCLUDED: self._partly,
             Rule.NOT_SEEN_WHOLE: self._not_whole,
@@ -218,7 +232,7 @@ class Words:
             Rule.NO_SHADOW_MODE: lambda _: _nothing_learnt(),
             Rule.NO_ROOM: _no_room,
         }
-        return ("traced it, too: ", *clauses[reason.rule](reason))
+        return (f"traced{then}", *clauses[reason.rule](reason))
 
 
 # --- clauses that name nothing of the scene ------------------------------------------------------
@@ -228,11 +242,11 @@ def _section(number: str) -> Sentence:
     return ("(", Link(f"§{number}", section=number), ")")
 
 
-def _frame(taught: Taught) -> Link:
+def _frame(taught: TaughtBy) -> Link:
     return Link(taught.name, frame=taught.frame, pixel=taught.pixel)
 
 
-def _met(taught: Taught) -> Sentence:
+def _met(taught: TaughtBy) -> Sentence:
     """What a frame has taught, and which pixel of it."""
     did = "saw the light" if taught.lit else "was in shadow"
     if taught.pixel is None:
@@ -284,12 +298,6 @@ def _unknown(reason: Reason) -> Sentence:
     return (f"Traced: the method {reason.method} knows nothing of this light here.",)
 
 
-_DONE = {
-    Fate.CULLED: "Culled",
-    Fate.DYNAMIC_ONLY: "Asks dynamic objects only",
-    Fate.CANDIDATES: "Asks a few primitives only",
-    Fate.CACHED: "Asks the cached occluder first",
-}
 _HEADS: dict[Rule, Callable[[Words, Reason], Sequence[str | Link]]] = {
     Rule.FACES_AWAY: lambda _, reason: ("Faces away from this light.",),
     Rule.FULL_SHADOW: lambda _, reason: ("Culled: ", *_dark(), "."),
@@ -306,5 +314,6 @@ _HEADS: dict[Rule, Callable[[Words, Reason], Sequence[str | Link]]] = {
     ),
     Rule.UNKNOWN: lambda _, reason: _unknown(reason),
     Rule.OFF: Words._off,
+    Rule.NOT_SHADED: Words._not_shaded,
     Rule.CLUSTERS: lambda _, reason: ("Shaded by clusters of lights: no light is asked by itself.",),
 }

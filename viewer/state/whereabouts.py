@@ -12,6 +12,7 @@ from tracer.frame import Frame
 from tracer.scene.deformation import deformed
 from tracer.scene.edits import Edited
 from tracer.scene.model import CONE, Camera, Scene
+from tracer.why_in_words import kind_of
 from viewer.state import navigation
 from viewer.state.parts import parts_of
 from viewer.state.picking import Pick, pick, shadow_mode_of
