@@ -86,12 +86,15 @@ class Words:
             return ("In shadow: its own surface is in the way, as the light grazes it.",)
         return ("In shadow: blocked by ", self.primitive(reason.blocker), ".")
 
-    def coverage(self, unit: Coverage) -> Sentence:
-        """Say what keeps a unit from being fully rendered, or how far it is from being examined anew."""
+    def coverage(self, unit: Coverage, told: OccludedBy | None = None) -> Sentence:
+        """Say what keeps a unit from being fully rendered, or how far it is from being examined anew; `told` is what
+        has just been said to hide it."""
         covers = f"{'Its cell covers' if unit.in_cells else 'Covers'} {_pixels(unit.pixels)}"
         if unit.after is OcclusionMode.DYNAMIC:
             return (f"{covers}. Dynamic: it has no modes ", *_section("2.2"), ".")
         if unit.after is OcclusionMode.PARTIALLY_OCCLUDED:
+            if unit.occluded is not None and unit.occluded == told:
+                return (f"{covers}; not fully rendered, as it is partly occluded there ", *_section("2.6"), ".")
             return (covers, ". Not fully rendered: ", *self._occluded(unit.occluded), ".")
         if unit.after is OcclusionMode.INIT and unit.before is OcclusionMode.FULLY_RENDERED:
             return (

@@ -27,6 +27,7 @@ from tests.viewer.scenarios.taking import taking
 from tests.viewer.scenarios.touring import touring
 from tests.viewer.scenarios.trees import trees
 from tests.viewer.scenarios.what_if import what_if
+from tests.viewer.scenarios.why import why
 
 SCENARIOS = {
     scenario.__name__: scenario
@@ -35,7 +36,7 @@ SCENARIOS = {
         rays, flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting,
         zooming, asking, finding, filmstrip, filming, hunting, taking, failing,
         reviving, panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if,
-        previewing,
+        previewing, why,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip
