@@ -1,12 +1,18 @@
 """What becomes of a shadow ray: it is culled, asks less than the whole scene, or is traced, and why.
 
-The reasons why a ray is traced are those of the paper's method: it culls by a shadow mode that says the same of every
-ray so far (§2.5), of a primitive that has been seen whole (§2.3).
+Kernels record a fate for each pixel and light, without reasons (`tracer.shading.recording`).  The reasons why a ray is
+traced are those of the paper's method: it culls by a shadow mode that says the same of every ray so far (§2.5), of a
+primitive that has been seen whole (§2.3).  They are read off the words that shadow testing went by.
 """
 
 from __future__ import annotations
 
 from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling import modes
 
 
 class Fate(IntEnum):
@@ -49,3 +55,43 @@ class Fate(IntEnum):
     def is_traced(self) -> bool:
         """Whether the ray is traced through the whole scene."""
         return self >= Fate.PARTLY_OCCLUDED
+
+
+# numba takes plain numbers as constants
+FACES_AWAY, CULLED, DYNAMIC_ONLY, CANDIDATES, CACHED, TRACED = (
+    int(fate)
+    for fate in (Fate.FACES_AWAY, Fate.CULLED, Fate.DYNAMIC_ONLY, Fate.CANDIDATES, Fate.CACHED, Fate.TRACED)
+)
+FATE, MOVING_SHADOW = 0x0F, 0x10
+"""Bits of what is recorded: the fate, and whether nothing but a dynamic object is in the way."""
+
+
+def with_reasons(fates: NDArray[np.uint8], words: NDArray[np.unsignedinteger], light: int) -> NDArray[np.uint8]:
+    """Say why rays to a light were traced, by the packed words that the paper's method read.
+
+    Parameters
+    ----------
+    fates : (n,) uint8
+        The Fate of each ray.
+    words : (n,) uint32 or uint64
+        Word of the unit that it starts at.
+    light : int
+        Number of the light. One that has no modes is traced for no reason of the paper's.
+
+    Returns
+    -------
+    (n,) uint8
+        The same, with reasons in the place of TRACED.
+    """
+    if not modes.has_shadow_mode(words, light):
+        return fates
+    occlusion, shadow = modes.occlusion_mode(words), modes.shadow_mode(words, light)
+    partial = (occlusion == modes.FULLY_RENDERED) & (shadow == modes.ShadowMode.PARTIAL_SHADOW)
+    reasons = np.where(partial, Fate.PARTIAL_SHADOW, _REASONS[occlusion])
+    return np.where(fates == TRACED, reasons, fates).astype(np.uint8)
+
+
+_REASONS = np.zeros(len(modes.OcclusionMode), np.uint8)
+_REASONS[modes.OcclusionMode.INIT] = _REASONS[modes.OcclusionMode.FULLY_RENDERED] = Fate.NOT_SEEN_WHOLE
+_REASONS[modes.OcclusionMode.PARTIALLY_OCCLUDED] = Fate.PARTLY_OCCLUDED
+_REASONS[modes.OcclusionMode.DYNAMIC] = Fate.DYNAMIC
