@@ -66,6 +66,8 @@ class FrameInProgress:
         self.tiles = np.array(self._tiles, np.int64)
         self._everywhere = all_blocks(settings.width, settings.height)
         self._focus: tuple[float, float] | None = None
+        self._records_fates = settings.record_fates and not Method.parse(settings.method).clusters
+        self._records = settings.record_lights or settings.record_work or self._records_fates
         self.buffers = self._empty_buffers(progressive)
 
         # What is known, and learnt.
@@ -81,7 +83,6 @@ class FrameInProgress:
         self._occlusion_tests = np.zeros(self.workers, np.int64)
         self._begun = False  # shading
         self._passes: list[NDArray[np.int32]] = []  # the pixels that each pass over the tiles has shaded
-        self._records = settings.record_lights or settings.record_work
         self._parts: Parts | None = None
         for method in self.methods:
             method.begin(self)
@@ -120,6 +121,7 @@ class FrameInProgress:
         planes = self._state.planes(s.width, s.height) if progressive else NO_PLANES
         asked = {
             "record_lights": s.record_lights and records,
+            "record_fates": self._records_fates and records,
             "verify": s.verify,
             "record_work": s.record_work and records,
         }
@@ -423,11 +425,13 @@ class FrameInProgress:
             primitive=buffers.primitive,
             normal=buffers.normal.reshape(*shape, 3),
             modes=history.words.copy(),
+            modes_before=self.words.copy(),
             pixel_count=history.pixel_count.copy(),
             highest_count=history.highest_count.copy(),
             lights=lights,
             asked=per_pixel(buffers.asked, settings.record_lights),
             reached=per_pixel(buffers.reached, settings.record_lights),
+            fates=per_pixel(buffers.fates, self._records_fates),
             reference=per_pixel(buffers.reference, settings.verify),
             wrong=per_pixel(buffers.wrong, settings.verify),
             cells=layers.pop("cells", None),

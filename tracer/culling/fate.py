@@ -59,20 +59,19 @@ class Fate(IntEnum):
 
 # numba takes plain numbers as constants
 FACES_AWAY, CULLED, DYNAMIC_ONLY, CANDIDATES, CACHED, TRACED = (
-    int(fate)
-    for fate in (Fate.FACES_AWAY, Fate.CULLED, Fate.DYNAMIC_ONLY, Fate.CANDIDATES, Fate.CACHED, Fate.TRACED)
+    int(fate) for fate in (Fate.FACES_AWAY, Fate.CULLED, Fate.DYNAMIC_ONLY, Fate.CANDIDATES, Fate.CACHED, Fate.TRACED)
 )
 FATE, MOVING_SHADOW = 0x0F, 0x10
 """Bits of what is recorded: the fate, and whether nothing but a dynamic object is in the way."""
 
 
-def with_reasons(fates: NDArray[np.uint8], words: NDArray[np.unsignedinteger], light: int) -> NDArray[np.uint8]:
-    """Say why rays to a light were traced, by the packed words that the paper's method read.
+def by_modes(fates: NDArray[np.uint8], words: NDArray[np.unsignedinteger], light: int) -> NDArray[np.uint8]:
+    """Say what the paper's method made of rays, and why it traced them, by the packed words that it read (§2.4).
 
     Parameters
     ----------
     fates : (n,) uint8
-        The Fate of each ray.
+        The Fate of each ray as it was recorded, or that of a ray nearby.
     words : (n,) uint32 or uint64
         Word of the unit that it starts at.
     light : int
@@ -81,17 +80,18 @@ def with_reasons(fates: NDArray[np.uint8], words: NDArray[np.unsignedinteger], l
     Returns
     -------
     (n,) uint8
-        The same, with reasons in the place of TRACED.
+        The same with reasons in the place of TRACED.
     """
     if not modes.has_shadow_mode(words, light):
         return fates
     occlusion, shadow = modes.occlusion_mode(words), modes.shadow_mode(words, light)
-    partial = (occlusion == modes.FULLY_RENDERED) & (shadow == modes.ShadowMode.PARTIAL_SHADOW)
-    reasons = np.where(partial, Fate.PARTIAL_SHADOW, _REASONS[occlusion])
-    return np.where(fates == TRACED, reasons, fates).astype(np.uint8)
+    said = np.where(occlusion == modes.FULLY_RENDERED, _SEEN_WHOLE[shadow], _NOT_CULLED[occlusion])
+    saved = (said == CULLED) | (said == DYNAMIC_ONLY)
+    open_before = (fates == CULLED) | (fates == DYNAMIC_ONLY) | (fates == TRACED)
+    return np.where((fates >= CULLED) & (saved | open_before), said, fates).astype(np.uint8)
 
 
-_REASONS = np.zeros(len(modes.OcclusionMode), np.uint8)
-_REASONS[modes.OcclusionMode.INIT] = _REASONS[modes.OcclusionMode.FULLY_RENDERED] = Fate.NOT_SEEN_WHOLE
-_REASONS[modes.OcclusionMode.PARTIALLY_OCCLUDED] = Fate.PARTLY_OCCLUDED
-_REASONS[modes.OcclusionMode.DYNAMIC] = Fate.DYNAMIC
+_SEEN_WHOLE = np.array([Fate.NOT_SEEN_WHOLE, Fate.CULLED, Fate.DYNAMIC_ONLY, Fate.PARTIAL_SHADOW], np.uint8)
+"""By shadow mode."""
+_NOT_CULLED = np.array([Fate.NOT_SEEN_WHOLE, Fate.PARTLY_OCCLUDED, Fate.NONE, Fate.DYNAMIC], np.uint8)
+"""By occlusion mode."""

@@ -20,8 +20,9 @@ PIXEL_ROWS = 10
 class Buffers(NamedTuple):
     """One picture: color and normal (height * width, 3), depth, u and v (height, width) float32,
     primitive (height, width) int32; asked and reached (height * width, lights) uint16, or without rows; fates
-    (height * width, lights) uint8 (`tracer.culling.fate`), or without rows; reference like color and wrong (height * width,) int32, or without rows where nothing is verified; saved, cost and
-    due_rays (height * width,) int32, or without rows; and planes for a picture that is refined progressively."""
+    (height * width, lights) uint8 (`tracer.culling.fate`), or without rows; reference like color and wrong
+    (height * width,) int32, or without rows where nothing is verified; saved, cost and due_rays (height * width,)
+    int32, or without rows; and planes for a picture that is refined progressively."""
 
     color: NDArray[np.float32]
     normal: NDArray[np.float32]
