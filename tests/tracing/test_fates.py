@@ -116,8 +116,10 @@ def test_a_moving_shadow_is_where_light_comes_once_what_moves_is_gone(method: st
     for light in range(frame.lights):
         expected = same & alone.lit[..., light] & frame.due[..., light] & ~frame.lit[..., light]
         found = same & frame.moving_shadow(light)
-        if method == "paper":  # it takes some that are lit for ones in full shadow, and asks nothing about these
-            expected &= frame.fate(light) != Fate.CULLED
+        if method == "paper":  # it is wrong now and then about what is static
+            fates = frame.fate(light)
+            assert (fates[found & ~alone.lit[..., light]] == Fate.DYNAMIC_ONLY).all()
+            expected, found = expected & (fates != Fate.CULLED), found & alone.lit[..., light]
         assert np.array_equal(found, expected), light
         dark += np.count_nonzero(found)
     assert dark > 50
@@ -129,6 +131,7 @@ def test_a_picture_of_which_a_part_is_shaded_says_what_the_modes_of_each_pixel_s
     renderer = tracer.Renderer(scene, replace(SETTINGS, width=96, height=80))
     for number in range(4):
         *parts, whole = renderer.refine(1.0 + number / 30.0, parts=(1, 4, 16))
+    apart = []
     for part in parts:
         assert part.shaded is not None and not part.shaded.all()
         for light in range(whole.lights):
@@ -137,8 +140,9 @@ def test_a_picture_of_which_a_part_is_shaded_says_what_the_modes_of_each_pixel_s
             hit = part.primitive >= 0
             guessed = hit & ~part.shaded & (fates >= Fate.CULLED) & (final >= Fate.CULLED)
             assert np.array_equal(fates[guessed], final[guessed])
-            assert np.count_nonzero(fates != final) < 0.05 * fates.size
             assert np.count_nonzero(part.moving_shadow(light) != whole.moving_shadow(light)) < 0.05 * fates.size
+        apart.append(np.mean([part.fate(light) != whole.fate(light) for light in range(whole.lights)]))
+    assert apart[1] < apart[0] < 0.15
 
 
 def test_of_a_lamp_the_sample_that_asked_most_counts() -> None:

@@ -209,10 +209,10 @@ def _penumbra(frame: Frame, light: int) -> NDArray:
 
 
 def _moving_shadow(frame: Frame, light: int, shading: float, tone: Tone) -> NDArray:
-    """Shadows of moving objects over the paled picture, tinted where rays ask dynamic objects only, and on these."""
+    """Shadows of moving objects over the paled picture in greys, tinted where rays ask these only, and on these."""
     found = moving_shadows(frame, light)
     flat = np.asarray(list(MOVING_SHADOW_COLORS.values()), np.float32)[found]
-    paled = PALE + (1.0 - PALE) * np.clip(toned(frame.color, tone), 0.0, 1.0)
+    paled = (PALE + (1.0 - PALE) * (np.clip(toned(frame.color, tone), 0.0, 1.0) @ _LUMINANCE))[..., None]
     shadow = (found == MovingShadow.DARK) | (found == MovingShadow.TRACED)
     return np.where(shadow[..., None], _shaded(frame, flat, shading), paled * flat)
 

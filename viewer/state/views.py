@@ -369,7 +369,7 @@ MOVING_SHADOW_COLORS: dict[MovingShadow, Color] = {
     MovingShadow.TRACED: _hex("A98BC9"),
     MovingShadow.OBJECT: _hex("E8BCD3"),
 }
-"""All but the shadows lie on the paled picture, in pale NON_SHADOW and pale DYNAMIC."""
+"""What is no shadow tints the paled picture: pale NON_SHADOW, and pale DYNAMIC."""
 
 MOVING_SHADOW_NAMES: dict[MovingShadow, str] = {
     MovingShadow.NONE: "neither",
@@ -390,7 +390,7 @@ MOVING_SHADOW_MEANING: dict[MovingShadow, str] = {
 }
 
 PALE = 0.5
-"""How far the picture is paled towards white beneath shadows of moving objects."""
+"""How far the greys of the picture are paled towards white beneath shadows of moving objects."""
 
 WRONG = _hex("FF00FF")
 """A pixel with a wrong shadow answer: a colour of no other view, as pure as no shaded one gets."""
