@@ -53,6 +53,11 @@ class View(StrEnum):
         return _KEYS[self]
 
     @property
+    def also(self) -> str:
+        """Words by which it is found as well."""
+        return _ALSO.get(self, "")
+
+    @property
     def needs_verify(self) -> bool:
         """Whether it can be drawn of verified frames alone."""
         return self in (View.DIFFERENCE, View.WIPE)
@@ -153,6 +158,11 @@ _KEYS = {
     View.TREE: "Shift+T",
     View.FATE: "Shift+X",
     View.MOVING_SHADOW: "Shift+O",
+}
+
+_ALSO = {
+    View.FATE: "why traced culled dynamic reason",
+    View.MOVING_SHADOW: "dynamic only NON_SHADOW darkened",
 }
 
 _EXPLANATIONS = {
