@@ -15,6 +15,7 @@ from tracer.frame import Frame
 from tracer.method import Method
 from tracer.statistics import FrameStatistics
 from viewer.state import terms
+from viewer.state.savings import bar_of
 from viewer.state.views import (
     FATE_COLORS,
     FATE_MEANING,
@@ -91,14 +92,15 @@ def figure_of(frame: Frame, name: str = "") -> Figure:
     method, s = Method.parse(frame.settings.method), frame.statistics
     by_modes = frame.settings.keeps_modes and (method.uses_modes or not method.culls) and not method.clusters
     changes = s.mode_changes if by_modes else None
+    counted = method.uses_modes  # else modes are only looked at, and cost the method nothing
     stages = [_placing(s, changes, _units(method)), _primary(s)]
     if by_modes:
-        stages.append(_occlusion_testing(s))
+        stages.append(_occlusion_testing(s, counted))
     if method.makes:
         stages.append(_preparing(method, s))
     stages += [_shading(s), _shadow_testing(frame, method, by_modes)]
     if changes is not None:
-        stages += [_shadow_mode_setting(changes), _occlusion_mode_setting(s, changes, frame, _units(method))]
+        stages += [_shadow_mode_setting(changes), _occlusion_mode_setting(s, changes, frame, _units(method), counted)]
     title = f"{frame.settings.method}, {frame.width} × {frame.height} pixels, {1e3 * s.seconds:.1f} ms"
     notes = tuple(_notes(s, method, by_modes))
     return Figure(", ".join(filter(None, (name, title))), tuple(stages), _next(s, changes, method), notes)
@@ -122,7 +124,9 @@ def _notes(s: FrameStatistics, method: Method, by_modes: bool) -> Iterator[str]:
 def _stage(
     s: FrameStatistics, name: str, rule: str, phases: tuple[str, ...], section: str = "", **more: object
 ) -> Stage:
-    """A stage with the time of some phases of the frame."""
+    """A stage with the time of some phases of the frame; without any, its time is not the frame's."""
+    if not phases:
+        return Stage(name, section, rule, "not counted", "", 0.0, **more)  # type: ignore[arg-type]
     seconds = sum(s.phases.get(phase, 0.0) for phase in phases)
     part = percent(seconds, s.seconds)
     return Stage(name, section, rule, f"{1e3 * seconds:.1f} ms", part, min(seconds / max(s.seconds, 1e-9), 1.0), **more)  # type: ignore[arg-type]
@@ -147,12 +151,13 @@ def _primary(s: FrameStatistics) -> Stage:
     return _stage(s, "Primary rays", rule, ("primary",), flows=flows, view=View.PRIMITIVE)
 
 
-def _occlusion_testing(s: FrameStatistics) -> Stage:
+def _occlusion_testing(s: FrameStatistics, counted: bool) -> Stage:
     rule = "Where two neighbouring pixels see different primitives, the ray of one is tested against the primitive of "
     rule += "the other: a hit shows that this primitive is partially occluded."
     tip = "rays tested once more, each against one primitive"
-    flows = (Flow("extra tests", s.occlusion_tests, tip=tip, view=View.OCCLUSION),)
-    return _stage(s, "Occlusion testing", rule, ("occlusion testing",), "§2.3", flows=flows, view=View.OCCLUSION)
+    flows = (Flow("extra tests", s.occlusion_tests, tip=tip, view=View.OCCLUSION),) if counted else ()
+    phases = ("occlusion testing",) if counted else ()
+    return _stage(s, "Occlusion testing", rule, phases, "§2.3", flows=flows, view=View.OCCLUSION)
 
 
 _SHOW_WHAT_IS_MADE = {
@@ -182,8 +187,9 @@ def _shading(s: FrameStatistics) -> Stage:
 
 
 def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
-    s, would = frame.statistics, not method.culls
-    rays = _by_fate(s, would)
+    s, bar = frame.statistics, bar_of(frame)
+    always = (Fate.CULLED, Fate.DYNAMIC_ONLY, Fate.TRACED) if method.culls or by_modes else (Fate.TRACED,)
+    rays = dict.fromkeys(always, 0) | {part.fate: part.rays for part in bar.parts}
     if method.uses_modes:
         rule = "Of a fully rendered primitive, FULL_SHADOW: culled. NON_SHADOW: only dynamic objects are tested. All "
         rule += "other rays are traced."
@@ -196,18 +202,19 @@ def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
         rule = "All rays are traced."
     flows = [
         Flow(
-            FATE_NAMES[fate] if not (would and fate in _SAVED) else f"would be {_SAVED[fate]}",
-            number, percent(number, s.shadow.due), FATE_COLORS[fate], would and fate in _SAVED, FATE_MEANING[fate],
-            _FATE_VIEW,
+            _WOULD[fate] if bar.would and by_modes else FATE_NAMES[fate], number, percent(number, s.shadow.due),
+            FATE_COLORS[fate], bar.would and fate.is_saved, FATE_MEANING[fate], _FATE_VIEW,
         )
-        for fate, number in rays.items()
+        for fate, number in sorted(rays.items())
     ]  # fmt: skip
     if frame.settings.verify and s.cuts is None:
         tip = terms.MEANINGS[terms.WRONG]
         wrong = percent(s.shadow.wrong, s.shadow.due)
         flows.append(Flow(terms.WRONG, s.shadow.wrong, wrong, WRONG, False, tip, View.DIFFERENCE))
     due = max(s.shadow.due, 1)
-    parts = tuple(Part(number / due, FATE_COLORS[fate], would and fate in _SAVED) for fate, number in rays.items())
+    parts = tuple(
+        Part(number / due, FATE_COLORS[fate], bar.would and fate.is_saved) for fate, number in sorted(rays.items())
+    )
     return Stage(
         "Shadow testing",
         "§2.4",
@@ -223,21 +230,11 @@ def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
 
 
 _FATE_VIEW = View.SHADOW
-_SAVED = {Fate.CULLED: "culled", Fate.DYNAMIC_ONLY: "dynamic only"}
-
-
-def _by_fate(s: FrameStatistics, would: bool) -> dict[Fate, int]:
-    """How many shadow rays there are of each fate, or would be."""
-    shadow, said = s.shadow, s.by_modes_in_all
-    if would:
-        saved = {Fate.CULLED: said.full_shadow, Fate.DYNAMIC_ONLY: said.non_shadow} if s.by_modes else {}
-        return saved | {Fate.TRACED: shadow.due - sum(saved.values())}
-    fates = {Fate.CULLED: shadow.culled, Fate.DYNAMIC_ONLY: shadow.dynamic_only}
-    if shadow.candidates_only:
-        fates[Fate.CANDIDATES] = shadow.candidates_only
-    if shadow.cache_hits:
-        fates[Fate.CACHED] = shadow.cache_hits
-    return fates | {Fate.TRACED: shadow.traced}
+_WOULD = {
+    Fate.CULLED: "would be culled",
+    Fate.DYNAMIC_ONLY: "… dynamic only",
+    Fate.TRACED: "traced in any case",
+}
 
 
 _GAINED = {
@@ -263,7 +260,7 @@ def _shadow_mode_setting(changes: ModeChanges) -> Stage:
     return Stage("Shadow-mode setting", "§2.5", rule, WITHIN, "", 0.0, flows, parts, tip, View.SHADOW)
 
 
-def _occlusion_mode_setting(s: FrameStatistics, changes: ModeChanges, frame: Frame, units: str) -> Stage:
+def _occlusion_mode_setting(s: FrameStatistics, changes: ModeChanges, frame: Frame, units: str, counted: bool) -> Stage:
     factor = f"{frame.settings.zoom_factor:g}"
     rule = "What is seen and was not found occluded is FULLY_RENDERED. What covers more than "
     rule += f"{factor} times the pixels by which that was found is INIT again."
@@ -282,7 +279,8 @@ def _occlusion_mode_setting(s: FrameStatistics, changes: ModeChanges, frame: Fra
     parts = tuple(Part(changes.units[m.name.lower()] / total, OCCLUSION_COLORS[m]) for m in modes)
     now = ", ".join(f"{count(changes.units[m.name.lower()])} {m.name}" for m in modes)
     more = {"flows": flows, "bar": parts, "bar_tip": f"all {units} by their occlusion modes now: {now}"}
-    return _stage(s, "Occlusion-mode setting", rule, ("mode setting",), "§2.6", view=View.OCCLUSION, **more)
+    phases = ("mode setting",) if counted else ()
+    return _stage(s, "Occlusion-mode setting", rule, phases, "§2.6", view=View.OCCLUSION, **more)
 
 
 def _next(s: FrameStatistics, changes: ModeChanges | None, method: Method) -> str:

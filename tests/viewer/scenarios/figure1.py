@@ -7,10 +7,13 @@ from imgui_bundle import imgui
 from tests.viewer.driver import Driver
 from viewer.output.figure1_layout import Drawing
 from viewer.state.views import View
+from viewer.util.resources import embedded_scenes
 
 
 def figure1(d: Driver) -> None:
     """The figure has the frame's numbers, wherever its panel is, and its parts open the views that show them."""
+    d.drop(embedded_scenes()["figure4"])
+    d.wait(lambda: d.c.session.scene is not None and d.c.session.scene.path.stem == "figure4", "the scene")
     d.fix_resolution(320, 220)
     d.settle()
     d.c.settings.change(method="paper")
