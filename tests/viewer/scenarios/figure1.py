@@ -12,6 +12,7 @@ from viewer.util.resources import embedded_scenes
 
 def figure1(d: Driver) -> None:
     """The figure has the frame's numbers, wherever its panel is, and its parts open the views that show them."""
+    d.settle()
     d.drop(embedded_scenes()["figure4"])
     d.wait(lambda: d.c.session.scene is not None and d.c.session.scene.path.stem == "figure4", "the scene")
     d.fix_resolution(320, 220)
@@ -25,7 +26,7 @@ def figure1(d: Driver) -> None:
         d.ui.show_panel("Figure 1")
         d.frames(5)
         shadow, changes = d.c.frame.statistics.shadow, d.c.frame.statistics.mode_changes
-        assert shadow.culled > 0
+        assert shadow.saved > 0
         told = " ".join(area.tip for area in _drawing(d).areas)
         for name, number in (
             ("shadow rays due", shadow.due),
