@@ -39,7 +39,10 @@ class Frame:
     normal : (h, w, 3) float32
         Shading normal, on the viewer's side.
     modes : (units,) uint32 or uint64
-        The packed words of modes as this frame leaves them; without meaning unless `settings.keeps_modes`.
+        The packed words of modes as this frame leaves them, or would if no more of it were shaded; without meaning
+        unless `settings.keeps_modes`.
+    modes_before : (units,) uint32 or uint64
+        The same as the last frame left them: what shadow testing has gone by.
     pixel_count, highest_count : (units,) int32
         Pixels that a unit covers now, and the most it covered while fully rendered.
     lights : int
@@ -50,7 +53,7 @@ class Frame:
     only_light : int
         The light that they are of, which alone has a column, or None for all (`tracer.one_light`).
     shaded : (h, w) bool
-        The pixels that `asked` and `reached` are known of; None if these are all of them.
+        The pixels that have been shaded, of which `asked` and `reached` are known; None if these are all.
     reference : (h, w, 3) float32
         The picture with every shadow answer right, that of "none" bit for bit; with `verify`.
     wrong : (h, w) int32
@@ -84,6 +87,7 @@ class Frame:
     primitive: NDArray[np.int32]
     normal: NDArray[np.float32]
     modes: NDArray[np.unsignedinteger]
+    modes_before: NDArray[np.unsignedinteger]
     pixel_count: NDArray[np.int32]
     highest_count: NDArray[np.int32]
     lights: int
