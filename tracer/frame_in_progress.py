@@ -28,6 +28,7 @@ from tracer.settings import Settings
 from tracer.shading.blocks import NO_PLANES, TURNS, all_blocks, pixels_of
 from tracer.shading.buffers import Buffers, empty_buffers
 from tracer.shading.surfaces import see_surfaces
+from tracer.shading.teaching import find_untaught
 from tracer.shading.whitted import find_in_tile, shade_tile, trace_primary
 from tracer.state import State
 from tracer.statistics import BuiltPart, gather, sample_counts
@@ -321,9 +322,17 @@ class FrameInProgress:
             return
         if part == TURNS:  # nobody will be filled in
             self.buffers = self.buffers._replace(planes=NO_PLANES)
-        for lanes in self._parts.left_up_to(part, self._fill):
+        for lanes in self._parts.left_up_to(part, self._fill, self._untaught() if part < TURNS else None):
             with self.phase("shading"):
                 self.shade(lanes)
+
+    def _untaught(self) -> NDArray[np.int32] | None:
+        """The pixels of each block that are to be shaded first, as they would teach; None where modes are not kept."""
+        if not self.settings.keeps_modes:
+            return None
+        lanes = all_blocks(self.settings.width, self.settings.height, 0)
+        find_untaught(self.units, self.words, self.history.hidden, lanes)
+        return lanes
 
     def _fill(self) -> None:
         """Fill in the pixels that have not been shaded."""
@@ -333,8 +342,11 @@ class FrameInProgress:
                 self._parts.fill(color, self.workers, self.cancel)
 
     def so_far(self) -> Frame:
-        """A frame of which some pixels have not been shaded: these are filled in from the others."""
+        """A frame of which some pixels have not been shaded: these are filled in from the others.  What it has learnt
+        is kept if it is left now."""
         assert self._parts is not None, "a progressive picture"
+        with self.phase("mode setting"):
+            self.learn()
         self._fill()
         frame = self._frame()
         shaded, frame.color = frame.color, self._parts.give()

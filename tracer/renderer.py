@@ -188,8 +188,6 @@ class Renderer:
             for part in parts:
                 frame.shade_part(part)
                 if part < TURNS:
-                    with frame.phase("mode setting"):
-                        frame.learn()
                     so_far = frame.so_far()
                     with frame.shown():
                         yield so_far

@@ -97,7 +97,7 @@ class NaiveRenderer:
         self.lamps: np.ndarray | None = None
 
     def render(self, time: float, camera: Camera, shaded: np.ndarray | None = None) -> NaiveFrame:
-        """The next frame: the phases of the paper's Figure 1; of pixels (height, width) that are `shaded`, or of all."""
+        """The next frame: the phases of the paper's Figure 1; of `shaded` pixels (height, width), or of all."""
         self._place(time)
         rays = self._primary_rays(pinhole(camera, self.settings.width, self.settings.height))
         met = self._meet([r.origin for r in rays], [r.direction for r in rays])
