@@ -207,10 +207,9 @@ def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
         )
         for fate, number in sorted(rays.items())
     ]  # fmt: skip
-    if frame.settings.verify and s.cuts is None:
-        tip = terms.MEANINGS[terms.WRONG]
-        wrong = percent(s.shadow.wrong, s.shadow.due)
-        flows.append(Flow(terms.WRONG, s.shadow.wrong, wrong, WRONG, False, tip, View.DIFFERENCE))
+    if s.wrong is not None and s.cuts is None:
+        tip = f"{terms.MEANINGS[terms.WRONG]}, of {count(s.wrong.due)} due"
+        flows.append(Flow(terms.WRONG, s.wrong.answers, "", WRONG, False, tip, View.DIFFERENCE))
     due = max(s.shadow.due, 1)
     parts = tuple(
         Part(number / due, FATE_COLORS[fate], bar.would and fate.is_saved) for fate, number in sorted(rays.items())

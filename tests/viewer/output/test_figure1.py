@@ -73,9 +73,17 @@ def test_the_stages_are_those_of_the_paper_with_the_frames_numbers():
     }
     assert figure.title.startswith("a scene, paper, 64 × 48 pixels")
     assert f"{s.mode_changes.units['fully_rendered']:,} of {sum(s.mode_changes.units.values()):,}" in figure.next_frame
-    assert 0.5 < sum(stage.share for stage in figure.stages) <= 1.0
     for stage in figure.stages:
         assert sum(part.share for part in stage.bar) == pytest.approx(1.0 if stage.bar else 0.0)
+
+
+def test_stages_have_their_parts_of_the_time():
+    frame = frame_by("paper")
+    phases = {"place": 0.01, "primary": 0.02, "occlusion testing": 0.03, "surfaces": 0.05, "shading": 0.25}
+    frame.statistics.phases, frame.statistics.seconds = phases | {"mode setting": 0.04}, 0.5
+    figure = figure_of(frame)
+    assert [stage.share for stage in figure.stages] == pytest.approx([0.02, 0.04, 0.06, 0.6, 0.0, 0.0, 0.08])
+    assert (figure.stages[3].time, figure.stages[3].part) == ("300.0 ms", "60.0 %")
 
 
 def test_what_would_be_culled_is_outlined_where_nothing_is():
@@ -110,7 +118,7 @@ def test_a_picture_of_which_a_part_is_shaded_says_so_and_wrong_answers_are_count
     frame.statistics.part = 0.38
     figure = figure_of(frame)
     assert any("38 % of the pixels" in note for note in figure.notes)
-    assert flows_of(figure)["wrong answers"].number == frame.statistics.shadow.wrong
+    assert flows_of(figure)["wrong answers"].number == frame.statistics.wrong.answers
     frame.statistics.part = 1.0
     assert not any("pixels" in note for note in figure_of(frame).notes)
 
