@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
 
+from tracer.method import DEFAULT_METHOD
 from tracer.ray_tree import ray_tree
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
@@ -25,7 +26,6 @@ from viewer.output.legend_parts import named_light
 from viewer.output.ray_json import ray_data
 from viewer.output.ray_rows import RayRows, Row, totals
 from viewer.state.earlier import Earlier
-from viewer.state.methods import DEFAULT
 from viewer.state.verdicts import Filter, Shown
 from viewer.util.messages import printable
 
@@ -34,7 +34,7 @@ def explain(path: Path, options: Namespace) -> None:
     """Trace a frame, and print the tree of a pixel's rays; raises SceneError and ValueError in one line, or
     Cancelled."""
     check_scene_file(path)
-    settings = replace(tracing_settings(options), method=options.method or DEFAULT)
+    settings = replace(tracing_settings(options), method=options.method or DEFAULT_METHOD)
     x, y = options.pixel
     if not (x < settings.width and y < settings.height):
         raise ValueError(f"--pixel {x},{y}: the picture is {settings.width} x {settings.height}")
@@ -46,6 +46,7 @@ def explain(path: Path, options: Namespace) -> None:
         prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
         renderer = Renderer(scene, settings, work.progress)
         times = times_before(scene, time, options.warmup, work)
+        times += [time] * _repeats(options)
         before = [*options.before, *(Earlier(then, options.camera) for then in times)]
         for done, earlier in enumerate(before):
             work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
@@ -58,6 +59,14 @@ def explain(path: Path, options: Namespace) -> None:
         return
     title = f"{path.name}, {time:.3f} s, pixel {x},{y} of {frame.width} × {frame.height}, method {settings.method}"
     _print(tree, scene, Filter(Shown(options.only), light), title)
+
+
+def _repeats(options: Namespace) -> int:
+    """How often the frame itself is traced before: as in the window at rest where no others come before it, so that
+    what culls by earlier frames has seen one."""
+    if options.repeat is not None:
+        return int(options.repeat)
+    return 0 if options.warmup or options.before else 1
 
 
 def _print(tree: RayTree, scene: Scene, shown: Filter, title: str) -> None:

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 
 from tests.commands import ROOM, complaint, run
+from tracer.method import DEFAULT_METHOD
+from viewer.cli import examples
+
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture
@@ -33,6 +38,32 @@ def test_the_tree_names_what_became_of_each_ray(capfd: pytest.CaptureFixture[str
     _, traced, _ = explained(capfd, *seen, "--only", "traced", "--light", 1)
     assert "shadow rays shown: traced of light 1" in traced and "light 0" not in traced.splitlines()[4:]
     assert all("traced" in line for line in traced.splitlines()[3:] if "light 1:" in line)
+
+
+def test_culling_has_seen_a_frame_before_unless_none_is_asked_for(
+    capfd: pytest.CaptureFixture[str], room: Path
+) -> None:
+    """Without frames before it, the frame itself is traced once before, as in the window at rest."""
+    seen = (room, "--pixel", "24,16", "--json")
+
+    def culled(*arguments: object) -> int:
+        told = json.loads(explained(capfd, *seen, *arguments)[1])
+        assert told["method"] == DEFAULT_METHOD
+        return told["due"] - told["traced"]
+
+    assert culled() == culled("--repeat", 1) > 0
+    assert culled("--repeat", 0) == 0
+    assert culled("--frame", 1, "--warmup", 1) == culled("--frame", 1, "--warmup", 1, "--repeat", 0)
+
+
+def test_the_first_example_shows_culling_at_work(capfd: pytest.CaptureFixture[str]) -> None:
+    """Of each of the paper's kinds: culled in full shadow, dynamic objects only in non-shadow, traced in between."""
+    (example,) = re.findall(r"shadowcull (explain \S+ --pixel \S+)  ", (ROOT / "README.md").read_text(encoding="utf-8"))
+    assert example in examples.EXPLAIN
+    code, out, _ = run(capfd, *example.split())
+    assert code == 0 and "method paper" in out
+    assert all(f" culled by {mode}" in out.splitlines()[1] for mode in ("FULL_SHADOW", "NON_SHADOW"))
+    assert "traced (PARTIAL_SHADOW)" in out
 
 
 def test_json_adds_up(capfd: pytest.CaptureFixture[str], room: Path) -> None:
