@@ -50,7 +50,7 @@ class Frame:
     only_light : int
         The light that they are of, which alone has a column, or None for all (`tracer.one_light`).
     shaded : (h, w) bool
-        The pixels that `asked` and `reached` are known of; None if these are all of them.
+        The pixels that have been shaded, of which `asked` and `reached` are known; None if these are all.
     reference : (h, w, 3) float32
         The picture with every shadow answer right, that of "none" bit for bit; with `verify`.
     wrong : (h, w) int32

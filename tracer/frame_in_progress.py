@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.cells import units_of
-from tracer.culling.counters import COUNTERS
+from tracer.culling.counters import COUNTERS, SHADOW, SHADOW_COUNTERS
+from tracer.culling.mode_changes import mode_changes
 from tracer.culling.occlusion import count_pixels, occlusion_testing
 from tracer.fit import remark
 from tracer.frame import Frame
@@ -28,11 +29,13 @@ from tracer.shading.buffers import Buffers, empty_buffers
 from tracer.shading.surfaces import see_surfaces
 from tracer.shading.whitted import find_in_tile, shade_tile, trace_primary
 from tracer.state import State
-from tracer.statistics import BuiltPart, gather, sample_counts
+from tracer.statistics import BuiltPart, WrongCounts, gather, sample_counts, shadow_counts
 from tracer.tiles import Tile, nearest_first, tiles_of, tiles_to_shade
 
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 GOLDEN = 1.32471795724474602596  # the powers of its inverse step through the plane evenly (Roberts 2018)
+
+OF_MODES = ("occlusion testing", "mode setting")  # phases
 
 Cancel = Callable[[], bool] | None
 
@@ -74,6 +77,7 @@ class FrameInProgress:
         self._use_lamps(state.shading.lamps)
         self.resting = state.rest.now
         self._counts = np.zeros((self.workers, COUNTERS), np.int64)
+        self._verified = np.zeros(SHADOW_COUNTERS, np.int64)  # shadow counters of further samples
         self._occlusion_tests = np.zeros(self.workers, np.int64)
         self._begun = False  # shading
         self._passes: list[NDArray[np.int32]] = []  # the pixels that each pass over the tiles has shaded
@@ -98,10 +102,17 @@ class FrameInProgress:
 
     @contextmanager
     def phase(self, name: str) -> Iterator[None]:
-        """Time one phase, which may come in several parts."""
+        """Time one phase, which may come in several parts; what only makes modes to look at is not the frame's time."""
         start = self._state.clock()
         yield
-        self.phases[name] = self.phases.get(name, 0.0) + self._state.clock() - start
+        seconds = self._state.clock() - start
+        self.phases[name] = self.phases.get(name, 0.0) + seconds
+        if name in OF_MODES and not self._culls_by_modes:
+            self._paused += seconds
+
+    @property
+    def _culls_by_modes(self) -> bool:
+        return Method.parse(self.settings.method).uses_modes
 
     def _empty_buffers(self, progressive: bool = False, records: bool = True) -> Buffers:
         """Those of the first sample of each pixel, or of others, of which there are no `records` of lights and work."""
@@ -330,6 +341,7 @@ class FrameInProgress:
         if number == 1:
             self._sum, self._reference_sum = self.buffers.color, self.buffers.reference
         self._sum, self._reference_sum = self._sum + buffers.color, self._reference_sum + buffers.reference
+        self._verified += counts[:, SHADOW:].sum(0)
         taken = np.float32(number + 1)
         self.buffers = self.buffers._replace(
             color=self._sum / taken, reference=self._reference_sum / taken, wrong=self.buffers.wrong + buffers.wrong
@@ -345,6 +357,7 @@ class FrameInProgress:
                 color=self.buffers.color.reshape(whole.color.shape),
                 reference=None if whole.reference is None else self.buffers.reference.reshape(whole.color.shape),
                 wrong=None if whole.wrong is None else self.buffers.wrong.reshape(whole.wrong.shape),
+                statistics=replace(whole.statistics, wrong=self._wrong()),
             )
 
     # --- what became of one pixel's rays (`tracer.ray_tree`) --------------------------------------------
@@ -376,8 +389,11 @@ class FrameInProgress:
     def _frame(self) -> Frame:
         buffers, history, settings = self.buffers, self.history, self.settings
         shape, lights = buffers.primitive.shape, len(self._state.scene.lights)
-        statistics = gather(self._counts, int(self._occlusion_tests.sum()), lights if settings.keeps_modes else 0)
+        tests = int(self._occlusion_tests.sum()) if self._culls_by_modes else 0
+        statistics = gather(self._counts, tests, lights if settings.keeps_modes else 0)
         statistics.part = 1.0 if self._parts is None else self._parts.share
+        if settings.keeps_modes:
+            statistics.mode_changes = mode_changes(self.words, history.words, self.workers)
         if settings.record_lights:
             statistics.samples = sample_counts(buffers.asked, buffers.reached)
         built = self._state.world.built()
@@ -388,6 +404,7 @@ class FrameInProgress:
             method.report(statistics)
             layers |= method.layers(self)
         lamps = int((np.diff(self.shading.lamps.first) > 1).sum())
+        statistics.wrong = self._wrong()
         statistics.say(remark(Method.parse(settings.method), lights, lamps))
         structures = {name: layers.pop(name) for name in list(layers) if not isinstance(layers[name], np.ndarray)}
         parts = self._state.world.parts_built()
@@ -421,6 +438,21 @@ class FrameInProgress:
             layers=layers,
             structures=structures,
             statistics=statistics,
+        )
+
+    def _wrong(self) -> WrongCounts | None:
+        """What verifying has found in all samples so far."""
+        if not self.settings.verify:
+            return None
+        found, wrong = shadow_counts(self._verified + self._counts[:, SHADOW:].sum(0)), self.buffers.wrong
+        shaded = self._parts.pixels if self._parts is not None else None
+        return WrongCounts(
+            answers=int(wrong.sum()),
+            due=found.due,
+            untraced=found.due - found.traced,
+            pixels=int(np.count_nonzero(wrong)),
+            shaded=wrong.size if shaded is None else int(np.count_nonzero(shaded)),
+            samples=self.sample + 1,
         )
 
     def _for_each_tile(self, work: Callable[[Tile, int], None], tiles: list[Tile] | None = None) -> None:

@@ -30,19 +30,20 @@ def html_of(color: NDArray[np.float32], title: str, statistics: FrameStatistics)
     """The picture, (h, w, 3), beside its counters."""
     height, width = color.shape[:2]
     image = base64.b64encode(png_of(color)).decode()
-    rays = statistics.shadow
+    rays, wrong = statistics.shadow, statistics.wrong
     due = max(rays.due, 1)
     lines = [
         ("shadow rays due", f"{rays.due:,}"),
+        ("saved", f"{rays.saved:,} ({rays.saved / due:.1%})"),
         ("culled", f"{rays.culled:,} ({rays.culled / due:.1%})"),
         ("dynamic only", f"{rays.dynamic_only:,} ({rays.dynamic_only / due:.1%})"),
-        ("traced", f"{rays.rays:,}"),
+        ("traced", f"{rays.traced:,} ({rays.traced / due:.1%})"),
         ("traversal steps", f"{rays.traversal_steps + statistics.certificate_steps:,}"),
         ("intersection tests", f"{rays.intersection_tests + statistics.certificate_tests:,}"),
         ("frame", f"{1000.0 * statistics.seconds:.1f} ms"),
     ]
-    if rays.wrong:
-        lines.insert(4, ("wrong answers", f"{rays.wrong:,}"))
+    if wrong is not None:
+        lines.insert(5, ("wrong answers", f"{wrong.answers:,}"))
     rows = "".join(
         f"<tr><td>{escape(name)}</td><td style='text-align:right'>{value}</td></tr>" for name, value in lines
     )

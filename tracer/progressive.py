@@ -55,6 +55,11 @@ class Parts:
         inside = self.shaded[EDGE:-EDGE, EDGE:-EDGE]
         return int(np.bitwise_count(inside).sum()) / (TURNS * inside.size)
 
+    @property
+    def pixels(self) -> NDArray[np.bool_] | None:
+        """(height, width): which pixels have been shaded; None where all have."""
+        return None if self.share >= 1.0 else pixels_of(self.shaded, self._width, self._height)
+
     def left_up_to(self, part: float, fill: Callable[[], None]) -> Iterator[NDArray[np.int32]]:
         """The pixels of each block that are to be shaded until so many sixteenths are, in one step or in two, between
         which `fill` has to fill in the others."""
@@ -136,9 +141,9 @@ class Parts:
         if frame.reference is not None and frame.wrong is not None:
             frame.reference = frame.color + self.stretched(frame.reference - shaded)
             frame.wrong = frame.wrong.copy()
+        frame.shaded = pixels_of(self.shaded, self._width, self._height)
         if frame.asked is not None and frame.reached is not None:
             frame.asked, frame.reached = frame.asked.copy(), frame.reached.copy()
-            frame.shaded = pixels_of(self.shaded, self._width, self._height)
         if frame.saved is not None and frame.cost is not None and frame.due_rays is not None:
             frame.saved, frame.cost, frame.due_rays = (
                 self.stretched(work) for work in (frame.saved, frame.cost, frame.due_rays)

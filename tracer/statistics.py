@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.counters import BY_LIGHT, PRIMARY, RAYS, SECONDARY, SHADOW, STEPS, TESTS, ShadowCounter
+from tracer.culling.mode_changes import ModeChanges
 
 if TYPE_CHECKING:
     from tracer.culling.certified.scheduler import Counts
@@ -53,7 +54,8 @@ class ShadowCounts(RayCounts):
     cache_hits : int
         Those that a cached occluder blocked.
     wrong : int
-        Wrong answers, counted with `Settings.verify`.
+        Those whose answer is wrong, counted with `Settings.verify`. As all these counts, of the first sample of each
+        pixel; `FrameStatistics.wrong` is of all.
     passed_over : int
         Pairs of a point and a light's sample that nobody looked at, as it is proven that the light does not reach any
         point nearby. They are not among those that are due, unless the light of each is recorded.
@@ -66,6 +68,49 @@ class ShadowCounts(RayCounts):
     cache_hits: int = 0
     wrong: int = 0
     passed_over: int = 0
+
+    @property
+    def saved(self) -> int:
+        """Those that the static scene was not asked about: culled, or tested against dynamic objects only."""
+        return self.culled + self.dynamic_only
+
+    @property
+    def traced(self) -> int:
+        """Those of which nothing was known: all that are due but were neither saved, nor tested against candidates
+        only, nor blocked by a cached occluder."""
+        return self.due - self.saved - self.candidates_only - self.cache_hits
+
+
+@dataclass
+class WrongCounts:
+    """What verifying has found, in all samples of all pixels that are shaded.
+
+    A shadow answer is wrong if tracing the ray through the whole scene gives another one, and a pixel is wrong if any
+    answer that counts for it is: to any light, at any bounce, in any sample. Clusters of lights give no wrong answers;
+    with them a pixel is wrong that differs by more than `Settings.lightcuts_error`.
+
+    Attributes
+    ----------
+    answers : int
+        Wrong answers.
+    due : int
+        Shadow rays that had to be answered.
+    untraced : int
+        Those of them of which anything was known (`ShadowCounts.traced`): no other answer can be wrong.
+    pixels : int
+        Wrong pixels.
+    shaded : int
+        Pixels that are shaded, and so verified.
+    samples : int
+        Samples of each pixel.
+    """
+
+    answers: int = 0
+    due: int = 0
+    untraced: int = 0
+    pixels: int = 0
+    shaded: int = 0
+    samples: int = 1
 
 
 @dataclass
@@ -207,7 +252,8 @@ class FrameStatistics:
     shadow : ShadowCounts
         Shadow rays.
     occlusion_tests : int
-        Extra tests between neighbouring pixels (§2.3).
+        Extra tests between neighbouring pixels (§2.3), of a method that culls by modes. Where modes are kept beside a
+        method (`Settings.modes`), they are only looked at: their tests and the time of these are not the method's.
     certificates, certificate_steps, certificate_tests : int
         Certificates that were made, and the steps and tests that they took; or what a method makes in their place
         (`tracer.method.Kind.makes`).
@@ -223,10 +269,14 @@ class FrameStatistics:
         How much of the tree there is after this frame; None for trees that are built before rays come.
     cuts : CutCounts or None
         What cuts of lights there were; with methods that have them.
+    wrong : WrongCounts or None
+        What is wrong, with `Settings.verify`.
     seconds : float
-        Time of the whole frame.
+        Time of the whole frame, without that of modes that are only looked at.
     by_modes : list of SaidByModes
         For each light that has modes; empty if none are kept.
+    mode_changes : ModeChanges or None
+        How modes changed in this frame; None if none are kept.
     phases : dict of str to float
         Seconds of each phase of Figure 1.
     """
@@ -244,8 +294,10 @@ class FrameStatistics:
     samples: SampleCounts | None = None
     built: BuiltPart | None = None
     cuts: CutCounts | None = None
+    wrong: WrongCounts | None = None
     seconds: float = 0.0
     by_modes: list[SaidByModes] = field(default_factory=list)
+    mode_changes: ModeChanges | None = None
     phases: dict[str, float] = field(default_factory=dict)
 
     def add_made(self, made: Counts) -> None:

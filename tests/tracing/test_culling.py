@@ -29,6 +29,19 @@ def test_what_is_seen_whole_is_culled_in_the_next_frame():
     assert second.statistics.shadow.wrong == 0
 
 
+def test_what_is_due_is_saved_or_traced_and_saved_is_culled_or_dynamic_only():
+    renderer = tracer.Renderer(shadow_scene(), replace(SETTINGS, verify=False))
+    first, second = (renderer.render().statistics.shadow for _ in range(2))
+    assert (first.saved, first.traced) == (0, first.due)
+    assert second.saved == second.culled + second.dynamic_only > 0
+    assert second.traced == second.due - second.saved == second.rays, "nothing moves"
+    other = tracer.Renderer(shadow_scene(), replace(SETTINGS, method="certified+cache"))
+    for _ in range(4):
+        shadow = other.render().statistics.shadow
+    assert shadow.candidates_only + shadow.cache_hits > 0
+    assert shadow.due == shadow.saved + shadow.candidates_only + shadow.cache_hits + shadow.traced
+
+
 def test_modes_tell_lit_shadowed_and_partly_shadowed_apart():
     frame = tracer.Renderer(shadow_scene(), replace(SETTINGS, width=96, height=96)).render()
     seen_whole = occlusion_mode(frame.modes) == OcclusionMode.FULLY_RENDERED

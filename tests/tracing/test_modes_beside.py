@@ -53,7 +53,7 @@ def _differing(scene: tracer.Scene, frames: Iterable[tuple[float, Camera]], seen
             if frame.color.tobytes() != picture.color.tobytes():
                 result.append(f"picture of frame {number} with {method}")
             assert frame.statistics.by_modes == said, (number, method)
-            assert frame.statistics.occlusion_tests == expected.statistics.occlusion_tests
+            assert frame.statistics.occlusion_tests == 0, "of modes that are only looked at, nothing counts"
             other_shadow = frame.statistics.shadow
             seen.update({f"{method}: {name}": getattr(other_shadow, name) for name in ("culled", "candidates_only")})
             seen["cache hits"] += other_shadow.cache_hits

@@ -11,6 +11,7 @@ import tracer
 from tests.scenes import loaded, world_of
 from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.same import assert_verified
+from tracer.statistics import FrameStatistics
 
 SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
 SETTINGS = tracer.Settings(width=128, height=128, depth=10, verify=True)
@@ -45,3 +46,54 @@ def test_the_work_at_pixels_adds_up_to_that_of_the_frame(method: str):
     assert frame.saved.sum() == spared and (spared > 0) == (method != "none")
     rays = frame.statistics.primary.rays + frame.statistics.secondary.rays
     assert frame.saved.sum() + frame.cost.sum() == rays + shadow.due
+
+
+def test_what_is_wrong_is_counted_in_all_samples_and_is_what_pixels_show():
+    scene = loaded(SCENES / "default.aff")
+    one, four = (tracer.Renderer(scene, replace(SETTINGS, samples=samples)) for samples in (1, 4))
+    for number in range(20, 23):
+        first, all_samples = (renderer.render(scene.frame_time(number)) for renderer in (one, four))
+    for frame, samples in ((first, 1), (all_samples, 4)):
+        found = frame.statistics.wrong
+        assert found.answers == frame.wrong.sum() and found.pixels == (frame.wrong > 0).sum() > 0
+        assert (found.samples, found.shaded) == (samples, frame.wrong.size)
+    shadow = first.statistics.shadow
+    found = first.statistics.wrong
+    assert (found.answers, found.due, found.untraced) == (shadow.wrong, shadow.due, shadow.saved)
+    more, counted = all_samples.statistics.wrong, all_samples.statistics.shadow
+    assert counted.wrong == shadow.wrong < more.answers and 3.9 * counted.due < more.due < 4.1 * counted.due
+    assert more.untraced < more.due
+
+
+def test_samples_that_are_added_later_count_what_is_wrong_as_those_at_once():
+    scene = loaded(SCENES / "default.aff")
+    renderer, whole = (tracer.Renderer(scene, replace(SETTINGS, samples=samples)) for samples in (1, 3))
+    for number in range(20, 22):
+        *_, refined = renderer.refine(scene.frame_time(number), parts=(2, 16), samples=3)
+        expected = whole.render(scene.frame_time(number))
+    assert refined.statistics.wrong == expected.statistics.wrong and refined.statistics.wrong.answers > 0
+
+
+def test_of_a_picture_in_part_what_is_wrong_is_of_the_pixels_that_are_shaded():
+    scene = loaded(SCENES / "default.aff")
+    renderer = tracer.Renderer(scene, SETTINGS)
+    renderer.render(scene.frame_time(20))
+    partly, whole = renderer.refine(scene.frame_time(21), parts=(2, 16))
+    found = partly.statistics.wrong
+    assert found.shaded == partly.shaded.sum() == partly.wrong.size // 8 and whole.shaded is None
+    assert not partly.wrong[~partly.shaded].any() and found.pixels == (partly.wrong > 0).sum()
+    assert 0 < found.due < whole.statistics.wrong.due
+
+
+def test_modes_that_are_only_looked_at_cost_a_method_no_tests_and_no_time():
+    scene, ticks = loaded(SCENES / "default.aff"), iter(range(1_000_000))
+
+    def second_frame(method: str) -> FrameStatistics:
+        settings = replace(SETTINGS, method=method, modes=True, verify=False)
+        renderer = tracer.Renderer(scene, settings, clock=lambda: float(next(ticks)))
+        return [renderer.render(scene.frame_time(n)) for n in (20, 21)][-1].statistics
+
+    none, paper = second_frame("none"), second_frame("paper")
+    assert none.by_modes and none.occlusion_tests == 0 < paper.occlusion_tests
+    looked_at = none.phases["occlusion testing"] + none.phases["mode setting"]
+    assert looked_at > 0 and paper.seconds - none.seconds == looked_at

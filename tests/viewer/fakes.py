@@ -26,7 +26,7 @@ from tracer.scene.model import (
     Triangles,
     empty_quadrics,
 )
-from tracer.statistics import BuiltPart, CutCounts, FrameStatistics
+from tracer.statistics import BuiltPart, CutCounts, FrameStatistics, WrongCounts
 
 TINY_SCENE = """
 b 0.3 0.4 0.5
@@ -96,7 +96,11 @@ def make_frame(settings: Settings | None = None, time: float = 0.0, camera: Came
     wrong[2:3, 3:4], wrong[6:7, 5:6] = 1, 2
     statistics = FrameStatistics()
     statistics.shadow.due, statistics.shadow.culled = 4 * width * height, width * height
-    statistics.shadow.wrong = int(wrong.sum()) if settings.verify else 0
+    if settings.verify:
+        statistics.shadow.wrong = int(wrong.sum())
+        statistics.wrong = WrongCounts(
+            int(wrong.sum()), statistics.shadow.due, width * height, int((wrong > 0).sum()), width * height
+        )
     return Frame(
         time=time,
         camera=camera or Camera((0.0, 1.0, 5.0), (0.0, 0.0, -1.0)),

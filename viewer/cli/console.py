@@ -21,7 +21,6 @@ from rich.text import Text
 from tracer.scene.model import Cancelled
 from tracer.statistics import FrameStatistics
 from viewer.state import terms
-from viewer.state.history import fully_traced
 from viewer.util.messages import in_one_line, printable, say
 from viewer.util.time_left import TimeLeft
 
@@ -129,10 +128,8 @@ def terminal_width() -> int | None:
     return console.width if console.is_terminal else None
 
 
-def statistics_table(
-    statistics: FrameStatistics, title: str, method: str, verified: bool = False, remark: str = ""
-) -> Table:
-    """The counters of a frame by a method, primary, secondary and shadow rays apart; wrong answers where it was
+def statistics_table(statistics: FrameStatistics, title: str, method: str, remark: str = "") -> Table:
+    """The counters of a frame by a method, primary, secondary and shadow rays apart; what is wrong where it was
     verified."""
     caption = "\n".join(filter(None, (statistics.decision, remark))) or None
     table = Table(title=title, title_justify="left", title_style="bold", caption=caption)
@@ -147,18 +144,23 @@ def statistics_table(
     shadow = statistics.shadow
     due = max(shadow.due, 1)
     table.add_row(f"shadow rays {terms.DUE}", "", "", f"{shadow.due:,}")
-    table.add_row(f"  {terms.CULLED}", f"{shadow.culled / due:.1%}", "", f"{shadow.culled:,}")
-    table.add_row(f"  {terms.DYNAMIC_ONLY}", f"{shadow.dynamic_only / due:.1%}", "", f"{shadow.dynamic_only:,}")
+    table.add_row(f"  {terms.SAVED}", f"{shadow.saved / due:.1%}", "", f"{shadow.saved:,}")
+    table.add_row(f"    {terms.CULLED}", f"{shadow.culled / due:.1%}", "", f"{shadow.culled:,}")
+    table.add_row(f"    {terms.DYNAMIC_ONLY}", f"{shadow.dynamic_only / due:.1%}", "", f"{shadow.dynamic_only:,}")
     if shadow.candidates_only:
         table.add_row(
             f"  {terms.CANDIDATES_ONLY}", f"{shadow.candidates_only / due:.1%}", "", f"{shadow.candidates_only:,}"
         )
     if shadow.cache_hits:
         table.add_row(f"  {terms.CACHE_HITS}", f"{shadow.cache_hits / due:.1%}", "", f"{shadow.cache_hits:,}")
-    table.add_row(f"  {terms.TRACED}", f"{fully_traced(shadow) / due:.1%}", "", f"{fully_traced(shadow):,}")
-    if verified:
-        of = f"{shadow.wrong / due:.3%}" if statistics.cuts is None else ""  # it counts pixels, not rays
-        table.add_row(f"  {terms.wrong_of(statistics)}", of, "", f"{shadow.wrong:,}")
+    table.add_row(f"  {terms.TRACED}", f"{shadow.traced / due:.1%}", "", f"{shadow.traced:,}")
+    wrong = statistics.wrong
+    if wrong is not None:
+        of = f", all {wrong.samples} samples" if wrong.samples > 1 else ""
+        if statistics.cuts is None:
+            table.add_row(f"{terms.WRONG}{of}", f"{wrong.answers / max(wrong.due, 1):.3%}", "", f"{wrong.answers:,}")
+        name = terms.WRONG_PIXELS if statistics.cuts is None else terms.BEYOND
+        table.add_row(f"{name}{of}", f"{wrong.pixels / max(wrong.shaded, 1):.3%}", "", f"{wrong.pixels:,}")
     if shadow.passed_over:
         table.add_row(f"samples {terms.PASSED_OVER}", "", "", f"{shadow.passed_over:,}")
     if statistics.certificates and terms.made(method)[0]:

@@ -96,8 +96,8 @@ def render(path: Path, options: Namespace) -> None:
             tev.send(options.to_tev, f"{scene.path.stem} {wanted.time:g} s {settings.method}", frame)
     title = f"{path.name}, {wanted.time:.3f} s, {frame.width} × {frame.height}, method {settings.method}"
     by_beams = terms.asks_by_beams(frame, LampSamples().any(scene.lights, frame.settings))
-    verified, beams = frame.settings.verify, terms.BY_BEAMS if by_beams else ""
-    print_table(statistics_table(frame.statistics, title, frame.settings.method, verified, beams))
+    beams = terms.BY_BEAMS if by_beams else ""
+    print_table(statistics_table(frame.statistics, title, frame.settings.method, beams))
     for written in (options.output, options.buffers):
         if written is not None:
             print(printable(written))

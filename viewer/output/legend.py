@@ -16,7 +16,6 @@ from tracer.statistics import CutErrors
 from viewer.output.legend_counts import (
     LegendRow,
     certificate_legend,
-    difference_legend,
     lights_legend,
     occlusion_legend,
     penumbra_legend,
@@ -25,7 +24,7 @@ from viewer.output.legend_counts import (
 )
 from viewer.output.legend_of_space import of_cell_lights, of_cuts, of_tree, of_voxels
 from viewer.output.legend_parts import ARRIVAL_NAMES, AS_USUAL, Chosen, Entry, Legend, Note, Scale, Tone, light_in_words
-from viewer.state import terms
+from viewer.state import terms, verified
 from viewer.state.readings import can_draw, has_modes_of_cells, span_of
 from viewer.state.tone import clipped
 from viewer.state.views import (
@@ -210,34 +209,28 @@ def _lights(frame: Frame, view: View, chosen: Chosen) -> Legend:
 
 
 def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
-    """What is wrong in the frame, or why nothing is."""
-    found, shadow = difference_legend(frame), frame.statistics.shadow
-    pixels = f"{count(found.pixels)} ({percent(found.pixel_share, 1.0)})"
-    colored, samples = view is View.DIFFERENCE or chosen.marked, frame.settings.samples
+    """What is wrong in the frame, or of what it is said that nothing is."""
+    statistics, found = frame.statistics, verified.counts_of(frame.statistics)
+    colored, samples = view is View.DIFFERENCE or chosen.marked, found.samples
     name = "around wrong pixels" if colored and view is not View.DIFFERENCE else "wrong pixels"
     name += f", all {samples} samples" if samples > 1 else ""
-    entries = (Entry(name, WRONG if colored else None, (pixels,), _WRONG_PIXELS),)
-    facts = (
-        Entry(
-            "wrong answers, first sample" if samples > 1 else "wrong answers",
-            None,
-            (f"{count(found.answers)} ({percent(found.answers, found.due)} of those due)",),
-            _ANSWERS,
-        ),
-        Entry("largest difference", None, (f"{255.0 * found.largest:.0f} of 255",), _LARGEST),
+    pixels = f"{count(found.pixels)} ({percent(found.pixels, found.shaded)})"
+    entries = (Entry(name, WRONG if colored else None, (pixels,), terms.MEANINGS[terms.WRONG_PIXELS]),)
+    largest, seen = verified.largest_difference(frame)
+    of_pixels = (
+        Entry("of them look otherwise", None, (count(seen),), _LOOK_OTHERWISE),
+        Entry("largest difference", None, (verified.difference_in_words(largest),), _LARGEST),
     )
-    cuts = frame.statistics.cuts
+    cuts = statistics.cuts
     if cuts is not None and cuts.errors is not None:
-        return Legend(view.label, (), entries, facts=(*_cut_errors(cuts.errors), facts[1]))
-    if not Method.parse(frame.settings.method).culls:
-        note = Note("Culling is off: every shadow ray is traced, so nothing can be wrong.", Tone.WARNING)
-    elif not any((shadow.culled, shadow.candidates_only, shadow.dynamic_only, shadow.cache_hits, shadow.passed_over)):
-        note = Note("No shadow ray of this frame was culled, so none can be wrong.", Tone.WARNING)
-    elif not found.pixels:
-        note = Note("Nothing is wrong: every culled shadow ray has the answer that tracing gives.", Tone.GOOD)
-    else:
-        return Legend(view.label, (), entries, facts=facts)
-    return Legend(view.label, (), entries, notes=(note,))
+        return Legend(view.label, (), entries, facts=(*_cut_errors(cuts.errors), *of_pixels))
+    if found.answers:
+        answers = f"{count(found.answers)} ({percent(found.answers, found.due)} of those due)"
+        facts = (Entry(terms.WRONG, None, (answers,), terms.MEANINGS[terms.WRONG]), *of_pixels)
+        notes = (Note(verified.of_what(statistics)),) if statistics.part < 1.0 else ()
+        return Legend(view.label, (), entries, facts=facts, notes=notes)
+    said = f"{verified.in_words(statistics)}."
+    return Legend(view.label, (), entries, notes=(Note(said, Tone.PLAIN if found.untraced else Tone.WARNING),))
 
 
 _TOO_BRIGHT = "red, green or blue is brighter than the screen's"
@@ -257,6 +250,5 @@ _SHARE = "of the samples that pixels in the penumbra face, those that reach them
 _BY_MODES = "of this frame, at all bounces, by the modes after the frame before: what the paper's method saves"
 _IN_ALL_SAVED = "of the first sample of each pixel; the share is of the shadow rays due"
 _IN_ALL = "of the first sample of each pixel; the share is of the rays traced without culling"
-_WRONG_PIXELS = "with a wrong answer for any light, at any bounce, in any sample"
-_ANSWERS = "shadow rays for which culling and tracing disagree; of the first sample of each pixel"
-_LARGEST = "between a wrong pixel's colour and the right one; a wrong answer deep in reflections may change nothing"
+_LOOK_OTHERWISE = "than with every answer right; one deep in reflections may change nothing that a screen shows"
+_LARGEST = "between a channel of a wrong pixel's colour and the right one, also where both are too bright for a screen"

@@ -19,7 +19,6 @@ from viewer.state.readings import (
     lights_top,
     samples_of,
     units_of,
-    verified,
     voxels_of,
     whole_of,
     work_of,
@@ -241,24 +240,3 @@ def cell_lights_legend(frame: Frame) -> CellLightsLegend:
     return CellLightsLegend(
         float(asked[seen].mean()) if seen.any() else 0.0, lights_top(asked), cells, bool((hit & ~seen).any())
     )
-
-
-@dataclass(frozen=True)
-class DifferenceLegend:
-    """How wrong a verified frame is: wrong answers of the rays that `due` counts, pixels with any, and the largest
-    difference of a channel of the colour shown, from 0 to 1."""
-
-    answers: int
-    due: int
-    pixels: int
-    pixel_share: float
-    largest: float
-
-
-def difference_legend(frame: Frame) -> DifferenceLegend:
-    """Counts of a verified frame."""
-    wrong, reference = verified(frame.wrong), verified(frame.reference)
-    pixels = int(np.count_nonzero(wrong))
-    apart = np.abs(np.clip(frame.color[wrong > 0], 0.0, 1.0) - np.clip(reference[wrong > 0], 0.0, 1.0))
-    shadow = frame.statistics.shadow
-    return DifferenceLegend(shadow.wrong, shadow.due, pixels, pixels / wrong.size, float(apart.max(initial=0.0)))

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from tracer.method import Method
 from viewer.services.controller import Controller
 from viewer.state import navigation
-from viewer.state.history import fully_traced
 from viewer.state.methods import BY_MODES, with_base
 from viewer.state.views import View
 
@@ -159,7 +158,7 @@ def _until(met: Callable[[], bool]) -> Iterator[float]:
 
 def _culls(c: Controller) -> bool:
     """Whether culling has saved something in the newest frame."""
-    return c.frame is not None and fully_traced(c.frame.statistics.shadow) < c.frame.statistics.shadow.due
+    return c.frame is not None and c.frame.statistics.shadow.traced < c.frame.statistics.shadow.due
 
 
 def _toggle_culling(c: Controller, show_panel: Callable[[str], None]) -> Iterator[float]:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from tracer.frame import Frame
 from viewer.state import terms
-from viewer.state.history import fully_traced
 from viewer.util.numbers import count
 
 
@@ -71,13 +70,15 @@ def _rows(a: Frame, b: Frame) -> Iterator[Row]:
         shaded = [round(one.primitive.size * one.statistics.part) for one in (a, b)]
         yield Row("Shaded pixels", "so far; all counts but those of primary rays are theirs", shaded[0], shaded[1])
     yield Row("Shadow rays", heading=True)
-    for term in (terms.DUE, terms.CULLED, terms.DYNAMIC_ONLY, terms.CANDIDATES_ONLY, terms.CACHE_HITS):
+    for term in (terms.DUE, terms.SAVED, terms.CULLED, terms.DYNAMIC_ONLY, terms.CANDIDATES_ONLY, terms.CACHE_HITS):
         field = {terms.CANDIDATES_ONLY: "candidates_only"}.get(term, term.replace(" ", "_"))
         yield Row(term.capitalize(), terms.MEANINGS[term], getattr(s.shadow, field), getattr(t.shadow, field))
-    traced = fully_traced(s.shadow), fully_traced(t.shadow)
+    traced = s.shadow.traced, t.shadow.traced
     yield Row(terms.TRACED.capitalize(), terms.MEANINGS[terms.TRACED], *traced)
-    wrong = [f.statistics.shadow.wrong if f.settings.verify else None for f in (a, b)]
-    yield Row(terms.WRONG.capitalize(), terms.MEANINGS[terms.WRONG], wrong[0], wrong[1])
+    found = [one.statistics.wrong for one in (a, b)]
+    for term, of in ((terms.WRONG, "answers"), (terms.WRONG_PIXELS, "pixels")):
+        wrong = [getattr(one, of) if one is not None else None for one in found]
+        yield Row(term.capitalize(), terms.MEANINGS[term], wrong[0], wrong[1])
     yield Row(
         terms.PASSED_OVER.capitalize(), terms.MEANINGS[terms.PASSED_OVER], s.shadow.passed_over, t.shadow.passed_over
     )

@@ -13,7 +13,6 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
 from tracer.scene.edits import Edited
 from tracer.statistics import FrameStatistics
-from viewer.state.history import fully_traced
 from viewer.state.readings import has_modes_of_cells
 from viewer.state.views import WRONG, Certificate
 
@@ -154,7 +153,7 @@ def _counters(before: FrameStatistics, after: FrameStatistics) -> tuple[Counter,
             "culled": s.shadow.culled,
             "dynamic only": s.shadow.dynamic_only,
             "candidates": s.shadow.candidates_only,
-            "traced": fully_traced(s.shadow),
+            "traced": s.shadow.traced,
             "steps": sum(kind.traversal_steps for kind in kinds),
             "tests": sum(kind.intersection_tests for kind in kinds),
             "certified": s.certificates,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from tracer.statistics import SampleCounts, ShadowCounts
+from tracer.statistics import SampleCounts
 
 CAPACITY = 600
 
@@ -48,11 +48,6 @@ _OF_ALL = {
 """What is part of a series, and done for all pixels, however many of them are shaded: primary rays and proofs."""
 
 
-def fully_traced(shadow: ShadowCounts) -> int:
-    """Shadow rays that were due and that nothing was known of."""
-    return shadow.due - shadow.culled - shadow.candidates_only - shadow.dynamic_only - shadow.cache_hits
-
-
 class History:
     """Ring buffers of float64, one per name of `SERIES`; `frames` counts all that were ever added."""
 
@@ -78,7 +73,7 @@ class History:
             dynamic_only=s.shadow.dynamic_only,
             candidates_only=s.shadow.candidates_only,
             cache_hits=s.shadow.cache_hits,
-            traced=fully_traced(s.shadow),
+            traced=s.shadow.traced,
             steps=sum(p.traversal_steps for p in parts) + s.certificate_steps,
             tests=sum(p.intersection_tests for p in parts) + s.certificate_tests,
             shadow_steps=s.shadow.traversal_steps + s.certificate_steps,

@@ -8,15 +8,16 @@ from __future__ import annotations
 from tracer.frame import Frame
 from tracer.geometry.accelerators import BVH8, KD_TREE, LAZY
 from tracer.method import Method
-from tracer.statistics import FrameStatistics
 
 DUE = "due"
 CULLED = "culled"
 DYNAMIC_ONLY = "dynamic only"
+SAVED = "saved"
 CANDIDATES_ONLY = "candidates"
 CACHE_HITS = "cache hits"
 TRACED = "traced"
 WRONG = "wrong answers"
+WRONG_PIXELS = "wrong pixels"
 BEYOND = "pixels beyond the error"
 PASSED_OVER = "passed over"
 BUILT = "built"
@@ -33,14 +34,16 @@ PENUMBRA = "penumbra"
 
 MEANINGS = {
     DUE: "one towards each light on the visible side of a surface, at all bounces",
-    CULLED: "known to be in shadow: not traced at all",
-    DYNAMIC_ONLY: "nothing static is in the way: tested against dynamic objects, those that move",
+    CULLED: "known to be in shadow, or else known for certain: nothing was asked",
+    SAVED: "culled or dynamic only: nothing static was asked",
+    DYNAMIC_ONLY: "nothing static is in the way: tested against dynamic objects alone, where any can be",
     CANDIDATES_ONLY: "tested against a few primitives and dynamic objects instead of the whole scene",
     CACHE_HITS: "blocked by the primitive that blocked a ray there before",
     TRACED: "nothing was known: traced through the whole scene",
     PASSED_OVER: "samples of lights, at all points, that are proven not to reach them: not even looked at, and not due",
     BUILT: "of the tree, which is built where rays arrive: primitives in nodes that are built",
-    WRONG: "shadow rays for which culling and tracing disagree",
+    WRONG: "shadow rays for which culling and tracing disagree, in all samples",
+    WRONG_PIXELS: "with a wrong answer to any light, at any bounce, in any sample",
     BEYOND: "pixels that differ from the picture by all lights by more than clusters of lights may be wrong by",
 }
 
@@ -84,12 +87,6 @@ def things(made: str) -> str:
     return " and ".join(one.rsplit(" ", 1)[0] for one in made.split(" and "))
 
 
-def wrong_of(statistics: FrameStatistics) -> str:
-    """What is counted as wrong in a verified frame: answers, or pixels where it was shaded by clusters of lights."""
-    return BEYOND if statistics.cuts is not None else WRONG
-
-
 def asks_by_beams(frame: Frame, lamps: bool) -> bool:
     """Whether beams have asked some of what is counted as tests of shadow rays; `lamps`: not all lights are points."""
-    shadow = frame.statistics.shadow
-    return lamps and frame.certificates is not None and shadow.culled + shadow.dynamic_only > 0
+    return lamps and frame.certificates is not None and frame.statistics.shadow.saved > 0

@@ -13,6 +13,7 @@ from enum import IntEnum, StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 
 Color = tuple[float, float, float]
@@ -288,6 +289,50 @@ ARRIVAL_MEANING = {
     Arrival.MOST: "more than half of the samples that it faces reach it, but not all",
     Arrival.LIT: "all samples that it faces reach it",
     Arrival.UNKNOWN: "this pixel has not been shaded yet",
+}
+
+FATE_COLORS: dict[Fate, Color] = {
+    Fate.NONE: ARRIVAL_COLORS[Arrival.UNKNOWN],
+    Fate.FACES_AWAY: ARRIVAL_COLORS[Arrival.AWAY],
+    Fate.CULLED: SHADOW_COLORS[ShadowMode.FULL_SHADOW],
+    Fate.DYNAMIC_ONLY: SHADOW_COLORS[ShadowMode.NON_SHADOW],
+    Fate.CANDIDATES: _hex("56B4E9"),
+    Fate.CACHED: _hex("A9DAF5"),
+    Fate.PARTLY_OCCLUDED: OCCLUSION_COLORS[OcclusionMode.PARTIALLY_OCCLUDED],
+    Fate.PARTIAL_SHADOW: SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW],
+    Fate.NOT_SEEN_WHOLE: OCCLUSION_COLORS[OcclusionMode.INIT],
+    Fate.DYNAMIC: OCCLUSION_COLORS[OcclusionMode.DYNAMIC],
+    Fate.TRACED: _hex("D3D6DC"),
+}
+"""Of a shadow ray; a fate that a mode brings about has the colour of this mode. TRACED also stands for all traced."""
+
+FATE_NAMES: dict[Fate, str] = {
+    Fate.NONE: "not known yet",
+    Fate.FACES_AWAY: "faces away",
+    Fate.CULLED: "culled",
+    Fate.DYNAMIC_ONLY: "dynamic only",
+    Fate.CANDIDATES: "candidates",
+    Fate.CACHED: "cache",
+    Fate.PARTLY_OCCLUDED: "traced: partly occluded",
+    Fate.PARTIAL_SHADOW: "traced: partly in shadow",
+    Fate.NOT_SEEN_WHOLE: "traced: not seen whole yet",
+    Fate.DYNAMIC: "traced: dynamic",
+    Fate.TRACED: "traced",
+}
+
+FATE_MEANING: dict[Fate, str] = {
+    Fate.NONE: "this pixel has not been shaded yet",
+    Fate.FACES_AWAY: "no shadow ray is due: the surface faces away from the light",
+    Fate.CULLED: "answered without asking any geometry: with the paper's method, FULL_SHADOW of a fully rendered "
+    "primitive (§2.4)",
+    Fate.DYNAMIC_ONLY: "asked dynamic objects alone: NON_SHADOW of a fully rendered primitive (§2.4)",
+    Fate.CANDIDATES: "asked the few static primitives that can block it, and dynamic objects",
+    Fate.CACHED: "blocked by what blocked the last ray from here",
+    Fate.PARTLY_OCCLUDED: "traced: something hides a part of the primitive, or the screen's edge cuts it off (§2.3)",
+    Fate.PARTIAL_SHADOW: "traced: some shadow rays of the primitive were blocked and some were not (§2.5)",
+    Fate.NOT_SEEN_WHOLE: "traced: the primitive was not seen whole before, or is examined anew (§2.2, §2.6)",
+    Fate.DYNAMIC: "traced: the primitive belongs to a dynamic object, which is never culled (§2.2)",
+    Fate.TRACED: "traced through the whole scene",
 }
 
 WRONG = _hex("FF00FF")

@@ -190,15 +190,25 @@ def test_the_difference_counts_what_is_wrong_or_says_why_nothing_is(frame: Frame
     assert wrong.facts[0].values[0].startswith("3 (")
     assert (wrong.entries[0].name, wrong.facts[0].name) == ("wrong pixels", "wrong answers")
     assert of(frame, View.WIPE, marked=False).entries[0].color is None
-    many = of(replace(frame, settings=replace(SETTINGS, samples=4)), View.DIFFERENCE)
-    assert many.entries[0].name == "wrong pixels, all 4 samples"
-    assert many.facts[0].name == "wrong answers, first sample"
+    assert [fact.values for fact in wrong.facts[1:]] == [("2",), ("26 of 255",)]
+    found, known = frame.statistics.wrong, frame.statistics
+    known.wrong = replace(found, samples=4)
+    assert of(frame, View.DIFFERENCE).entries[0].name == "wrong pixels, all 4 samples"
+    known.wrong, known.part = found, 0.12
+    assert of(frame, View.DIFFERENCE).notes[0].text == "in the 12.0 % of the picture that is shaded"
     right = replace(frame, wrong=np.zeros_like(frame.wrong))
-    assert of(right, View.DIFFERENCE).notes[0].tone is Tone.GOOD
-    off = replace(right, settings=replace(SETTINGS, method="none"))
-    assert "Culling is off" in of(off, View.DIFFERENCE).notes[0].text
-    right.statistics.shadow.culled = 0
-    assert "No shadow ray" in of(right, View.DIFFERENCE).notes[0].text
+    known.cuts, known.wrong, known.part = None, replace(found, answers=0, pixels=0), 1.0
+    assert of(right, View.DIFFERENCE).notes[0].tone is Tone.PLAIN
+    assert of(right, View.DIFFERENCE).notes[0].text == "None wrong of 15,360 answers known without tracing (25.0 %)."
+    known.wrong = replace(known.wrong, untraced=0)
+    off = of(right, View.DIFFERENCE).notes[0]
+    assert off.tone is Tone.WARNING and off.text.startswith("Every shadow ray was traced")
+
+
+def test_a_wrong_answer_that_no_screen_shows_is_not_a_difference_of_none(frame: Frame):
+    hardly = replace(frame, reference=frame.color + np.float32(1e-4) * (frame.wrong[..., None] > 0))
+    facts = {fact.name: fact.values[0] for fact in of(hardly, View.DIFFERENCE).facts}
+    assert facts["of them look otherwise"] == "0" and facts["largest difference"] == "0.026 of 255"
 
 
 @pytest.mark.parametrize("view", [view for view in View if view is not View.COLOR])

@@ -21,13 +21,13 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
-from viewer.output.legend_counts import difference_legend
 from viewer.output.pictures import SHADING, picture
 from viewer.state.readings import tree_of, voxels_of, work_top
 from viewer.state.slices import MIDDLE, Slice, slice_seen
 from viewer.state.tone import Curve, Tone
 from viewer.state.tree_slice import tree_seen
 from viewer.state.values import values_of
+from viewer.state.verified import largest_difference
 from viewer.state.views import (
     ARRIVAL_COLORS,
     BACKGROUND,
@@ -381,9 +381,10 @@ def test_a_shadow_that_culling_misses_is_drawn(figure4: list[Frame]) -> None:
     assert [bool(pixels.any()) for pixels in drawn] == [False, False, True, False]
     wrong = figure4[2]
     np.testing.assert_array_equal(drawn[2], (wrong.color != wrong.reference).any(axis=-1))
-    legend = difference_legend(wrong)
-    assert legend.pixels == drawn[2].sum() == legend.answers == wrong.statistics.shadow.wrong
-    assert legend.due == wrong.statistics.shadow.due and legend.largest > 0.1
+    found, shadow = wrong.statistics.wrong, wrong.statistics.shadow
+    assert found.pixels == drawn[2].sum() == found.answers == shadow.wrong and found.due == shadow.due
+    largest, seen = largest_difference(wrong)
+    assert largest > 0.1 and seen == found.pixels
 
 
 @pytest.mark.gui

@@ -9,7 +9,7 @@ import pytest
 
 from tests.viewer.fakes import make_frame, with_certificates
 from tracer.frame import Settings
-from tracer.statistics import FrameStatistics, ShadowCounts
+from tracer.statistics import FrameStatistics, ShadowCounts, WrongCounts
 from viewer.state.columns import rows
 from viewer.state.comparison import (
     Comparison,
@@ -110,8 +110,7 @@ def test_columns_have_differences_and_shares():
     assert (frame.written(frame.a), frame.written_share) == ("200.0 ms", "-50.0 %")
     assert found["Due"].written_share == "0 %"
     assert "Wrong answers" not in found and "Certificates made" not in found, "what neither has is left out"
-    verified = replace(b, settings=replace(b.settings, verify=True))
-    verified.statistics.shadow.wrong = 3
+    verified = replace(b, statistics=replace(b.statistics, wrong=WrongCounts(answers=3, due=1000, pixels=2)))
     wrong = {row.name: row for row in rows(a, verified)}["Wrong answers"]
     assert (wrong.written(wrong.a), wrong.written(wrong.b), wrong.written_share) == ("-", "3", "-")
 

@@ -98,14 +98,6 @@ def test_the_colour_of_wrong_answers_is_unmistakable():
         assert np.linalg.norm(dichromat(views.WRONG) - dichromat(other)) > 0.15
 
 
-def test_the_difference_legend_counts_what_is_wrong():
-    legend = legend_counts.difference_legend(make_frame(Settings(width=16, height=8, verify=True)))
-    assert (legend.answers, legend.due, legend.pixels) == (3, 4 * 128, 2)
-    assert legend.pixel_share == pytest.approx(2 / 128) and legend.largest == pytest.approx(0.1)
-    with pytest.raises(ValueError, match="not verified"):
-        legend_counts.difference_legend(make_frame())
-
-
 @pytest.mark.parametrize(
     ("size", "magnified", "radius", "thickness"),
     [((64, 48), 1, 3, 1), ((1500, 40), 1, 8, 1), ((30, 4000), 1, 20, 3), ((1500, 40), 2, 4, 1), ((64, 48), 12, 1, 1)],

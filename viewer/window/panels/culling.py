@@ -8,18 +8,15 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tracer.method import Method
 from tracer.settings import MAX_NODES
 from viewer.services.controller import Controller
-from viewer.state import terms
+from viewer.state import terms, verified
 from viewer.state.preferences import MOST_CERTIFYING
 from viewer.window.panels.method_choice import method_list
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     ERROR,
-    GOOD,
     QUIET,
     checkbox,
-    count,
     paragraph,
-    percent,
     properties,
     row,
     same_line_for,
@@ -110,7 +107,7 @@ def _method(ui: Ui) -> None:
 
 
 def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
-    """How many answers of the newest frame are wrong, and a colour; None where that is not known, or where the frame
+    """What is wrong in the newest frame, and a colour; None where that is not known, or where the frame
     was traced with another method than the panel shows.  A run has figures of its own, in its panel."""
     if c.frame is None or not c.frame.settings.verify:
         return None
@@ -118,14 +115,7 @@ def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
         return f"wrong answers of the {c.runs.current.name} are in its own panel", QUIET
     if c.frame.settings.method != c.tracing.settings.method:
         return None
-    shadow = c.frame.statistics.shadow
-    if c.frame.statistics.cuts is not None:
-        said = f"{count(shadow.wrong)} {terms.BEYOND}" if shadow.wrong else "no pixel beyond the error"
-        return said, ERROR if shadow.wrong else GOOD
-    if shadow.wrong:
-        answers = f"{count(shadow.wrong)} wrong {'answer' if shadow.wrong == 1 else 'answers'}"
-        return f"{answers} ({percent(shadow.wrong, shadow.due)})", ERROR
-    if not any((shadow.culled, shadow.candidates_only, shadow.dynamic_only, shadow.cache_hits, shadow.passed_over)):
-        return "nothing culled", QUIET
-    samples = c.frame.settings.samples
-    return "no wrong answer" + (f" in the first of {samples} samples a pixel" if samples > 1 else ""), GOOD
+    said, color = verified.in_words(c.frame.statistics), ERROR if verified.is_wrong(c.frame.statistics) else QUIET
+    if not c.tracing.settings.verify or c.session.settings.verify:
+        return said, color
+    return f"{said} (verified for the view {c.session.view.label})", color

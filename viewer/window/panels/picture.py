@@ -13,7 +13,7 @@ from contextlib import contextmanager
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from viewer.state import navigation, pads, terms
+from viewer.state import navigation, pads, verified
 from viewer.state.comparison import Way
 from viewer.state.picking import point_at
 from viewer.window import comparing
@@ -42,7 +42,7 @@ from viewer.window.panels import (
 )
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, count, em, paragraph
+from viewer.window.widgets import QUIET, em, paragraph
 
 CLICK_SLACK = 4.0
 BUTTONS = tuple(int(b) for b in (imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle))
@@ -297,11 +297,9 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
         text += f"   {c.session.zoom.scale:.3g} x"
     tone = c.session.tone.in_words()
     text += f"   {tone}" if tone and c.tracing.drawn_view.shows_picture else ""
-    shadow, counter = frame.statistics.shadow, ""
+    counter = ""
     if c.tracing.drawn_view.needs_verify and not ui.legend_shown:
-        counter = f"   {count(shadow.wrong)} wrong of {count(shadow.due)} answers"
-        if frame.statistics.cuts is not None:
-            counter = f"   {count(shadow.wrong)} {terms.BEYOND}"
+        counter = f"   {verified.in_short(frame.statistics)}"
     size = imgui.calc_text_size(text + counter)
     if end.x - corner.x < size.x + em(2.0):
         return corner.y
@@ -314,6 +312,6 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
     draw.add_rect_filled(corner, lower, back, em(0.3))
     draw.add_text(ImVec2(corner.x + 1.5 * pad, corner.y + pad), front, text)
     if counter:
-        color = imgui.get_color_u32(ON_PICTURE_ERROR) if shadow.wrong else front
+        color = imgui.get_color_u32(ON_PICTURE_ERROR) if verified.is_wrong(frame.statistics) else front
         draw.add_text(ImVec2(corner.x + 1.5 * pad + imgui.calc_text_size(text).x, corner.y + pad), color, counter)
     return lower.y

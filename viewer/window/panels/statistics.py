@@ -11,7 +11,6 @@ from tracer.frame import Frame
 from tracer.geometry.accelerators import BVH8
 from tracer.method import Method
 from viewer.state import terms
-from viewer.state.history import fully_traced
 from viewer.window.panels import coming
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -83,8 +82,8 @@ def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
     fits = imgui.calc_text_size(count(shadow.due)).x < room - em(_NAMES + _PART + 0.6)
     number = count if wide and fits else short
 
-    def fate(term: str, part: int) -> None:
-        name, tip, share = term.capitalize(), terms.MEANINGS[term], percent(part, shadow.due)
+    def fate(term: str, part: int, whole: int = shadow.due) -> None:
+        name, tip, share = term.capitalize(), terms.MEANINGS[term], percent(part, whole)
         if wide:
             amount(name, number(part), f"{tip} ({count(part)})")
             imgui.table_next_column()
@@ -97,18 +96,20 @@ def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
         if not shown:
             return
         amount(terms.DUE.capitalize(), number(shadow.due), f"{terms.MEANINGS[terms.DUE]} ({count(shadow.due)})")
+        fate(terms.SAVED, shadow.saved)
         fate(terms.CULLED, shadow.culled)
         fate(terms.DYNAMIC_ONLY, shadow.dynamic_only)
         if certifies or shadow.candidates_only:
             fate(terms.CANDIDATES_ONLY, shadow.candidates_only)
         if Method.parse(frame.settings.method).has("cache") or shadow.cache_hits:
             fate(terms.CACHE_HITS, shadow.cache_hits)
-        fate(terms.TRACED, fully_traced(shadow))
-        if frame.settings.verify:
-            if s.cuts is None:
-                fate(terms.WRONG, shadow.wrong)
-            else:
-                amount(terms.BEYOND.capitalize(), count(shadow.wrong), terms.MEANINGS[terms.BEYOND])
+        fate(terms.TRACED, shadow.traced)
+        wrong = s.wrong
+        if wrong is not None and s.cuts is not None:
+            amount(terms.BEYOND.capitalize(), count(wrong.pixels), terms.MEANINGS[terms.BEYOND])
+        elif wrong is not None:
+            fate(terms.WRONG, wrong.answers, wrong.due)
+            fate(terms.WRONG_PIXELS, wrong.pixels, wrong.shaded)
         if shadow.passed_over:
             tip = f"{terms.MEANINGS[terms.PASSED_OVER]} ({count(shadow.passed_over)})"
             amount(terms.PASSED_OVER.capitalize(), number(shadow.passed_over), tip)
@@ -116,9 +117,9 @@ def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
         if not shown:
             return
         amount("Due per pixel", f"{shadow.due / pixels:.2f}")
-        if frame.settings.keeps_modes:
+        if Method.parse(frame.settings.method).uses_modes:
             tip = f"whether a primitive hides that of the neighbouring pixel ({count(s.occlusion_tests)} in all)"
-            amount("Occlusion tests per pixel", f"{s.occlusion_tests / pixels:.3f}", tip)
+            amount("Occlusion tests per pixel", f"{s.occlusion_tests / (frame.width * frame.height):.3f}", tip)
         made, meaning = terms.made(frame.settings.method)
         if made:
             amount(made.capitalize(), count(s.certificates), meaning, wraps=True)

@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, hello_imgui, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.controller import Controller
-from viewer.state import terms
+from viewer.state import terms, verified
 from viewer.state.log import Level
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, tooltip
@@ -107,9 +107,7 @@ def _summary(ui: Ui) -> str:
     frame = c.frame
     parts = []
     if frame is not None:
-        if frame.settings.verify:
-            what = "beyond the error" if frame.statistics.cuts is not None else "wrong"
-            parts.append(f"{count(frame.statistics.shadow.wrong)} {what}")
+        parts += filter(None, (verified.in_short(frame.statistics),))
         parts += [f"{frame.width} x {frame.height}", f"{1e3 * frame.statistics.seconds:.0f} ms"]
     if c.active:
         parts.append(f"{hello_imgui.frame_rate():.0f} frames/s")
